@@ -1,0 +1,264 @@
+#include "fem_reference/boundary_conditions.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_q1.h>
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "fem_reference/sample.h"
+#include "problem/experiment.h"
+
+namespace springproof::fem {
+namespace {
+
+using dealii::types::boundary_id;
+
+Vec3 vec(const dealii::Point<3>& X) {
+  return {X[0], X[1], X[2]};
+}
+
+bool on_patch(const Body3& body, const std::string& patch, boundary_id id) {
+  return body.patches.at(patch).count(id) > 0;
+}
+
+// Indices of the loads that prescribe something on the faces of each boundary id.
+std::map<boundary_id, std::vector<int>> prescribing_loads(const Body3& body, const std::vector<Load>& loads) {
+  std::map<boundary_id, std::vector<int>> by_id;
+  for (std::size_t l = 0; l < loads.size(); ++l)
+    if (prescribes_displacement(loads[l]))
+      for (const boundary_id id : body.patches.at(*patch_of(loads[l]))) by_id[id].push_back(int(l));
+  return by_id;
+}
+
+// Calls visit(cell, load, i, component, X) for every prescribed shape function i of a cell, active or of a
+// level.
+template <typename Cells, typename Visit>
+void for_each_prescribed(const Cells& cells, const Body3& body, const std::vector<Load>& loads,
+                         const Visit& visit) {
+  const auto by_id = prescribing_loads(body, loads);
+  const dealii::MappingQ1<3> mapping;
+  for (const auto& cell : cells)
+    for (const unsigned int f : cell->face_indices()) {
+      if (!cell->face(f)->at_boundary()) continue;
+      const auto found = by_id.find(cell->face(f)->boundary_id());
+      if (found == by_id.end()) continue;
+      const auto& fe = cell->get_fe();
+      for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i) {
+        if (!fe.has_support_on_face(i, f)) continue;
+        const int component = fe.system_to_component_index(i).first;
+        const Vec3 X = vec(mapping.transform_unit_to_real_cell(cell, fe.unit_support_point(i)));
+        for (const int l : found->second)
+          if (prescribed_displacement(loads[l], X, Kinematics::linear)[component])
+            visit(cell, l, i, component, X);
+      }
+    }
+}
+
+// Integrates f(X) against the shape functions of one cell or face.
+template <typename Values, typename Cell>
+void add_integral(const Values& values, const Cell& cell, const std::function<Vec3(const Vec3&)>& f,
+                  DofVector& load) {
+  const auto& fe = cell->get_fe();
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
+  cell->get_dof_indices(dofs);
+  for (const unsigned int q : values.quadrature_point_indices()) {
+    const Vec3 weighted = values.JxW(q) * f(vec(values.quadrature_point(q)));
+    for (unsigned int i = 0; i < dofs.size(); ++i)
+      load[dofs[i]] += values.shape_value(i, q) * weighted[fe.system_to_component_index(i).first];
+  }
+}
+
+// Calls visit(cell, face_values) on every face of a patch.
+template <typename Visit>
+void for_each_face(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
+                   const Visit& visit) {
+  const dealii::MappingQ1<3> mapping;
+  const auto& fe = dof_handler.get_fe();
+  dealii::FEFaceValues<3> values(
+      mapping, fe, dealii::QGauss<2>(fe.degree + 1),
+      dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
+  for (const auto& cell : dof_handler.active_cell_iterators())
+    for (const unsigned int f : cell->face_indices())
+      if (cell->face(f)->at_boundary() && on_patch(body, patch, cell->face(f)->boundary_id())) {
+        values.reinit(cell, f);
+        visit(cell, values);
+      }
+}
+
+struct PatchGeometry {
+  double area = 0;
+  Vec3 centroid = Vec3::Zero();
+};
+
+PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
+                             const std::string& patch) {
+  PatchGeometry geometry;
+  for_each_face(dof_handler, body, patch, [&](const auto&, const auto& values) {
+    for (const unsigned int q : values.quadrature_point_indices()) {
+      geometry.area += values.JxW(q);
+      geometry.centroid += values.JxW(q) * vec(values.quadrature_point(q));
+    }
+  });
+  if (geometry.area > 0) geometry.centroid /= geometry.area;
+  return geometry;
+}
+
+void add_traction(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
+                  const Vec3& traction, DofVector& load) {
+  for_each_face(dof_handler, body, patch, [&](const auto& cell, const auto& values) {
+    add_integral(
+        values, cell, [&](const Vec3&) { return traction; }, load);
+  });
+}
+
+void add_body_force(const dealii::DoFHandler<3>& dof_handler, unsigned int quadrature_points,
+                    const std::function<Vec3(const Vec3&)>& f, DofVector& load) {
+  const dealii::MappingQ1<3> mapping;
+  dealii::FEValues<3> values(
+      mapping, dof_handler.get_fe(), dealii::QGauss<3>(quadrature_points),
+      dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
+  for (const auto& cell : dof_handler.active_cell_iterators()) {
+    values.reinit(cell);
+    add_integral(values, cell, f, load);
+  }
+}
+
+void add_point_force(const dealii::DoFHandler<3>& dof_handler, const PointForce& point, DofVector& load) {
+  const Location place = locate(dof_handler.get_triangulation(), point.at.transpose()).front();
+  const auto& fe = dof_handler.get_fe();
+  const auto dofs = dofs_at(place, dof_handler);
+  for (unsigned int i = 0; i < dofs.size(); ++i)
+    load[dofs[i]] += fe.shape_value(i, place.unit) * point.force[fe.system_to_component_index(i).first];
+}
+
+}  // namespace
+
+void check_patches(const Body3& body, const std::vector<Load>& loads) {
+  for (const Load& load : loads) {
+    const std::string* name = patch_of(load);
+    if (!name) continue;
+    const auto found = body.patches.find(*name);
+    if (found != body.patches.end() && !found->second.empty()) continue;
+    std::string known;
+    for (const auto& [patch, ids] : body.patches)
+      if (!ids.empty()) known += (known.empty() ? "" : ", ") + patch;
+    throw InputError(fmt::format("no patch \"{}\" on this body; there are: {}", *name, known));
+  }
+}
+
+std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
+                                   const std::vector<Load>& loads) {
+  std::map<unsigned int, Prescribed> by_dof;
+  std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
+  for_each_prescribed(
+      dof_handler.active_cell_iterators(), body, loads,
+      [&](const auto& cell, int l, unsigned int i, int component, const Vec3& X) {
+        cell->get_dof_indices(dofs);
+        const auto [at, is_new] = by_dof.try_emplace(dofs[i], Prescribed{dofs[i], component, l, X});
+        if (!is_new) at->second.load = std::max(at->second.load, l);
+      });
+  std::vector<Prescribed> all;
+  for (const auto& [dof, p] : by_dof) all.push_back(p);
+  return all;
+}
+
+std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& dof_handler,
+                                                   const Body3& body, const std::vector<Load>& loads) {
+  std::vector<dealii::IndexSet> sets;
+  std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
+  for (unsigned int level = 0; level < dof_handler.get_triangulation().n_levels(); ++level) {
+    std::set<dealii::types::global_dof_index> found;
+    for_each_prescribed(dof_handler.mg_cell_iterators_on_level(level), body, loads,
+                        [&](const auto& cell, int, unsigned int i, int, const Vec3&) {
+                          cell->get_mg_dof_indices(dofs);
+                          found.insert(dofs[i]);
+                        });
+    dealii::IndexSet set(dof_handler.n_dofs(level));
+    set.add_indices(found.begin(), found.end());
+    set.compress();
+    sets.push_back(set);
+  }
+  return sets;
+}
+
+void check_held(const std::vector<Prescribed>& prescribed) {
+  const char* help = "prescribe displacement on more patches or components";
+  if (prescribed.empty()) throw InputError(fmt::format("the body is not held anywhere: {}", help));
+  Vec3 low = prescribed.front().X, high = low;
+  for (const Prescribed& p : prescribed) {
+    low = low.cwiseMin(p.X);
+    high = high.cwiseMax(p.X);
+  }
+  const Vec3 middle = (low + high) / 2;
+  const double length = std::max((high - low).norm() / 2, 1e-300);
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  Matrix6 gram = Matrix6::Zero();
+  for (const Prescribed& p : prescribed) {
+    Eigen::Matrix<double, 6, 1> row = Eigen::Matrix<double, 6, 1>::Zero();
+    row[p.component] = 1;
+    for (int k = 0; k < 3; ++k) row[3 + k] = Vec3::Unit(k).cross((p.X - middle) / length)[p.component];
+    gram += row * row.transpose() / double(prescribed.size());
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(gram);
+  if (eigen.eigenvalues()[0] > 1e-10) return;
+  const auto free = eigen.eigenvectors().col(0);
+  const bool turns = free.tail<3>().norm() > free.head<3>().norm();
+  const Vec3 along = (turns ? free.tail<3>() : free.head<3>()).normalized();
+  throw InputError(fmt::format("the body is not held: it can still {} ({:.3g}, {:.3g}, {:.3g}); {}",
+                               turns ? "turn about" : "move along", along[0], along[1], along[2], help));
+}
+
+DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
+                      const std::vector<Load>& loads, const IsotropicMaterial& material,
+                      const std::function<Vec3(const Vec3&)>& body_force) {
+  DofVector load(dof_handler.n_dofs());
+  const unsigned int points = dof_handler.get_fe().degree + 1;
+  for (const Load& l : loads) {
+    if (const auto* traction = std::get_if<Traction>(&l))
+      add_traction(dof_handler, body, traction->on, traction->traction, load);
+    if (const auto* total = std::get_if<PatchForce>(&l))
+      add_traction(dof_handler, body, total->on,
+                   total->force / patch_geometry(dof_handler, body, total->on).area, load);
+    if (const auto* gravity = std::get_if<Gravity>(&l)) {
+      const Vec3 weight = material.density * gravity->acceleration;
+      add_body_force(
+          dof_handler, points, [&](const Vec3&) { return weight; }, load);
+    }
+    if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, *point, load);
+  }
+  if (body_force) add_body_force(dof_handler, points + 2, body_force, load);
+  return load;
+}
+
+std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
+                                     const std::vector<Load>& loads,
+                                     const std::vector<Prescribed>& prescribed, const DofVector& imbalance,
+                                     const DofVector* arm) {
+  std::vector<PatchReaction> all;
+  std::vector<Vec3> centroids;
+  std::vector<int> reaction_of_load(loads.size(), -1);
+  for (std::size_t l = 0; l < loads.size(); ++l) {
+    if (!prescribes_displacement(loads[l])) continue;
+    const std::string& patch = *patch_of(loads[l]);
+    const auto same = std::find_if(all.begin(), all.end(), [&](const auto& r) { return r.patch == patch; });
+    reaction_of_load[l] = int(same - all.begin());
+    if (same != all.end()) continue;
+    all.push_back({patch, Vec3::Zero(), Vec3::Zero()});
+    centroids.push_back(patch_geometry(dof_handler, body, patch).centroid);
+  }
+  for (const Prescribed& p : prescribed) {
+    const int r = reaction_of_load[p.load];
+    const Vec3 force = imbalance[p.dof] * Vec3::Unit(p.component);
+    all[r].force += force;
+    Vec3 x = p.X;
+    // FE_Q systems number the three components of a support point one after the other.
+    if (arm)
+      for (int c = 0; c < 3; ++c) x[c] += (*arm)[p.dof - p.component + c];
+    all[r].torque += (x - centroids[r]).cross(force);
+  }
+  return all;
+}
+
+}  // namespace springproof::fem

@@ -1,0 +1,43 @@
+// The linear-elastic problem on one grid as the solver sees it.
+#pragma once
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <string>
+#include <vector>
+
+namespace springproof::fem {
+
+using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
+
+/// Stress = mu (grad u + grad u^T) + lambda div u I, with div u taken
+enum class Form {
+  pointwise,        ///< as it is
+  mean_dilatation,  ///< as its mean over each cell (B-bar)
+  mixed  ///< projected on one constant (Q1) or four linear functions (Q2) per cell, as an unknown pressure
+};
+
+struct ElasticSystem {
+  const dealii::DoFHandler<3>& dof_handler;         ///< with level degrees of freedom
+  std::vector<unsigned int> constrained;            ///< degrees of freedom with prescribed value
+  std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level
+  int degree;
+  Form form;
+  double mu, lambda;  ///< [Pa]
+  double tolerance;   ///< relative residual
+};
+
+struct ElasticAnswer {
+  DofVector internal_force;  ///< on every degree of freedom, the constrained ones too [N]
+  int iterations = 0;
+  double residual = 0;  ///< |free part of load - internal force| / that of the start
+  bool converged = false;
+  std::string method;
+};
+
+/// Solves for the free part of `displacement`, whose constrained entries hold the prescribed values.
+ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
+
+}  // namespace springproof::fem

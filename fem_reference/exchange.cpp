@@ -1,0 +1,114 @@
+#include "fem_reference/exchange.h"
+
+#include <nlohmann/json.hpp>
+
+namespace springproof::fem {
+namespace {
+
+using nlohmann::json;
+
+json rows(const NodalVectors& v) {
+  return std::vector<double>(v.data(), v.data() + v.size());
+}
+
+NodalVectors to_rows(const json& j) {
+  const auto flat = j.get<std::vector<double>>();
+  return Eigen::Map<const NodalVectors>(flat.data(), flat.size() / 3, 3);
+}
+
+json vec(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 to_vec(const json& j) {
+  return Vec3(j.at(0), j.at(1), j.at(2));
+}
+
+json grid(const Discretisation& g) {
+  return {{"cells", g.cells}, {"degree", g.degree}, {"grading", g.grading}};
+}
+
+Discretisation to_grid(const json& j) {
+  return {j.at("cells"), j.at("degree"), j.at("grading")};
+}
+
+json solution(const Solution& s) {
+  json reactions = json::array();
+  for (const PatchReaction& r : s.reactions)
+    reactions.push_back({{"patch", r.patch}, {"force", vec(r.force)}, {"torque", vec(r.torque)}});
+  return {{"grid", grid(s.grid)},
+          {"ok", s.ok},
+          {"message", s.message},
+          {"form", s.form},
+          {"law", s.law},
+          {"displacement", rows(s.displacement)},
+          {"reactions", reactions},
+          {"volume_change", s.volume_change},
+          {"volume_change_first_order", s.volume_change_first_order},
+          {"min_jacobian", s.min_jacobian},
+          {"degrees_of_freedom", s.degrees_of_freedom},
+          {"iterations", s.iterations},
+          {"residual", s.residual},
+          {"seconds", s.seconds},
+          {"memory_MiB", s.memory_MiB}};
+}
+
+Solution to_solution(const json& j) {
+  Solution s;
+  s.grid = to_grid(j.at("grid"));
+  s.ok = j.at("ok");
+  s.message = j.at("message");
+  s.form = j.at("form");
+  s.law = j.at("law");
+  s.displacement = to_rows(j.at("displacement"));
+  for (const json& r : j.at("reactions"))
+    s.reactions.push_back({r.at("patch"), to_vec(r.at("force")), to_vec(r.at("torque"))});
+  s.volume_change = j.at("volume_change");
+  s.volume_change_first_order = j.at("volume_change_first_order");
+  s.min_jacobian = j.at("min_jacobian");
+  s.degrees_of_freedom = j.at("degrees_of_freedom");
+  s.iterations = j.at("iterations");
+  s.residual = j.at("residual");
+  s.seconds = j.at("seconds");
+  s.memory_MiB = j.at("memory_MiB");
+  return s;
+}
+
+}  // namespace
+
+json to_json(const Request& request) {
+  json grids = json::array();
+  for (const Discretisation& g : request.grids) grids.push_back(grid(g));
+  return {{"experiment", to_toml(request.experiment)},
+          {"file", request.experiment.file.string()},
+          {"youngs_modulus", request.material.youngs_modulus},
+          {"poisson_ratio", request.material.poisson_ratio},
+          {"density", request.material.density},
+          {"grids", grids},
+          {"points", rows(request.points)},
+          {"tolerance", request.tolerance}};
+}
+
+Request request_from_json(const json& j) {
+  Request request;
+  request.experiment = parse_experiment(j.at("experiment"), std::string(j.at("file")));
+  request.material = {j.at("youngs_modulus"), j.at("poisson_ratio"), j.at("density")};
+  for (const json& g : j.at("grids")) request.grids.push_back(to_grid(g));
+  request.points = to_rows(j.at("points"));
+  request.tolerance = j.at("tolerance");
+  return request;
+}
+
+json to_json(const std::vector<Solution>& solutions) {
+  json all = json::array();
+  for (const Solution& s : solutions) all.push_back(solution(s));
+  return all;
+}
+
+std::vector<Solution> solutions_from_json(const json& j) {
+  std::vector<Solution> all;
+  for (const json& s : j) all.push_back(to_solution(s));
+  return all;
+}
+
+}  // namespace springproof::fem

@@ -1,0 +1,20 @@
+// What travels between a caller and `springproof-fem`: a request as JSON, the answer as CBOR of the same
+// shape.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "fem_reference/reference.h"
+
+namespace springproof::fem {
+
+nlohmann::json to_json(const Request& request);
+
+/// @throws InputError, std::runtime_error if it is no request.
+Request request_from_json(const nlohmann::json& json);
+
+nlohmann::json to_json(const std::vector<Solution>& solutions);
+std::vector<Solution> solutions_from_json(const nlohmann::json& json);
+
+}  // namespace springproof::fem

@@ -1,0 +1,177 @@
+// springproof-fem: the finite element reference as a program.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fem_reference/exchange.h"
+#include "fem_reference/solve_grid.h"
+#include "meshes/gmsh_io.h"
+
+namespace springproof::fem {
+namespace {
+
+// Halves the cells as long as all counts stay even and at least 2: the coarsest level of the multigrid.
+int halve(Cells& cells) {
+  int times = 0;
+  const auto can_be_halved = [](int n) { return n % 2 == 0 && n >= 4; };
+  while (std::all_of(cells.begin(), cells.end(), can_be_halved)) {
+    for (int& n : cells) n /= 2;
+    ++times;
+  }
+  return times;
+}
+
+Solution solve_one(const Request& request, const Discretisation& grid) {
+  const Experiment& experiment = request.experiment;
+  GridProblem problem;
+  Cells coarse = grid.cells;
+  problem.refinements = halve(coarse);
+  problem.coarse = mesh_geo(find_geo(experiment.body, experiment.file), experiment.body.size, coarse);
+  problem.place = graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(),
+                         grid.grading);
+  problem.degree = grid.degree;
+  problem.law = experiment.kinematics;
+  problem.material = request.material;
+  problem.loads = experiment.loads;
+  problem.points = request.points;
+  problem.tolerance = request.tolerance;
+  Solution solution = solve_grid(problem);
+  solution.grid = grid;
+  return solution;
+}
+
+std::vector<Solution> solve_all(const Request& request) {
+  std::vector<Solution> solutions;
+  for (const Discretisation& grid : request.grids) {
+    try {
+      solutions.push_back(solve_one(request, grid));
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::exception& e) {
+      Solution failed;
+      failed.grid = grid;
+      failed.law = request.experiment.kinematics;
+      failed.message = e.what();
+      solutions.push_back(failed);
+    }
+  }
+  return solutions;
+}
+
+void answer_request(const std::string& request_file, const std::string& answer_file) {
+  std::ifstream in(request_file);
+  const std::vector<Solution> solutions = solve_all(request_from_json(nlohmann::json::parse(in)));
+  std::ofstream out(answer_file, std::ios::binary);
+  nlohmann::json::to_cbor(to_json(solutions), out);
+  if (!out.flush()) throw std::runtime_error("cannot write " + answer_file);
+}
+
+void print(const Request& request, const Solution& s) {
+  const auto& [nx, ny, nz] = s.grid.cells;
+  fmt::print("{} x {} x {} cells, grading {}, {} degrees of freedom\n", nx, ny, nz, s.grid.grading,
+             s.degrees_of_freedom);
+  fmt::print("  form                  {}\n  law                   {}\n", s.form, s.law);
+  if (!s.ok) fmt::print("  FAILED                {}\n", s.message);
+  fmt::print("  solver                {} iterations, relative residual {:.1e}, {:.2f} CPU s, {:.0f} MiB\n",
+             s.iterations, s.residual, s.seconds, s.memory_MiB);
+  fmt::print("  volume change         {:.9g} (first order {:.9g}), smallest det F {:.6g}\n", s.volume_change,
+             s.volume_change_first_order, s.min_jacobian);
+  for (const PatchReaction& r : s.reactions)
+    fmt::print("  reaction on {:<9} force [N] {:.9g} {:.9g} {:.9g}   torque [N m] {:.9g} {:.9g} {:.9g}\n",
+               r.patch, r.force[0], r.force[1], r.force[2], r.torque[0], r.torque[1], r.torque[2]);
+  for (Eigen::Index p = 0; p < s.displacement.rows(); ++p)
+    fmt::print("  {:<21} {:.9g} {:.9g} {:.9g} m\n", request.experiment.probes[p].name, s.displacement(p, 0),
+               s.displacement(p, 1), s.displacement(p, 2));
+}
+
+struct Options {
+  std::string request, answer, case_file;
+  std::vector<int> cells;
+  double poisson_ratio = std::numeric_limits<double>::quiet_NaN();
+  Discretisation grid;
+  double tolerance = 1e-9;
+};
+
+bool solve_case(const Options& options) {
+  Request request;
+  request.experiment = read_experiment(options.case_file);
+  request.tolerance = options.tolerance;
+  Discretisation grid = options.grid;
+  grid.cells = request.experiment.body.cells.front();
+  if (!options.cells.empty()) std::copy_n(options.cells.begin(), 3, grid.cells.begin());
+  request.grids = {grid};
+  request.points.resize(request.experiment.probes.size(), 3);
+  for (std::size_t p = 0; p < request.experiment.probes.size(); ++p)
+    request.points.row(p) = request.experiment.probes[p].at;
+  bool ok = true;
+  std::vector<IsotropicMaterial> materials = request.experiment.materials;
+  if (!std::isnan(options.poisson_ratio)) {
+    materials.resize(1);
+    materials[0].poisson_ratio = options.poisson_ratio;
+  }
+  for (const IsotropicMaterial& material : materials) {
+    request.material = material;
+    fmt::print("{}, Poisson's ratio {}: ", request.experiment.name, material.poisson_ratio);
+    for (const Solution& s : solve_all(request)) {
+      print(request, s);
+      ok = ok && s.ok;
+    }
+  }
+  return ok;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "Solves an experiment with finite elements (deal.II): Q1 with mean dilatation or Q2 hexahedra, "
+      "matrix-free\n"
+      "multigrid.  Prints reactions, volume change and what the solver did.");
+  Options options;
+  app.add_option("case", options.case_file, "experiment, a .toml file");
+  app.add_option("--poisson-ratio", options.poisson_ratio, "solve for this one instead of those in the file");
+  app.add_option("--cells", options.cells, "hexahedra along each side")
+      ->expected(3)
+      ->check(CLI::PositiveNumber);
+  app.add_option("--degree", options.grid.degree, "1 or 2")
+      ->check(CLI::IsMember({1, 2}))
+      ->capture_default_str();
+  app.add_option("--grading", options.grid.grading,
+                 "1 = uniform, more draws cells towards the faces of the block")
+      ->check(CLI::Range(1.0, 4.0))
+      ->capture_default_str();
+  app.add_option("--tolerance", options.tolerance, "relative residual")
+      ->check(CLI::Range(1e-14, 1e-1))
+      ->capture_default_str();
+  app.add_option("--request", options.request, "a request file instead of a case (used by springproof)");
+  app.add_option("--answer", options.answer, "where to write the answer to --request");
+  app.set_version_flag("--version", [] { return library_versions(); });
+  try {
+    app.parse(argc, argv);
+    if (options.request.empty() == options.case_file.empty() ||
+        options.request.empty() != options.answer.empty())
+      throw CLI::RequiredError("a case, or --request with --answer,");
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  try {
+    if (!options.request.empty()) {
+      answer_request(options.request, options.answer);
+      return 0;
+    }
+    return solve_case(options) ? 0 : 1;
+  } catch (const InputError& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}
+
+}  // namespace
+}  // namespace springproof::fem
+
+int main(int argc, char** argv) {
+  return springproof::fem::run(argc, argv);
+}

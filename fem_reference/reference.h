@@ -1,0 +1,60 @@
+// The finite element reference as its callers see it: no deal.II in here.
+//
+// solve() runs the separate program `springproof-fem` (found beside the running executable), so that a
+// program that does not need FEM pays nothing for it, and a failing reference cannot take its caller down.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "meshes/field.h"
+#include "problem/experiment.h"
+
+namespace springproof::fem {
+
+/// One discretisation of the body.
+struct Discretisation {
+  Cells cells;           ///< hexahedra along each side of the block
+  int degree = 2;        ///< 1 (Q1, mean dilatation B-bar) or 2 (Q2)
+  double grading = 1.0;  ///< xi -> graded towards both ends of every side, exponent; 1 = uniform
+};
+
+struct Request {
+  Experiment experiment;       ///< geometry, loads, kinematics or law
+  IsotropicMaterial material;  ///< the one to solve for
+  std::vector<Discretisation> grids;
+  NodalVectors points;      ///< rest positions at which the displacement is wanted, n x 3 [m]
+  double tolerance = 1e-9;  ///< relative residual of the linear solves
+};
+
+/// The answer on one grid.
+struct Solution {
+  Discretisation grid;
+  bool ok = false;
+  std::string message;  ///< why not, with the load reached
+  std::string form;     ///< "Q2 displacement, matrix-free multigrid CG", "Q2-P1disc mixed", "Q1 B-bar", ...
+  std::string law;      ///< "linear", "hencky", ...
+  NodalVectors displacement;  ///< at Request::points [m]
+  std::vector<PatchReaction> reactions;
+  double volume_change = 0;              ///< exact, by the element's own quadrature [1]
+  double volume_change_first_order = 0;  ///< integral of div u / V [1]
+  double min_jacobian = 1;               ///< min det F at quadrature points
+  long degrees_of_freedom = 0;
+  int iterations = 0;     ///< of the linear solver, all steps together
+  double residual = 0;    ///< relative, of the final state
+  double seconds = 0;     ///< CPU time of this grid
+  double memory_MiB = 0;  ///< peak resident set of the process so far
+};
+
+/// Solves on every grid, in order.  A grid that fails has ok = false; it does not throw.
+/// @throws InputError if the experiment cannot be used (no such patch, unconstrained body, unknown law).
+/// @throws std::runtime_error if the program cannot be run or is killed (with its last words).
+std::vector<Solution> solve(const Request& request);
+
+/// True if `springproof-fem` is there to be run.
+bool available();
+
+/// "deal.II 9.4.1, PETSc ..." of the program, empty if not available.
+std::string version();
+
+}  // namespace springproof::fem

@@ -1,0 +1,36 @@
+// Numbers taken from a solution: displacement at points, volume.
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include "fem_reference/elastic_system.h"
+#include "problem/vector.h"
+
+namespace springproof::fem {
+
+/// A rest position inside a cell.
+struct Location {
+  dealii::Triangulation<3>::active_cell_iterator cell;
+  dealii::Point<3> unit;
+};
+
+/// The degrees of freedom of the cell at a place.
+std::vector<dealii::types::global_dof_index> dofs_at(const Location& place,
+                                                     const dealii::DoFHandler<3>& dof_handler);
+
+/// @throws InputError naming the first point that is further outside the body than half the cell next to it.
+std::vector<Location> locate(const dealii::Triangulation<3>& triangulation, const NodalVectors& points);
+
+/// n x 3 [m].
+NodalVectors displacement_at(const std::vector<Location>& places, const dealii::DoFHandler<3>& dof_handler,
+                             const DofVector& displacement);
+
+struct VolumeMeasure {
+  double change = 0;              ///< integral of det(I + grad u) - 1, over V
+  double change_first_order = 0;  ///< integral of div u over V
+  double min_jacobian = 1;        ///< min det(I + grad u) at quadrature points
+};
+
+VolumeMeasure measure_volume(const dealii::DoFHandler<3>& dof_handler, const DofVector& displacement);
+
+}  // namespace springproof::fem

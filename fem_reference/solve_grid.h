@@ -1,0 +1,36 @@
+// One discretisation solved in this process: what `springproof-fem` does per grid, and what the tests of the
+// elements call.  No deal.II in this header.
+#pragma once
+
+#include <functional>
+
+#include "fem_reference/reference.h"
+
+namespace springproof::fem {
+
+struct GridProblem {
+  Mesh coarse;                             ///< hexahedra with named patches
+  int refinements = 0;                     ///< each cell is cut into 8 this many times
+  std::function<Vec3(const Vec3&)> place;  ///< moves the vertices of the finest mesh; empty: they stay
+  int degree = 2;                          ///< 1 or 2
+  std::string law = "linear";
+  IsotropicMaterial material;
+  std::vector<Load> loads;
+  std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none
+  NodalVectors points;      ///< rest positions at which the displacement is wanted, n x 3 [m]
+  double tolerance = 1e-9;  ///< relative residual
+};
+
+/// Solution::grid is left to the caller.  A solver that fails gives ok = false.
+/// @throws InputError if the problem cannot be used: unknown patch or law, unconstrained body, point outside
+/// it.
+Solution solve_grid(const GridProblem& problem);
+
+/// Draws coordinates within the box [low, high] towards its faces, symmetrically: t -> (2t)^exponent / 2 on
+/// the lower half of each axis.  Faces, edges and middle planes stay.
+std::function<Vec3(const Vec3&)> graded(const Vec3& low, const Vec3& high, double exponent);
+
+/// "deal.II 9.4.1, PETSc 3.18.1".
+std::string library_versions();
+
+}  // namespace springproof::fem
