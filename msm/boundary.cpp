@@ -1,0 +1,155 @@
+#include "msm/boundary.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace springproof {
+namespace {
+
+void prescribe(const Load& load, int number, const Mesh& mesh, Kinematics kinematics, double factor,
+               BoundaryConditions& bc) {
+  const std::string& name = *patch_of(load);
+  for (int node : nodes_of(patch(mesh, name))) {
+    const PrescribedValue value = prescribed_displacement(load, mesh.nodes.row(node).transpose(), kinematics, factor);
+    for (int d = 0; d < 3; ++d) {
+      if (!value[d]) continue;
+      const int unknown = 3 * node + d;
+      const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+      if (bc.fixed[unknown] && std::abs(bc.prescribed(node, d) - *value[d]) > 1e-9 * size)
+        throw InputError(fmt::format(
+            "load {}: patch '{}' prescribes displacement {} = {:.6g} m at a node where load {} already prescribes {:.6g} m",
+            number + 1, name, "xyz"[d], *value[d], bc.owner[unknown] + 1, bc.prescribed(node, d)));
+      if (!bc.fixed[unknown]) bc.owner[unknown] = number;
+      bc.fixed[unknown] = 1;
+      bc.prescribed(node, d) = *value[d];
+    }
+  }
+}
+
+/// Trilinear coordinates of a point in a cell by Newton's method; false if outside.
+bool inside(const Mesh& mesh, const Hexahedron& cell, const Vec3& point, Eigen::Matrix<double, 8, 1>& shape) {
+  Vec3 xi(0.5, 0.5, 0.5);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    Vec3 at = Vec3::Zero();
+    Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+    for (int n = 0; n < 8; ++n) {
+      double f[3], df[3];
+      for (int d = 0; d < 3; ++d) {
+        f[d] = hexahedron_corners[n][d] ? xi[d] : 1 - xi[d];
+        df[d] = hexahedron_corners[n][d] ? 1 : -1;
+      }
+      const Vec3 p = mesh.nodes.row(cell[n]).transpose();
+      shape[n] = f[0] * f[1] * f[2];
+      at += shape[n] * p;
+      jacobian += p * Eigen::RowVector3d(df[0] * f[1] * f[2], f[0] * df[1] * f[2], f[0] * f[1] * df[2]);
+    }
+    const Vec3 step = jacobian.partialPivLu().solve(point - at);
+    xi += step;
+    if (!(xi.norm() < 10)) return false;
+    if (step.norm() < 1e-13) return (xi.array() > -1e-9).all() && (xi.array() < 1 + 1e-9).all();
+  }
+  return false;
+}
+
+void add_point_force(const PointForce& load, const Mesh& mesh, NodalVectors& external) {
+  Eigen::Matrix<double, 8, 1> shape;
+  for (const Hexahedron& cell : mesh.hexahedra) {
+    if (!inside(mesh, cell, load.at, shape)) continue;
+    for (int n = 0; n < 8; ++n) external.row(cell[n]) += shape[n] * load.force.transpose();
+    return;
+  }
+  throw InputError(fmt::format("at_m: the point force at ({:.6g}, {:.6g}, {:.6g}) m lies outside the body", load.at[0],
+                               load.at[1], load.at[2]));
+}
+
+void add_uniform(const Mesh& mesh, const std::string& on, const Vec3& traction, bool is_total, NodalVectors& external) {
+  const Eigen::VectorXd area = nodal_areas(mesh, patch(mesh, on));
+  external += (is_total ? area / area.sum() : area) * traction.transpose();
+}
+
+}  // namespace
+
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
+                            double factor) {
+  const auto n = mesh.nodes.rows();
+  BoundaryConditions bc{std::vector<char>(3 * n, 0), std::vector<int>(3 * n, -1), NodalVectors::Zero(n, 3),
+                        NodalVectors::Zero(n, 3)};
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const Load& load = loads[i];
+    try {
+      if (prescribes_displacement(load))
+        prescribe(load, static_cast<int>(i), mesh, kinematics, factor, bc);
+      else if (const auto* t = std::get_if<Traction>(&load))
+        add_uniform(mesh, t->on, factor * t->traction, false, bc.external);
+      else if (const auto* f = std::get_if<PatchForce>(&load))
+        add_uniform(mesh, f->on, factor * f->force, true, bc.external);
+      else if (const auto* g = std::get_if<Gravity>(&load))
+        bc.external += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
+      else if (const auto* p = std::get_if<PointForce>(&load))
+        add_point_force({p->at, factor * p->force}, mesh, bc.external);
+    } catch (const std::invalid_argument& e) {
+      throw InputError(fmt::format("load {}: {}", i + 1, e.what()));
+    }
+  }
+  return bc;
+}
+
+void require_supported(const BoundaryConditions& bc, const Mesh& mesh) {
+  // Six rigid motions restricted to the fixed unknowns must be independent.
+  const Vec3 middle = mesh.nodes.colwise().mean().transpose();
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+  double count = 0;
+  for (int node = 0; node < mesh.nodes.rows(); ++node) {
+    const Vec3 r = (mesh.nodes.row(node).transpose() - middle) / size;
+    for (int d = 0; d < 3; ++d) {
+      if (!bc.fixed[3 * node + d]) continue;
+      Eigen::Matrix<double, 6, 1> motion = Eigen::Matrix<double, 6, 1>::Zero();
+      motion[d] = 1;
+      for (int axis = 0; axis < 3; ++axis) motion[3 + axis] = Vec3::Unit(axis).cross(r)[d];
+      gram += motion * motion.transpose();
+      ++count;
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram);
+  if (count > 0 && eigen.eigenvalues()[0] > 1e-10 * count) return;
+  static const char* names[6] = {"translation along x", "translation along y", "translation along z",
+                                 "rotation about x",    "rotation about y",    "rotation about z"};
+  int dominant = 0;
+  eigen.eigenvectors().col(0).cwiseAbs().maxCoeff(&dominant);
+  throw InputError(fmt::format(
+      "the body is not held: the loads leave a rigid motion free ({}); prescribe displacements that prevent it",
+      count > 0 ? names[dominant] : "all six"));
+}
+
+std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh,
+                                           const BoundaryConditions& bc, const NodalVectors& support,
+                                           const NodalVectors& displacement, Kinematics kinematics) {
+  std::vector<PatchReaction> reactions;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    if (!prescribes_displacement(loads[i])) continue;
+    const Patch& p = patch(mesh, *patch_of(loads[i]));
+    auto reaction = std::find_if(reactions.begin(), reactions.end(),
+                                 [&](const PatchReaction& r) { return r.patch == p.name; });
+    if (reaction == reactions.end()) {
+      reactions.push_back({p.name, Vec3::Zero(), Vec3::Zero()});
+      reaction = reactions.end() - 1;
+    }
+    const Vec3 centre = centroid(mesh, p);
+    for (int node : nodes_of(p)) {
+      Vec3 force = Vec3::Zero();
+      for (int d = 0; d < 3; ++d)
+        if (bc.owner[3 * node + d] == static_cast<int>(i)) force[d] = support(node, d);
+      Vec3 arm = mesh.nodes.row(node).transpose() - centre;
+      if (kinematics == Kinematics::finite) arm += displacement.row(node).transpose();
+      reaction->force += force;
+      reaction->torque += arm.cross(force);
+    }
+  }
+  return reactions;
+}
+
+}  // namespace springproof

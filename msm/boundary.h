@@ -1,0 +1,34 @@
+// Loads carried over to the nodes of a network; what the supports then answer.
+#pragma once
+
+#include <vector>
+
+#include "meshes/field.h"
+#include "problem/experiment.h"
+
+namespace springproof {
+
+struct BoundaryConditions {
+  std::vector<char> fixed;    ///< per unknown 3 * node + axis: displacement prescribed
+  std::vector<int> owner;     ///< per unknown: number of the load that prescribes it, -1 = free
+  NodalVectors prescribed;    ///< displacement at the full load, zero where free [m]
+  NodalVectors external;      ///< nodal forces at the full load [N]
+};
+
+/// Transfers the loads to the mesh's nodes.  Tractions by the facets' shape functions, gravity by nodal mass, a point
+/// force by the shape functions of the cell that holds it: resultant and moment are kept.
+/// @throws InputError: no such patch, a point force outside the body, two loads that prescribe different values at
+///   one node.
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
+                            double factor = 1.0);
+
+/// @throws InputError naming the free rigid motion if the fixed unknowns leave one.
+void require_supported(const BoundaryConditions& conditions, const Mesh& mesh);
+
+/// Support forces and torques per patch with prescribed displacement, from the support force of each node [N].
+/// An unknown that two patches prescribe counts for the load named first.
+std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh,
+                                           const BoundaryConditions& conditions, const NodalVectors& support,
+                                           const NodalVectors& displacement, Kinematics kinematics);
+
+}  // namespace springproof

@@ -1,0 +1,75 @@
+#include "msm/laws/hourglass_correction.h"
+
+#include <cmath>
+
+namespace springproof {
+namespace {
+
+using CellVector = Eigen::Matrix<double, 24, 1>;
+
+/// Unit displacement of axis `component` in the hourglass pattern xi_p xi_q (xi = +-1 at the corners).
+CellVector hourglass(int component, int p, int q) {
+  CellVector h = CellVector::Zero();
+  for (int n = 0; n < 8; ++n)
+    h[3 * n + component] =
+        (2.0 * hexahedron_corners[n][p] - 1) * (2.0 * hexahedron_corners[n][q] - 1) / std::sqrt(8.0);
+  return h;
+}
+
+CellVector displacement(const Network& network, const Hexahedron& cell, const NodalVectors& x) {
+  CellVector u;
+  for (int n = 0; n < 8; ++n) u.segment<3>(3 * n) = (x.row(cell[n]) - network.X.row(cell[n])).transpose();
+  return u;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 24, 24> HourglassCorrection::cell_matrix(double edge) const {
+  const double Gl = shear_modulus * edge, nu = poisson_ratio, A = face_to_cube;
+  // 3A / (2 (4 + 3A)) is both the springs' coupling of the two bending modes of one neutral plane and their stiffness
+  // of the paired torsional modes; 6A / (4 + 3A) that of the symmetric torsional mode (units of G l).
+  const double pair = std::isinf(A) ? 0.5 : 3 * A / (2 * (4 + 3 * A));
+  const double da = Gl * (1 / (3 * (1 - nu)) - 1);
+  const double db = Gl * (nu / (3 * (1 - nu)) - pair);
+  Eigen::Matrix<double, 24, 24> K = Eigen::Matrix<double, 24, 24>::Zero();
+  for (int y = 0; y < 3; ++y) {
+    const int p = (y + 1) % 3, q = (y + 2) % 3;
+    const CellVector hp = hourglass(p, p, y), hq = hourglass(q, q, y);
+    K += da * (hp * hp.transpose() + hq * hq.transpose()) + db * (hp * hq.transpose() + hq * hp.transpose());
+  }
+  if (!torsion) return K;
+  const double paired = Gl * (1.0 / 6 - pair), symmetric = Gl * (2.0 / 3 - 4 * pair);
+  for (int m = 0; m < 3; ++m)
+    for (int n = 0; n < 3; ++n) {
+      const double c = (m == n ? paired : 0.0) + (symmetric - paired) / 3;
+      K += c * hourglass(m, (m + 1) % 3, (m + 2) % 3) * hourglass(n, (n + 1) % 3, (n + 2) % 3).transpose();
+    }
+  return K;
+}
+
+double HourglassCorrection::energy(const Network& network, const NodalVectors& x) const {
+  const auto K = cell_matrix(network.cell_edge);
+  double sum = 0;
+  for (const Hexahedron& cell : network.cells) {
+    const CellVector u = displacement(network, cell, x);
+    sum += 0.5 * u.dot(K * u);
+  }
+  return sum;
+}
+
+void HourglassCorrection::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
+  const auto K = cell_matrix(network.cell_edge);
+  for (const Hexahedron& cell : network.cells) {
+    const CellVector force = K * displacement(network, cell, x);
+    for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
+  }
+}
+
+void HourglassCorrection::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
+  const auto cell_K = cell_matrix(network.cell_edge);
+  for (const Hexahedron& cell : network.cells)
+    for (int m = 0; m < 8; ++m)
+      for (int n = 0; n < 8; ++n) K.add(cell[m], cell[n], cell_K.block<3, 3>(3 * m, 3 * n));
+}
+
+}  // namespace springproof

@@ -1,0 +1,27 @@
+// Force law: the six bending (and three torsional) hourglass modes of a cubic cell, given their continuum stiffness.
+#pragma once
+
+#include "msm/network.h"
+#include "msm/solve/block_matrix.h"
+
+namespace springproof {
+
+/// Springs make a cell's bending mode stiffness G l whatever nu and A; a beam needs G l / (3 (1 - nu)).  This law adds,
+/// per cell, the difference as a quadratic energy of the displacement's hourglass components.  The components are
+/// orthogonal to affine fields, so the patch test and the moduli are untouched.
+/// Valid for small displacements from rest only (no corotated frame): linear kinematics.
+struct HourglassCorrection {
+  double shear_modulus = 0;  ///< G [Pa]
+  double poisson_ratio = 0;
+  double face_to_cube = 2;   ///< A of the springs it corrects
+  bool torsion = false;      ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
+
+  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+
+  /// The added stiffness of one cell of edge l [N/m]; unknown 3 * corner + axis.
+  Eigen::Matrix<double, 24, 24> cell_matrix(double edge) const;
+};
+
+}  // namespace springproof

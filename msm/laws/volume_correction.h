@@ -1,0 +1,37 @@
+// Force law: the volume energy of HybMSS, one term per cubic cell.
+#pragma once
+
+#include "msm/network.h"
+#include "msm/solve/block_matrix.h"
+
+namespace springproof {
+
+/// How the energy grows with J = V'/V; both give kappa/2 (J - 1)^2 for small changes.
+enum class VolumeEnergy {
+  paper,    ///< kappa/2 (J - 1)^2; Golec et al. (2019), eq. (5.1).  Unbounded below in dilation if kappa < 0.
+  bounded,  ///< 9 kappa/2 (J^(1/3) - 1)^2: grows like the springs' energy, so kappa < 0 has no limit point in tension.
+};
+
+/// Energy sum_c V psi(V'/V) with V' = a . (b x c), a, b, c the mean edge vectors of the cell;
+/// Golec et al. (2019), eqs. (5.13)-(5.16).  DEVIATION from eq. (5.16): factor 1/4, docs/papers.md.
+struct VolumeCorrection {
+  double kappa = 0;  ///< lambda - G [Pa]
+  VolumeEnergy form = VolumeEnergy::bounded;
+
+  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]; +inf if J <= 0 (bounded)
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+};
+
+/// Mean-edge volume V' = a . (b x c) of a cell and its gradient (rows: corners in mesh order) [m^3, m^2].
+struct MeanEdgeVolume {
+  Vec3 a, b, c;
+  double value;
+  Eigen::Matrix<double, 8, 3> gradient;
+};
+MeanEdgeVolume mean_edge_volume(const Hexahedron& cell, const NodalVectors& x);
+
+/// Smallest V'/V over the cells; <= 0: a cell is inverted.  1 for networks without cells.
+double min_cell_volume_ratio(const Network& network, const NodalVectors& x);
+
+}  // namespace springproof

@@ -1,0 +1,56 @@
+#include "msm/solve/cell_stiffness.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace springproof {
+namespace {
+
+MassSpringModel one_cell(const MassSpringModel& model) {
+  if (model.network.cells.empty()) throw std::invalid_argument("the network has no cells");
+  MassSpringModel cell;
+  cell.laws = model.laws;
+  cell.network.cell_edge = model.network.cell_edge;
+  cell.network.springs = model.network.cell_springs;
+  cell.network.X.resize(8, 3);
+  for (int n = 0; n < 8; ++n)
+    for (int d = 0; d < 3; ++d) cell.network.X(n, d) = model.network.cell_edge * hexahedron_corners[n][d];
+  cell.network.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  return cell;
+}
+
+CellMatrix dense(const BlockMatrix& K) {
+  CellMatrix A;
+  Eigen::VectorXd column(24);
+  for (int i = 0; i < 24; ++i) {
+    K.multiply(Eigen::VectorXd::Unit(24, i), column);
+    A.col(i) = column;
+  }
+  return A;
+}
+
+}  // namespace
+
+CellStiffness cell_stiffness(const MassSpringModel& model) {
+  const MassSpringModel cell = one_cell(model);
+  CellStiffness s;
+  s.total = dense(tangent(cell, cell.network.X));
+  s.volume = cell.network.cell_volume();
+  const MeanEdgeVolume v = mean_edge_volume(cell.network.cells[0], cell.network.X);
+  for (int n = 0; n < 8; ++n) s.volume_gradient.segment<3>(3 * n) = v.gradient.row(n).transpose();
+  for (const ForceLaw& law : model.laws)
+    if (const auto* correction = std::get_if<VolumeCorrection>(&law)) s.kappa += correction->kappa;
+  s.without_volume = s.total - s.kappa / s.volume * s.volume_gradient * s.volume_gradient.transpose();
+  return s;
+}
+
+double safe_time_step(const MassSpringModel& model, double density) {
+  const CellStiffness s = cell_stiffness(model);
+  const double corner_mass = density * s.volume / 8;
+  const Eigen::SelfAdjointEigenSolver<CellMatrix> eigen(s.total, Eigen::EigenvaluesOnly);
+  return 2 / std::sqrt(eigen.eigenvalues()[23] / corner_mass);
+}
+
+}  // namespace springproof

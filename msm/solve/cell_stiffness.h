@@ -1,0 +1,29 @@
+// The stiffness of one cell of a lattice model: what the lattice's hierarchy and time step are made of.
+#pragma once
+
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+using CellMatrix = Eigen::Matrix<double, 24, 24>;
+using CellVector = Eigen::Matrix<double, 24, 1>;
+
+/// Rest stiffness of one cell [N/m], unknown 3 * corner + axis: its share of springs, and its own cell laws.
+/// total = without_volume + (kappa / V) gradient gradient^T.
+struct CellStiffness {
+  CellMatrix total;
+  CellMatrix without_volume;
+  CellVector volume_gradient;  ///< dV'/dx at rest [m^2]
+  double kappa = 0;            ///< [Pa]; 0 for models without volume correction
+  double volume = 0;           ///< V [m^3]
+};
+
+/// @throws std::invalid_argument for a network without cells.
+CellStiffness cell_stiffness(const MassSpringModel& model);
+
+/// Largest time step [s] that is safe for undamped explicit integration (semi-implicit Euler, central differences):
+/// 2 / omega, with omega^2 bounded by the largest eigenvalue of a single cell with corner masses rho V / 8
+/// (Irons and Treharne).  Rigorous for every lattice of such cells.
+double safe_time_step(const MassSpringModel& model, double density);
+
+}  // namespace springproof

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <ctime>
+
+#include "meshes/volume.h"
+#include "msm/calibrate.h"
+#include "msm/solve/cell_stiffness.h"
+#include "msm/solve/equilibrium.h"
+#include "msm/solve/krylov.h"
+#include "msm/solve/mixed_multigrid.h"
+
+namespace springproof {
+namespace {
+
+constexpr long cholesky_limit = 3000;        // free unknowns; above it multigrid is faster
+constexpr double mixed_above_kappa = 4;      // kappa / G: 3 at nu = 0.4, 8 at 0.45
+
+Eigen::VectorXd flat(const NodalVectors& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()); }
+
+NodalVectors nodal(const Eigen::VectorXd& v) { return Eigen::Map<const NodalVectors>(v.data(), v.size() / 3, 3); }
+
+void keep(const std::vector<char>& fixed, bool on_fixed, Eigen::VectorXd& v) {
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (bool(fixed[i]) != on_fixed) v[i] = 0;
+}
+
+/// The linear problem: u = prescribed + du, du zero on fixed unknowns.
+struct LinearProblem {
+  const MassSpringModel& model;
+  const BoundaryConditions& conditions;
+  const LinearOptions& options;
+  Eigen::VectorXd prescribed, external;
+};
+
+void finish(const LinearProblem& p, const Eigen::VectorXd& u, const Eigen::VectorXd& internal, Equilibrium& result) {
+  Eigen::VectorXd support = internal - p.external;
+  keep(p.conditions.fixed, true, support);
+  result.displacement = nodal(u);
+  result.support = nodal(support);
+}
+
+void report(const KrylovResult& k, const std::string& name, Equilibrium& result) {
+  result.solver = name;
+  result.iterations = k.iterations;
+  result.residual = k.residual;
+  result.ok = k.converged;
+  if (!k.converged)
+    result.message = fmt::format("{} did not converge: residual {:.2e} after {} iterations{}", name, k.residual,
+                                 k.iterations, k.negative_curvature ? " (stiffness not positive definite)" : "");
+}
+
+void solve_primal(const LinearProblem& p, const CellStiffness* cell, Equilibrium& result) {
+  BlockMatrix assembled;
+  std::unique_ptr<Multigrid> multigrid;
+  DirectSolver direct;
+  if (cell) {
+    multigrid = std::make_unique<Multigrid>(lattice_levels(p.model.network, p.conditions.fixed), cell->total);
+  } else {
+    assembled = tangent(p.model, p.model.network.X);
+    if (!direct.factor(assembled, p.conditions.fixed)) {
+      result.message = "the stiffness is not positive definite: the model has zero-energy or unstable modes here";
+      result.solver = "Cholesky";
+      return;
+    }
+  }
+  const BlockMatrix& K = multigrid ? multigrid->finest() : assembled;
+  Eigen::VectorXd Ku;
+  K.multiply(p.prescribed, Ku);
+  Eigen::VectorXd b = p.external - Ku, du = Eigen::VectorXd::Zero(b.size());
+  keep(p.conditions.fixed, false, b);
+  const Operator apply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+    K.multiply(x, y);
+    keep(p.conditions.fixed, false, y);
+  };
+  // A factorisation is a preconditioner too: one or two steps remove its round-off.
+  const Operator precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    multigrid ? multigrid->apply(r, z) : direct.solve(r, z);
+  };
+  report(conjugate_gradients(apply, precondition, b, p.options.tolerance, p.options.max_iterations, du),
+         multigrid ? "CG + multigrid" : "Cholesky", result);
+  const Eigen::VectorXd u = p.prescribed + du;
+  K.multiply(u, Ku);
+  finish(p, u, Ku, result);
+}
+
+void solve_mixed(const LinearProblem& p, CellStiffness cell, double G, Equilibrium& result) {
+  // In units of G, l and G l both equations have entries of order one.
+  const double l = p.model.network.cell_edge, unit = G * l;
+  cell.total /= unit;
+  cell.without_volume /= unit;
+  cell.volume_gradient /= l * l;
+  cell.kappa /= G;
+  cell.volume = 1;
+  const int inner_steps = cell.kappa > 1000 ? 12 : 6;
+  const MixedMultigrid multigrid(lattice_levels(p.model.network, p.conditions.fixed), cell, 2, inner_steps);
+  const Eigen::Index n = p.prescribed.size(), cells = multigrid.unknowns() - n;
+  // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
+  Eigen::VectorXd f = p.external / unit - multigrid.force(p.prescribed, Eigen::VectorXd::Zero(cells));
+  keep(p.conditions.fixed, false, f);
+  Eigen::VectorXd b(n + cells), x = Eigen::VectorXd::Zero(n + cells);
+  b << f, -multigrid.volume_change(p.prescribed);
+  const KrylovResult k = gmres([&](const auto& v, auto& y) { multigrid.multiply(v, y); },
+                               [&](const auto& v, auto& z) { multigrid.precondition(v, z); }, b, p.options.tolerance,
+                               p.options.max_iterations, 60, x);
+  report(k, "GMRES + mixed multigrid", result);
+  const Eigen::VectorXd u = p.prescribed + x.head(n);
+  finish(p, u, unit * multigrid.force(u, x.tail(cells)), result);
+}
+
+}  // namespace
+
+Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions& conditions,
+                         const LinearOptions& options) {
+  const std::clock_t start = std::clock();
+  Equilibrium result;
+  for (char fixed : conditions.fixed) result.unknowns += !fixed;
+  const LinearProblem problem{model, conditions, options, flat(conditions.prescribed), flat(conditions.external)};
+  LinearSolver solver = options.solver;
+  const double G = affine_shear_modulus(model.network);
+  CellStiffness cell;
+  if (model.network.grid && !model.network.cells.empty()) cell = cell_stiffness(model);
+  if (solver == LinearSolver::automatic) {
+    if (result.unknowns <= cholesky_limit || !model.network.grid)
+      solver = LinearSolver::cholesky;
+    else
+      solver = cell.kappa > mixed_above_kappa * G ? LinearSolver::mixed_multigrid : LinearSolver::multigrid;
+  }
+  try {
+    if (solver == LinearSolver::mixed_multigrid)
+      solve_mixed(problem, cell, G, result);
+    else
+      solve_primal(problem, solver == LinearSolver::multigrid ? &cell : nullptr, result);
+  } catch (const std::runtime_error& e) {
+    result.message = e.what();
+  }
+  result.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  return result;
+}
+
+Field to_field(const Equilibrium& equilibrium, std::shared_ptr<const Mesh> mesh, const std::vector<Load>& loads,
+               const BoundaryConditions& conditions, Kinematics kinematics) {
+  Field field;
+  field.displacement = equilibrium.displacement;
+  field.reactions =
+      patch_reactions(loads, *mesh, conditions, equilibrium.support, equilibrium.displacement, kinematics);
+  field.volume_change = volume_change(*mesh, equilibrium.displacement);
+  field.volume_change_first_order = volume_change_first_order(*mesh, equilibrium.displacement);
+  field.mesh = std::move(mesh);
+  return field;
+}
+
+}  // namespace springproof

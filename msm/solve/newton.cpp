@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+
+#include "meshes/volume.h"
+#include "msm/solve/cell_stiffness.h"
+#include "msm/solve/equilibrium.h"
+#include "msm/solve/multigrid.h"
+
+namespace springproof {
+namespace {
+
+Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data(), v.size()}; }
+
+/// One load step either lands on a stable state or says why not.
+enum class Outcome { accepted, unstable, inverted, not_converged };
+
+struct Newton {
+  const MassSpringModel& model;
+  const LoadPath& path;
+  const NewtonOptions& options;
+  const std::vector<char> fixed;
+  BlockMatrix K;            ///< tangent at the last accepted state
+  DirectSolver solver;      ///< its factors
+  int iterations = 0;
+
+  /// Unbalanced force on free unknowns, relative to the forces that are in balance.
+  double residual(const NodalVectors& internal, const NodalVectors& external, Eigen::VectorXd& r) const {
+    r = flat(internal) + flat(external);
+    double on_fixed = 0, on_free = 0;
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      (fixed[i] ? on_fixed : on_free) += r[i] * r[i];
+      if (fixed[i]) r[i] = 0;
+    }
+    const double scale = std::max(std::sqrt(on_fixed), external.norm());
+    return scale > 0 ? std::sqrt(on_free) / scale : std::sqrt(on_free);
+  }
+
+  bool factor(const NodalVectors& x) {
+    update_tangent(model, x, K);
+    return solver.factor(K, fixed);
+  }
+
+  double potential(const NodalVectors& x, const NodalVectors& external) const {
+    return energy(model, x) - (x - model.network.X).cwiseProduct(external).sum();
+  }
+
+  /// First guess: the linear response to the increment of everything prescribed.
+  NodalVectors predict(const NodalVectors& x, const BoundaryConditions& bc) const {
+    NodalVectors du = NodalVectors::Zero(x.rows(), 3);
+    for (Eigen::Index i = 0; i < du.size(); ++i)
+      if (fixed[i]) du.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i] - x.data()[i];
+    Eigen::VectorXd r, Kdu, correction;
+    K.multiply(flat(du), Kdu);
+    residual(forces(model, x), bc.external, r);
+    solver.solve(r - Kdu, correction);
+    return x + du + Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
+  }
+
+  /// Moves x along du by the largest of 1, 1/2, 1/4 ... that lowers the potential (or the residual, at round-off).
+  bool line_search(const Eigen::VectorXd& r, double relative, const Eigen::VectorXd& du, const NodalVectors& external,
+                   NodalVectors& x) const {
+    const double start = potential(x, external), slope = -r.dot(du);
+    const double noise = 1e-12 * (std::abs(start) + std::abs(slope));
+    for (double t = 1; t > 1e-4; t /= 2) {
+      const NodalVectors trial = x + t * Eigen::Map<const NodalVectors>(du.data(), x.rows(), 3);
+      const double now = potential(trial, external);
+      Eigen::VectorXd ignored;
+      const bool lower = now <= start + 1e-4 * t * slope;
+      const bool at_noise = std::abs(now - start) <= noise && residual(forces(model, trial), external, ignored) < relative;
+      if (std::isfinite(now) && (lower || at_noise)) {
+        x = trial;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  Outcome step(double factor_of_load, NodalVectors& x, double& relative) {
+    const BoundaryConditions bc = path(factor_of_load);
+    NodalVectors trial = predict(x, bc);
+    for (int i = 0; i < options.max_iterations; ++i) {
+      Eigen::VectorXd r, du;
+      const NodalVectors internal = forces(model, trial);
+      if (!internal.allFinite()) return Outcome::not_converged;
+      relative = residual(internal, bc.external, r);
+      const bool definite = factor(trial);
+      if (relative <= options.tolerance) {
+        if (!definite) return Outcome::unstable;
+        if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}}, trial) <= 0)
+          return Outcome::inverted;
+        x = trial;
+        return Outcome::accepted;
+      }
+      ++iterations;
+      if (!definite) return Outcome::unstable;
+      solver.solve(r, du);
+      if (!line_search(r, relative, du, bc.external, trial)) return Outcome::not_converged;
+    }
+    return Outcome::not_converged;
+  }
+};
+
+std::string describe(Outcome outcome, double reached) {
+  const char* why = outcome == Outcome::unstable   ? "the tangent stiffness is no longer positive definite (limit point or buckling)"
+                    : outcome == Outcome::inverted ? "a cell is turned inside out"
+                                                   : "Newton's method does not converge";
+  return fmt::format("no stable equilibrium beyond {:.4g} of the load: {}", reached, why);
+}
+
+}  // namespace
+
+Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options) {
+  const std::clock_t start = std::clock();
+  const BoundaryConditions full = load_path(1.0);
+  Newton newton{model, load_path, options, full.fixed, BlockMatrix(coupled_nodes(model.network)), {}};
+  Equilibrium result;
+  result.load_reached = 0;
+  NodalVectors x = model.network.X;
+  int steps = 0;
+  if (model.small_displacements_only) {
+    result.message = "this model holds for linear kinematics only";
+  } else if (!newton.factor(x)) {
+    result.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
+  } else {
+    double step = options.first_step;
+    while (result.load_reached < 1 && step >= options.smallest_step) {
+      const double next = std::min(1.0, result.load_reached + step);
+      const Outcome outcome = newton.step(next, x, result.residual);
+      if (outcome == Outcome::accepted) {
+        result.load_reached = next;
+        ++steps;
+        step *= 1.5;
+      } else {
+        newton.factor(x);
+        step = std::min(step, next - result.load_reached) / 2;
+        result.message = describe(outcome, result.load_reached);
+      }
+    }
+  }
+  result.ok = result.load_reached >= 1;
+  if (result.ok) result.message.clear();
+  const BoundaryConditions reached = load_path(result.load_reached);
+  result.displacement = x - model.network.X;
+  result.support = -forces(model, x) - reached.external;
+  for (Eigen::Index i = 0; i < result.support.size(); ++i)
+    if (!full.fixed[i]) result.support.data()[i] = 0;
+  result.solver = fmt::format("Newton + Cholesky, {} load step{}", steps, steps == 1 ? "" : "s");
+  result.iterations = newton.iterations;
+  result.unknowns = newton.solver.unknowns();
+  result.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  return result;
+}
+
+}  // namespace springproof

@@ -1,0 +1,28 @@
+// Cubic lattices by superposition of cells: what cells share merges, so boundaries follow by themselves.
+#pragma once
+
+#include "msm/network.h"
+
+namespace springproof {
+
+/// Spring constants of one family of isotropic cubic patterns, inside the lattice [N/m]:
+/// cell edges, face diagonals and cube diagonals.  Golec et al. (2019), eqs. (5.10)-(5.12).
+struct CubicPattern {
+  double k_e = 0;
+  double k_f = 0;
+  double k_c = 0;
+};
+
+/// Isotropic pattern of face-to-cube ratio A = k_f / k_c with unit k_c (unit k_f for A = infinity): eq. (5.10).
+/// Its size is set by calibrate().
+/// A = 0: 14 springs per node (edges, cube diagonals); A = infinity: the classic 18 (edges, face diagonals);
+/// anything between: 26.  Kot et al. (2014), sec. 3.2.
+/// @throws std::invalid_argument if A < 0 or NaN.
+CubicPattern isotropic_pattern(double face_to_cube);
+
+/// Network of a mesh of equal cubes: each cell gives its edges k_e/4, face diagonals k_f/2 and cube diagonals k_c
+/// (Golec et al. 2019, sec. 5.4).
+/// @throws std::invalid_argument if the mesh is not cut into equal cubes (says the edge lengths found).
+Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern);
+
+}  // namespace springproof

@@ -1,0 +1,14 @@
+// The two array types every module shares.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace springproof {
+
+/// A point, displacement or force in space.
+using Vec3 = Eigen::Vector3d;
+
+/// One row per node: positions [m], displacements [m] or forces [N], shape n x 3, x y z contiguous.
+using NodalVectors = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+}  // namespace springproof

@@ -1,0 +1,114 @@
+// One suite over the list of laws: what any force law must obey.
+#include <gtest/gtest.h>
+
+#include "msm/laws/laws.h"
+#include "support/tolerances.h"
+#include "support/zoo.h"
+
+namespace springproof {
+namespace {
+
+struct Case {
+  std::string name;
+  MassSpringModel model;  ///< with the one law under test
+  bool rotates;           ///< the law knows finite rotations
+};
+
+std::vector<Case> cases() {
+  const Mesh mesh = test::notched_block();
+  std::vector<Case> all;
+  for (double nu : {-0.9, 0.0, 0.4, 0.499}) {
+    const IsotropicMaterial material{1e4, nu, 1000};
+    const std::string suffix = "_nu" + std::to_string(static_cast<int>(1000 * nu + 1000));
+    for (double A : {0.0, 1.0, 2.0}) {
+      ModelParameters p = test::model("hybmss");
+      p.face_to_cube = A;
+      const Network network = build_model(p, mesh, material).network;
+      const std::string name = suffix + "_A" + std::to_string(static_cast<int>(A));
+      all.push_back({"Springs" + name, {network, {Springs{}}}, true});
+      all.push_back({"Hourglass" + name,
+                     {network, {HourglassCorrection{shear_modulus(material), nu, A, true}}},
+                     false});
+      for (auto form : {VolumeEnergy::paper, VolumeEnergy::bounded})
+        all.push_back({(form == VolumeEnergy::paper ? "VolumePaper" : "VolumeBounded") + name,
+                       {network, {VolumeCorrection{kappa(material), form}}},
+                       true});
+    }
+  }
+  return all;
+}
+
+class LawSuite : public testing::TestWithParam<Case> {
+ protected:
+  const MassSpringModel& model() const { return GetParam().model; }
+  const NodalVectors& X() const { return model().network.X; }
+  double edge() const { return model().network.cell_edge; }
+  NodalVectors disturbed() const { return X() + test::noise(X().rows(), 0.1 * edge()); }
+
+  /// Largest force a displacement of the order of `disturbed` can cause.
+  double force_scale() const { return forces(model(), disturbed()).cwiseAbs().maxCoeff(); }
+};
+
+TEST_P(LawSuite, HasNoForceAndNoEnergyAtRest) {
+  EXPECT_LE(forces(model(), X()).cwiseAbs().maxCoeff(), test::round_off * force_scale());
+  EXPECT_LE(std::abs(energy(model(), X())), test::round_off * std::abs(energy(model(), disturbed())));
+}
+
+TEST_P(LawSuite, ForcesAndTorquesSumToZero) {
+  const NodalVectors x = disturbed(), f = forces(model(), x);
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  for (int n = 0; n < x.rows(); ++n) {
+    force += f.row(n).transpose();
+    if (GetParam().rotates) torque += Vec3(x.row(n)).cross(Vec3(f.row(n)));
+  }
+  EXPECT_LE(force.norm(), 1e-11 * force_scale());
+  EXPECT_LE(torque.norm(), 1e-11 * force_scale() * 3 * edge());
+}
+
+TEST_P(LawSuite, RigidRotationLeavesNoForce) {
+  if (!GetParam().rotates) {  // then an infinitesimal one must
+    NodalVectors x = X();
+    for (int n = 0; n < x.rows(); ++n) x.row(n) += 0.1 * Vec3(1, -2, 3).cross(Vec3(X().row(n))).transpose();
+    EXPECT_LE(forces(model(), x).cwiseAbs().maxCoeff(), 1e-11 * force_scale());
+    return;
+  }
+  const NodalVectors x = (X() * test::rotation().transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3);
+  EXPECT_LE(forces(model(), x).cwiseAbs().maxCoeff(), 1e-11 * force_scale());
+}
+
+TEST_P(LawSuite, ForceIsMinusTheGradientOfTheEnergy) {
+  const NodalVectors x = disturbed(), f = forces(model(), x);
+  NodalVectors g(x.rows(), 3);
+  const double h = 1e-5 * edge();
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    NodalVectors plus = x, minus = x;
+    plus.data()[i] += h;
+    minus.data()[i] -= h;
+    g.data()[i] = (energy(model(), plus) - energy(model(), minus)) / (2 * h);
+  }
+  EXPECT_LE((f + g).norm(), test::finite_difference * f.norm());
+}
+
+TEST_P(LawSuite, TangentIsTheDerivativeOfTheForce) {
+  const NodalVectors x = disturbed();
+  const BlockMatrix K = tangent(model(), x);
+  const double h = 1e-5 * edge();
+  double difference = 0, size = 0;
+  Eigen::VectorXd column;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    NodalVectors plus = x, minus = x;
+    plus.data()[i] += h;
+    minus.data()[i] -= h;
+    const NodalVectors df = (forces(model(), plus) - forces(model(), minus)) / (2 * h);
+    K.multiply(Eigen::VectorXd::Unit(x.size(), i), column);
+    difference += (Eigen::Map<const Eigen::VectorXd>(df.data(), df.size()) + column).squaredNorm();
+    size += column.squaredNorm();
+  }
+  EXPECT_LE(std::sqrt(difference), test::finite_difference * std::sqrt(size));
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace springproof

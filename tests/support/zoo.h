@@ -1,0 +1,71 @@
+// The zoo: every model of the table, on small networks, strained and turned.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "msm/models.h"
+
+namespace springproof::test {
+
+inline ModelParameters model(const std::string& name) { return resolve({name, {}, name, {}}); }
+
+inline std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const ModelRow& row : model_table()) names.push_back(row.name);
+  return names;
+}
+
+/// Every model that stands large displacements, with both volume energies where there is one.
+inline std::vector<ModelParameters> large_displacement_models() {
+  std::vector<ModelParameters> all;
+  for (const ModelRow& row : model_table()) {
+    if (row.bending_correction) continue;
+    ModelParameters p = model(row.name);
+    all.push_back(p);
+    if (!row.volume_correction) continue;
+    p.volume_energy = VolumeEnergy::paper;
+    all.push_back(p);
+  }
+  return all;
+}
+
+/// A block of 3 x 2 x 2 cells with an L-shaped piece missing: faces, edges and a re-entrant corner.
+inline Mesh notched_block(double edge = 0.5) {
+  Mesh block = block_mesh(edge * Vec3(3, 2, 2), {3, 2, 2});
+  std::vector<Hexahedron> kept;
+  for (std::size_t c = 0; c < block.hexahedra.size(); ++c)
+    if (c != 0 && c != block.hexahedra.size() - 1) kept.push_back(block.hexahedra[c]);
+  Mesh mesh;
+  mesh.hexahedra = kept;
+  std::vector<int> number(block.nodes.rows(), -1);
+  std::vector<int> used;
+  for (auto& cell : mesh.hexahedra)
+    for (int& n : cell) {
+      if (number[n] < 0) {
+        number[n] = static_cast<int>(used.size());
+        used.push_back(n);
+      }
+      n = number[n];
+    }
+  mesh.nodes.resize(static_cast<Eigen::Index>(used.size()), 3);
+  for (std::size_t i = 0; i < used.size(); ++i) mesh.nodes.row(static_cast<Eigen::Index>(i)) = block.nodes.row(used[i]);
+  mesh.grid = detect_grid(mesh);
+  return mesh;
+}
+
+/// Repeatable noise in [-size, size] (the generator's raw bits, not a library distribution).
+inline NodalVectors noise(Eigen::Index nodes, double size, unsigned seed = 1) {
+  std::mt19937 generator(seed);
+  NodalVectors v(nodes, 3);
+  for (Eigen::Index i = 0; i < v.size(); ++i) v.data()[i] = size * (2.0 * generator() / 4294967295.0 - 1);
+  return v;
+}
+
+inline Eigen::Matrix3d rotation() {
+  return Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+}
+
+}  // namespace springproof::test
