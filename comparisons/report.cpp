@@ -1,0 +1,130 @@
+#include "comparisons/report.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "comparisons/headline.h"
+#include "comparisons/report/assets.h"
+#include "comparisons/results.h"
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+/// JSON that may stand inside <script>: "<" occurs only in strings, where it can be written as an escape.
+std::string script_json(const Json& json) {
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string out;
+  out.reserve(text.size());
+  for (char c : text) {
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string list_html(const std::vector<std::string>& lines) {
+  std::string out = "<ul>\n";
+  for (const auto& line : lines) out += fmt::format("<li>{}</li>\n", escaped(line));
+  return out + "</ul>\n";
+}
+
+std::string folded_html(const char* kind, const std::string& title, const std::vector<std::string>& lines) {
+  if (lines.empty()) return "";
+  return fmt::format("<details class=\"{}\"{}><summary>{}</summary>\n{}</details>\n", kind,
+                     lines.size() <= 6 ? " open" : "", title, list_html(lines));
+}
+
+std::string model_list_html(const Headline& head, bool large_deformation) {
+  std::string items;
+  for (const ModelVerdict& verdict : head.models)
+    if (verdict.large_deformation == large_deformation)
+      items += fmt::format("<li data-model=\"{0}\"><b>{0}</b> {1}</li>\n", escaped(verdict.model),
+                           escaped(verdict.sentence));
+  if (items.empty()) return "";
+  const char* title = large_deformation
+                          ? "Large deformation, beside a finite-strain law (reported, not the verdict)"
+                          : "Linear elasticity, largest error of all cases at their finest resolution";
+  return fmt::format("<h2>{}</h2>\n<ul class=\"verdicts\">\n{}</ul>\n", title, items);
+}
+
+std::string count_html(const char* verdict, int count, const char* words) {
+  return count == 0 ? "" : fmt::format("<span class=\"chip {}\">{} {}</span> ", verdict, count, words);
+}
+
+std::string headline_html(const Json& results) {
+  const Headline head = headline(results);
+  std::string out = model_list_html(head, false) + model_list_html(head, true);
+  out += fmt::format("<p class=\"counts\" title=\"{}\">Expectations: ", escaped(expectations_sentence(head)));
+  const std::string chips = count_html("pass", head.held, "hold") + count_html("fail", head.failed, "fail") +
+                            count_html("coarse", head.reference_too_coarse, "reference too coarse") +
+                            count_html("none", head.no_reference, "no reference") +
+                            count_html("none", head.no_result, "no result");
+  out += (chips.empty() ? "none stated" : chips) + "</p>\n";
+  out += folded_html("failures", fmt::format("Expectations that fail: {}", head.failed), head.failed_checks);
+  out += folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()),
+                     head.failed_runs);
+  return out;
+}
+
+/// Puts values[name] in place of each @name@, in one pass: what is put in is not searched again.
+std::string filled(std::string_view text, const std::map<std::string_view, std::string>& values) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t open = text.find('@', at);
+    if (open == std::string_view::npos) return out.append(text.substr(at));
+    const std::size_t close = text.find('@', open + 1);
+    const auto name = close == std::string_view::npos ? "" : text.substr(open + 1, close - open - 1);
+    const auto value = values.find(name);
+    if (value == values.end())
+      throw std::logic_error(fmt::format("report template: @{}@ has no value", name));
+    out.append(text.substr(at, open - at)).append(value->second);
+    at = close + 1;
+  }
+  return out;
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& file, const Json& results, const Json& pictures) {
+  using namespace report_assets;
+  write_file(file, filled(template_html, {{"style_css", std::string(style_css)},
+                                          {"headline", headline_html(results)},
+                                          {"results", script_json(results)},
+                                          {"pictures", script_json(pictures)},
+                                          {"chart_js", std::string(chart_js)},
+                                          {"three_js", std::string(three_js)},
+                                          {"orbit_controls_js", std::string(orbit_controls_js)},
+                                          {"report_js", std::string(report_js)}}));
+}
+
+}  // namespace springproof

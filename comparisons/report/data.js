@@ -1,0 +1,245 @@
+'use strict';
+// The results, the words and numbers they are shown in, and the one function that makes elements.
+// Text reaches the page as text nodes only, so nothing in a case file can act as markup.
+
+function readJson(id) {
+  return JSON.parse(document.getElementById(id).textContent);
+}
+
+const results = readJson('results-data');
+
+// ---- elements
+
+function el(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (key.startsWith('on')) node.addEventListener(key.slice(2), value);
+    else if (key === 'style') Object.assign(node.style, value);
+    else node.setAttribute(key, value === true ? '' : value);
+  }
+  node.append(...children.flat(Infinity).filter(child => child !== null && child !== undefined && child !== ''));
+  return node;
+}
+
+function table(className, head, rows) {
+  return el('div', {class: 'scroll'},
+    el('table', {class: className},
+      el('thead', {}, el('tr', {}, head.map(cell => cell instanceof Node ? cell : el('th', {}, cell)))),
+      el('tbody', {}, rows)));
+}
+
+function tr(...cells) {
+  return el('tr', {}, cells.flat().map(cell => cell instanceof Node && /^T[DH]$/.test(cell.tagName) ? cell
+    : el('td', {}, cell)));
+}
+
+function chip(kind, text) {
+  return el('span', {class: 'chip ' + kind}, text);
+}
+
+/// A labelled <select>; options are [value, text] or {group, options}.
+function select(label, options, onchange) {
+  const option = ([value, text]) => el('option', {value}, text);
+  const box = el('select', {onchange: () => onchange(box.value)}, options.map(entry =>
+    entry.group ? el('optgroup', {label: entry.group}, entry.options.map(option)) : option(entry)));
+  const node = el('label', {class: 'choice'}, el('span', {}, label), box);
+  return {node, box, get value() { return box.value; }, set value(v) { box.value = v; }};
+}
+
+function replaceOptions(choice, options) {
+  const before = choice.value;
+  choice.box.replaceChildren(...options.map(([value, text]) => el('option', {value}, text)));
+  if (options.some(([value]) => value === before)) choice.value = before;
+  choice.node.hidden = options.length === 0;
+}
+
+// ---- numbers
+
+const isNumber = x => typeof x === 'number' && Number.isFinite(x);
+
+function superscript(n) {
+  return String(n).replace(/./g, c => '⁰¹²³⁴⁵⁶⁷⁸⁹'[c] || '⁻');
+}
+
+const minus = text => text.replace(/-/g, '−');
+
+/// A number with so many significant digits: 3 396, 0.0254, 1.2·10⁻⁷.
+function number(x, digits = 4) {
+  if (!isNumber(x)) return '–';
+  if (x === 0) return '0';
+  const size = Math.abs(x);
+  if (size < 1e-3 || size >= 1e7) {
+    const [mantissa, exponent] = x.toExponential(Math.max(0, digits - 2)).split('e');
+    return minus(mantissa) + '·10' + superscript(Number(exponent));
+  }
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return minus(x.toLocaleString('en', {maximumFractionDigits: decimals, useGrouping: size >= 1e4}).replace(/,/g, '\u202f'));
+}
+
+const nuText = nu => isNumber(nu) ? minus(String(nu)) : '–';
+
+/// Percent, two digits.
+function percent(x) {
+  if (!isNumber(x)) return '–';
+  if (Math.abs(x) < 1e-3) return x === 0 ? '0 %' : '< 0.001 %';
+  return minus(Math.abs(x) >= 99.5 ? x.toFixed(0) : String(Number(x.toPrecision(2)))) + ' %';
+}
+
+const signed = (x, text) => (x > 0 ? '+' : '') + text;
+
+const inPercent = (measure, unit) => unit === '1' && /displacement|volume/.test(measure);
+
+function quantity(x, measure, unit, digits = 4) {
+  if (!isNumber(x)) return '–';
+  if (inPercent(measure, unit)) return number(100 * x, digits) + ' %';
+  return number(x, digits) + (unit && unit !== '1' ? ' ' + unit : '');
+}
+
+function seconds(t) {
+  if (!isNumber(t)) return '–';
+  return t < 60 ? number(t, 2) + ' s' : `${Math.floor(t / 60)} min ${Math.round(t % 60)} s`;
+}
+
+/// A length of this size is best read in ...
+function lengthUnit(size) {
+  for (const [factor, unit] of [[1, 'm'], [1e3, 'mm'], [1e6, 'µm'], [1e9, 'nm']])
+    if (size * factor >= 1) return {factor, unit};
+  return {factor: 1, unit: 'm'};
+}
+
+// ---- cells and measures
+
+const cellCount = cells => (cells || []).reduce((product, n) => product * n, 1);
+const cellsText = cells => (cells || []).join('×');
+const bySize = (a, b) => cellCount(a) - cellCount(b);
+
+const measureNames = {
+  displacement_error: 'displacement error',
+  volume_change: 'volume change',
+};
+
+function measureText(measure) {
+  if (measureNames[measure]) return measureNames[measure];
+  const [what, where, component] = measure.split('.');
+  const words = what.replace(/_/g, ' ');
+  if (!where) return words;
+  return `${words} ${/force|torque|reaction/.test(what) ? 'on' : 'at'} ${where}` + (component ? `, ${component}` : '');
+}
+
+const distinct = items => [...new Map(items.map(item => [String(item), item])).values()];
+
+// ---- cases
+
+const cases = (results.cases || []).map(prepareCase);
+const models = orderModels();
+
+function prepareCase(data) {
+  const experiment = data.experiment || {};
+  const result = {
+    experiment,
+    name: experiment.name || '?',
+    id: 'case-' + [experiment.folder, experiment.name].filter(Boolean).join('-').replace(/[^\w-]/g, '_'),
+    linear: experiment.kinematics === 'linear',
+    runs: data.runs || [], rows: data.rows || [], references: data.references || [],
+    checks: data.checks || [], published: data.published || [],
+  };
+  result.measures = distinct(result.rows.map(row => row.measure));
+  result.nus = distinct(result.rows.concat(result.runs).map(row => row.poisson_ratio)).sort((a, b) => a - b);
+  result.models = distinct(result.runs.concat(result.rows).map(row => row.model));
+  result.cells = distinct(result.rows.map(row => row.cells)).sort(bySize);
+  result.scales = new Map(result.measures.map(measure => [measure, errorScale(result, measure)]));
+  return result;
+}
+
+/// How the error of a measure is drawn: percent, percentage points, percent of the reference, or its own unit.
+function errorScale(result, measure) {
+  const rows = result.rows.filter(row => row.measure === measure);
+  const unit = rows[0].unit;
+  if (inPercent(measure, unit))
+    return {of: x => 100 * x, unit: measure === 'displacement_error' ? '%' : 'percentage points'};
+  const references = rows.map(row => row.reference).filter(isNumber).map(Math.abs);
+  if (references.length > 0 && Math.min(...references) > 0.01 * Math.max(...references))
+    return {of: (x, row) => 100 * x / Math.abs(row.reference), unit: '% of the reference'};
+  return {of: x => x, unit};
+}
+
+function scaledError(result, row) {
+  if (!isNumber(row.error)) return null;
+  const error = result.scales.get(row.measure).of(Math.abs(row.error), row);
+  return isNumber(error) ? error : null;
+}
+
+function scaledUncertainty(result, row) {
+  if (!isNumber(row.reference_uncertainty)) return null;
+  const uncertainty = result.scales.get(row.measure).of(row.reference_uncertainty, row);
+  return isNumber(uncertainty) ? uncertainty : null;
+}
+
+function errorText(result, row) {
+  if (!isNumber(row.error)) return '–';
+  const scale = result.scales.get(row.measure);
+  const error = scale.of(row.error, row);
+  const sign = row.reference === null ? x => x : x => signed(error, x);
+  if (scale.unit === '%') return percent(error);
+  if (scale.unit === 'percentage points') return sign(number(error, 2)) + ' points';
+  if (scale.unit.startsWith('%')) return sign(percent(error));
+  return sign(quantity(row.error, row.measure, row.unit, 2));
+}
+
+/// Rows of one measure at the finest (or coarsest, or given) cells of each model.
+function rowsAt(result, measure, resolution = 'finest') {
+  const rows = result.rows.filter(row => row.measure === measure);
+  if (resolution !== 'finest' && resolution !== 'coarsest')
+    return rows.filter(row => cellsText(row.cells) === resolution);
+  const pick = resolution === 'finest' ? Math.max : Math.min;
+  const chosen = new Map();
+  for (const row of rows) {
+    const count = cellCount(row.cells);
+    chosen.set(row.model, chosen.has(row.model) ? pick(chosen.get(row.model), count) : count);
+  }
+  return rows.filter(row => cellCount(row.cells) === chosen.get(row.model));
+}
+
+/// The row of largest error of some rows, or null.
+function worstOf(result, rows) {
+  let worst = null;
+  for (const row of rows) {
+    const error = scaledError(result, row);
+    if (error !== null && (worst === null || error > worst.error)) worst = {row, error};
+  }
+  return worst;
+}
+
+function findRun(result, row) {
+  return result.runs.find(run => run.model === row.model && run.poisson_ratio === row.poisson_ratio &&
+    cellsText(run.cells) === cellsText(row.cells));
+}
+
+// ---- models and their colours (Okabe & Ito's palette, told apart by marker too)
+
+function orderModels() {
+  const all = distinct(cases.flatMap(result => result.models));
+  return [...all.filter(model => !isFem(model)), ...all.filter(isFem)];
+}
+
+function isFem(model) {
+  return model.startsWith('fem') || cases.some(c => c.runs.some(run => run.model === model && run.kind === 'fem'));
+}
+
+const palette = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c6d31', '#6b5b95'];
+const markers = ['circle', 'triangle', 'rect', 'rectRot', 'star', 'crossRot'];
+
+function modelStyle(model) {
+  if (isFem(model)) return {color: '#8a8f98', marker: 'rectRot', dash: [6, 4]};
+  const index = Math.max(0, models.indexOf(model));
+  return {color: palette[index % palette.length], marker: markers[index % markers.length], dash: []};
+}
+
+function modelName(model) {
+  return el('span', {class: 'model'}, swatch(model), model);
+}
+
+function swatch(model) {
+  return el('i', {class: 'swatch', style: {background: modelStyle(model).color}});
+}

@@ -1,0 +1,282 @@
+'use strict';
+// The table of cases and a page per case: problem, reference and its uncertainty, results, tolerances.
+
+// ---- verdicts and tints
+
+const verdictKinds = {'pass': 'pass', 'fail': 'fail', 'reference too coarse': 'coarse', 'no reference': 'none', 'no result': 'none'};
+const verdictOrder = ['fail', 'no result', 'reference too coarse', 'no reference', 'pass'];
+
+/// The gravest verdict of a case.
+function caseVerdict(result) {
+  return verdictOrder.find(verdict => result.checks.some(check => check.verdict === verdict)) || null;
+}
+
+function verdictChip(verdict) {
+  return verdict ? chip(verdictKinds[verdict] || 'none', verdict) : chip('none', 'no expectations');
+}
+
+const tintLimits = [1, 5, 20];   // percent
+
+/// Class of a table cell by the size of its error; none where it is not a percentage.
+function tint(result, row) {
+  const scale = result.scales.get(row.measure), error = scaledError(result, row);
+  if (error === null || !/^%|points/.test(scale.unit)) return '';
+  const uncertainty = scaledUncertainty(result, row);
+  if (uncertainty !== null && error <= uncertainty) return 'tint0';
+  return 'tint' + (1 + tintLimits.filter(limit => error > limit).length);
+}
+
+function tintLegend() {
+  const entries = [['tint0', 'below the uncertainty of the reference'], ['tint1', 'up to 1 %'], ['tint2', 'up to 5 %'],
+                   ['tint3', 'up to 20 %'], ['tint4', 'more']];
+  return el('p', {class: 'note legend'}, entries.map(([kind, text]) => el('span', {}, el('i', {class: 'sample ' + kind}), text)));
+}
+
+// ---- table of cases
+
+function worstCell(result, model) {
+  const rows = rowsAt(result, 'displacement_error').filter(row => row.model === model);
+  const worst = worstOf(result, rows);
+  const failed = result.runs.filter(run => run.model === model && !run.ok).length;
+  const lost = failed ? el('small', {class: 'lost'}, `${failed} without result`) : null;
+  if (!worst) return el('td', {class: 'number'}, failed ? lost : '–');
+  return el('td', {class: 'number ' + tint(result, worst.row)}, percent(worst.error),
+            el('small', {}, `at ν = ${nuText(worst.row.poisson_ratio)}`), lost);
+}
+
+function worstUncertainty(result) {
+  const all = rowsAt(result, 'displacement_error').map(row => scaledUncertainty(result, row)).filter(isNumber);
+  return all.length > 0 ? percent(Math.max(...all)) : '–';
+}
+
+function heldText(result) {
+  const held = result.checks.filter(check => check.verdict === 'pass').length;
+  return result.checks.length > 0 ? `${held} of ${result.checks.length} hold` : null;
+}
+
+function caseRow(result) {
+  const {experiment} = result;
+  return el('tr', {},
+    el('td', {}, el('a', {href: '#' + result.id}, el('b', {}, result.name)),
+       el('small', {}, [experiment.folder, experiment.what].filter(Boolean).join(': '))),
+    el('td', {}, verdictChip(caseVerdict(result)), el('small', {}, heldText(result))),
+    el('td', {}, experiment.kinematics || '–'),
+    models.map(model => worstCell(result, model)),
+    el('td', {class: 'number'}, worstUncertainty(result)),
+    el('td', {class: 'number'}, seconds(result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0))));
+}
+
+function casesSection(section) {
+  if (cases.length === 0) return section.append(notice('No case was run.'));
+  const head = ['Case', 'Expectations', 'Kinematics', ...models.map(model => el('th', {class: 'number'}, modelName(model))),
+                el('th', {class: 'number'}, 'Uncertainty of the reference'), el('th', {class: 'number'}, 'Time of all runs')];
+  section.append(
+    el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution.'),
+    table('cases', head, cases.map(caseRow)), tintLegend());
+}
+
+// ---- problem
+
+function definition(term, ...content) {
+  const parts = content.flat().filter(part => part !== null && part !== undefined && part !== '');
+  return parts.length > 0 ? [el('dt', {}, term), el('dd', {}, parts)] : [];
+}
+
+const vectorText = v => `(${v.map(x => number(x)).join(', ')})`;
+
+function bodyText({geo, size = [], cells = []}) {
+  const edges = size.every(s => s > 0) && size.length === 3 ? `${size.map(s => number(s)).join(' × ')} m` : '';
+  return [geo, edges, cells.length > 0 ? 'cells ' + cells.map(cellsText).join(', ') : ''].filter(Boolean).join('; ');
+}
+
+function materialText(materials = []) {
+  const moduli = distinct(materials.map(m => m.youngs_modulus)), densities = distinct(materials.map(m => m.density));
+  const list = values => values.map(v => number(v)).join(', ');
+  return `E = ${list(moduli)} Pa; ν = ${materials.map(m => nuText(m.poisson_ratio)).join(', ')}; ` +
+    `density ${list(densities)} kg/m³`;
+}
+
+const bullets = items => items.length > 0 ? el('ul', {}, items.map(item => el('li', {}, item))) : null;
+
+function kinematicsText(result) {
+  const law = result.experiment.kinematics;
+  return result.linear ? 'linear (small displacements)' : `finite; the reference follows the law “${law}”, the springs their own`;
+}
+
+function modelText({name, label, options = {}}) {
+  const list = Object.entries(options).map(([key, value]) => `${key} = ${value}`).join(', ');
+  return [modelName(label || name), list && (label || name) !== list ? ` ${list}` : ''];
+}
+
+function problemPart(result) {
+  const e = result.experiment;
+  return [el('h4', {}, 'Problem'), el('dl', {},
+    definition('Question', e.what),
+    definition('Source', e.cite),
+    definition('Body', e.body ? bodyText(e.body) : ''),
+    definition('Material', (e.materials || []).length > 0 ? materialText(e.materials) : ''),
+    definition('Loads', bullets(e.loads || [])),
+    definition('Kinematics', e.kinematics ? kinematicsText(result) : ''),
+    definition('Models', bullets((e.models || []).map(modelText))),
+    definition('Measures', (e.measures || []).map(measureText).join('; ')),
+    definition('Probes', (e.probes || []).map(p => `${p.name} at ${vectorText(p.at)} m`).join('; ')),
+    definition('Section', e.section ? `through ${vectorText(e.section.point)} m, normal ${vectorText(e.section.normal)}` : ''))];
+}
+
+// ---- reference
+
+function referenceRow(record, columns) {
+  const {measure, unit} = record;
+  const values = Array.from({length: columns}, (_, i) => el('td', {class: 'number'},
+    quantity(record.values[i], measure, unit), el('small', {}, cellsText(record.cells[i]))));
+  return tr(nuText(record.poisson_ratio), values,
+    el('td', {class: 'number'}, isNumber(record.observed_order) ? number(record.observed_order, 3) : 'none'),
+    el('td', {class: 'number'}, el('b', {}, quantity(record.value, measure, unit, 5))),
+    el('td', {class: 'number'}, '± ' + quantity(record.uncertainty, measure, unit, 2)),
+    el('td', {}, record.note));
+}
+
+function referencePart(result) {
+  const measures = distinct(result.references.map(record => record.measure));
+  const tables = measures.map(measure => {
+    const records = result.references.filter(record => record.measure === measure);
+    const columns = Math.max(...records.map(record => record.values.length));
+    const grids = Array.from({length: columns}, (_, i) => el('th', {class: 'number'}, `grid ${i + 1}`));
+    return [el('h5', {}, measureText(measure)), table('reference',
+      ['ν', ...grids, el('th', {class: 'number'}, 'observed order'), el('th', {class: 'number'}, 'value'),
+       el('th', {class: 'number'}, 'uncertainty'), 'how'],
+      records.map(record => referenceRow(record, columns)))];
+  });
+  return [el('h4', {}, 'Reference and its uncertainty'),
+    measures.length === 0 ? notice('There is no record of a reference for this case.')
+      : el('p', {class: 'note'}, 'Finite elements on successively finer grids; where their values fall into a regular ' +
+           'sequence, the limit is extrapolated (Richardson), and the uncertainty is the grid convergence index.'),
+    tables];
+}
+
+// ---- results
+
+function resultCell(result, measure, model, cells, nu) {
+  const same = item => item.model === model && cellsText(item.cells) === cells && item.poisson_ratio === nu;
+  const row = result.rows.find(r => r.measure === measure && same(r));
+  if (row) {
+    const isError = row.reference === null && row.error === row.value;
+    return el('td', {class: 'number ' + tint(result, row), title: `${row.value} ${row.unit}`},
+              isError ? quantityOfError(result, row) : [quantity(row.value, measure, row.unit), el('small', {}, errorText(result, row))]);
+  }
+  const run = result.runs.find(same);
+  return run && !run.ok ? el('td', {class: 'number lost', title: run.message}, 'no result') : el('td', {class: 'number'}, '–');
+}
+
+const quantityOfError = (result, row) => inPercent(row.measure, row.unit) ? percent(100 * row.error)
+  : quantity(row.value, row.measure, row.unit);
+
+function referenceLine(result, measure, nus) {
+  const rows = result.rows.filter(row => row.measure === measure);
+  const cells = nus.map(nu => {
+    const row = rows.find(r => r.poisson_ratio === nu && (isNumber(r.reference) || isNumber(r.reference_uncertainty)));
+    if (!row) return el('td', {class: 'number'}, '–');
+    return el('td', {class: 'number'}, isNumber(row.reference) ? quantity(row.reference, measure, row.unit) : '',
+              el('small', {}, isNumber(row.reference_uncertainty) ? '± ' + quantity(row.reference_uncertainty, measure, row.unit, 2) : ''));
+  });
+  return el('tr', {class: 'reference-line'}, el('th', {scope: 'row'}, 'reference'), el('td', {}, ''), cells);
+}
+
+function resultTable(result, measure) {
+  const {nus} = result;
+  const lines = [...models.filter(model => result.models.includes(model))].flatMap(model => {
+    const resolutions = distinct(result.rows.concat(result.runs).filter(r => r.model === model).map(r => r.cells)).sort(bySize);
+    return resolutions.map((cells, i) => el('tr', {class: i === 0 ? 'group' : ''},
+      el('th', {scope: 'row'}, i === 0 ? modelName(model) : ''), el('td', {}, cellsText(cells)),
+      nus.map(nu => resultCell(result, measure, model, cellsText(cells), nu))));
+  });
+  return [el('h5', {}, measureText(measure)), table('results',
+    ['model', 'cells', ...nus.map(nu => el('th', {class: 'number'}, `ν = ${nuText(nu)}`))],
+    [referenceLine(result, measure, nus), ...lines])];
+}
+
+function resultsPart(result) {
+  return [el('h4', {}, 'Results'), result.measures.length === 0 ? notice('No run of this case gave a result.')
+    : [result.measures.map(measure => resultTable(result, measure)), tintLegend()]];
+}
+
+// ---- expectations, published values, runs
+
+function checkRow(check) {
+  const {measure, unit} = check;
+  const off = isNumber(check.computed) ? Math.abs(check.computed - check.expected) : null;
+  return tr(verdictChip(check.verdict), modelName(check.model), nuText(check.poisson_ratio), cellsText(check.cells),
+    measureText(measure),
+    el('td', {class: 'number'}, `${quantity(check.expected, measure, unit)} ± ${quantity(check.within, measure, unit, 2)}`),
+    el('td', {class: 'number'}, quantity(check.computed, measure, unit)),
+    el('td', {class: 'number'}, off !== null && check.within > 0 ? percent(100 * off / check.within) : '–'),
+    el('td', {class: 'number'}, isNumber(check.reference_uncertainty) ? '± ' + quantity(check.reference_uncertainty, measure, unit, 2) : '–'),
+    [check.source, check.where].filter(Boolean).join(', '));
+}
+
+function checksPart(result) {
+  const right = text => el('th', {class: 'number'}, text);
+  const checks = [...result.checks].sort((a, b) => verdictOrder.indexOf(a.verdict) - verdictOrder.indexOf(b.verdict));
+  return [el('h4', {}, 'Expectations'), checks.length === 0 ? notice('This case states no expectations.') :
+    table('checks', ['verdict', 'model', 'ν', 'cells', 'measure', right('expected'), right('computed'),
+                     right('of the tolerance'), right('uncertainty of the reference'), 'source'], checks.map(checkRow))];
+}
+
+function publishedRow(item) {
+  const {measure, unit} = item;
+  const ratio = isNumber(item.computed) && item.published !== 0 ? 100 * (item.computed / item.published - 1) : null;
+  return tr(modelName(item.model), nuText(item.poisson_ratio), measureText(measure),
+    el('td', {class: 'number'}, quantity(item.published, measure, unit)),
+    el('td', {class: 'number'}, quantity(item.computed, measure, unit)),
+    el('td', {class: 'number'}, ratio === null ? '–' : signed(ratio, percent(ratio))), item.where, item.remark);
+}
+
+function publishedPart(result) {
+  if (result.published.length === 0) return [];
+  const right = text => el('th', {class: 'number'}, text);
+  return [el('h4', {}, 'Published values'), table('published', ['model', 'ν', 'measure', right('published'), right('ours'),
+    right('ours to published'), 'where', 'remark'], result.published.map(publishedRow))];
+}
+
+function runRow(run) {
+  return el('tr', {class: run.ok ? '' : 'lost'}, [modelName(run.model), nuText(run.poisson_ratio), cellsText(run.cells), run.kinematics,
+    run.solver].map(cell => el('td', {}, cell)),
+    [String(run.iterations ?? '–'), number(run.residual, 2), seconds(run.seconds), number(run.unknowns, 9)]
+      .map(cell => el('td', {class: 'number'}, cell)), el('td', {}, run.message));
+}
+
+function runsPart(result) {
+  const failed = result.runs.filter(run => !run.ok).length;
+  const time = result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0);
+  const right = text => el('th', {class: 'number'}, text);
+  return el('details', {class: 'fold'},
+    el('summary', {}, `Runs: ${result.runs.length}` + (failed ? `, ${failed} without result` : '') + `, ${seconds(time)}`),
+    table('runs', ['model', 'ν', 'cells', 'kinematics', 'solver', right('iterations'), right('residual'), right('time'),
+                   right('unknowns'), 'message'], result.runs.map(runRow)));
+}
+
+// ---- the page of a case
+
+function casePage(result, jumps) {
+  const body = el('div', {class: 'case-body'});
+  const links = jumps.filter(jump => jump.has(result.id)).map(jump =>
+    el('button', {type: 'button', onclick: () => jump.go(result.id)}, jump.text));
+  const page = el('details', {class: 'case', id: result.id},
+    el('summary', {}, el('span', {class: 'case-name'}, result.name), el('span', {class: 'case-what'}, result.experiment.what),
+       verdictChip(caseVerdict(result))), body);
+  const fill = () => {
+    if (body.childElementCount > 0) return;
+    body.append(...[el('p', {class: 'jumps'}, links), problemPart(result), referencePart(result), resultsPart(result),
+      checksPart(result), publishedPart(result), runsPart(result)].flat(Infinity).filter(Boolean));
+    if (result.experiment.text)
+      body.append(el('details', {class: 'fold'}, el('summary', {}, 'The case file'), el('pre', {}, result.experiment.text)));
+  };
+  page.addEventListener('toggle', () => { if (page.open) fill(); });
+  page.fill = fill;
+  return page;
+}
+
+function pagesSection(section, jumps) {
+  if (cases.length === 0) return section.append(notice('No case was run.'));
+  section.append(...cases.map(result => casePage(result, jumps)));
+}

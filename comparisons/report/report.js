@@ -1,0 +1,93 @@
+'use strict';
+// Builds the page.  A section that cannot be built says so and leaves the others alone.
+
+function build(id, make) {
+  const section = document.getElementById(id);
+  try {
+    return make(section) || {show() {}, has: () => false};
+  } catch (error) {
+    console.error(error);
+    section.append(notice(`This section could not be drawn: ${error.message}`));
+    return {show() {}, has: () => false};
+  }
+}
+
+const needsCases = make => section => cases.length > 0 ? make(section) : section.append(notice('No case was run.'));
+
+function jumpTo(id, part) {
+  return caseId => {
+    part.show(caseId);
+    document.getElementById(id).scrollIntoView({behavior: 'smooth'});
+  };
+}
+
+function flatten(object, prefix = '') {
+  return Object.entries(object || {}).flatMap(([key, value]) => value !== null && typeof value === 'object' && !Array.isArray(value)
+    ? flatten(value, prefix + key + ' ') : [[prefix + key, String(value)]]);
+}
+
+function aboutSection(section) {
+  const {program = {}, host = {}, generated} = results;
+  const facts = [...flatten(program), ['generated', generated || '–'], ...flatten(host)];
+  section.append(el('dl', {}, facts.flatMap(([term, value]) => definition(term.replace(/_/g, ' '), value))),
+    el('p', {class: 'note'}, 'The page loads nothing from the network. The same numbers are in results.json and results.csv. ' +
+       'Charts: Chart.js 3.9; shapes: three.js r111 (both MIT licence); colours: viridis, Okabe and Ito.'));
+}
+
+function decorateHead() {
+  document.getElementById('generated').textContent = [results.program && results.program.version, results.generated]
+    .filter(Boolean).join(' · ');
+  for (const item of document.querySelectorAll('.verdicts li')) item.prepend(swatch(item.dataset.model));
+}
+
+/// Opens the case page that the address names.
+function followHash() {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  if (!target || !target.classList.contains('case')) return;
+  target.open = true;
+  target.fill();
+  target.scrollIntoView();
+}
+
+function redraw() {
+  for (const draw of charts) draw();
+}
+
+/// On paper: everything open, dark ink on white.
+function preparePrinting() {
+  let closed = [];
+  window.addEventListener('beforeprint', () => {
+    document.documentElement.dataset.theme = 'light';
+    for (const page of document.querySelectorAll('details.case')) page.fill();
+    closed = [...document.querySelectorAll('details:not([open]):not(.fold)')];
+    for (const node of closed) node.open = true;
+    redraw();
+  });
+  window.addEventListener('afterprint', () => {
+    delete document.documentElement.dataset.theme;
+    for (const node of closed) node.open = false;
+    redraw();
+  });
+}
+
+function start() {
+  decorateHead();
+  Chart.defaults.font.family = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
+  Chart.defaults.font.size = 13;
+  build('cases', casesSection);
+  const poisson = build('poisson', needsCases(poissonSection));
+  const convergence = build('convergence', needsCases(convergenceSection));
+  const shapes = build('shapes', needsCases(shapesSection));
+  build('pages', section => pagesSection(section, [
+    {text: 'Error against ν', go: jumpTo('poisson', poisson), has: () => true},
+    {text: 'Convergence', go: jumpTo('convergence', convergence), has: () => true},
+    {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
+  ]));
+  build('about', aboutSection);
+  preparePrinting();
+  window.addEventListener('hashchange', followHash);
+  window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
+  followHash();
+}
+
+start();

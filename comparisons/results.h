@@ -1,0 +1,131 @@
+// What a comparison produces: rows, references with their uncertainty, verdicts.  The only input of the report.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "problem/experiment.h"
+
+namespace springproof {
+
+/// One number of one model: a line of results.csv.
+struct Row {
+  std::string case_name;
+  std::string kinematics;          ///< "linear", "finite" (springs) or the FEM's law
+  std::string model;               ///< "hybmss", "fem_q1", ...
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::string measure;             ///< "displacement_error", "volume_change", "force.z_max.z", ...
+  double value = 0;
+  std::string unit;
+  std::optional<double> reference;
+  std::optional<double> reference_uncertainty;
+  std::optional<double> error;     ///< value - reference; for measures that are errors, the value itself
+};
+
+/// One run of one solver.
+struct Run {
+  std::string model;
+  std::string kind;                ///< "msm" or "fem"
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::string kinematics;
+  bool ok = false;
+  std::string message;             ///< why there is no result, with the load reached
+  std::string solver;              ///< "CG + multigrid", "Newton, 8 load steps, Cholesky", ...
+  int iterations = 0;
+  double residual = 0;             ///< relative
+  double seconds = 0;
+  long unknowns = 0;
+};
+
+/// How sure the reference is of one measure: three grids, observed order, Richardson limit, GCI.
+struct ReferenceRecord {
+  double poisson_ratio = 0;
+  std::string measure;
+  std::string unit;
+  std::vector<Cells> cells;        ///< of the grids, coarse to fine
+  std::vector<double> values;      ///< on each grid
+  std::optional<double> observed_order;   ///< empty: the sequence is not monotone
+  double value = 0;                ///< extrapolated (or the finest where it cannot be)
+  double uncertainty = 0;
+  std::string note;                ///< "Richardson", "not monotone: spread of the three grids", ...
+};
+
+enum class Verdict { pass, fail, reference_too_coarse, no_reference, no_result };
+std::string to_string(Verdict verdict);
+
+/// One [[expect]] judged.
+struct Check {
+  std::string model;
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::string measure;
+  std::string unit;
+  std::string source;              ///< "analytic", "extrapolated FEM", "published", "regression"
+  double expected = 0;
+  std::optional<double> computed;
+  double within = 0;               ///< absolute
+  std::optional<double> reference_uncertainty;
+  Verdict verdict = Verdict::no_result;
+  std::string where;
+};
+
+/// One [[published]] value beside ours.
+struct PublishedRow {
+  std::string model;
+  double poisson_ratio = 0;
+  std::string measure;
+  std::string unit;
+  double published = 0;
+  std::optional<double> computed;
+  std::string where;
+  std::string remark;
+};
+
+/// The deformed surface of one run, for the report's 3D view.
+struct Picture {
+  std::string model;               ///< "fem" is the reference sampled at the same nodes
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::vector<float> rest;             ///< surface nodes, xyz xyz ... [m]
+  std::vector<float> displacement;     ///< same length [m]
+  std::vector<float> difference;       ///< |u - u_fem| per surface node [m]; empty for "fem"
+  std::vector<int> quads;              ///< 4 surface-node numbers per facet
+};
+
+struct CaseResult {
+  Experiment experiment;
+  std::vector<Run> runs;
+  std::vector<Row> rows;
+  std::vector<ReferenceRecord> references;
+  std::vector<Check> checks;
+  std::vector<PublishedRow> published;
+  std::vector<Picture> pictures;
+};
+
+/// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".
+std::string describe(const Load& load);
+
+/// Everything but pictures; the schema is written out in docs/results.md.
+/// Numbers that are not finite become null.
+nlohmann::json to_json(const CaseResult& result);
+
+/// {"case", "folder", "meshes", "pictures"}: surfaces of equal rest shape are stored once; arrays are base64 of
+/// little-endian float32 and uint16 or uint32 (docs/results.md).
+/// @throws std::invalid_argument if the arrays of a picture do not fit each other.
+nlohmann::json pictures_to_json(const CaseResult& result);
+
+/// results.csv: one line per row of every case, numbers with as many digits as read back exactly, empty where not
+/// known; quoted by RFC 4180.
+std::string to_csv(const std::vector<CaseResult>& results);
+
+/// Writes `text` whole or not at all (beside, then renamed).
+/// @throws std::runtime_error naming the file and the reason.
+void write_file(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace springproof
