@@ -1,0 +1,136 @@
+#include "meshes/field.h"
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "meshes/volume.h"
+
+namespace springproof {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the VTU header says LittleEndian");
+
+constexpr int vtk_tetrahedron = 10, vtk_hexahedron = 12;
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+  static constexpr char alphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t left = bytes.size() - i;
+    const std::uint32_t word =
+        bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
+    text += alphabet[word >> 18 & 63];
+    text += alphabet[word >> 12 & 63];
+    text += left > 1 ? alphabet[word >> 6 & 63] : '=';
+    text += left > 2 ? alphabet[word & 63] : '=';
+  }
+  return text;
+}
+
+/// The byte count and the bytes, as VTK wants inline binary.
+template <class T>
+std::string encoded(const T* data, std::size_t count) {
+  const std::uint64_t size = count * sizeof(T);
+  std::vector<unsigned char> bytes(sizeof size + size);
+  std::memcpy(bytes.data(), &size, sizeof size);
+  if (size > 0) std::memcpy(bytes.data() + sizeof size, data, size);
+  return base64(bytes);
+}
+
+template <class T>
+void write_array(std::ostream& out, const std::string& name, const char* type, int components, const T* data,
+                 std::size_t count) {
+  out << "        <DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << components
+      << "\" format=\"binary\">" << encoded(data, count) << "</DataArray>\n";
+}
+
+void write_vectors(std::ostream& out, const std::string& name, const NodalVectors& values) {
+  write_array(out, name, "Float64", 3, values.data(), static_cast<std::size_t>(values.size()));
+}
+
+template <class T>
+void write_integers(std::ostream& out, const std::string& name, const char* type, const std::vector<T>& values) {
+  write_array(out, name, type, 1, values.data(), values.size());
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
+void write_cells(std::ostream& out, const Mesh& mesh) {
+  std::vector<std::int32_t> connectivity, offsets;
+  std::vector<std::uint8_t> types;
+  auto add = [&](const auto& cell, int type) {
+    connectivity.insert(connectivity.end(), cell.begin(), cell.end());
+    offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
+    types.push_back(static_cast<std::uint8_t>(type));
+  };
+  for (const Hexahedron& cell : mesh.hexahedra) add(cell, vtk_hexahedron);
+  for (const Tetrahedron& cell : mesh.tetrahedra) add(cell, vtk_tetrahedron);
+  out << "      <Cells>\n";
+  write_integers(out, "connectivity", "Int32", connectivity);
+  write_integers(out, "offsets", "Int32", offsets);
+  write_integers(out, "types", "UInt8", types);
+  out << "      </Cells>\n";
+}
+
+void write_document(std::ostream& out, const Field& field,
+                    const std::vector<std::pair<std::string, NodalVectors>>& extra) {
+  const Mesh& mesh = *field.mesh;
+  const Eigen::VectorXd rest = cell_volumes(mesh, mesh.nodes);
+  const Eigen::VectorXd change =
+      (cell_volumes(mesh, mesh.nodes + field.displacement) - rest).cwiseQuotient(rest);
+  out << "<?xml version=\"1.0\"?>\n"
+         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+         "  <UnstructuredGrid>\n"
+      << "    <Piece NumberOfPoints=\"" << mesh.nodes.rows() << "\" NumberOfCells=\"" << rest.size() << "\">\n"
+      << "      <PointData Vectors=\"displacement\">\n";
+  write_vectors(out, "displacement", field.displacement);
+  for (const auto& [name, values] : extra) write_vectors(out, escaped(name), values);
+  out << "      </PointData>\n      <CellData Scalars=\"relative_volume_change\">\n";
+  write_array(out, "relative_volume_change", "Float64", 1, change.data(), static_cast<std::size_t>(change.size()));
+  out << "      </CellData>\n      <Points>\n";
+  write_vectors(out, "position", mesh.nodes);
+  out << "      </Points>\n";
+  write_cells(out, mesh);
+  out << "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+}
+
+}  // namespace
+
+void write_vtu(const std::filesystem::path& file, const Field& field,
+               const std::vector<std::pair<std::string, NodalVectors>>& extra) {
+  const Eigen::Index nodes = field.mesh->nodes.rows();
+  if (field.displacement.rows() != nodes) throw std::invalid_argument("write_vtu: one displacement per node");
+  for (const auto& [name, values] : extra)
+    if (values.rows() != nodes) throw std::invalid_argument("write_vtu: '" + name + "': one vector per node");
+
+  std::filesystem::path partial = file;
+  partial += ".part";
+  std::ofstream out(partial, std::ios::binary);
+  write_document(out, field, extra);
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(partial, file, error);
+  if (!out || error) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw std::runtime_error("cannot write '" + file.string() + "'" + (error ? ": " + error.message() : ""));
+  }
+}
+
+}  // namespace springproof

@@ -1,0 +1,35 @@
+// Field: the only thing a solver hands over.  Every measure is computed from Fields alone, by the same code.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+/// Force [N] and torque [N m] that the support of a patch exerts on the body; the torque is about the patch's rest
+/// centroid, with lever arms at rest (linear) or deformed (finite).
+struct PatchReaction {
+  std::string patch;
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+};
+
+struct Field {
+  std::shared_ptr<const Mesh> mesh;
+  NodalVectors displacement;               ///< n x 3 [m]
+  std::vector<PatchReaction> reactions;    ///< one per patch with prescribed displacement
+  double volume_change = 0;                ///< (V' - V)/V of the solver's own interpolation, exact [1]
+  double volume_change_first_order = 0;    ///< integral of div u / V [1]
+};
+
+/// Writes a VTU (VTK XML, base64 binary): displacement, `extra` nodal vectors (e.g. difference to FEM) and the
+/// relative volume change of each cell.
+/// @throws std::runtime_error if the file cannot be written.
+void write_vtu(const std::filesystem::path& file, const Field& field,
+               const std::vector<std::pair<std::string, NodalVectors>>& extra = {});
+
+}  // namespace springproof

@@ -1,0 +1,78 @@
+// A body cut into hexahedra or tetrahedra, with named surface patches.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/vector.h"
+
+namespace springproof {
+
+/// Corner order of gmsh and VTK: (0,0,0) (1,0,0) (1,1,0) (0,1,0) (0,0,1) (1,0,1) (1,1,1) (0,1,1).
+using Hexahedron = std::array<int, 8>;
+using Tetrahedron = std::array<int, 4>;
+
+inline constexpr std::array<std::array<int, 3>, 8> hexahedron_corners = {
+    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+
+/// Corners of each face, outward by the right-hand rule, in the order x_min x_max y_min y_max z_min z_max of the
+/// reference cube.
+inline constexpr std::array<std::array<int, 4>, 6> hexahedron_faces = {
+    {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
+
+/// Nodes of face `f` of a cell.
+inline std::array<int, 4> face_of(const Hexahedron& cell, int f) {
+  const auto& corners = hexahedron_faces[f];
+  return {cell[corners[0]], cell[corners[1]], cell[corners[2]], cell[corners[3]]};
+}
+
+/// Named part of the surface.  Facets have outward normals by the right-hand rule; a triangle has facet[3] = -1.
+struct Patch {
+  std::string name;
+  std::vector<std::array<int, 4>> facets;  ///< node numbers
+};
+
+/// A cubic lattice that a mesh was cut from: cell (i,j,k) spans origin + edge * [i,i+1]x[j,j+1]x[k,k+1].
+struct Grid {
+  std::array<int, 3> cells;                   ///< nx, ny, nz
+  Vec3 origin = Vec3::Zero();                 ///< [m]
+  Vec3 spacing = Vec3::Zero();                ///< edge lengths [m]; equal for a cubic lattice
+  std::vector<std::array<int, 3>> cell_index;  ///< (i,j,k) of each hexahedron of the mesh
+};
+
+struct Mesh {
+  NodalVectors nodes;                    ///< rest positions [m], n x 3
+  std::vector<Hexahedron> hexahedra;
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Patch> patches;
+  std::optional<Grid> grid;              ///< set when every cell is a box of one lattice
+};
+
+/// @throws std::invalid_argument naming the patches there are, if there is none of that name.
+const Patch& patch(const Mesh& mesh, const std::string& name);
+
+/// Node numbers of a patch, ascending, each once.
+std::vector<int> nodes_of(const Patch& patch);
+
+/// Share of each node in the patch's area [m^2]: a facet's area split by its shape functions (consistent load of a
+/// uniform traction).  One value per mesh node, zero off the patch.
+Eigen::VectorXd nodal_areas(const Mesh& mesh, const Patch& patch);
+
+/// Area centroid of a patch [m].
+Vec3 centroid(const Mesh& mesh, const Patch& patch);
+
+/// Volume share of each node [m^3]: an eighth of each hexahedron, a quarter of each tetrahedron.
+Eigen::VectorXd nodal_volumes(const Mesh& mesh);
+
+/// The grid of a mesh whose hexahedra are equal axis-aligned boxes of one lattice (any subset of its cells), each
+/// with its lowest corner first, in the corner order above; else nothing.  Nodes may be off the lattice by 1e-9 of the
+/// body's extent along that axis.  One cell per box and one mesh node per lattice point, or it is no grid.
+std::optional<Grid> detect_grid(const Mesh& mesh);
+
+/// Axis-aligned block [0,size] cut into equal boxes, nodes numbered x fastest, patches x_min x_max y_min y_max z_min
+/// z_max: the mesh gmsh makes of block.geo, without gmsh (for tests and inner loops).
+Mesh block_mesh(const Vec3& size, const std::array<int, 3>& cells);
+
+}  // namespace springproof

@@ -1,0 +1,78 @@
+// What is done to the body: held, moved, turned, pulled.  Geometry appears only as patch names and points.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "problem/vector.h"
+
+namespace springproof {
+
+/// Displacement given on a patch, component by component; an empty component is free.
+struct PrescribedDisplacement {
+  std::string on;                                        ///< patch name
+  std::array<std::optional<double>, 3> displacement;     ///< [m]
+};
+
+/// An affine displacement u = gradient * X + offset on a patch (the patch test).
+struct PrescribedAffine {
+  std::string on;
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();  ///< [1]
+  Vec3 offset = Vec3::Zero();                          ///< [m]
+};
+
+/// Rigid rotation of a patch about an axis.
+/// Under linear kinematics the rotation is the linearised one, u = angle * axis x (X - point).
+struct PrescribedRotation {
+  std::string on;
+  Vec3 point = Vec3::Zero();   ///< a point of the axis [m]
+  Vec3 axis = Vec3::UnitZ();   ///< direction, normalised by the reader
+  double angle = 0;            ///< [rad]
+};
+
+/// Force per rest area, constant in direction (dead load) [Pa].
+struct Traction {
+  std::string on;
+  Vec3 traction = Vec3::Zero();
+};
+
+/// Total force [N], spread over the patch as a uniform traction.
+struct PatchForce {
+  std::string on;
+  Vec3 force = Vec3::Zero();
+};
+
+/// Acceleration field acting on the whole body [m/s^2].
+struct Gravity {
+  Vec3 acceleration = Vec3::Zero();
+};
+
+/// Force [N] at the rest point `at` [m]; spread over the corners of the element that holds the point.
+struct PointForce {
+  Vec3 at = Vec3::Zero();
+  Vec3 force = Vec3::Zero();
+};
+
+using Load = std::variant<PrescribedDisplacement, PrescribedAffine, PrescribedRotation, Traction, PatchForce,
+                          Gravity, PointForce>;
+
+/// Name of the patch a load acts on; nullptr for gravity and point forces.
+const std::string* patch_of(const Load& load);
+
+/// True for the loads that prescribe displacement.
+bool prescribes_displacement(const Load& load);
+
+enum class Kinematics { linear, finite };
+
+using PrescribedValue = std::array<std::optional<double>, 3>;
+
+/// Displacement [m] that `load` prescribes at rest position X when a fraction `factor` of it is applied.
+/// Free components are empty; loads that prescribe none return three empty components.
+/// Rotations turn by factor * angle (finite) or are linearised (linear).
+PrescribedValue prescribed_displacement(const Load& load, const Vec3& X, Kinematics kinematics,
+                                        double factor = 1.0);
+
+}  // namespace springproof

@@ -1,0 +1,127 @@
+// An experiment: body, material, loads, models, measures, published values, tolerances.  Read from TOML.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "problem/constraints.h"
+#include "problem/material.h"
+
+namespace springproof {
+
+/// Where in a case file something stands; line and column count from 1, 0 = unknown.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// An input that cannot be used.  what() reads "file:line:column: key: what is wrong, what is allowed".
+class InputError : public std::runtime_error {
+ public:
+  InputError(const SourceLocation& where, const std::string& message);
+  explicit InputError(const std::string& message) : std::runtime_error(message) {}
+};
+
+using Cells = std::array<int, 3>;
+
+struct Body {
+  std::string geo;                 ///< file name: one of meshes/geo/, or a path relative to the case file
+  Vec3 size = Vec3::Zero();        ///< [m]
+  std::vector<Cells> cells;        ///< resolutions of the mass-spring models, one or more
+  SourceLocation where;            ///< of the key `geo`
+};
+
+/// A model as named in the case file, with its options; what they mean is the model table's business (msm/models.h).
+struct ModelChoice {
+  std::string name;                                                        ///< row of the table, "hybmss"
+  std::map<std::string, std::variant<bool, double, std::string>> options;  ///< e.g. face_to_cube = 1.0
+  std::string label;                                                       ///< "hybmss" or "hybmss A=1 paper_e_form"
+  SourceLocation where;
+};
+
+struct Probe {
+  std::string name;
+  Vec3 at = Vec3::Zero();  ///< rest position [m]
+};
+
+/// Plane on which the mean distance between two deformed states is measured (Golec et al. 2019, sec. 6.2).
+struct Section {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+};
+
+/// How the finite element reference is computed.
+struct ReferenceChoice {
+  Cells cells = {0, 0, 0};          ///< finest of three grids; {0,0,0} = chosen from the body's cells
+  double grading = 1.5;             ///< exponent that draws elements towards the faces of the block; 1 = uniform
+};
+
+enum class Source { analytic, extrapolated_fem, published, regression };
+std::string to_string(Source source);
+
+/// A value that must hold.  It becomes the verdict of the case.
+struct Expectation {
+  std::string model;                    ///< label of a model in [compare], or "fem" (the extrapolated reference)
+  std::optional<double> poisson_ratio;  ///< empty: at every one
+  std::optional<Cells> cells;           ///< empty: at every resolution
+  std::string measure;                  ///< name of a measure, e.g. "volume_change", "force.z_max.magnitude"
+  Source source = Source::extrapolated_fem;
+  std::optional<double> value;          ///< empty: the extrapolated FEM value
+  double within = 0;                    ///< tolerance, absolute, in the measure's unit
+  bool relative = false;                ///< `within_relative`: tolerance is a fraction of |value|
+  std::string where;                    ///< "Table 3"
+  SourceLocation location;
+};
+
+/// A printed value shown beside ours, not gated.
+struct PublishedValue {
+  std::string model;
+  double poisson_ratio = 0;
+  std::optional<Cells> cells;
+  std::string measure;
+  double value = 0;
+  std::string where;    ///< "Table 3"
+  std::string remark;   ///< why it cannot be reproduced, where it cannot
+  SourceLocation location;
+};
+
+/// Finite-strain law of the reference (a name fem_reference knows), or "linear".
+struct Experiment {
+  std::string name;       ///< the file's stem
+  std::string folder;     ///< name of the folder that holds it, e.g. "golec_2019"
+  std::filesystem::path file;
+  std::string cite;
+  std::string what;
+  std::string kinematics = "linear";   ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke", "st_venant_kirchhoff"
+  Body body;
+  std::vector<IsotropicMaterial> materials;   ///< one per Poisson's ratio, in the file's order
+  std::vector<Load> loads;
+  std::vector<ModelChoice> models;
+  std::vector<std::string> measures;
+  std::vector<Probe> probes;
+  std::optional<Section> section;
+  ReferenceChoice reference;
+  std::vector<Expectation> expectations;
+  std::vector<PublishedValue> published;
+  std::string text;       ///< the file as read
+
+  Kinematics model_kinematics() const { return kinematics == "linear" ? Kinematics::linear : Kinematics::finite; }
+};
+
+/// Reads a case file.
+/// @throws InputError with file, line, column, the key, what is allowed and the nearest known key.
+Experiment read_experiment(const std::filesystem::path& file);
+
+/// As read_experiment, from text; `file` is used for messages and relative paths.
+Experiment parse_experiment(const std::string& text, const std::filesystem::path& file);
+
+/// The experiment as a TOML document that reads back to the same experiment.
+std::string to_toml(const Experiment& experiment);
+
+}  // namespace springproof

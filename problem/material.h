@@ -1,0 +1,44 @@
+// The isotropic linear-elastic material: what the user knows about it, in any two moduli.
+#pragma once
+
+#include <optional>
+
+namespace springproof {
+
+/// Isotropic elastic solid.  Valid range: E > 0, -1 < nu < 1/2, rho > 0.
+struct IsotropicMaterial {
+  double youngs_modulus;    ///< E [Pa]
+  double poisson_ratio;     ///< nu [1]
+  double density = 1000.0;  ///< rho [kg/m^3]
+};
+
+double shear_modulus(const IsotropicMaterial& m);  ///< G = E / (2 (1 + nu)) [Pa]
+double bulk_modulus(const IsotropicMaterial& m);   ///< K = E / (3 (1 - 2 nu)) [Pa]
+double lame_lambda(const IsotropicMaterial& m);    ///< lambda = E nu / ((1 + nu)(1 - 2 nu)) [Pa]
+
+/// kappa = lambda - G [Pa], the modulus that the springs' Cauchy relation lambda = G leaves over;
+/// zero at nu = 1/4, negative below.  Golec et al. (2019), eqs. (5.4)-(5.5).
+double kappa(const IsotropicMaterial& m);
+
+double p_wave_modulus(const IsotropicMaterial& m);  ///< M = lambda + 2 G [Pa]
+
+/// Any subset of the moduli of an isotropic solid [Pa, nu in 1].
+struct Moduli {
+  std::optional<double> youngs_modulus;
+  std::optional<double> poisson_ratio;
+  std::optional<double> shear_modulus;
+  std::optional<double> bulk_modulus;
+  std::optional<double> lame_lambda;
+};
+
+/// The material with exactly two given moduli.
+/// @throws std::invalid_argument naming the modulus, its value and the allowed range, if not exactly two are
+///   given, if one is not finite, or if they admit no solid with E > 0 and -1 < nu < 1/2.
+/// Two solids can share (E, lambda); the one with the larger shear modulus is returned (the other has E or nu
+/// out of range).
+IsotropicMaterial material_from(const Moduli& given, double density = 1000.0);
+
+/// @throws std::invalid_argument unless E > 0, -1 < nu < 1/2, rho > 0, all finite.
+void check(const IsotropicMaterial& m);
+
+}  // namespace springproof
