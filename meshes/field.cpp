@@ -44,8 +44,8 @@ std::string encoded(const T* data, std::size_t count) {
 template <class T>
 void write_array(std::ostream& out, const std::string& name, const char* type, int components, const T* data,
                  std::size_t count) {
-  out << "        <DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << components
-      << "\" format=\"binary\">" << encoded(data, count) << "</DataArray>\n";
+  out << "        <DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
+      << components << "\" format=\"binary\">" << encoded(data, count) << "</DataArray>\n";
 }
 
 void write_vectors(std::ostream& out, const std::string& name, const NodalVectors& values) {
@@ -53,7 +53,8 @@ void write_vectors(std::ostream& out, const std::string& name, const NodalVector
 }
 
 template <class T>
-void write_integers(std::ostream& out, const std::string& name, const char* type, const std::vector<T>& values) {
+void write_integers(std::ostream& out, const std::string& name, const char* type,
+                    const std::vector<T>& values) {
   write_array(out, name, type, 1, values.data(), values.size());
 }
 
@@ -61,11 +62,20 @@ std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
     }
   }
   return result;
@@ -95,14 +105,17 @@ void write_document(std::ostream& out, const Field& field,
   const Eigen::VectorXd change =
       (cell_volumes(mesh, mesh.nodes + field.displacement) - rest).cwiseQuotient(rest);
   out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\">\n"
          "  <UnstructuredGrid>\n"
-      << "    <Piece NumberOfPoints=\"" << mesh.nodes.rows() << "\" NumberOfCells=\"" << rest.size() << "\">\n"
+      << "    <Piece NumberOfPoints=\"" << mesh.nodes.rows() << "\" NumberOfCells=\"" << rest.size()
+      << "\">\n"
       << "      <PointData Vectors=\"displacement\">\n";
   write_vectors(out, "displacement", field.displacement);
   for (const auto& [name, values] : extra) write_vectors(out, escaped(name), values);
   out << "      </PointData>\n      <CellData Scalars=\"relative_volume_change\">\n";
-  write_array(out, "relative_volume_change", "Float64", 1, change.data(), static_cast<std::size_t>(change.size()));
+  write_array(out, "relative_volume_change", "Float64", 1, change.data(),
+              static_cast<std::size_t>(change.size()));
   out << "      </CellData>\n      <Points>\n";
   write_vectors(out, "position", mesh.nodes);
   out << "      </Points>\n";

@@ -139,7 +139,8 @@ void orient_cells(const fs::path& geo, Mesh& mesh) {
     std::swap_ranges(cell.begin(), cell.begin() + 4, cell.begin() + 4);
     if (!(smallest() > 0)) {
       const Vec3 at = mesh.nodes.row(cell[0]);
-      refuse(geo, fmt::format("gmsh made an inverted or flat cell near ({}, {}, {}) m", at.x(), at.y(), at.z()));
+      refuse(geo,
+             fmt::format("gmsh made an inverted or flat cell near ({}, {}, {}) m", at.x(), at.y(), at.z()));
     }
   }
 }
@@ -155,7 +156,8 @@ std::vector<Hexahedron> boxes_lowest_corner_first(const Mesh& mesh) {
     for (const int n : cell)
       for (int corner = 0; corner < 8; ++corner) {
         bool here = true;
-        for (int c = 0; c < 3; ++c) here &= (mesh.nodes(n, c) > middle[c]) == (hexahedron_corners[corner][c] == 1);
+        for (int c = 0; c < 3; ++c)
+          here &= (mesh.nodes(n, c) > middle[c]) == (hexahedron_corners[corner][c] == 1);
         if (here) sorted[corner] = n;
       }
     if (std::find(sorted.begin(), sorted.end(), -1) == sorted.end()) cell = sorted;
@@ -170,8 +172,8 @@ std::vector<T> reordered(const std::vector<T>& values, const std::vector<int>& o
   return result;
 }
 
-/// If the cells are boxes of one lattice: sets the grid, numbers nodes and cells x fastest and moves the nodes onto
-/// the lattice (gmsh places them to about 1e-12).  `new_number` maps the old node numbers.
+/// If the cells are boxes of one lattice: sets the grid, numbers nodes and cells x fastest and moves the
+/// nodes onto the lattice (gmsh places them to about 1e-12).  `new_number` maps the old node numbers.
 void use_grid(Mesh& mesh, std::vector<int>& new_number) {
   Mesh candidate = mesh;
   candidate.hexahedra = boxes_lowest_corner_first(mesh);
@@ -213,7 +215,8 @@ std::array<int, 4> sorted(std::array<int, 4> facet) {
   return facet;
 }
 
-/// The physical surfaces as faces of the cells, which makes every facet outward whatever gmsh's orientation is.
+/// The physical surfaces as faces of the cells, which makes every facet outward whatever gmsh's orientation
+/// is.
 std::vector<Patch> read_patches(const fs::path& geo, const Mesh& mesh,
                                 const std::unordered_map<std::size_t, int>& number_of) {
   std::vector<Patch> patches;
@@ -242,7 +245,8 @@ std::vector<Patch> read_patches(const fs::path& geo, const Mesh& mesh,
     }
   for (const auto& [facet, patch] : patches_of)
     if (const auto it = times_seen.find(facet); it == times_seen.end() || it->second != 1)
-      refuse(geo, fmt::format("physical surface '{}' is not on the surface of the body", patches[patch].name));
+      refuse(geo,
+             fmt::format("physical surface '{}' is not on the surface of the body", patches[patch].name));
   return patches;
 }
 
@@ -263,9 +267,10 @@ fs::path find_geo(const Body& body, const fs::path& case_file) {
     std::error_code ignored;
     if (!body.geo.empty() && fs::is_regular_file(candidate, ignored)) return candidate;
   }
-  throw InputError(body.where, fmt::format("body.geo: no file '{}' beside the case file or among the built-in "
-                                           "bodies (allowed: {})",
-                                           body.geo, list_of_bodies(built_in)));
+  throw InputError(body.where,
+                   fmt::format("body.geo: no file '{}' beside the case file or among the built-in "
+                               "bodies (allowed: {})",
+                               body.geo, list_of_bodies(built_in)));
 }
 
 Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells) {
@@ -277,8 +282,12 @@ Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells) {
   static std::mutex one_caller;
   const std::lock_guard lock(one_caller);
   try {
-    GmshSession session({{"size_x", size.x()}, {"size_y", size.y()}, {"size_z", size.z()},
-                         {"nx", cells[0]}, {"ny", cells[1]}, {"nz", cells[2]}});
+    GmshSession session({{"size_x", size.x()},
+                         {"size_y", size.y()},
+                         {"size_z", size.z()},
+                         {"nx", cells[0]},
+                         {"ny", cells[1]},
+                         {"nz", cells[2]}});
     auto stop_on_error = [&] {
       if (const std::string error = session.first_error(); !error.empty()) refuse(geo, "gmsh: " + error);
     };

@@ -7,7 +7,9 @@
 namespace springproof {
 namespace {
 
-PrescribedValue all_components(const Vec3& u) { return {u.x(), u.y(), u.z()}; }
+PrescribedValue all_components(const Vec3& u) {
+  return {u.x(), u.y(), u.z()};
+}
 
 PrescribedValue value_at(const PrescribedDisplacement& load, const Vec3&, Kinematics, double factor) {
   PrescribedValue u;
@@ -20,7 +22,8 @@ PrescribedValue value_at(const PrescribedAffine& load, const Vec3& X, Kinematics
   return all_components(factor * (load.gradient * X + load.offset));
 }
 
-PrescribedValue value_at(const PrescribedRotation& load, const Vec3& X, Kinematics kinematics, double factor) {
+PrescribedValue value_at(const PrescribedRotation& load, const Vec3& X, Kinematics kinematics,
+                         double factor) {
   const Vec3 arm = X - load.point;
   const double angle = factor * load.angle;
   if (kinematics == Kinematics::linear) return all_components(angle * load.axis.cross(arm));
@@ -36,8 +39,8 @@ PrescribedValue value_at(const OtherLoad&, const Vec3&, Kinematics, double) {
 }
 
 template <class T>
-constexpr bool prescribes = std::is_same_v<T, PrescribedDisplacement> || std::is_same_v<T, PrescribedAffine> ||
-                            std::is_same_v<T, PrescribedRotation>;
+constexpr bool prescribes = std::is_same_v<T, PrescribedDisplacement> ||
+                            std::is_same_v<T, PrescribedAffine> || std::is_same_v<T, PrescribedRotation>;
 
 }  // namespace
 
@@ -56,7 +59,8 @@ bool prescribes_displacement(const Load& load) {
   return std::visit([](const auto& l) { return prescribes<std::decay_t<decltype(l)>>; }, load);
 }
 
-PrescribedValue prescribed_displacement(const Load& load, const Vec3& X, Kinematics kinematics, double factor) {
+PrescribedValue prescribed_displacement(const Load& load, const Vec3& X, Kinematics kinematics,
+                                        double factor) {
   return std::visit([&](const auto& l) { return value_at(l, X, kinematics, factor); }, load);
 }
 

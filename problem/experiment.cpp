@@ -2,10 +2,176 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "problem/experiment_parts.h"
+#include "problem/nearest_name.h"
+
 namespace springproof {
 namespace {
 
+constexpr Key document_schema[] = {{"cite", Presence::optional, ""},
+                                   {"what", Presence::optional, ""},
+                                   {"kinematics", Presence::optional, ""},
+                                   {"body", Presence::required, "a table [body] with geo, size_m, cells"},
+                                   {"material", Presence::required, "a table [material] with two moduli"},
+                                   {"load", Presence::required, "at least one [[load]]"},
+                                   {"compare", Presence::optional, ""},
+                                   {"section", Presence::optional, ""},
+                                   {"probe", Presence::optional, ""},
+                                   {"reference", Presence::optional, ""},
+                                   {"expect", Presence::optional, ""},
+                                   {"published", Presence::optional, ""}};
+
+constexpr Key body_schema[] = {
+    {"geo", Presence::required, "the name of a gmsh script, e.g. \"block.geo\""},
+    {"size_m", Presence::required, "[x, y, z], lengths > 0"},
+    {"cells", Presence::required, "[nx, ny, nz] or a list of such, integers from 1 to 1000"}};
+
+constexpr Key material_schema[] = {
+    {"youngs_modulus_Pa", Presence::optional, ""}, {"poisson_ratio", Presence::optional, ""},
+    {"shear_modulus_Pa", Presence::optional, ""},  {"bulk_modulus_Pa", Presence::optional, ""},
+    {"lame_lambda_Pa", Presence::optional, ""},    {"density_kg_m3", Presence::optional, ""}};
+
+constexpr Key section_schema[] = {{"point_m", Presence::required, "[x, y, z]"},
+                                  {"normal", Presence::required, "[x, y, z]"}};
+constexpr Key probe_schema[] = {{"name", Presence::required, "a name"},
+                                {"at_m", Presence::required, "[x, y, z], a rest position"}};
+constexpr Key reference_schema[] = {{"cells", Presence::optional, ""}, {"grading", Presence::optional, ""}};
+
+/// A modulus of the file and where it goes.
+struct ModulusKey {
+  const char* key;
+  std::optional<double> Moduli::*member;
+  Range range;
+};
+
+constexpr ModulusKey modulus_keys[] = {
+    {"youngs_modulus_Pa", &Moduli::youngs_modulus, positive_number},
+    {"poisson_ratio", &Moduli::poisson_ratio, {"-1 < poisson_ratio < 0.5", -1, 0.5}},
+    {"shear_modulus_Pa", &Moduli::shear_modulus, positive_number},
+    {"bulk_modulus_Pa", &Moduli::bulk_modulus, positive_number},
+    {"lame_lambda_Pa", &Moduli::lame_lambda, any_number}};
+
+const std::vector<std::string> kinematics_names = {"linear", "hencky", "log_cauchy", "neo_hooke",
+                                                   "st_venant_kirchhoff"};
+
+Body read_body(const TomlValue& value) {
+  const TomlTable table(value, body_schema);
+  Body body;
+  body.where = location_of(table.at("geo"));
+  body.geo = as_text(table.at("geo"));
+  body.size = as_vector(table.at("size_m"), positive_number);
+  const TomlValue cells = table.at("cells");
+  const auto items = as_list(cells, "[nx, ny, nz] or a list of such, integers from 1 to 1000");
+  if (!items.front().node->is_array()) {
+    body.cells = {as_cells(cells)};
+    return body;
+  }
+  for (const TomlValue& item : items) {
+    const Cells resolution = as_cells(item);
+    if (std::find(body.cells.begin(), body.cells.end(), resolution) != body.cells.end())
+      refuse(item, fmt::format("[{}] is named twice", fmt::join(resolution, ", ")), "each resolution once");
+    body.cells.push_back(resolution);
+  }
+  return body;
+}
+
+/// Two moduli, each a number or a list; a single number is held fixed while the other runs through its list,
+/// and two lists of the same length are read in pairs.
+std::vector<IsotropicMaterial> read_materials(const TomlValue& value) {
+  const TomlTable table(value, material_schema);
+  double density = 1000;
+  if (const auto given = table.find("density_kg_m3")) density = as_number(*given, positive_number);
+  std::vector<std::string> names;
+  std::vector<Moduli> solids(1);
+  for (const auto& [key, member, range] : modulus_keys) {
+    const auto given = table.find(key);
+    if (!given) continue;
+    names.emplace_back(key);
+    const auto items = one_or_several(*given);
+    if (solids.size() == 1) solids.resize(items.size(), solids.front());
+    if (items.size() != 1 && items.size() != solids.size())
+      refuse(*given, fmt::format("is a list of {}", items.size()),
+             fmt::format("a list of {}, as above", solids.size()));
+    for (std::size_t i = 0; i < solids.size(); ++i)
+      solids[i].*member = as_number(items[items.size() == 1 ? 0 : i], range);
+  }
+  if (names.size() != 2)
+    refuse(
+        value,
+        fmt::format("has {} elastic moduli{}{}", names.size(), names.empty() ? "" : ": ",
+                    fmt::join(names, ", ")),
+        "exactly two of youngs_modulus_Pa, poisson_ratio, shear_modulus_Pa, bulk_modulus_Pa, lame_lambda_Pa");
+  std::vector<IsotropicMaterial> materials;
+  for (const Moduli& given : solids) {
+    try {
+      materials.push_back(material_from(given, density));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(location_of(value), fmt::format("material: {}", error.what()));
+    }
+    const double nu = materials.back().poisson_ratio;
+    for (std::size_t i = 0; i + 1 < materials.size(); ++i)
+      if (materials[i].poisson_ratio == nu)
+        refuse(value, fmt::format("has the Poisson's ratio {} twice", nu), "each Poisson's ratio once");
+  }
+  return materials;
+}
+
+std::vector<Probe> read_probes(const TomlTable& document) {
+  std::vector<Probe> probes;
+  for (const TomlValue& value : document.tables("probe")) {
+    const TomlTable table(value, probe_schema);
+    const Probe probe{as_text(table.at("name")), as_vector(table.at("at_m"))};
+    for (const Probe& other : probes)
+      if (other.name == probe.name)
+        refuse(table.at("name"), fmt::format("'{}' is the name of another probe", probe.name),
+               "a name of its own");
+    probes.push_back(probe);
+  }
+  return probes;
+}
+
+Section read_section(const TomlValue& value) {
+  const TomlTable table(value, section_schema);
+  return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
+}
+
+ReferenceChoice read_reference(const TomlValue& value) {
+  const TomlTable table(value, reference_schema);
+  ReferenceChoice reference;
+  if (const auto cells = table.find("cells")) reference.cells = as_cells(*cells);
+  if (const auto grading = table.find("grading"))
+    reference.grading = as_number(*grading, {"a number from 1 to 3", 1, 3, true, true});
+  return reference;
+}
+
+Experiment read_document(const TomlTable& document, Experiment experiment) {
+  if (const auto cite = document.find("cite")) experiment.cite = as_text(*cite);
+  if (const auto what = document.find("what")) experiment.what = as_text(*what);
+  if (const auto name = document.find("kinematics"))
+    experiment.kinematics = as_choice(*name, kinematics_names);
+  experiment.body = read_body(document.at("body"));
+  experiment.materials = read_materials(document.at("material"));
+  for (const TomlValue& value : document.tables("load"))
+    for (const Load& load : read_load(value)) {
+      experiment.loads.push_back(load);
+      experiment.load_locations.push_back(location_of(value));
+    }
+  if (const auto section = document.find("section")) experiment.section = read_section(*section);
+  experiment.probes = read_probes(document);
+  if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference);
+  read_compare(document, experiment);
+  read_expectations(document, experiment);
+  read_published(document, experiment);
+  return experiment;
+}
+
 std::string located(const SourceLocation& where, const std::string& message) {
+  if (where.file.empty()) return message;
   if (where.line == 0) return fmt::format("{}: {}", where.file, message);
   return fmt::format("{}:{}:{}: {}", where.file, where.line, where.column, message);
 }
@@ -17,12 +183,62 @@ InputError::InputError(const SourceLocation& where, const std::string& message)
 
 std::string to_string(Source source) {
   switch (source) {
-    case Source::analytic: return "analytic";
-    case Source::extrapolated_fem: return "extrapolated FEM";
-    case Source::published: return "published";
-    case Source::regression: return "regression";
+    case Source::analytic:
+      return "analytic";
+    case Source::extrapolated_fem:
+      return "extrapolated FEM";
+    case Source::published:
+      return "published";
+    case Source::regression:
+      return "regression";
   }
   return "unknown";
+}
+
+Experiment parse_experiment(const std::string& text, const std::filesystem::path& file) {
+  Experiment experiment;
+  experiment.file = file;
+  experiment.name = file.stem().string();
+  experiment.folder = std::filesystem::absolute(file).parent_path().filename().string();
+  experiment.text = text;
+  toml::table document;
+  try {
+    document = toml::parse(text, file.string());
+  } catch (const toml::parse_error& error) {
+    const auto begin = error.source().begin;
+    throw InputError({file.string(), static_cast<int>(begin.line), static_cast<int>(begin.column)},
+                     fmt::format("not valid TOML: {}", error.description()));
+  }
+  if (document.empty())
+    throw InputError({file.string(), 0, 0}, "the case file is empty (needed: [body], [material], [[load]])");
+  return read_document(TomlTable({&document, "", file.string()}, document_schema), std::move(experiment));
+}
+
+Experiment read_experiment(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  const SourceLocation where{file.string(), 0, 0};
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw InputError(where, "no such file");
+  if (fs::is_directory(status)) throw InputError(where, "is a directory (allowed: a case file, NAME.toml)");
+  if (!fs::is_regular_file(status))
+    throw InputError(where, "is no regular file (allowed: a case file, NAME.toml)");
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw InputError(where, "cannot be read");
+  return parse_experiment(text, file);
+}
+
+void check_patches(const Experiment& experiment, const std::vector<std::string>& patches) {
+  for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
+    const std::string* on = patch_of(experiment.loads[i]);
+    if (!on || std::find(patches.begin(), patches.end(), *on) != patches.end()) continue;
+    const SourceLocation where = i < experiment.load_locations.size()
+                                     ? experiment.load_locations[i]
+                                     : SourceLocation{experiment.file.string(), 0, 0};
+    throw InputError(where, fmt::format("load.on: the body has no patch '{}' (allowed: {}){}", *on,
+                                        fmt::join(patches, ", "), did_you_mean(*on, patches)));
+  }
 }
 
 }  // namespace springproof

@@ -1,6 +1,7 @@
 // An experiment: body, material, loads, models, measures, published values, tolerances.  Read from TOML.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -102,6 +103,7 @@ struct Experiment {
   Body body;
   std::vector<IsotropicMaterial> materials;   ///< one per Poisson's ratio, in the file's order
   std::vector<Load> loads;
+  std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;
   std::vector<std::string> measures;
   std::vector<Probe> probes;
@@ -120,6 +122,9 @@ Experiment read_experiment(const std::filesystem::path& file);
 
 /// As read_experiment, from text; `file` is used for messages and relative paths.
 Experiment parse_experiment(const std::string& text, const std::filesystem::path& file);
+
+/// @throws InputError at the load that acts on a patch that is not among `patches`, those of the body.
+void check_patches(const Experiment& experiment, const std::vector<std::string>& patches);
 
 /// The experiment as a TOML document that reads back to the same experiment.
 std::string to_toml(const Experiment& experiment);

@@ -75,9 +75,13 @@ IsotropicMaterial solve_for_E_nu(const Moduli& given, double density) {
 
 }  // namespace
 
-double shear_modulus(const IsotropicMaterial& m) { return m.youngs_modulus / (2 * (1 + m.poisson_ratio)); }
+double shear_modulus(const IsotropicMaterial& m) {
+  return m.youngs_modulus / (2 * (1 + m.poisson_ratio));
+}
 
-double bulk_modulus(const IsotropicMaterial& m) { return m.youngs_modulus / (3 * (1 - 2 * m.poisson_ratio)); }
+double bulk_modulus(const IsotropicMaterial& m) {
+  return m.youngs_modulus / (3 * (1 - 2 * m.poisson_ratio));
+}
 
 double lame_lambda(const IsotropicMaterial& m) {
   const double nu = m.poisson_ratio;

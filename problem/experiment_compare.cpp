@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "problem/experiment_parts.h"
+#include "problem/measures.h"
+#include "problem/nearest_name.h"
+
+namespace springproof {
+namespace {
+
+constexpr Key compare_schema[] = {{"models", Presence::optional, ""}, {"measures", Presence::optional, ""}};
+
+constexpr Key expect_schema[] = {
+    {"model", Presence::required, "a model of [compare], or fem, fem_q1, fem_q2"},
+    {"poisson_ratio", Presence::optional, ""},
+    {"cells", Presence::optional, ""},
+    {"measure", Presence::required, "the name of a row"},
+    {"source", Presence::required, "analytic, extrapolated FEM, published, regression"},
+    {"value", Presence::optional, ""},
+    {"within", Presence::optional, ""},
+    {"within_relative", Presence::optional, ""},
+    {"where", Presence::optional, ""}};
+
+constexpr Key published_schema[] = {
+    {"model", Presence::required, "the name of a model"},
+    {"poisson_ratio", Presence::required, "one of the case's Poisson's ratios"},
+    {"cells", Presence::optional, ""},
+    {"measure", Presence::required, "the name of a row"},
+    {"value", Presence::required, "a finite number"},
+    {"where", Presence::required, "table or figure"},
+    {"remark", Presence::optional, ""}};
+
+const std::vector<std::string> fem_names = {"fem", "fem_q1", "fem_q2"};
+const std::vector<std::string> default_measures = {"displacement_error", "volume_change", "reaction"};
+
+std::string label_of(const ModelChoice& choice) {
+  std::string label = choice.name;
+  for (const auto& [name, value] : choice.options) {
+    if (const bool* flag = std::get_if<bool>(&value); flag && *flag) {
+      label += " " + name;
+      continue;
+    }
+    const std::string shown = name == "face_to_cube" ? "A" : name;
+    label += std::visit([&](const auto& v) { return fmt::format(" {}={}", shown, v); }, value);
+  }
+  return label;
+}
+
+std::variant<bool, double, std::string> read_option(const TomlValue& value) {
+  if (const auto* flag = value.node->as_boolean()) return flag->get();
+  if (value.node->is_string()) return as_text(value);
+  return as_number(value, Range{"true or false, a finite number, or a string"});
+}
+
+ModelChoice read_model(const TomlValue& value) {
+  ModelChoice choice;
+  choice.where = location_of(value);
+  const toml::table* table = value.node->as_table();
+  if (!table) {
+    choice.name = as_text(value);
+  } else {
+    // Options are the business of the table of models, so any key is taken here.
+    const toml::node* name = table->get("model");
+    if (!name) refuse({value.node, value.key + ".model", value.file}, "is missing", "the name of a model");
+    choice.name = as_text({name, value.key + ".model", value.file});
+    for (const auto& [key, node] : *table) {
+      const std::string option(key.str());
+      const TomlValue option_value{&node, value.key + "." + option, value.file};
+      if (option == "label")
+        choice.label = as_text(option_value);
+      else if (option != "model")
+        choice.options[option] = read_option(option_value);
+    }
+  }
+  if (choice.label.empty()) choice.label = label_of(choice);
+  return choice;
+}
+
+std::vector<ModelChoice> read_models(const TomlValue& value) {
+  std::vector<ModelChoice> models;
+  for (const TomlValue& item : as_list(value, "a list of model names and { model = \"...\" } tables")) {
+    const ModelChoice choice = read_model(item);
+    const bool taken =
+        std::any_of(models.begin(), models.end(), [&](const auto& m) { return m.label == choice.label; });
+    if (taken || std::find(fem_names.begin(), fem_names.end(), choice.label) != fem_names.end())
+      refuse(item, fmt::format("the label '{}' is taken", choice.label), "a label of its own for each model");
+    models.push_back(choice);
+  }
+  return models;
+}
+
+std::vector<std::string> read_measures(const TomlValue& value, const Experiment& experiment) {
+  std::vector<std::string> measures;
+  for (const TomlValue& item : as_list(value, "a list of measures")) {
+    const std::string measure = as_choice(item, measure_names());
+    if (std::find(measures.begin(), measures.end(), measure) != measures.end())
+      refuse(item, fmt::format("'{}' is named twice", measure), "each measure once");
+    if (measure == "section_distance" && !experiment.section)
+      refuse(item, "'section_distance' needs a plane", "with a [section] in the file");
+    if (measure == "probe" && experiment.probes.empty())
+      refuse(item, "'probe' needs points", "with at least one [[probe]] in the file");
+    measures.push_back(measure);
+  }
+  return measures;
+}
+
+/// The material's own value, so that results can be found by comparing numbers.
+double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) {
+  const double nu = as_number(value);
+  std::vector<double> known;
+  for (const IsotropicMaterial& m : experiment.materials) {
+    if (std::abs(m.poisson_ratio - nu) <= 1e-9) return m.poisson_ratio;
+    known.push_back(m.poisson_ratio);
+  }
+  refuse(value, fmt::format("{} is not in the case", nu), fmt::format("{}", fmt::join(known, ", ")));
+}
+
+std::string read_row_name(const TomlValue& value, const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const std::string& measure : experiment.measures)
+    for (const std::string& row : rows_of_measure(measure, experiment)) rows.push_back(row);
+  return as_choice(value, rows);
+}
+
+std::string read_judged_model(const TomlValue& value, const Experiment& experiment) {
+  std::vector<std::string> labels;
+  for (const ModelChoice& m : experiment.models) labels.push_back(m.label);
+  labels.insert(labels.end(), fem_names.begin(), fem_names.end());
+  return as_choice(value, labels);
+}
+
+/// Resolution of a row.  A model of ours must run at it; the reference has grids of its own.
+Cells read_row_cells(const TomlValue& value, const std::string& model, const Experiment& experiment) {
+  const Cells cells = as_cells(value);
+  const auto& known = experiment.body.cells;
+  const bool is_fem = std::find(fem_names.begin(), fem_names.end(), model) != fem_names.end();
+  if (is_fem || std::find(known.begin(), known.end(), cells) != known.end()) return cells;
+  std::vector<std::string> allowed;
+  for (const Cells& c : known) allowed.push_back(fmt::format("[{}]", fmt::join(c, ", ")));
+  refuse(value, fmt::format("[{}] is not in the case", fmt::join(cells, ", ")),
+         fmt::format("{}", fmt::join(allowed, ", ")));
+}
+
+Source read_source(const TomlValue& value) {
+  const std::vector<Source> sources = {Source::analytic, Source::extrapolated_fem, Source::published,
+                                       Source::regression};
+  std::vector<std::string> names;
+  for (const Source source : sources) names.push_back(to_string(source));
+  const std::string name = as_choice(value, names);
+  return sources[std::find(names.begin(), names.end(), name) - names.begin()];
+}
+
+void read_tolerance(const TomlTable& table, Expectation& expect) {
+  const auto absolute = table.find("within"), relative = table.find("within_relative");
+  if (absolute.has_value() == relative.has_value())
+    refuse(table.value(), absolute ? "has two tolerances" : "has no tolerance",
+           "exactly one of within, within_relative");
+  expect.relative = relative.has_value();
+  expect.within = as_number(relative ? *relative : *absolute, not_negative);
+  if (relative && expect.value == 0.0)
+    refuse(*relative, "is a fraction of a value that is 0", "within, the absolute tolerance");
+}
+
+Expectation read_expectation(const TomlValue& value, const Experiment& experiment) {
+  const TomlTable table(value, expect_schema);
+  Expectation expect;
+  expect.location = location_of(value);
+  expect.model = read_judged_model(table.at("model"), experiment);
+  if (const auto nu = table.find("poisson_ratio")) expect.poisson_ratio = read_poisson_ratio(*nu, experiment);
+  if (const auto cells = table.find("cells")) expect.cells = read_row_cells(*cells, expect.model, experiment);
+  expect.measure = read_row_name(table.at("measure"), experiment);
+  expect.source = read_source(table.at("source"));
+  if (const auto number = table.find("value")) expect.value = as_number(*number);
+  if (!expect.value && expect.source != Source::extrapolated_fem)
+    refuse({value.node, value.key + ".value", value.file}, "is missing",
+           "a finite number; only source = \"extrapolated FEM\" goes without");
+  read_tolerance(table, expect);
+  if (const auto where = table.find("where")) expect.where = as_text(*where);
+  return expect;
+}
+
+}  // namespace
+
+void read_compare(const TomlTable& document, Experiment& experiment) {
+  experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
+  experiment.measures = default_measures;
+  const auto value = document.find("compare");
+  if (!value) return;
+  const TomlTable table(*value, compare_schema);
+  if (const auto models = table.find("models")) experiment.models = read_models(*models);
+  if (const auto measures = table.find("measures"))
+    experiment.measures = read_measures(*measures, experiment);
+}
+
+void read_expectations(const TomlTable& document, Experiment& experiment) {
+  for (const TomlValue& value : document.tables("expect"))
+    experiment.expectations.push_back(read_expectation(value, experiment));
+}
+
+void read_published(const TomlTable& document, Experiment& experiment) {
+  for (const TomlValue& value : document.tables("published")) {
+    const TomlTable table(value, published_schema);
+    PublishedValue printed;
+    printed.location = location_of(value);
+    printed.model = as_text(table.at("model"));
+    printed.poisson_ratio = read_poisson_ratio(table.at("poisson_ratio"), experiment);
+    if (const auto cells = table.find("cells")) printed.cells = as_cells(*cells);
+    printed.measure = read_row_name(table.at("measure"), experiment);
+    printed.value = as_number(table.at("value"));
+    printed.where = as_text(table.at("where"));
+    if (const auto remark = table.find("remark")) printed.remark = as_text(*remark);
+    experiment.published.push_back(printed);
+  }
+}
+
+}  // namespace springproof

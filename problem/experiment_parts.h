@@ -1,0 +1,18 @@
+// The readers of the longer parts of a case file, one .cpp each.
+#pragma once
+
+#include "problem/experiment.h"
+#include "problem/toml_reader.h"
+
+namespace springproof {
+
+/// One [[load]]: as many loads as `on` names patches.
+std::vector<Load> read_load(const TomlValue& value);
+
+/// [compare] and, held against it, [[expect]] and [[published]].  Body, materials, loads, probes and section
+/// of the experiment must have been read.
+void read_compare(const TomlTable& document, Experiment& experiment);
+void read_expectations(const TomlTable& document, Experiment& experiment);
+void read_published(const TomlTable& document, Experiment& experiment);
+
+}  // namespace springproof

@@ -1,0 +1,64 @@
+#include "problem/measures.h"
+
+#include <algorithm>
+
+#include "problem/experiment.h"
+
+namespace springproof {
+namespace {
+
+void add_vector_rows(const std::string& prefix, std::vector<std::string>& rows) {
+  for (const char* component : {".x", ".y", ".z", ".magnitude"}) rows.push_back(prefix + component);
+}
+
+std::vector<std::string> reaction_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const std::string& patch : supported_patches(experiment)) {
+    add_vector_rows("force." + patch, rows);
+    add_vector_rows("torque." + patch, rows);
+  }
+  return rows;
+}
+
+std::vector<std::string> probe_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const Probe& probe : experiment.probes) add_vector_rows("displacement." + probe.name, rows);
+  return rows;
+}
+
+struct Measure {
+  const char* name;
+  std::vector<std::string> (*rows)(const Experiment&);  ///< nullptr: one row of the same name
+};
+
+constexpr Measure measures[] = {
+    {"displacement_error", nullptr}, {"displacement_error_max", nullptr},    {"section_distance", nullptr},
+    {"volume_change", nullptr},      {"volume_change_first_order", nullptr}, {"reaction", reaction_rows},
+    {"probe", probe_rows},
+};
+
+}  // namespace
+
+std::vector<std::string> measure_names() {
+  std::vector<std::string> names;
+  for (const Measure& measure : measures) names.emplace_back(measure.name);
+  return names;
+}
+
+std::vector<std::string> rows_of_measure(const std::string& name, const Experiment& experiment) {
+  for (const Measure& measure : measures)
+    if (name == measure.name && measure.rows) return measure.rows(experiment);
+  return {name};
+}
+
+std::vector<std::string> supported_patches(const Experiment& experiment) {
+  std::vector<std::string> patches;
+  for (const Load& load : experiment.loads) {
+    if (!prescribes_displacement(load)) continue;
+    const std::string& patch = *patch_of(load);
+    if (std::find(patches.begin(), patches.end(), patch) == patches.end()) patches.push_back(patch);
+  }
+  return patches;
+}
+
+}  // namespace springproof

@@ -1,0 +1,24 @@
+// The measures a case can ask for, and the rows they give.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace springproof {
+
+struct Experiment;
+
+/// Names allowed in [compare] measures: displacement_error, displacement_error_max, section_distance,
+/// volume_change, volume_change_first_order, reaction, probe.
+std::vector<std::string> measure_names();
+
+/// Names of the rows that a measure gives for an experiment, as [[expect]] and [[published]] write them. Most
+/// give one row of their own name; `reaction` gives force.<patch>.x|y|z|magnitude and
+/// torque.<patch>.x|y|z|magnitude for each patch with prescribed displacement; `probe` gives
+/// displacement.<name>.x|y|z|magnitude for each probe.
+std::vector<std::string> rows_of_measure(const std::string& measure, const Experiment& experiment);
+
+/// Patches on which a load prescribes displacement, in the file's order, each once.
+std::vector<std::string> supported_patches(const Experiment& experiment);
+
+}  // namespace springproof
