@@ -3,6 +3,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_q1.h>
+#include <deal.II/grid/grid_tools.h>
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -152,13 +153,24 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
                                    const std::vector<Load>& loads) {
   std::map<unsigned int, Prescribed> by_dof;
   std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
-  for_each_prescribed(
-      dof_handler.active_cell_iterators(), body, loads,
-      [&](const auto& cell, int l, unsigned int i, int component, const Vec3& X) {
-        cell->get_dof_indices(dofs);
-        const auto [at, is_new] = by_dof.try_emplace(dofs[i], Prescribed{dofs[i], component, l, X});
-        if (!is_new) at->second.load = std::max(at->second.load, l);
-      });
+  const double size = dealii::GridTools::diameter(body.triangulation);
+  const auto value = [&](const Prescribed& p) {
+    return *prescribed_displacement(loads[p.load], p.X, Kinematics::linear)[p.component];
+  };
+  for_each_prescribed(dof_handler.active_cell_iterators(), body, loads,
+                      [&](const auto& cell, int l, unsigned int i, int component, const Vec3& X) {
+                        cell->get_dof_indices(dofs);
+                        const Prescribed p{unsigned(dofs[i]), component, l, X};
+                        const auto [at, is_new] = by_dof.try_emplace(p.dof, p);
+                        Prescribed& first = at->second;
+                        if (std::abs(value(p) - value(first)) > 1e-9 * size)
+                          throw InputError(fmt::format(
+                              "patches \"{}\" and \"{}\" prescribe different {}-displacements, {:.6g} m "
+                              "and {:.6g} m, at ({:.6g}, {:.6g}, {:.6g})",
+                              *patch_of(loads[first.load]), *patch_of(loads[l]), "xyz"[component],
+                              value(first), value(p), X[0], X[1], X[2]));
+                        first.load = std::min(first.load, l);
+                      });
   std::vector<Prescribed> all;
   for (const auto& [dof, p] : by_dof) all.push_back(p);
   return all;

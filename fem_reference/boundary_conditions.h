@@ -14,7 +14,7 @@
 
 namespace springproof::fem {
 
-/// A degree of freedom with prescribed value.  Where several loads prescribe it, the later load counts.
+/// A degree of freedom with prescribed value.  Where several loads prescribe it, it belongs to the first.
 struct Prescribed {
   unsigned int dof;
   int component;
@@ -26,6 +26,7 @@ struct Prescribed {
 void check_patches(const Body3& body, const std::vector<Load>& loads);
 
 /// Ascending in dof.
+/// @throws InputError if two loads prescribe different values.
 std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                                    const std::vector<Load>& loads);
 

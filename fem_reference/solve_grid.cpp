@@ -44,6 +44,19 @@ double peak_memory_MiB() {
   return usage.ru_maxrss / 1024.0;
 }
 
+// Above 0.4 the pressure becomes an unknown, so that the solver does not depend on Poisson's ratio.  For Q1
+// that is the same discretisation as the mean dilatation; Q2 changes from full integration to a linear
+// pressure per cell.
+Form form_for(const GridProblem& problem) {
+  if (problem.material.poisson_ratio > 0.4) return Form::mixed;
+  return problem.degree == 1 ? Form::mean_dilatation : Form::pointwise;
+}
+
+std::string element_name(const ElasticSystem& system) {
+  if (system.degree == 1) return system.form == Form::mixed ? "Q1 B-bar as Q1-P0" : "Q1 B-bar";
+  return system.form == Form::mixed ? "Q2-P1disc mixed" : "Q2 displacement";
+}
+
 void solve_linear(const GridProblem& problem, const Body3& body, dealii::DoFHandler<3>& dof_handler,
                   Solution& solution) {
   const std::vector<Prescribed> held = prescribed(dof_handler, body, problem.loads);
@@ -54,7 +67,7 @@ void solve_linear(const GridProblem& problem, const Body3& body, dealii::DoFHand
                        {},
                        prescribed_on_levels(dof_handler, body, problem.loads),
                        problem.degree,
-                       problem.degree == 1 ? Form::mean_dilatation : Form::pointwise,
+                       form_for(problem),
                        shear_modulus(problem.material),
                        lame_lambda(problem.material),
                        problem.tolerance};
@@ -68,8 +81,7 @@ void solve_linear(const GridProblem& problem, const Body3& body, dealii::DoFHand
   if (!answer.converged)
     solution.message =
         fmt::format("the linear solver stopped at a relative residual of {:.2e}", answer.residual);
-  const char* forms[] = {"displacement", "B-bar", "mixed, discontinuous pressure"};
-  solution.form = fmt::format("Q{} {}, {}", problem.degree, forms[int(system.form)], answer.method);
+  solution.form = fmt::format("{}, {}", element_name(system), answer.method);
   solution.iterations = answer.iterations;
   solution.residual = answer.residual;
   DofVector imbalance = answer.internal_force;

@@ -1,0 +1,190 @@
+// The elastic stiffness without a matrix.  Part of elastic_solver.cpp: compiled once per vector width, in a
+// namespace of that width.
+#pragma once
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/mapping_q1.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/matrix_free/fe_evaluation.h>
+#include <deal.II/matrix_free/matrix_free.h>
+
+#include <utility>
+#include <vector>
+
+namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
+
+template <typename Number>
+constexpr std::size_t lane_count = SPRINGPROOF_VECTOR_BITS > 0 ? SPRINGPROOF_VECTOR_BITS / 8 / sizeof(Number)
+                                                               : 1;
+template <typename Number>
+using Lanes = dealii::VectorizedArray<Number, lane_count<Number>>;
+template <typename Number>
+using Vector = dealii::LinearAlgebra::distributed::Vector<Number>;
+
+constexpr auto gradients = dealii::EvaluationFlags::gradients;
+
+template <typename Number>
+struct Coefficients {
+  Number mu, lambda;
+  bool mean_dilatation;
+};
+
+// The stiffness on one level, or on the active cells.  Constrained rows and columns are those of the
+// identity.
+template <int degree, typename Number>
+class Stiffness : public dealii::Subscriptor {
+ public:
+  using Cell = dealii::FEEvaluation<3, degree, degree + 1, 3, Number, Lanes<Number>>;
+  using Cells = dealii::MatrixFree<3, Number, Lanes<Number>>;
+  using Range = std::pair<unsigned int, unsigned int>;
+
+  Stiffness(const dealii::DoFHandler<3>& dof_handler, unsigned int level,
+            std::vector<unsigned int> constrained, const Coefficients<Number>& coefficients)
+      : constrained_(std::move(constrained)), coefficients_(coefficients), saved_(constrained_.size()) {
+    typename Cells::AdditionalData data;
+    data.tasks_parallel_scheme = Cells::AdditionalData::none;
+    data.mapping_update_flags = dealii::update_gradients | dealii::update_JxW_values;
+    data.mg_level = level;
+    static const dealii::AffineConstraints<double> unconstrained = [] {
+      dealii::AffineConstraints<double> none;
+      none.close();
+      return none;
+    }();
+    cells_.reinit(dealii::MappingQ1<3>(), dof_handler, unconstrained, dealii::QGauss<1>(degree + 1), data);
+    rows_ = level == dealii::numbers::invalid_unsigned_int ? dof_handler.n_dofs() : dof_handler.n_dofs(level);
+  }
+
+  const Cells& cells() const { return cells_; }
+  const Coefficients<Number>& coefficients() const { return coefficients_; }
+  const std::vector<unsigned int>& constrained() const { return constrained_; }
+  unsigned int m() const { return rows_; }
+  Number el(unsigned int, unsigned int) const {
+    return Number(1);
+  }  // asked for by PreconditionChebyshev's interface
+
+  Vector<Number> vector() const {
+    Vector<Number> v;
+    cells_.initialize_dof_vector(v);
+    return v;
+  }
+
+  void vmult(Vector<Number>& y, const Vector<Number>& x) const {
+    without_constrained(x, [&] { apply(y, x); });
+    for (std::size_t i = 0; i < constrained_.size(); ++i) y.local_element(constrained_[i]) = saved_[i];
+  }
+
+  // f() while the constrained entries of x are zero.
+  template <typename F>
+  void without_constrained(const Vector<Number>& x, const F& f) const {
+    auto& x_ = const_cast<Vector<Number>&>(x);
+    for (std::size_t i = 0; i < constrained_.size(); ++i) {
+      saved_[i] = x.local_element(constrained_[i]);
+      x_.local_element(constrained_[i]) = 0;
+    }
+    f();
+    for (std::size_t i = 0; i < constrained_.size(); ++i) x_.local_element(constrained_[i]) = saved_[i];
+  }
+
+  void clear_constrained(Vector<Number>& v) const {
+    for (const unsigned int i : constrained_) v.local_element(i) = 0;
+  }
+
+  // The internal force of every degree of freedom.
+  void apply(Vector<Number>& y, const Vector<Number>& x) const {
+    const std::function<void(const Cells&, Vector<Number>&, const Vector<Number>&, const Range&)> add =
+        [this](const Cells& cells, Vector<Number>& to, const Vector<Number>& from, const Range& range) {
+          Cell u(cells);
+          for (unsigned int batch = range.first; batch < range.second; ++batch) {
+            u.reinit(batch);
+            u.gather_evaluate(from, gradients);
+            submit_stress(u);
+            u.integrate_scatter(gradients, to);
+          }
+        };
+    cells_.cell_loop(add, y, x, true);
+  }
+
+  // K_aa of node a, component c: integral of mu |grad N|^2 + (mu + lambda) (dN/dx_c)^2.
+  Vector<Number> inverse_diagonal() const {
+    Vector<Number> diagonal = vector();
+    const std::function<void(const Cells&, Vector<Number>&, const unsigned int&, const Range&)> add =
+        [this](const Cells& cells, Vector<Number>& to, const unsigned int&, const Range& range) {
+          Cell u(cells);
+          for (unsigned int batch = range.first; batch < range.second; ++batch) {
+            u.reinit(batch);
+            set_diagonal(u);
+            u.distribute_local_to_global(to);
+          }
+        };
+    cells_.cell_loop(add, diagonal, 0u, true);
+    for (const unsigned int i : constrained_) diagonal.local_element(i) = 1;
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      diagonal.local_element(i) = Number(1) / diagonal.local_element(i);
+    return diagonal;
+  }
+
+ private:
+  void submit_stress(Cell& u) const {
+    const Lanes<Number> mu = coefficients_.mu, lambda = coefficients_.lambda;
+    Lanes<Number> mean = Number(0), volume = Number(0);
+    if (coefficients_.mean_dilatation) {
+      for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
+        mean += u.get_divergence(q) * u.JxW(q);
+        volume += u.JxW(q);
+      }
+      mean /= volume;
+    }
+    for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
+      const auto h = u.get_gradient(q);
+      const Lanes<Number> pressure =
+          lambda * (coefficients_.mean_dilatation ? mean : h[0][0] + h[1][1] + h[2][2]);
+      dealii::Tensor<2, 3, Lanes<Number>> stress;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) stress[i][j] = mu * (h[i][j] + h[j][i]);
+      for (int i = 0; i < 3; ++i) stress[i][i] += pressure;
+      u.submit_gradient(stress, q);
+    }
+  }
+
+  void set_diagonal(Cell& u) const {
+    constexpr int n = degree + 1;
+    const auto& shape = u.get_shape_info().data[0];
+    const auto value = [&](int i, int q) { return shape.shape_values[i * n + q]; };
+    const auto slope = [&](int i, int q) { return shape.shape_gradients[i * n + q]; };
+    const Lanes<Number> mu = coefficients_.mu, lambda = coefficients_.lambda;
+    for (int a = 0; a < n * n * n; ++a) {
+      const int i = a % n, j = a / n % n, k = a / (n * n);
+      dealii::Tensor<1, 3, Lanes<Number>> squares, mean;
+      Lanes<Number> volume = Number(0);
+      for (int q = 0; q < n * n * n; ++q) {
+        const int qx = q % n, qy = q / n % n, qz = q / (n * n);
+        dealii::Tensor<1, 3, Lanes<Number>> unit;
+        unit[0] = slope(i, qx) * value(j, qy) * value(k, qz);
+        unit[1] = value(i, qx) * slope(j, qy) * value(k, qz);
+        unit[2] = value(i, qx) * value(j, qy) * slope(k, qz);
+        const auto dN = u.inverse_jacobian(q) * unit;
+        const Lanes<Number> JxW = u.JxW(q);
+        for (int c = 0; c < 3; ++c) {
+          squares[c] += JxW * dN[c] * dN[c];
+          mean[c] += JxW * dN[c];
+        }
+        volume += JxW;
+      }
+      const Lanes<Number> all = squares[0] + squares[1] + squares[2];
+      for (int c = 0; c < 3; ++c) {
+        const Lanes<Number> dilatation =
+            coefficients_.mean_dilatation ? Lanes<Number>(mean[c] * mean[c] / volume) : squares[c];
+        u.begin_dof_values()[c * n * n * n + a] = mu * (all + squares[c]) + lambda * dilatation;
+      }
+    }
+  }
+
+  Cells cells_;
+  std::vector<unsigned int> constrained_;
+  Coefficients<Number> coefficients_;
+  mutable std::vector<Number> saved_;
+  unsigned int rows_;
+};
+
+}  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE
