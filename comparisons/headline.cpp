@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <tuple>
 
 namespace springproof {
 namespace {
@@ -24,6 +25,7 @@ struct Worst {
 
 struct ModelErrors {
   std::map<double, Worst> displacement, volume;  // by Poisson's ratio
+  std::set<std::string> cases;                   // in which a displacement was compared
 };
 
 struct ModelKey {
@@ -148,6 +150,29 @@ std::string run_line(const std::string& case_name, const Json& run) {
                      message.empty() ? "no reason given" : message);
 }
 
+/// The spring model that was compared most widely and, among those, has the smallest largest error.
+std::string answer(const std::map<ModelKey, ModelErrors>& models) {
+  const std::pair<const ModelKey, ModelErrors>* best = nullptr;
+  const auto rank = [](const ModelErrors& e) {
+    return std::tuple(-static_cast<int>(e.cases.size()), -static_cast<int>(e.displacement.size()),
+                      largest(e.displacement).second.error);
+  };
+  for (const auto& entry : models) {
+    if (entry.first.large_deformation || entry.first.fem || entry.second.displacement.empty()) continue;
+    if (!best || rank(entry.second) < rank(best->second)) best = &entry;
+  }
+  if (!best) return "";
+  const auto& [key, errors] = *best;
+  const auto cases = errors.cases.size();
+  return fmt::format(
+      "Of the spring models {} comes closest: its displacements stay within {} % of finite elements {}, in "
+      "{} linear "
+      "case{}.",
+      key.name, percent(largest(errors.displacement).second.error),
+      range_text(errors.displacement.begin()->first, errors.displacement.rbegin()->first), cases,
+      cases == 1 ? "" : "s");
+}
+
 // ---- collecting
 
 class Collector {
@@ -174,7 +199,8 @@ class Collector {
       sorted[{key.first, fem, order_of(key.second), key.second}] = errors;
     }
     for (const auto& [key, errors] : sorted)
-      headline_.models.push_back({key.name, key.large_deformation, sentence(errors)});
+      headline_.models.push_back({key.name, key.fem, key.large_deformation, sentence(errors)});
+    headline_.answer = answer(sorted);
     return headline_;
   }
 
@@ -199,6 +225,7 @@ class Collector {
     const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
     if (!nu || !error || (measure != "displacement_error" && measure != "volume_change")) return;
     ModelErrors& errors = models_[{large_, string_of(row, "model")}];
+    if (measure == "displacement_error") errors.cases.insert(case_name_);
     Worst& worst = (measure == "volume_change" ? errors.volume : errors.displacement)[*nu];
     if (std::abs(*error) > worst.error)
       worst = {std::abs(*error), number_of(row, "reference_uncertainty").value_or(0), case_name_};

@@ -10,11 +10,13 @@ namespace springproof {
 
 struct ModelVerdict {
   std::string model;
+  bool finite_elements = false;    ///< a FEM of the lattice's own resolution, shown for comparison
   bool large_deformation = false;  ///< cases with a finite-strain law; told apart from the linear ones
   std::string sentence;            ///< "displacement within 0.8 % of FEM for ν from −0.5 to 0.4 ..."
 };
 
 struct Headline {
+  std::string answer;  ///< which spring model comes closest in the linear cases; empty: none was compared
   std::vector<ModelVerdict>
       models;  ///< springs first, then finite elements; linear cases before large deformation
   int held = 0, failed = 0, reference_too_coarse = 0, no_reference = 0, no_result = 0;  ///< expectations

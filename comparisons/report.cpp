@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -53,8 +54,12 @@ std::string script_json(const Json& json) {
 }
 
 std::string list_html(const std::vector<std::string>& lines) {
+  constexpr std::size_t most = 20;
   std::string out = "<ul>\n";
-  for (const auto& line : lines) out += fmt::format("<li>{}</li>\n", escaped(line));
+  for (std::size_t i = 0; i < std::min(most, lines.size()); ++i)
+    out += fmt::format("<li>{}</li>\n", escaped(lines[i]));
+  if (lines.size() > most)
+    out += fmt::format("<li>and {} more, on the case pages</li>\n", lines.size() - most);
   return out + "</ul>\n";
 }
 
@@ -68,13 +73,25 @@ std::string model_list_html(const Headline& head, bool large_deformation) {
   std::string items;
   for (const ModelVerdict& verdict : head.models)
     if (verdict.large_deformation == large_deformation)
-      items += fmt::format("<li data-model=\"{0}\"><b>{0}</b> {1}</li>\n", escaped(verdict.model),
+      items += fmt::format("<li data-model=\"{0}\"><b>{0}</b>{1} {2}</li>\n", escaped(verdict.model),
+                           verdict.finite_elements ? " (finite elements, for comparison)" : "",
                            escaped(verdict.sentence));
-  if (items.empty()) return "";
-  const char* title = large_deformation
-                          ? "Large deformation, beside a finite-strain law (reported, not the verdict)"
-                          : "Linear elasticity, largest error of all cases at their finest resolution";
-  return fmt::format("<h2>{}</h2>\n<ul class=\"verdicts\">\n{}</ul>\n", title, items);
+  return items.empty() ? "" : "<ul class=\"verdicts\">\n" + items + "</ul>\n";
+}
+
+std::string verdicts_html(const Headline& head) {
+  const std::string linear = model_list_html(head, false), large = model_list_html(head, true);
+  std::string out;
+  if (!head.answer.empty()) out += fmt::format("<p class=\"answer\">{}</p>\n", escaped(head.answer));
+  if (!linear.empty())
+    out += "<h2>Linear elasticity: the largest error of all cases, each at its finest resolution</h2>\n" +
+           linear;
+  if (!large.empty())
+    out += fmt::format(
+        "<details{}><summary>Large deformation, beside a finite-strain law: reported, not part of the "
+        "verdict</summary>\n{}</details>\n",
+        linear.empty() ? " open" : "", large);
+  return out;
 }
 
 std::string count_html(const char* verdict, int count, const char* words) {
@@ -83,7 +100,7 @@ std::string count_html(const char* verdict, int count, const char* words) {
 
 std::string headline_html(const Json& results) {
   const Headline head = headline(results);
-  std::string out = model_list_html(head, false) + model_list_html(head, true);
+  std::string out = verdicts_html(head);
   out += fmt::format("<p class=\"counts\" title=\"{}\">Expectations: ", escaped(expectations_sentence(head)));
   const std::string chips = count_html("pass", head.held, "hold") + count_html("fail", head.failed, "fail") +
                             count_html("coarse", head.reference_too_coarse, "reference too coarse") +

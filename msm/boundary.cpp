@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshes/locate.h"
+
 namespace springproof {
 namespace {
 
@@ -29,40 +31,12 @@ void prescribe(const Load& load, int number, const Mesh& mesh, Kinematics kinema
   }
 }
 
-/// Trilinear coordinates of a point in a cell by Newton's method; false if outside.
-bool inside(const Mesh& mesh, const Hexahedron& cell, const Vec3& point, Eigen::Matrix<double, 8, 1>& shape) {
-  Vec3 xi(0.5, 0.5, 0.5);
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    Vec3 at = Vec3::Zero();
-    Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
-    for (int n = 0; n < 8; ++n) {
-      double f[3], df[3];
-      for (int d = 0; d < 3; ++d) {
-        f[d] = hexahedron_corners[n][d] ? xi[d] : 1 - xi[d];
-        df[d] = hexahedron_corners[n][d] ? 1 : -1;
-      }
-      const Vec3 p = mesh.nodes.row(cell[n]).transpose();
-      shape[n] = f[0] * f[1] * f[2];
-      at += shape[n] * p;
-      jacobian += p * Eigen::RowVector3d(df[0] * f[1] * f[2], f[0] * df[1] * f[2], f[0] * f[1] * df[2]);
-    }
-    const Vec3 step = jacobian.partialPivLu().solve(point - at);
-    xi += step;
-    if (!(xi.norm() < 10)) return false;
-    if (step.norm() < 1e-13) return (xi.array() > -1e-9).all() && (xi.array() < 1 + 1e-9).all();
-  }
-  return false;
-}
-
 void add_point_force(const PointForce& load, const Mesh& mesh, NodalVectors& external) {
-  Eigen::Matrix<double, 8, 1> shape;
-  for (const Hexahedron& cell : mesh.hexahedra) {
-    if (!inside(mesh, cell, load.at, shape)) continue;
-    for (int n = 0; n < 8; ++n) external.row(cell[n]) += shape[n] * load.force.transpose();
-    return;
-  }
-  throw InputError(fmt::format("at_m: the point force at ({:.6g}, {:.6g}, {:.6g}) m lies outside the body", load.at[0],
-                               load.at[1], load.at[2]));
+  const std::optional<Location> at = locate(mesh, load.at);
+  if (!at)
+    throw InputError(fmt::format("at_m: the point force at ({:.6g}, {:.6g}, {:.6g}) m lies outside the body",
+                                 load.at[0], load.at[1], load.at[2]));
+  for (int n = 0; n < 8; ++n) external.row(mesh.hexahedra[at->cell][n]) += at->shape[n] * load.force.transpose();
 }
 
 void add_uniform(const Mesh& mesh, const std::string& on, const Vec3& traction, bool is_total, NodalVectors& external) {

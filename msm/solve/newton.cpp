@@ -1,17 +1,21 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 
 #include "meshes/volume.h"
 #include "msm/solve/cell_stiffness.h"
 #include "msm/solve/equilibrium.h"
+#include "msm/solve/krylov.h"
 #include "msm/solve/multigrid.h"
 
 namespace springproof {
 namespace {
 
 Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data(), v.size()}; }
+
+constexpr int cholesky_limit = 8000;  // free unknowns; above it CG with the rest state's multigrid
 
 /// One load step either lands on a stable state or says why not.
 enum class Outcome { accepted, unstable, inverted, not_converged };
@@ -21,9 +25,18 @@ struct Newton {
   const LoadPath& path;
   const NewtonOptions& options;
   const std::vector<char> fixed;
-  BlockMatrix K;            ///< tangent at the last accepted state
-  DirectSolver solver;      ///< its factors
+  std::unique_ptr<Multigrid> multigrid;  ///< of the rest state, kept throughout; empty: direct solves
+  BlockMatrix K;                         ///< tangent at the last factored state
+  DirectSolver direct;                   ///< its factors
   int iterations = 0;
+
+  Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
+      : model(m), path(p), options(o), fixed(fixed_unknowns), K(coupled_nodes(m.network)) {
+    if (unknowns() > cholesky_limit && m.network.grid)
+      multigrid = std::make_unique<Multigrid>(lattice_levels(m.network, fixed), cell_stiffness(m).total);
+  }
+
+  long unknowns() const { return std::count(fixed.begin(), fixed.end(), 0); }
 
   /// Unbalanced force on free unknowns, relative to the forces that are in balance.
   double residual(const NodalVectors& internal, const NodalVectors& external, Eigen::VectorXd& r) const {
@@ -37,9 +50,42 @@ struct Newton {
     return scale > 0 ? std::sqrt(on_free) / scale : std::sqrt(on_free);
   }
 
+  /// Takes over the tangent at x; false if it is seen not to be positive definite.
   bool factor(const NodalVectors& x) {
     update_tangent(model, x, K);
-    return solver.factor(K, fixed);
+    return multigrid || direct.factor(K, fixed);
+  }
+
+  /// x = K^-1 b on the free unknowns; false if K is not positive definite.
+  bool solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x) const {
+    if (!multigrid) {
+      direct.solve(b, x);
+      return true;
+    }
+    const Operator apply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
+      K.multiply(v, y);
+      clear_fixed(y);
+    };
+    x.setZero(b.size());
+    Eigen::VectorXd free = b;
+    clear_fixed(free);
+    return !conjugate_gradients(apply, [&](const auto& r, auto& z) { multigrid->apply(r, z); }, free, tolerance, 4000, x)
+                .negative_curvature;
+  }
+
+  /// Positive definiteness of the tangent taken over last: the factors tell; without them, conjugate gradients on an
+  /// arbitrary right-hand side meet a direction of negative curvature if there is one (Lanczos).
+  bool stable() const {
+    if (!multigrid) return direct.negative_pivots() == 0;
+    Eigen::VectorXd b(static_cast<Eigen::Index>(fixed.size())), x;
+    unsigned state = 1;
+    for (double& value : b) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+    return solve(b, 1e-6, x);
+  }
+
+  void clear_fixed(Eigen::VectorXd& v) const {
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+      if (fixed[i]) v[i] = 0;
   }
 
   double potential(const NodalVectors& x, const NodalVectors& external) const {
@@ -54,7 +100,7 @@ struct Newton {
     Eigen::VectorXd r, Kdu, correction;
     K.multiply(flat(du), Kdu);
     residual(forces(model, x), bc.external, r);
-    solver.solve(r - Kdu, correction);
+    solve(r - Kdu, 1e-3, correction);
     return x + du + Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
   }
 
@@ -87,7 +133,7 @@ struct Newton {
       relative = residual(internal, bc.external, r);
       const bool definite = factor(trial);
       if (relative <= options.tolerance) {
-        if (!definite) return Outcome::unstable;
+        if (!definite || !stable()) return Outcome::unstable;
         if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}}, trial) <= 0)
           return Outcome::inverted;
         x = trial;
@@ -95,7 +141,7 @@ struct Newton {
       }
       ++iterations;
       if (!definite) return Outcome::unstable;
-      solver.solve(r, du);
+      if (!solve(r, std::clamp(1e-2 * relative, 1e-8, 1e-3), du)) return Outcome::unstable;
       if (!line_search(r, relative, du, bc.external, trial)) return Outcome::not_converged;
     }
     return Outcome::not_converged;
@@ -114,7 +160,7 @@ std::string describe(Outcome outcome, double reached) {
 Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options) {
   const std::clock_t start = std::clock();
   const BoundaryConditions full = load_path(1.0);
-  Newton newton{model, load_path, options, full.fixed, BlockMatrix(coupled_nodes(model.network)), {}};
+  Newton newton(model, load_path, options, full.fixed);
   Equilibrium result;
   result.load_reached = 0;
   NodalVectors x = model.network.X;
@@ -146,9 +192,10 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.support = -forces(model, x) - reached.external;
   for (Eigen::Index i = 0; i < result.support.size(); ++i)
     if (!full.fixed[i]) result.support.data()[i] = 0;
-  result.solver = fmt::format("Newton + Cholesky, {} load step{}", steps, steps == 1 ? "" : "s");
+  result.solver = fmt::format("Newton + {}, {} load step{}", newton.multigrid ? "CG with multigrid" : "Cholesky", steps,
+                              steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
-  result.unknowns = newton.solver.unknowns();
+  result.unknowns = newton.unknowns();
   result.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   return result;
 }

@@ -42,7 +42,7 @@ TEST_P(PatchTest, AffineFieldIsExactInside) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, PatchTest, testing::ValuesIn(test::model_names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& i) { return i.param; });
 
 TEST(PatchTestSolvers, EverySolverAgrees) {
   for (double A : {0.25, 1.0, 2.0, 8.0}) {
@@ -69,7 +69,7 @@ TEST_P(Moduli, ComeBackFromABlock) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Moduli, testing::ValuesIn(test::model_names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& i) { return i.param; });
 
 TEST(ModuliOfSprings, AreAlwaysThoseOfOneQuarter) {
   const MeasuredModuli m = measure_moduli(test::model("msm_18"), {1e4, 0.4, 1000});

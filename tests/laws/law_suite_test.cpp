@@ -108,7 +108,7 @@ TEST_P(LawSuite, TangentIsTheDerivativeOfTheForce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& i) { return i.param.name; });
 
 }  // namespace
 }  // namespace springproof

@@ -1,0 +1,40 @@
+// One case: every model and the reference, at every Poisson's ratio, measured by the same ruler.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "comparisons/results.h"
+#include "meshes/mesh.h"
+#include "msm/models.h"
+
+namespace springproof {
+
+/// An experiment made ready: meshed, its models resolved, its loads tried on the mesh.
+struct PreparedCase {
+  Experiment experiment;
+  std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
+  std::vector<ModelParameters> models;
+  Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids
+};
+
+/// @throws InputError for everything a user can get wrong, before any long work starts.
+PreparedCase prepare(const Experiment& experiment);
+
+/// The results of one case at one Poisson's ratio.
+struct Part {
+  std::vector<Run> runs;
+  std::vector<Row> rows;
+  std::vector<ReferenceRecord> references;
+  std::vector<Picture> pictures;
+};
+
+/// Runs everything for experiment.materials[material]; writes one VTU per run into `vtu_folder` (empty: none).
+/// A solver that finds no result leaves a Run with ok = false and no rows.
+Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder);
+
+/// Judges the expectations and sets published values beside ours, once all parts are in result.rows.
+void judge(CaseResult& result);
+
+}  // namespace springproof

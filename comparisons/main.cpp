@@ -1,0 +1,80 @@
+// springproof: can a mass-spring model be trusted as an elastic solid?
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "comparisons/material_command.h"
+#include "comparisons/suite.h"
+#include "fem_reference/reference.h"
+#include "msm/models.h"
+#include "problem/experiment.h"
+
+namespace {
+
+using namespace springproof;
+
+int list() {
+  fmt::print("Cases (springproof compare NAME):\n");
+  for (const auto& file : built_in_cases()) {
+    const Experiment e = read_experiment(file);
+    fmt::print("  {:<38} {}\n", e.folder + "/" + e.name, e.what);
+  }
+  fmt::print("\nModels ([compare] models = [...]):\n");
+  for (const ModelRow& row : model_table()) fmt::print("  {:<38} {}\n", row.name, row.what);
+  fmt::print("\nMeasures ([compare] measures = [...]):\n");
+  for (const char* line : {"displacement_error          relative L2 difference to FEM over the nodes",
+                           "displacement_error_max      largest difference over the largest displacement",
+                           "section_distance            mean distance to FEM on the plane [section] [m]",
+                           "volume_change               (V' - V)/V of the displaced body",
+                           "volume_change_magnitude     its absolute value, the papers' e",
+                           "volume_change_first_order   integral of div u over V",
+                           "reaction                    force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m]",
+                           "probe                       displacement.PROBE.x|y|z|magnitude [m]"})
+    fmt::print("  {}\n", line);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app{"Mass-spring models of elastic solids, proved against finite elements.", "springproof"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", [] {
+    const std::string fem = fem::version();
+    return fmt::format("springproof {}\n{}", SPRINGPROOF_VERSION, fem.empty() ? "without the FEM reference" : fem);
+  });
+
+  std::vector<std::string> names;
+  SuiteOptions options;
+  CLI::App* compare_command = app.add_subcommand(
+      "compare", "Run cases with every model and the FEM reference; write results.csv, results.json, VTU files and report.html");
+  compare_command->add_option("CASE", names, "case files (*.toml), folders of them, or built-in names (springproof list)")->required();
+  compare_command->add_option("--out", options.out, "folder for the results")->capture_default_str();
+  compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")->check(CLI::NonNegativeNumber);
+  compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
+  compare_command->add_flag("!--no-vtu", options.vtu, "write no VTU files");
+  compare_command->footer("Exit status: 0 every expectation holds, 1 one does not, 2 the input is unusable, 130 interrupted.");
+
+  CLI::App* list_command = app.add_subcommand("list", "Built-in cases, models and measures");
+
+  MaterialCommand material;
+  CLI::App* material_command = app.add_subcommand(
+      "material", "Any two moduli in: spring constants, kappa, safe time step, validity range, and the moduli measured back");
+  material.add_options(*material_command);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  if (*compare_command) return compare(find_cases(names), options);
+  if (*list_command) return list();
+  return material.run();
+} catch (const springproof::InputError& e) {
+  fmt::print(stderr, "error: {}\n", e.what());
+  return 2;
+} catch (const std::exception& e) {
+  fmt::print(stderr, "error: {}\n", e.what());
+  return 1;
+}

@@ -1,0 +1,99 @@
+#include "comparisons/material_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "msm/measure/moduli.h"
+#include "msm/measure/validity.h"
+#include "msm/solve/cell_stiffness.h"
+#include "msm/topology/cubic_lattice.h"
+
+namespace springproof {
+namespace {
+
+/// Spring constants inside the lattice, by kind (1, 2, 3 axes apart): a cell's share times the cells that share it.
+std::array<double, 3> lattice_constants(const MassSpringModel& model) {
+  std::array<double, 3> k = {0, 0, 0};
+  for (const Spring& s : model.network.cell_springs) {
+    const int axes = static_cast<int>(std::lround(std::pow(s.rest_length / model.network.cell_edge, 2)));
+    k[axes - 1] = s.stiffness * (axes == 1 ? 4 : axes == 2 ? 2 : 1);
+  }
+  return k;
+}
+
+}  // namespace
+
+void MaterialCommand::add_options(CLI::App& command) {
+  command.add_option("--youngs-modulus,-E", moduli_.youngs_modulus, "Young's modulus [Pa]");
+  command.add_option("--poisson-ratio,--nu", moduli_.poisson_ratio, "Poisson's ratio, -1 < nu < 0.5");
+  command.add_option("--shear-modulus,-G", moduli_.shear_modulus, "shear modulus [Pa]");
+  command.add_option("--bulk-modulus,-K", moduli_.bulk_modulus, "bulk modulus [Pa]");
+  command.add_option("--lame-lambda", moduli_.lame_lambda, "Lame's first parameter [Pa]");
+  command.add_option("--density", density_, "density [kg/m^3]")->capture_default_str();
+  command.add_option("--cell-size", cell_size_, "edge of the cubic cells [m]")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
+  command.add_option("--face-to-cube", face_to_cube_, "A = k_f / k_c");
+  command.add_flag("--json", json_, "print JSON");
+}
+
+int MaterialCommand::run() const {
+  IsotropicMaterial m;
+  try {
+    m = material_from(moduli_, density_);
+  } catch (const std::invalid_argument& e) {
+    throw InputError(e.what());
+  }
+  ModelChoice choice = choice_;
+  if (face_to_cube_) choice.options["face_to_cube"] = *face_to_cube_;
+  const ModelParameters p = resolve(choice);
+  const double l = cell_size_;
+  const MassSpringModel model = build_model(p, block_mesh(l * Vec3::Ones(), {1, 1, 1}), m);
+  const std::array<double, 3> k = lattice_constants(model);
+  const double time_step = safe_time_step(model, m.density);
+  const MeasuredModuli measured = measure_moduli(p, m);
+  const StrainLimits limits = strain_limits(p, m);
+  const double correction = p.row.volume_correction ? kappa(m) : 0.0;
+
+  if (json_) {
+    const auto limit = [](double strain) { return std::isfinite(strain) ? nlohmann::json(strain) : nlohmann::json(nullptr); };
+    const nlohmann::json out = {
+        {"material", {{"youngs_modulus_Pa", m.youngs_modulus}, {"poisson_ratio", m.poisson_ratio}, {"shear_modulus_Pa", shear_modulus(m)},
+                      {"bulk_modulus_Pa", bulk_modulus(m)}, {"lame_lambda_Pa", lame_lambda(m)}, {"density_kg_m3", m.density}}},
+        {"model", {{"name", p.row.name}, {"face_to_cube", std::isinf(p.face_to_cube) ? nlohmann::json("infinity") : nlohmann::json(p.face_to_cube)}, {"cell_size_m", l}}},
+        {"springs", {{"k_e_N_m", k[0]}, {"k_f_N_m", k[1]}, {"k_c_N_m", k[2]}}},
+        {"kappa_Pa", correction},
+        {"corner_mass_kg", m.density * l * l * l / 8},
+        {"safe_time_step_s", time_step},
+        {"tension_limit_strain", {{"bounded", limit(limits.bounded_energy)}, {"paper", limit(limits.paper_energy)}}},
+        {"measured", {{"youngs_modulus_Pa", measured.youngs_modulus}, {"poisson_ratio", measured.poisson_ratio}, {"shear_modulus_Pa", measured.shear_modulus}}}};
+    fmt::print("{}\n", out.dump(2));
+    return 0;
+  }
+  const auto strain = [](double limit) { return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %"); };
+  fmt::print("material   E = {:.6g} Pa   nu = {:.6g}   G = {:.6g} Pa   K = {:.6g} Pa   lambda = {:.6g} Pa   rho = {:.6g} kg/m^3\n",
+             m.youngs_modulus, m.poisson_ratio, shear_modulus(m), bulk_modulus(m), lame_lambda(m), m.density);
+  fmt::print("model      {}: {}   A = {:g}   cell edge l = {:.6g} m\n\n", p.row.name, p.row.what, p.face_to_cube, l);
+  fmt::print("springs inside the lattice (a free edge has 1/4, a surface edge or face diagonal 1/2 of it)\n");
+  fmt::print("  k_e  cell edge       {:>14.6g} N/m   rest length {:.6g} m\n", k[0], l);
+  fmt::print("  k_f  face diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[1], l * std::sqrt(2.0));
+  fmt::print("  k_c  cube diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[2], l * std::sqrt(3.0));
+  fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", correction, p.row.volume_correction ? "" : "    (this model has none)");
+  fmt::print("mass per cell corner   {:>14.6g} kg\n", m.density * l * l * l / 8);
+  fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, any mesh of these cells)\n", time_step);
+  fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n\n", strain(limits.bounded_energy), strain(limits.paper_energy));
+  fmt::print("measured back from a block of 4 x 4 x 4 cells\n");
+  fmt::print("  E  = {:.8g} Pa   ({:+.2e} relative)\n", measured.youngs_modulus, measured.youngs_modulus / m.youngs_modulus - 1);
+  fmt::print("  nu = {:.8g}   ({:+.2e})\n", measured.poisson_ratio, measured.poisson_ratio - m.poisson_ratio);
+  fmt::print("  G  = {:.8g} Pa   ({:+.2e} relative)\n", measured.shear_modulus, measured.shear_modulus / shear_modulus(m) - 1);
+  if (!p.row.volume_correction && std::abs(m.poisson_ratio - 0.25) > 1e-12)
+    fmt::print("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss for nu = {:g}\n", m.poisson_ratio);
+  if (p.face_to_cube < 0.2)
+    fmt::print("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");
+  if (p.paper_e_form) fmt::print("\nwarning: paper_e_form is right for nu = 1/4 only\n");
+  return 0;
+}
+
+}  // namespace springproof

@@ -1,0 +1,93 @@
+#include "comparisons/measures.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "meshes/locate.h"
+
+namespace springproof {
+namespace {
+
+void add_vector(const std::string& name, const Vec3& v, std::map<std::string, double>& out) {
+  for (int d = 0; d < 3; ++d) out[name + '.' + "xyz"[d]] = v[d];
+  out[name + ".magnitude"] = v.norm();
+}
+
+std::string head(const std::string& measure) { return measure.substr(0, measure.find('.')); }
+
+}  // namespace
+
+std::map<std::string, double> scalar_measures(const Field& field, const std::vector<Probe>& probes,
+                                              const NodalVectors& probe_displacement) {
+  std::map<std::string, double> out = {{"volume_change", field.volume_change},
+                                       {"volume_change_magnitude", std::abs(field.volume_change)},
+                                       {"volume_change_first_order", field.volume_change_first_order}};
+  for (const PatchReaction& r : field.reactions) {
+    add_vector("force." + r.patch, r.force, out);
+    add_vector("torque." + r.patch, r.torque, out);
+  }
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    add_vector("displacement." + probes[i].name, probe_displacement.row(static_cast<Eigen::Index>(i)).transpose(), out);
+  return out;
+}
+
+std::string unit_of(const std::string& measure) {
+  const std::string kind = head(measure);
+  if (kind == "force") return "N";
+  if (kind == "torque") return "N m";
+  if (kind == "displacement" || kind == "section_distance") return "m";
+  return "1";
+}
+
+bool is_distance(const std::string& measure) {
+  return measure == "displacement_error" || measure == "displacement_error_max" || measure == "section_distance";
+}
+
+bool wanted(const std::string& measure, const std::vector<std::string>& measures) {
+  const std::string kind = head(measure);
+  const std::string group = kind == "force" || kind == "torque" ? "reaction" : kind == "displacement" ? "probe" : measure;
+  return std::find(measures.begin(), measures.end(), group) != measures.end();
+}
+
+double displacement_error(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights) {
+  const auto norm = [&](const NodalVectors& w) { return std::sqrt((w.rowwise().squaredNorm().array() * weights.array()).sum()); };
+  return norm(u - v) / norm(v);
+}
+
+double displacement_error_max(const NodalVectors& u, const NodalVectors& v) {
+  return (u - v).rowwise().norm().maxCoeff() / v.rowwise().norm().maxCoeff();
+}
+
+double section_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v) {
+  const Vec3 normal = section.normal.normalized();
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  double sum = 0;
+  int count = 0;
+  for (int n = 0; n < mesh.nodes.rows(); ++n) {
+    if (std::abs(normal.dot(mesh.nodes.row(n).transpose() - section.point)) > 1e-6 * size) continue;
+    sum += (u.row(n) - v.row(n)).norm();
+    ++count;
+  }
+  if (count == 0)
+    throw InputError(fmt::format("section: the plane through ({:.6g}, {:.6g}, {:.6g}) m holds no node of the lattice; "
+                                 "put it on a layer of nodes",
+                                 section.point[0], section.point[1], section.point[2]));
+  return sum / count;
+}
+
+NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points) {
+  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  for (int i = 0; i < points.rows(); ++i) {
+    const std::optional<Location> at = locate(mesh, points.row(i).transpose());
+    if (!at)
+      throw InputError(fmt::format("at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body", points(i, 0),
+                                   points(i, 1), points(i, 2)));
+    for (int n = 0; n < 8; ++n) out.row(i) += at->shape[n] * displacement.row(mesh.hexahedra[at->cell][n]);
+  }
+  return out;
+}
+
+}  // namespace springproof

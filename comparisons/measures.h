@@ -1,0 +1,41 @@
+// The ruler: every measure, computed from Fields alone, by the same code for every solver.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "meshes/field.h"
+#include "problem/experiment.h"
+
+namespace springproof {
+
+/// Scalar measures of one field that have a value of their own: volume changes, reactions, probe displacements.
+/// Names: volume_change, volume_change_first_order, force.<patch>.<x|y|z|magnitude>, torque.<patch>.<...>,
+/// displacement.<probe>.<...>.
+std::map<std::string, double> scalar_measures(const Field& field, const std::vector<Probe>& probes,
+                                              const NodalVectors& probe_displacement);
+
+/// "m", "N", "N m" or "1".
+std::string unit_of(const std::string& measure);
+
+/// True if the measure is a distance from the reference, whose best value is 0.
+bool is_distance(const std::string& measure);
+
+/// Names that [compare] measures stand for in this case ("reaction" is many).
+bool wanted(const std::string& measure, const std::vector<std::string>& measures);
+
+/// |u - v| in weighted L2, divided by |v| [1].
+double displacement_error(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights);
+/// max |u - v| / max |v| [1].
+double displacement_error_max(const NodalVectors& u, const NodalVectors& v);
+
+/// Mean |u - v| over the nodes of a plane [m]; Golec et al. (2019), sec. 6.2.
+/// @throws InputError if the plane holds no node of the mesh.
+double section_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v);
+
+/// Displacement of a hexahedral mesh at rest points, by trilinear interpolation, m x 3.
+/// @throws InputError naming the point that lies outside.
+NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points);
+
+}  // namespace springproof

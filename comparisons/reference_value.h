@@ -1,0 +1,41 @@
+// How sure a reference is: three grids, observed order, Richardson limit, grid convergence index (GCI).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/vector.h"
+
+namespace springproof {
+
+/// A number with its uncertainty (about two standard deviations, in ASME V&V 20's sense).
+struct ReferenceValue {
+  double value = 0;
+  double uncertainty = 0;
+  std::optional<double> observed_order;  ///< empty: the sequence is not monotone
+  std::string note;
+};
+
+inline constexpr double safety_factor = 1.25;   ///< Fs for three grids (Roache)
+
+/// Limit of a quantity computed on grids of cell sizes h, h/2, h/4 (coarse to fine; the last three of more).
+/// Monotone: Richardson extrapolation, uncertainty Fs |f3 - f2| / (2^p - 1).  Otherwise the finest value, uncertainty
+/// Fs times the spread.  The order used is held between 0.5 and `highest_order`.  `noise`: round-off of the values.
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order = 4);
+
+/// The same for a displacement field sampled at the same points on three grids: order and uncertainty from weighted L2
+/// norms of the differences; `uncertainty` is relative to the limit's norm.
+struct ReferenceField {
+  NodalVectors displacement;
+  double uncertainty = 0;
+  std::optional<double> observed_order;
+  std::string note;
+};
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights,
+                           double highest_order = 4);
+
+/// Weighted L2 norm of a nodal field: sqrt(sum w |u|^2 / sum w).
+double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights);
+
+}  // namespace springproof

@@ -1,0 +1,235 @@
+#include "comparisons/suite.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "comparisons/case_run.h"
+#include "comparisons/headline.h"
+#include "comparisons/part_file.h"
+#include "comparisons/report.h"
+#include "fem_reference/reference.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> interrupted = false;
+
+void on_interrupt(int) { interrupted = true; }
+
+std::vector<fs::path> toml_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string name_of(const Experiment& e) { return e.folder.empty() ? e.name : e.folder + "/" + e.name; }
+
+/// One part of one case: the unit of work.
+struct Task {
+  const PreparedCase* prepared;
+  std::size_t material;
+  fs::path file;       ///< where the finished part is kept
+  fs::path vtu;
+  std::string stamp;
+  std::string title;
+  Part part;
+  bool done = false;
+};
+
+void require_writable(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder / "parts", error);
+  const fs::path trial = folder / ".writable";
+  if (!error) std::ofstream(trial) << "x";
+  if (error || !fs::exists(trial))
+    throw InputError(fmt::format("--out: cannot write into {}{}", folder.string(), error ? ": " + error.message() : ""));
+  fs::remove(trial);
+}
+
+std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const SuiteOptions& options) {
+  std::vector<Task> tasks;
+  for (const PreparedCase& p : prepared)
+    for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
+      std::string key = name_of(p.experiment);
+      std::replace(key.begin(), key.end(), '/', '-');
+      const std::string nu = fmt::format("nu{:g}", p.experiment.materials[m].poisson_ratio);
+      const std::string stamp = fmt::format("{} {} {:016x}", SPRINGPROOF_VERSION, nu, std::hash<std::string>()(p.experiment.text));
+      tasks.push_back({&p, m, options.out / "parts" / (key + "-" + nu + ".cbor"),
+                       options.vtu ? options.out / "vtu" / key : fs::path(), stamp,
+                       fmt::format("{}  {}", name_of(p.experiment), nu), {}});
+    }
+  return tasks;
+}
+
+/// Counts and prints finished parts; safe from several workers.
+class Progress {
+ public:
+  explicit Progress(std::size_t total) : total_(total) {}
+
+  void finished(const Task& task, double seconds, bool taken_back) {
+    const std::lock_guard lock(mutex_);
+    ++count_;
+    const auto failed = std::count_if(task.part.runs.begin(), task.part.runs.end(), [](const Run& r) { return !r.ok; });
+    std::string remark = taken_back ? "kept from before" : fmt::format("{:.1f} s", seconds);
+    if (failed) remark += fmt::format(", {} run{} without a result", failed, failed == 1 ? "" : "s");
+    fmt::print(stderr, "[{}/{}] {:<44} {}\n", count_, total_, task.title, remark);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::size_t total_, count_ = 0;
+};
+
+void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
+  std::atomic<std::size_t> next = 0;
+  Progress progress(tasks.size());
+  std::mutex failure_mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i; !interrupted && (i = next++) < tasks.size();) try {
+        Task& task = tasks[i];
+        const auto start = std::chrono::steady_clock::now();
+        std::optional<Part> kept;
+        if (options.resume) kept = load_part(task.file, task.stamp);
+        task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu);
+        if (interrupted) return;  // its FEM program may have been stopped by the same signal
+        if (!kept) save_part(task.file, task.stamp, task.part);
+        task.done = true;
+        progress.finished(task, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kept.has_value());
+      } catch (...) {
+        const std::lock_guard lock(failure_mutex);
+        if (!failure) failure = std::current_exception();
+        next = tasks.size();
+      }
+  };
+  const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::thread> workers;
+  for (int j = 0; j < jobs; ++j) workers.emplace_back(work);
+  for (std::thread& w : workers) w.join();
+  if (failure && !interrupted) std::rethrow_exception(failure);
+}
+
+template <class T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const std::vector<Task>& tasks) {
+  std::vector<CaseResult> results;
+  for (const PreparedCase& p : prepared) {
+    CaseResult result{p.experiment, {}, {}, {}, {}, {}, {}};
+    for (const Task& task : tasks) {
+      if (task.prepared != &p) continue;
+      append(task.part.runs, result.runs);
+      append(task.part.rows, result.rows);
+      append(task.part.references, result.references);
+      append(task.part.pictures, result.pictures);
+    }
+    judge(result);
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+nlohmann::json host() {
+  utsname u{};
+  uname(&u);
+  std::string processor, line;
+  for (std::ifstream in("/proc/cpuinfo"); std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  return {{"system", fmt::format("{} {}", u.sysname, u.machine)},
+          {"processor", processor},
+          {"cores", std::thread::hardware_concurrency()}};
+}
+
+nlohmann::json document(const std::vector<CaseResult>& results) {
+  nlohmann::json cases = nlohmann::json::array();
+  for (const CaseResult& r : results) cases.push_back(to_json(r));
+  const std::string fem = fem::version();
+  return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", fem}}},
+          {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
+          {"host", host()},
+          {"cases", cases}};
+}
+
+/// Writes everything; returns the number of expectations that do not hold.
+int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
+  const nlohmann::json doc = document(results);
+  nlohmann::json pictures = nlohmann::json::array();
+  for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
+  write_file(out / "results.json", doc.dump(1));
+  write_file(out / "results.csv", to_csv(results));
+  write_report(out / "report.html", doc, pictures);
+  const Headline h = headline(doc);
+  fmt::print("\n");
+  for (const ModelVerdict& v : h.models) fmt::print("{:<28} {}\n", v.model, v.sentence);
+  for (const std::string& line : h.failed_runs) fmt::print("no result: {}\n", line);
+  for (const std::string& line : h.failed_checks) fmt::print("FAILED: {}\n", line);
+  fmt::print("\n{}\nreport: {}\n", expectations_sentence(h), (out / "report.html").string());
+  return h.failed + h.no_result;
+}
+
+}  // namespace
+
+std::vector<fs::path> built_in_cases() { return toml_files(SPRINGPROOF_EXPERIMENTS_DIR); }
+
+std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
+  std::vector<fs::path> cases;
+  for (const std::string& name : names) {
+    const fs::path built_in = fs::path(SPRINGPROOF_EXPERIMENTS_DIR) / name;
+    std::vector<fs::path> found;
+    for (const fs::path& path : {fs::path(name), built_in, fs::path(built_in.string() + ".toml")}) {
+      if (fs::is_directory(path))
+        found = toml_files(path);
+      else if (fs::exists(path))
+        found = {path};
+      if (!found.empty()) break;
+    }
+    if (found.empty())
+      throw InputError(fmt::format("{}: no such case file, and no folder with case files (*.toml); `springproof list` "
+                                   "shows the built-in ones", name));
+    append(found, cases);
+  }
+  return cases;
+}
+
+int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
+  std::vector<PreparedCase> prepared;
+  for (const fs::path& file : cases) prepared.push_back(prepare(read_experiment(file)));
+  require_writable(options.out);
+  std::vector<Task> tasks = make_tasks(prepared, options);
+  if (!fem::available())
+    fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  run_tasks(tasks, options);
+  if (interrupted) {
+    const auto done = std::count_if(tasks.begin(), tasks.end(), [](const Task& t) { return t.done; });
+    fmt::print(stderr, "interrupted; {} of {} parts are kept in {}: the same command with --resume goes on from there\n",
+               done, tasks.size(), options.out.string());
+    return 130;
+  }
+  return write_results(collect(prepared, tasks), options.out) == 0 ? 0 : 1;
+}
+
+}  // namespace springproof

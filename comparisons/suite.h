@@ -1,0 +1,32 @@
+// Many cases: found, scheduled over a few workers, kept when interrupted, written out.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace springproof {
+
+struct SuiteOptions {
+  std::filesystem::path out = "springproof-report";
+  int jobs = 0;          ///< parts at once; 0 = one per processor core
+  bool resume = false;   ///< take finished parts from `out`
+  bool vtu = true;       ///< write a VTU per run
+};
+
+/// Case files named by paths: files, folders (all *.toml in them), or folders of the built-in experiments
+/// ("golec_2019", "golec_2019/compression").
+/// @throws InputError if a name leads nowhere.
+std::vector<std::filesystem::path> find_cases(const std::vector<std::string>& names);
+
+/// All built-in case files.
+std::vector<std::filesystem::path> built_in_cases();
+
+/// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out.
+/// Progress goes to stderr.
+/// @return 0: every expectation holds; 1: one does not; 130: interrupted (finished parts are kept).
+/// @throws InputError for unusable input or output folder, before anything is computed.
+int compare(const std::vector<std::filesystem::path>& cases, const SuiteOptions& options);
+
+}  // namespace springproof
