@@ -64,7 +64,7 @@ function baseOptions() {
   return {responsive: true, maintainAspectRatio: false, animation: false,
           interaction: {mode: 'nearest', intersect: false},
           layout: {padding: {right: 14}},
-          plugins: {legend: {position: 'right', labels: {color: ink, usePointStyle: true, boxHeight: 8, padding: 14}}}};
+          plugins: {legend: {position: window.innerWidth > 760 ? 'right' : 'bottom', labels: {color: ink, usePointStyle: true, boxHeight: 8, padding: 14}}}};
 }
 
 // ---- error against nu
@@ -94,7 +94,9 @@ function measureChoices(chosen) {
       holders.some(c => c.rows.some(row => row.measure === measure && isNumber(row.error)));
   });
   const first = ['displacement_error', 'volume_change'].filter(m => same.includes(m));
-  return [...first, ...same.filter(m => !first.includes(m))].map(m => [m, measureText(m)]);
+  const idle = same.filter(m => chosen.every(c => c.vanishing.has(m) || !c.measures.includes(m)));
+  const rest = same.filter(m => !first.includes(m) && !idle.includes(m));
+  return [...first, ...rest, ...idle.filter(m => !first.includes(m))].map(m => [m, measureText(m)]);
 }
 
 /// model -> nu -> {error, uncertainty, row, result}: the largest over the chosen cases.
@@ -154,6 +156,7 @@ function poissonChart(chosen, measure, resolution, even) {
   const byModel = errorsByNu(chosen, measure, resolution);
   const band = uncertaintyByNu(chosen, measure, resolution);
   const nus = distinct([...byModel.values()].flatMap(points => [...points.keys()])).sort((a, b) => a - b);
+  if (nus.length === 1) even = false;   // a band needs width
   const x = nu => even ? nuText(nu) : nu;
   const unit = (chosen.find(c => c.scales.has(measure)) || {scales: new Map()}).scales.get(measure)?.unit ?? '';
   const datasets = [...byModel].map(([model, points]) => lineDataset(model, model, nus.map(nu => {
@@ -163,13 +166,17 @@ function poissonChart(chosen, measure, resolution, even) {
   })));
   const values = [...byModel.values()].flatMap(points => [...points.values()].map(p => p.error));
   const limits = decades(values, [...band.values()]);
-  if (band.size > 0) datasets.push(bandDataset(nus.map(nu => ({x: x(nu), y: band.get(nu) ?? null}))));
+  const room = nus.length === 1 ? 0.05 : 0.03 * (nus[nus.length - 1] - nus[0]);
+  const edges = nus.length === 1 ? [nus[0] - room, nus[0] + room] : nus;
+  if (band.size > 0) datasets.push(bandDataset(edges.map((nu, i) => ({x: x(nu), y: band.get(nus[i] ?? nus[0]) ?? null}))));
   const {ink, grid} = colors();
   const options = baseOptions();
   options.plugins.tooltip = poissonTooltip(unit);
   options.scales = {
     x: {type: even ? 'category' : 'linear', labels: even ? nus.map(nuText) : undefined, offset: even,
-        title: {display: true, text: 'Poisson’s ratio ν', color: ink}, grid: {color: grid}, ticks: {color: ink}},
+        min: even ? undefined : nus[0] - room, max: even ? undefined : nus[nus.length - 1] + room,
+        title: {display: true, text: 'Poisson’s ratio ν', color: ink}, grid: {color: grid},
+        ticks: {color: ink, includeBounds: false}},
     y: logAxis(`${measureText(measure)} [${unit}]`, limits),
   };
   return {type: 'line', data: {datasets}, options};
@@ -246,7 +253,7 @@ function convergenceLines(result, choice, measure, against) {
     .map(line => ({...line, points: convergencePoints(result, measure, line.model, line.nu, against)}));
 }
 
-const rampColor = (i, n) => viridisCss(n > 1 ? 0.9 * i / (n - 1) : 0.3);
+const rampColor = (i, n) => viridisCss(n > 1 ? 0.12 + 0.73 * i / (n - 1) : 0.4);
 
 function convergenceDataset(line, against) {
   const order = line.points.length > 1 && against === 'size' ? slope(line.points) : null;

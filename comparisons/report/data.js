@@ -74,26 +74,53 @@ function number(x, digits = 4) {
     return minus(mantissa) + '·10' + superscript(Number(exponent));
   }
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return minus(x.toLocaleString('en', {maximumFractionDigits: decimals, useGrouping: size >= 1e4}).replace(/,/g, '\u202f'));
+  return grouped(x.toLocaleString('en', {maximumFractionDigits: decimals, useGrouping: size >= 1e4}));
 }
 
 const nuText = nu => isNumber(nu) ? minus(String(nu)) : '–';
+
+const grouped = text => minus(text.replace(/,/g, '\u202f'));
+
+function fixed(x, decimals) {
+  return grouped(x.toLocaleString('en', {minimumFractionDigits: decimals, maximumFractionDigits: decimals,
+                                         useGrouping: Math.abs(x) >= 1e4}));
+}
 
 /// Percent, two digits.
 function percent(x) {
   if (!isNumber(x)) return '–';
   if (Math.abs(x) < 1e-3) return x === 0 ? '0 %' : '< 0.001 %';
-  return minus(Math.abs(x) >= 99.5 ? x.toFixed(0) : String(Number(x.toPrecision(2)))) + ' %';
+  return minus(Math.abs(x) >= 99.5 ? x.toFixed(0) : x.toPrecision(2)) + ' %';
 }
 
 const signed = (x, text) => (x > 0 ? '+' : '') + text;
 
-const inPercent = (measure, unit) => unit === '1' && /displacement|volume/.test(measure);
+const isDistance = measure => /^displacement_error|_distance$/.test(measure);
+const inPercent = (measure, unit) => unit === '1' && /^displacement|^volume/.test(measure);
+
+/// The unit a set of values is shown in: percent, a fitting length unit, or the unit itself.
+function displayUnit(measure, unit, values) {
+  if (inPercent(measure, unit)) return {factor: 100, unit: '%'};
+  const size = Math.max(0, ...values.filter(isNumber).map(Math.abs));
+  if (unit === 'm') return lengthUnit(size);
+  return {factor: 1, unit: unit === '1' ? '' : unit};
+}
 
 function quantity(x, measure, unit, digits = 4) {
   if (!isNumber(x)) return '–';
-  if (inPercent(measure, unit)) return number(100 * x, digits) + ' %';
-  return number(x, digits) + (unit && unit !== '1' ? ' ' + unit : '');
+  const shown = displayUnit(measure, unit, [x]);
+  return [number(shown.factor * x, digits), shown.unit].filter(Boolean).join(' ');
+}
+
+/// Writes the values of one table in one unit with one number of decimals (five digits of the largest).
+function column(measure, unit, values) {
+  const shown = displayUnit(measure, unit, values);
+  const top = shown.factor * Math.max(0, ...values.filter(isNumber).map(Math.abs));
+  const decimals = top > 0 ? 4 - Math.floor(Math.log10(top)) : 0;
+  const plain = top === 0 || (decimals >= -3 && decimals <= 9);
+  const text = x => !isNumber(x) ? '–' : x === 0 ? '0' : plain ? fixed(shown.factor * x, Math.max(0, decimals))
+    : number(shown.factor * x, 5);
+  return {unit: shown.unit, text, short: x => number(shown.factor * x, 2)};
 }
 
 function seconds(t) {
@@ -116,7 +143,18 @@ const bySize = (a, b) => cellCount(a) - cellCount(b);
 
 const measureNames = {
   displacement_error: 'displacement error',
+  displacement_error_max: 'largest displacement error',
   volume_change: 'volume change',
+  volume_change_first_order: 'volume change, first order',
+  section_distance: 'mean distance on the section',
+};
+
+const measureMeanings = {
+  displacement_error: '|u − u_fem| in the L2 norm over the body, divided by |u_fem|',
+  displacement_error_max: 'largest |u − u_fem| over the nodes, divided by the largest |u_fem|',
+  volume_change: '(V′ − V) / V of the deformed cells, exact; errors in percentage points',
+  volume_change_first_order: 'integral of div u over V; errors in percentage points',
+  section_distance: 'mean |u − u_fem| over the nodes of the section',
 };
 
 function measureText(measure) {
@@ -144,12 +182,35 @@ function prepareCase(data) {
     runs: data.runs || [], rows: data.rows || [], references: data.references || [],
     checks: data.checks || [], published: data.published || [],
   };
+  const key = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;
+  result.runAt = new Map(result.runs.map(run => [key(run), run]));
+  result.rowAt = new Map(result.rows.map(row => [row.measure + '|' + key(row), row]));
+  result.referenceAt = new Map(result.rows.map(row => [`${row.measure}|${row.poisson_ratio}`, row.reference]));
   result.measures = distinct(result.rows.map(row => row.measure));
   result.nus = distinct(result.rows.concat(result.runs).map(row => row.poisson_ratio)).sort((a, b) => a - b);
   result.models = distinct(result.runs.concat(result.rows).map(row => row.model));
   result.cells = distinct(result.rows.map(row => row.cells)).sort(bySize);
   result.scales = new Map(result.measures.map(measure => [measure, errorScale(result, measure)]));
+  result.vanishing = new Set(result.measures.filter(measure => vanishes(result, measure)));
   return result;
+}
+
+const findRun = (result, {model, cells, poisson_ratio}) => result.runAt.get(`${model}|${cellsText(cells)}|${poisson_ratio}`);
+const findRow = (result, measure, {model, cells, poisson_ratio}) =>
+  result.rowAt.get(`${measure}|${model}|${cellsText(cells)}|${poisson_ratio}`);
+
+/// Reference of the magnitude of a vector's component, e.g. of force.z_max.magnitude for force.z_max.x.
+function magnitudeOf(result, row) {
+  if (!/\.[xyz]$/.test(row.measure)) return null;
+  return result.referenceAt.get(`${row.measure.slice(0, -1)}magnitude|${row.poisson_ratio}`) ?? null;
+}
+
+/// A reference that is zero up to its own uncertainty, or beside the vector's other components.
+function vanishes(result, measure) {
+  if (isDistance(measure)) return false;
+  const rows = result.rows.filter(row => row.measure === measure && isNumber(row.reference));
+  return rows.length > 0 && rows.every(row => Math.abs(row.reference) <=
+    Math.max(row.reference_uncertainty || 0, 1e-6 * (magnitudeOf(result, row) || 0)));
 }
 
 /// How the error of a measure is drawn: percent, percentage points, percent of the reference, or its own unit.
@@ -157,9 +218,13 @@ function errorScale(result, measure) {
   const rows = result.rows.filter(row => row.measure === measure);
   const unit = rows[0].unit;
   if (inPercent(measure, unit))
-    return {of: x => 100 * x, unit: measure === 'displacement_error' ? '%' : 'percentage points'};
-  const references = rows.map(row => row.reference).filter(isNumber).map(Math.abs);
-  if (references.length > 0 && Math.min(...references) > 0.01 * Math.max(...references))
+    return {of: x => 100 * x, unit: isDistance(measure) ? '%' : 'percentage points'};
+  const compared = rows.filter(row => isNumber(row.reference));
+  const clear = (size, row) => isNumber(size) && Math.abs(size) > 10 * (row.reference_uncertainty || 0) && size !== 0;
+  if (isDistance(measure) || compared.length === 0) return {of: x => x, unit};
+  if (compared.every(row => clear(magnitudeOf(result, row), row)))
+    return {of: (x, row) => 100 * x / Math.abs(magnitudeOf(result, row)), unit: '% of the magnitude'};
+  if (compared.every(row => clear(row.reference, row)))
     return {of: (x, row) => 100 * x / Math.abs(row.reference), unit: '% of the reference'};
   return {of: x => x, unit};
 }
@@ -179,9 +244,9 @@ function scaledUncertainty(result, row) {
 function errorText(result, row) {
   if (!isNumber(row.error)) return '–';
   const scale = result.scales.get(row.measure);
-  const error = scale.of(row.error, row);
-  const sign = row.reference === null ? x => x : x => signed(error, x);
-  if (scale.unit === '%') return percent(error);
+  const towards = scale.unit === '% of the reference' ? Math.sign(row.reference) : 1;   // +: larger in size
+  const error = towards * scale.of(row.error, row);
+  const sign = isDistance(row.measure) ? text => text : text => signed(error, text);
   if (scale.unit === 'percentage points') return sign(number(error, 2)) + ' points';
   if (scale.unit.startsWith('%')) return sign(percent(error));
   return sign(quantity(row.error, row.measure, row.unit, 2));
@@ -209,11 +274,6 @@ function worstOf(result, rows) {
     if (error !== null && (worst === null || error > worst.error)) worst = {row, error};
   }
   return worst;
-}
-
-function findRun(result, row) {
-  return result.runs.find(run => run.model === row.model && run.poisson_ratio === row.poisson_ratio &&
-    cellsText(run.cells) === cellsText(row.cells));
 }
 
 // ---- models and their colours (Okabe & Ito's palette, told apart by marker too)

@@ -125,107 +125,129 @@ function problemPart(result) {
 
 // ---- reference
 
-function referenceRow(record, columns) {
-  const {measure, unit} = record;
-  const values = Array.from({length: columns}, (_, i) => el('td', {class: 'number'},
-    quantity(record.values[i], measure, unit), el('small', {}, cellsText(record.cells[i]))));
-  return tr(nuText(record.poisson_ratio), values,
-    el('td', {class: 'number'}, isNumber(record.observed_order) ? number(record.observed_order, 3) : 'none'),
-    el('td', {class: 'number'}, el('b', {}, quantity(record.value, measure, unit, 5))),
-    el('td', {class: 'number'}, '± ' + quantity(record.uncertainty, measure, unit, 2)),
-    el('td', {}, record.note));
+const right = (...text) => el('th', {class: 'number'}, text);
+const withUnit = (text, unit) => unit ? `${text} [${unit}]` : text;
+
+function referenceTable(measure, records) {
+  const unit = records[0].unit;
+  const write = column(measure, unit, records.flatMap(record => [...record.values, record.value]));
+  const columns = Math.max(...records.map(record => record.values.length));
+  const grids = Array.from({length: columns}, (_, i) => distinct(records.map(record => cellsText(record.cells[i]))));
+  const line = record => tr(nuText(record.poisson_ratio),
+    grids.map((names, i) => el('td', {class: 'number'}, write.text(record.values[i]),
+                               names.length > 1 ? el('small', {}, cellsText(record.cells[i])) : '')),
+    el('td', {class: 'number'}, isNumber(record.observed_order) ? minus(record.observed_order.toFixed(2)) : 'none'),
+    el('td', {class: 'number'}, el('b', {}, write.text(record.value))),
+    el('td', {class: 'number'}, '± ' + write.short(record.uncertainty)), record.note);
+  return [el('h5', {}, withUnit(measureText(measure), write.unit)),
+    table('reference', ['ν', ...grids.map((names, i) => right(names.length > 1 ? `grid ${i + 1}` : names[0] || `grid ${i + 1}`)),
+                        right('observed order'), right('value'), right('uncertainty'), 'how'], records.map(line))];
 }
 
 function referencePart(result) {
   const measures = distinct(result.references.map(record => record.measure));
-  const tables = measures.map(measure => {
-    const records = result.references.filter(record => record.measure === measure);
-    const columns = Math.max(...records.map(record => record.values.length));
-    const grids = Array.from({length: columns}, (_, i) => el('th', {class: 'number'}, `grid ${i + 1}`));
-    return [el('h5', {}, measureText(measure)), table('reference',
-      ['ν', ...grids, el('th', {class: 'number'}, 'observed order'), el('th', {class: 'number'}, 'value'),
-       el('th', {class: 'number'}, 'uncertainty'), 'how'],
-      records.map(record => referenceRow(record, columns)))];
-  });
+  const tables = list => list.map(measure => referenceTable(measure, result.references.filter(r => r.measure === measure)));
   return [el('h4', {}, 'Reference and its uncertainty'),
     measures.length === 0 ? notice('There is no record of a reference for this case.')
       : el('p', {class: 'note'}, 'Finite elements on successively finer grids; where their values fall into a regular ' +
            'sequence, the limit is extrapolated (Richardson), and the uncertainty is the grid convergence index.'),
-    tables];
+    tables(measures.filter(m => !result.vanishing.has(m))),
+    vanishingFold(measures.filter(m => result.vanishing.has(m)), tables)];
+}
+
+function vanishingFold(measures, tables) {
+  return measures.length === 0 ? null : el('details', {class: 'fold'},
+    el('summary', {}, `Measures whose reference is zero up to its uncertainty: ${measures.length}`), tables(measures));
 }
 
 // ---- results
 
-function resultCell(result, measure, model, cells, nu) {
-  const same = item => item.model === model && cellsText(item.cells) === cells && item.poisson_ratio === nu;
-  const row = result.rows.find(r => r.measure === measure && same(r));
+function resultCell(result, measure, at, write) {
+  const row = findRow(result, measure, at);
   if (row) {
-    const isError = row.reference === null && row.error === row.value;
-    return el('td', {class: 'number ' + tint(result, row), title: `${row.value} ${row.unit}`},
-              isError ? quantityOfError(result, row) : [quantity(row.value, measure, row.unit), el('small', {}, errorText(result, row))]);
+    const attributes = {class: 'number ' + tint(result, row), title: `${row.value} ${row.unit}`};
+    if (isDistance(measure)) return el('td', attributes, inPercent(measure, row.unit) ? percent(100 * row.value) : write.text(row.value));
+    return el('td', attributes, write.text(row.value), el('small', {}, errorText(result, row)));
   }
-  const run = result.runs.find(same);
+  const run = findRun(result, at);
   return run && !run.ok ? el('td', {class: 'number lost', title: run.message}, 'no result') : el('td', {class: 'number'}, '–');
 }
 
-const quantityOfError = (result, row) => inPercent(row.measure, row.unit) ? percent(100 * row.error)
-  : quantity(row.value, row.measure, row.unit);
-
-function referenceLine(result, measure, nus) {
-  const rows = result.rows.filter(row => row.measure === measure);
-  const cells = nus.map(nu => {
-    const row = rows.find(r => r.poisson_ratio === nu && (isNumber(r.reference) || isNumber(r.reference_uncertainty)));
+function referenceLine(result, measure, write) {
+  const cells = result.nus.map(nu => {
+    const row = result.rows.find(r => r.measure === measure && r.poisson_ratio === nu && isNumber(r.reference_uncertainty)) ||
+      result.rows.find(r => r.measure === measure && r.poisson_ratio === nu && isNumber(r.reference));
     if (!row) return el('td', {class: 'number'}, '–');
-    return el('td', {class: 'number'}, isNumber(row.reference) ? quantity(row.reference, measure, row.unit) : '',
-              el('small', {}, isNumber(row.reference_uncertainty) ? '± ' + quantity(row.reference_uncertainty, measure, row.unit, 2) : ''));
+    return el('td', {class: 'number'}, isDistance(measure) ? '' : write.text(row.reference),
+              el('small', {}, isNumber(row.reference_uncertainty) ? '± ' + write.short(row.reference_uncertainty) : ''));
   });
   return el('tr', {class: 'reference-line'}, el('th', {scope: 'row'}, 'reference'), el('td', {}, ''), cells);
 }
 
+function resolutionsOf(result, model) {
+  return distinct(result.rows.concat(result.runs).filter(item => item.model === model).map(item => item.cells)).sort(bySize);
+}
+
 function resultTable(result, measure) {
-  const {nus} = result;
-  const lines = [...models.filter(model => result.models.includes(model))].flatMap(model => {
-    const resolutions = distinct(result.rows.concat(result.runs).filter(r => r.model === model).map(r => r.cells)).sort(bySize);
-    return resolutions.map((cells, i) => el('tr', {class: i === 0 ? 'group' : ''},
+  const rows = result.rows.filter(row => row.measure === measure);
+  const write = column(measure, rows[0].unit, rows.flatMap(row => [row.value, row.reference]));
+  const lines = models.filter(model => result.models.includes(model)).flatMap(model =>
+    resolutionsOf(result, model).map((cells, i) => el('tr', {class: i === 0 ? 'group' : ''},
       el('th', {scope: 'row'}, i === 0 ? modelName(model) : ''), el('td', {}, cellsText(cells)),
-      nus.map(nu => resultCell(result, measure, model, cellsText(cells), nu))));
-  });
-  return [el('h5', {}, measureText(measure)), table('results',
-    ['model', 'cells', ...nus.map(nu => el('th', {class: 'number'}, `ν = ${nuText(nu)}`))],
-    [referenceLine(result, measure, nus), ...lines])];
+      result.nus.map(nu => resultCell(result, measure, {model, cells, poisson_ratio: nu}, write)))));
+  const scale = result.scales.get(measure).unit;
+  const small = isDistance(measure) ? '' : `below each value its error${scale.startsWith('%') ? ' in ' + scale : ''}`;
+  return [el('h5', {}, withUnit(measureText(measure), write.unit),
+             el('small', {}, [measureMeanings[measure], small].filter(Boolean).join('; '))),
+    table('results', ['model', 'cells', ...result.nus.map(nu => right(`ν = ${nuText(nu)}`))],
+          [referenceLine(result, measure, write), ...lines])];
 }
 
 function resultsPart(result) {
+  const tables = list => list.map(measure => resultTable(result, measure));
   return [el('h4', {}, 'Results'), result.measures.length === 0 ? notice('No run of this case gave a result.')
-    : [result.measures.map(measure => resultTable(result, measure)), tintLegend()]];
+    : [tables(result.measures.filter(m => !result.vanishing.has(m))),
+       vanishingFold(result.measures.filter(m => result.vanishing.has(m)), tables), tintLegend()]];
 }
 
 // ---- expectations, published values, runs
+
+function expectedText({measure, unit, expected, within}) {
+  const tolerance = quantity(within, measure, unit, 2);
+  return isDistance(measure) && expected === 0 ? `≤ ${tolerance}` : `${quantity(expected, measure, unit)} ± ${tolerance}`;
+}
 
 function checkRow(check) {
   const {measure, unit} = check;
   const off = isNumber(check.computed) ? Math.abs(check.computed - check.expected) : null;
   return tr(verdictChip(check.verdict), modelName(check.model), nuText(check.poisson_ratio), cellsText(check.cells),
-    measureText(measure),
-    el('td', {class: 'number'}, `${quantity(check.expected, measure, unit)} ± ${quantity(check.within, measure, unit, 2)}`),
+    el('td', {class: 'measure'}, measureText(measure)),
+    el('td', {class: 'number'}, expectedText(check)),
     el('td', {class: 'number'}, quantity(check.computed, measure, unit)),
     el('td', {class: 'number'}, off !== null && check.within > 0 ? percent(100 * off / check.within) : '–'),
     el('td', {class: 'number'}, isNumber(check.reference_uncertainty) ? '± ' + quantity(check.reference_uncertainty, measure, unit, 2) : '–'),
-    [check.source, check.where].filter(Boolean).join(', '));
+    el('td', {class: 'measure'}, [check.source, check.where].filter(Boolean).join(', ')));
 }
 
+function checksTable(checks) {
+  return table('checks', ['verdict', 'model', 'ν', 'cells', 'measure', right('expected'), right('computed'),
+    right('of the tolerance'), right('uncertainty of the reference'), 'source'], checks.map(checkRow));
+}
+
+/// All of a few; of many, those that hold are folded away.
 function checksPart(result) {
-  const right = text => el('th', {class: 'number'}, text);
   const checks = [...result.checks].sort((a, b) => verdictOrder.indexOf(a.verdict) - verdictOrder.indexOf(b.verdict));
-  return [el('h4', {}, 'Expectations'), checks.length === 0 ? notice('This case states no expectations.') :
-    table('checks', ['verdict', 'model', 'ν', 'cells', 'measure', right('expected'), right('computed'),
-                     right('of the tolerance'), right('uncertainty of the reference'), 'source'], checks.map(checkRow))];
+  const open = checks.length > 16 ? checks.filter(check => check.verdict !== 'pass') : checks;
+  const held = checks.length > 16 ? checks.filter(check => check.verdict === 'pass') : [];
+  return [el('h4', {}, 'Expectations'), checks.length === 0 ? notice('This case states no expectations.') : null,
+    open.length > 0 ? checksTable(open) : null,
+    held.length > 0 ? el('details', {class: 'fold'}, el('summary', {}, `${held.length} expectations hold`), checksTable(held)) : null];
 }
 
 function publishedRow(item) {
   const {measure, unit} = item;
   const ratio = isNumber(item.computed) && item.published !== 0 ? 100 * (item.computed / item.published - 1) : null;
-  return tr(modelName(item.model), nuText(item.poisson_ratio), measureText(measure),
+  return tr(modelName(item.model), nuText(item.poisson_ratio), el('td', {class: 'measure'}, measureText(measure)),
     el('td', {class: 'number'}, quantity(item.published, measure, unit)),
     el('td', {class: 'number'}, quantity(item.computed, measure, unit)),
     el('td', {class: 'number'}, ratio === null ? '–' : signed(ratio, percent(ratio))), item.where, item.remark);
@@ -233,7 +255,6 @@ function publishedRow(item) {
 
 function publishedPart(result) {
   if (result.published.length === 0) return [];
-  const right = text => el('th', {class: 'number'}, text);
   return [el('h4', {}, 'Published values'), table('published', ['model', 'ν', 'measure', right('published'), right('ours'),
     right('ours to published'), 'where', 'remark'], result.published.map(publishedRow))];
 }
@@ -248,7 +269,6 @@ function runRow(run) {
 function runsPart(result) {
   const failed = result.runs.filter(run => !run.ok).length;
   const time = result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0);
-  const right = text => el('th', {class: 'number'}, text);
   return el('details', {class: 'fold'},
     el('summary', {}, `Runs: ${result.runs.length}` + (failed ? `, ${failed} without result` : '') + `, ${seconds(time)}`),
     table('runs', ['model', 'ν', 'cells', 'kinematics', 'solver', right('iterations'), right('residual'), right('time'),

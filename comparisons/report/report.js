@@ -42,7 +42,7 @@ function decorateHead() {
 
 /// Opens the case page that the address names.
 function followHash() {
-  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  const target = document.getElementById(location.hash.slice(1));
   if (!target || !target.classList.contains('case')) return;
   target.open = true;
   target.fill();

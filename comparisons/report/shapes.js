@@ -45,7 +45,9 @@ function decode(file, picture) {
   if (decoded.has(picture)) return decoded.get(picture);
   const mesh = file.meshes[picture.mesh];
   mesh.decoded = mesh.decoded || {rest: floatsOf(mesh.rest), quads: quadsOf(mesh.quads)};
-  const shape = {...mesh.decoded, displacement: floatsOf(picture.displacement), difference: floatsOf(picture.difference)};
+  const shape = {...mesh.decoded, displacement: floatsOf(picture.displacement).map(u => Number.isFinite(u) ? u : 0),
+                 difference: floatsOf(picture.difference)};
+  shape.size = norms(shape.displacement);
   decoded.set(picture, shape);
   return shape;
 }
@@ -112,24 +114,20 @@ function deformedSurface(shape) {
     polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
   const grid = new THREE.LineSegments(lines, new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.22}));
   body.frustumCulled = grid.frustumCulled = false;
-  return {objects: [body, grid], paint(amplification, values, top) {
+  return {body, position, objects: [body, grid], paint(amplification, values, top) {
     for (let i = 0; i < position.array.length; ++i)
       position.array[i] = shape.rest[i] + amplification * shape.displacement[i];
     for (let i = 0; i < shape.rest.length / 3; ++i)
       color.array.set(values && isNumber(values[i]) ? viridis(top > 0 ? values[i] / top : 0) : [0.72, 0.72, 0.72], 3 * i);
     position.needsUpdate = color.needsUpdate = true;
+    surface.computeBoundingSphere();   // the pointer's ray looks there first
   }};
 }
 
 function litScene(objects) {
-  const scene = new THREE.Scene();
-  scene.add(new THREE.AmbientLight(0xffffff, 0.72), ...objects);
-  for (const [x, y, z, strength] of [[1, -2, 3, 0.3], [-2, -1, 1, 0.12]]) {
-    const light = new THREE.DirectionalLight(0xffffff, strength);
-    light.position.set(x, y, z);
-    scene.add(light);
-  }
-  return scene;
+  const scene = new THREE.Scene(), lamp = new THREE.DirectionalLight(0xffffff, 0.4);
+  scene.add(new THREE.AmbientLight(0xffffff, 0.66), lamp, ...objects);
+  return {scene, lamp};
 }
 
 // ---- the viewer: canvas, camera, panels
@@ -137,7 +135,7 @@ function litScene(objects) {
 class Viewer {
   constructor() {
     this.canvas = el('canvas', {'aria-hidden': 'true'});
-    this.node = el('div', {class: 'viewer', tabindex: '0',
+    this.node = el('div', {class: 'viewer', role: 'img',
                            'aria-label': 'Deformed shapes; drag to turn all of them together'}, this.canvas);
     this.panels = [];
     this.stale = true;
@@ -152,7 +150,7 @@ class Viewer {
   /// The context is made when the viewer is first seen.
   start() {
     if (this.renderer) return;
-    this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true});
+    this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.camera = new THREE.PerspectiveCamera(28, 1, 0.01, 1000);
     this.camera.up.set(0, 0, 1);
@@ -161,15 +159,43 @@ class Viewer {
     this.controls.enableZoom = false;   // until clicked: the wheel belongs to the page
     this.controls.addEventListener('change', () => this.request());
     this.node.addEventListener('pointerdown', () => { this.controls.enableZoom = true; });
-    this.node.addEventListener('pointerleave', () => { this.controls.enableZoom = false; });
+    this.node.addEventListener('pointerleave', () => { this.controls.enableZoom = false; this.onhover(null); });
+    this.node.addEventListener('pointermove', event => { if (event.buttons === 0) this.onhover(this.nodeAt(event)); });
   }
 
-  /// panels: [{label: Node, scene}]
+  /// Where a panel's body is drawn: below the label.
+  viewOf({node}) {
+    const {left, top, width, height} = node.getBoundingClientRect();
+    return {left, top: top + 46, width, height: height - 46};
+  }
+
+  /// Number of the surface node nearest to the pointer, or null.
+  nodeAt({clientX, clientY}) {
+    for (const panel of this.panels) {
+      const {surface} = panel, box = this.viewOf(panel);
+      const x = 2 * (clientX - box.left) / box.width - 1, y = 1 - 2 * (clientY - box.top) / box.height;
+      if (Math.abs(x) > 1 || Math.abs(y) > 1) continue;
+      const ray = new THREE.Raycaster();
+      ray.setFromCamera(new THREE.Vector2(x, y), this.camera);
+      const hit = ray.intersectObject(surface.body)[0];
+      if (!hit) return null;
+      const {a, b, c} = hit.face;
+      const distance = i => new THREE.Vector3().fromBufferAttribute(surface.position, i).distanceTo(hit.point);
+      return [a, b, c].reduce((best, i) => distance(i) < distance(best) ? i : best);
+    }
+    return null;
+  }
+
+  /// panels: [{label: Node, scene, lamp, surface}]
   show(panels) {
     for (const panel of this.panels) panel.node.remove();
     this.panels = panels.map(panel => ({...panel, node: el('div', {class: 'panel'}, panel.label)}));
     this.node.append(...this.panels.map(panel => panel.node));
     this.request();
+  }
+
+  forgetDirection() {
+    this.aimed = false;
   }
 
   /// Looks at a box from the front right; keeps the direction if there is one already.
@@ -181,11 +207,9 @@ class Viewer {
   applyAim() {
     if (!this.pending) return;
     const centre = this.pending.getCenter(new THREE.Vector3());
-    const radius = this.pending.getSize(new THREE.Vector3()).length() / 2 || 1;
     const direction = this.aimed ? this.camera.position.clone().sub(this.controls.target).normalize()
       : new THREE.Vector3(0.62, -1, 0.5).normalize();
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = 0.92 * radius / Math.sin(Math.PI * this.camera.fov / 360) / narrow;
+    const distance = 1.06 * this.fittingDistance(this.pending, centre, direction);
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(direction, distance);
     this.camera.near = distance / 100;
@@ -195,16 +219,29 @@ class Viewer {
     this.controls.update();
   }
 
+  /// Distance from `centre`, seen from `direction`, at which every corner of the box is inside the panel.
+  fittingDistance(box, centre, direction) {
+    const right = this.camera.up.clone().cross(direction).normalize();
+    const up = direction.clone().cross(right);
+    const high = Math.tan(Math.PI * this.camera.fov / 360), wide = high * this.camera.aspect;
+    const {min, max} = box;
+    const corners = [min.x, max.x].flatMap(x => [min.y, max.y].flatMap(y => [min.z, max.z].map(z =>
+      new THREE.Vector3(x, y, z).sub(centre))));
+    return Math.max(1e-9, ...corners.map(c => c.dot(direction) +
+      Math.max(Math.abs(c.dot(right)) / wide, Math.abs(c.dot(up)) / high)));
+  }
+
   request() {
     if (this.waiting) return;
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      if (this.visible && this.panels.length > 0) this.render();
+      if (this.visible) this.render();
     });
   }
 
   render() {
+    if (this.panels.length === 0) return;
     try {
       this.start();
     } catch (error) {
@@ -214,17 +251,21 @@ class Viewer {
     }
     const frame = this.node.getBoundingClientRect();
     if (frame.width === 0) return;
-    const first = this.panels[0].node.getBoundingClientRect();
+    const first = this.viewOf(this.panels[0]);
     this.camera.aspect = first.width / first.height;
     this.camera.updateProjectionMatrix();
     this.applyAim();
     this.renderer.setSize(frame.width, frame.height, false);
+    this.renderer.setClearColor(cssColor('--paper'));   // opaque: printers paint transparency black
     this.renderer.setScissorTest(false);
     this.renderer.clear();
     this.renderer.setScissorTest(true);
+    const lamp = this.camera.position.clone().sub(this.controls.target).normalize();   // moves with the eye
+    lamp.add(new THREE.Vector3(0, 0, 0.6));
     for (const panel of this.panels) {
-      const box = panel.node.getBoundingClientRect();
-      const view = [box.left - frame.left, frame.bottom - box.bottom, box.width, box.height];
+      const box = this.viewOf(panel);
+      const view = [box.left - frame.left, frame.bottom - box.top - box.height, box.width, box.height];
+      panel.lamp.position.copy(lamp);
       this.renderer.setViewport(...view);
       this.renderer.setScissor(...view);
       this.renderer.render(panel.scene, this.camera);
@@ -261,10 +302,11 @@ function shapesSection(section) {
   const nuChoice = select('ν', [], updateCells), cellsChoice = select('Cells', [], updateModels);
   const colorChoice = select('Colour', [['displacement', 'displacement |u|'],
                                         ['difference', 'difference to FEM |u − u_fem|']], paint);
-  const slider = el('input', {type: 'range', min: 0, max: 4, step: 0.01, oninput: () => paint()});
+  const slider = el('input', {type: 'range', min: 0, max: 4, step: 0.01, oninput: () => paint(),
+                              onchange: () => aimAtAll()});
   const factor = el('output', {});
   const modelBoxes = el('div', {class: 'boxes'});
-  let shown = [], wanted = null;
+  let shown = [], wanted = null, hovered = null;
 
   const result = () => withPictures.find(c => c.id === caseChoice.value);
   const ofNu = () => picturesOf(result()).pictures.filter(p => String(p.poisson_ratio) === nuChoice.value);
@@ -272,7 +314,9 @@ function shapesSection(section) {
 
   function update() {
     const nus = distinct(picturesOf(result()).pictures.map(p => p.poisson_ratio)).sort((a, b) => a - b);
+    const fresh = nuChoice.value === '';
     replaceOptions(nuChoice, nus.map(nu => [String(nu), nuText(nu)]));
+    if (fresh) nuChoice.value = String(nus.includes(0.4) ? 0.4 : nus[nus.length >> 1]);
     viewer.newCase = true;
     updateCells();
   }
@@ -309,7 +353,7 @@ function shapesSection(section) {
       const shape = decode(file, picture);
       const surface = deformedSurface(shape), rest = outline(shape, 0x888888);
       return {picture, shape, surface, disposable: [...surface.objects, rest],
-              scene: litScene([...surface.objects, rest]), label: el('div', {class: 'panel-label'})};
+              ...litScene([...surface.objects, rest]), label: el('div', {class: 'panel-label'})};
     });
     chooseAmplification();
     viewer.show(shown);
@@ -320,7 +364,7 @@ function shapesSection(section) {
   function chooseAmplification() {
     if (!viewer.newCase || shown.length === 0) return;
     const size = boundsOf(shown[0].shape.rest).getSize(new THREE.Vector3());
-    const moved = Math.max(...shown.map(s => largest(norms(s.shape.displacement))));
+    const moved = Math.max(...shown.map(s => largest(s.shape.size)));
     const target = 0.15 * Math.max(size.x, size.y, size.z);
     slider.value = Math.log10(result().linear && moved > 0 ? roundAmplification(target / moved) : 1);
   }
@@ -333,31 +377,48 @@ function shapesSection(section) {
 
   const amplification = () => Number((10 ** Number(slider.value)).toPrecision(3));
 
+  const coloursDifference = () => colorChoice.value === 'difference';
+  const valuesShown = () => shown.map(({shape}) => !coloursDifference() ? shape.size
+    : shape.difference.length > 0 ? shape.difference : null);
+
   function paint() {
-    const difference = colorChoice.value === 'difference';
-    const values = shown.map(s => difference ? (s.shape.difference.length ? s.shape.difference : null) : norms(s.shape.displacement));
+    const values = valuesShown();
     const top = Math.max(0, ...values.filter(Boolean).map(largest));
     factor.textContent = '×' + number(amplification(), 3);
-    shown.forEach((entry, i) => {
-      entry.surface.paint(amplification(), values[i], top);
-      label(entry, values[i]);
-    });
-    bar.show(difference ? 'difference to FEM, |u − u_fem|' : 'displacement, |u|', top);
+    shown.forEach((entry, i) => entry.surface.paint(amplification(), values[i], top));
+    labels();
+    bar.show(coloursDifference() ? 'difference to FEM, |u − u_fem|' : 'displacement, |u|', top);
     viewer.request();
   }
   function label({picture, label: node}, values) {
     const name = picture.model === 'fem' ? el('span', {class: 'model'}, swatch('fem'), 'FEM reference') : modelName(picture.model);
-    const top = values ? largest(values) : 0, {factor: f, unit} = lengthUnit(top);
-    node.replaceChildren(name, el('small', {}, values ? `max ${number(top * f, 3)} ${unit}` : 'the reference itself'));
+    const at = hovered !== null && values && hovered < values.length;
+    node.replaceChildren(name, el('small', {}, !values ? 'the reference itself'
+      : at ? `here ${lengthText(values[hovered])}` : `largest ${lengthText(largest(values))}`));
+  }
+  const lengthText = x => { const {factor: f, unit} = lengthUnit(x); return `${number(x * f, 4)} ${unit}`; };
+  viewer.onhover = node => {
+    if (node === hovered) return;
+    hovered = node;
+    labels();
+  };
+  function labels() {
+    const values = valuesShown();
+    shown.forEach((entry, i) => label(entry, values[i]));
   }
 
+  viewer.node.addEventListener('dblclick', () => {
+    viewer.forgetDirection();
+    aimAtAll();
+  });
   section.append(
-    el('p', {class: 'lead'}, 'Drag to turn all bodies together, click and use the wheel to zoom. Grey lines: the body at rest.'),
+    el('p', {class: 'lead'}, 'Drag to turn all bodies together, click and use the wheel to zoom, point at a spot to read its value in every panel; ' +
+       'a double click brings the first view back. Grey lines: the body at rest.'),
     el('div', {class: 'choices'}, caseChoice.node, nuChoice.node, cellsChoice.node, colorChoice.node,
        el('label', {class: 'choice amplification'}, el('span', {}, 'Displacements drawn ', factor), slider)),
     modelBoxes, viewer.node, bar.node);
   update();
-  charts.push(() => viewer.request());
+  charts.push(() => viewer.render());
   return {
     show(id) { if (withPictures.some(c => c.id === id)) { caseChoice.value = id; update(); } },
     has: id => withPictures.some(c => c.id === id),
