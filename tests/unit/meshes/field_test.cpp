@@ -1,0 +1,160 @@
+#include "meshes/field.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "support/tolerances.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<unsigned char> decode_base64(const std::string& text) {
+  std::vector<unsigned char> bytes;
+  std::uint32_t word = 0;
+  int digits = 0, padding = 0;
+  for (const char c : text) {
+    int value = 0;
+    if (c >= 'A' && c <= 'Z')
+      value = c - 'A';
+    else if (c >= 'a' && c <= 'z')
+      value = c - 'a' + 26;
+    else if (c >= '0' && c <= '9')
+      value = c - '0' + 52;
+    else if (c == '+')
+      value = 62;
+    else if (c == '/')
+      value = 63;
+    else if (c == '=')
+      ++padding;
+    else
+      throw std::runtime_error("not base64");
+    word = word << 6 | value;
+    if (++digits % 4) continue;
+    for (int shift = 16; shift >= 0; shift -= 8) bytes.push_back(word >> shift & 0xff);
+    word = 0;
+  }
+  if (digits % 4) throw std::runtime_error("base64 is cut off");
+  bytes.resize(bytes.size() - padding);
+  return bytes;
+}
+
+/// The values of one DataArray, checked against the byte count before them.
+template <class T>
+std::vector<T> read_array(const std::string& document, const std::string& name) {
+  const std::size_t tag = document.find("Name=\"" + name + "\"");
+  if (tag == std::string::npos) throw std::runtime_error("no array " + name);
+  const std::size_t begin = document.find('>', tag) + 1, end = document.find('<', begin);
+  const auto bytes = decode_base64(document.substr(begin, end - begin));
+  std::uint64_t size = 0;
+  std::memcpy(&size, bytes.data(), sizeof size);
+  if (bytes.size() != sizeof size + size) throw std::runtime_error("wrong byte count");
+  std::vector<T> values(size / sizeof(T));
+  std::memcpy(values.data(), bytes.data() + sizeof size, size);
+  return values;
+}
+
+class Vtu : public testing::Test {
+ protected:
+  Vtu() : folder_(fs::temp_directory_path() / ("springproof_vtu_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~Vtu() override { fs::remove_all(folder_); }
+
+  static std::string read(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+  /// A stretched block of 3 x 2 x 1 cells with a tetrahedron on top.
+  static Field example() {
+    Mesh mesh = block_mesh({3, 2, 1}, {3, 2, 1});
+    const Eigen::Index top = mesh.nodes.rows();
+    mesh.nodes.conservativeResize(top + 1, 3);
+    mesh.nodes.row(top) << 0, 0, 2;
+    mesh.tetrahedra = {{12, 13, 16, static_cast<int>(top)}};
+    Field field;
+    field.displacement = mesh.nodes * Vec3(0.1, -0.05, 0.2).asDiagonal();
+    field.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    return field;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Vtu, EveryArrayReadsBack) {
+  const Field field = example();
+  const NodalVectors difference = NodalVectors::Constant(field.mesh->nodes.rows(), 3, 1.0 / 3);
+  write_vtu(folder_ / "a.vtu", field, {{"difference to FEM", difference}});
+  const std::string document = read(folder_ / "a.vtu");
+
+  EXPECT_NE(document.find("NumberOfPoints=\"25\" NumberOfCells=\"7\""), std::string::npos);
+  EXPECT_NE(document.find("header_type=\"UInt64\""), std::string::npos);
+  auto expect_vectors = [&](const std::string& name, const NodalVectors& expected) {
+    const auto values = read_array<double>(document, name);
+    ASSERT_EQ(values.size(), static_cast<std::size_t>(expected.size())) << name;
+    EXPECT_EQ(std::memcmp(values.data(), expected.data(), values.size() * sizeof(double)), 0) << name;
+  };
+  expect_vectors("displacement", field.displacement);
+  expect_vectors("difference to FEM", difference);
+  expect_vectors("position", field.mesh->nodes);
+
+  const auto connectivity = read_array<std::int32_t>(document, "connectivity");
+  ASSERT_EQ(connectivity.size(), 6u * 8 + 4);
+  EXPECT_TRUE(
+      std::equal(connectivity.begin() + 40, connectivity.begin() + 48, field.mesh->hexahedra[5].begin()));
+  EXPECT_EQ(connectivity.back(), 24);
+  EXPECT_EQ(read_array<std::int32_t>(document, "offsets"),
+            (std::vector<std::int32_t>{8, 16, 24, 32, 40, 48, 52}));
+  EXPECT_EQ(read_array<std::uint8_t>(document, "types"),
+            (std::vector<std::uint8_t>{12, 12, 12, 12, 12, 12, 10}));
+  const auto changes = read_array<double>(document, "relative_volume_change");
+  ASSERT_EQ(changes.size(), 7u);
+  for (const double change : changes) EXPECT_NEAR(change, 1.1 * 0.95 * 1.2 - 1, test::round_off);
+}
+
+TEST_F(Vtu, NamesAreEscaped) {
+  const Field field = example();
+  write_vtu(folder_ / "a.vtu", field, {{"a<b & \"c\"", field.displacement}});
+  EXPECT_NE(read(folder_ / "a.vtu").find("Name=\"a&lt;b &amp; &quot;c&quot;\""), std::string::npos);
+}
+
+TEST_F(Vtu, ReplacesAnOlderFileAndLeavesNothingElse) {
+  std::ofstream(folder_ / "a.vtu") << "old";
+  write_vtu(folder_ / "a.vtu", example());
+  EXPECT_EQ(read(folder_ / "a.vtu").rfind("<?xml", 0), 0u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Vtu, WhatCannotBeWrittenThrowsAndLeavesNothing) {
+  EXPECT_THROW(write_vtu(folder_ / "nowhere" / "a.vtu", example()), std::runtime_error);
+  fs::create_directory(folder_ / "taken.vtu");
+  std::ofstream(folder_ / "taken.vtu" / "file") << "x";
+  EXPECT_THROW(write_vtu(folder_ / "taken.vtu", example()), std::runtime_error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+  if (fs::exists("/dev/full")) {
+    fs::create_symlink("/dev/full", folder_ / "full.vtu.part");
+    EXPECT_THROW(write_vtu(folder_ / "full.vtu", example()), std::runtime_error);
+    EXPECT_FALSE(fs::exists(folder_ / "full.vtu"));
+  }
+}
+
+TEST_F(Vtu, WrongShapesAreRefused) {
+  Field field = example();
+  EXPECT_THROW(write_vtu(folder_ / "a.vtu", field, {{"short", NodalVectors::Zero(3, 3)}}),
+               std::invalid_argument);
+  field.displacement.conservativeResize(3, 3);
+  EXPECT_THROW(write_vtu(folder_ / "a.vtu", field), std::invalid_argument);
+  EXPECT_FALSE(fs::exists(folder_ / "a.vtu"));
+}
+
+}  // namespace
+}  // namespace springproof
