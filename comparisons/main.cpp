@@ -17,8 +17,7 @@ using namespace springproof;
 int list() {
   fmt::print("Cases (springproof compare NAME):\n");
   for (const auto& file : built_in_cases()) {
-    const Experiment e = read_experiment(file);
-    fmt::print("  {:<38} {}\n", e.folder + "/" + e.name, e.what);
+    fmt::print("  {:<38} {}\n", case_name(file), read_experiment(file).what);
   }
   fmt::print("\nModels ([compare] models = [...]):\n");
   for (const ModelRow& row : model_table()) fmt::print("  {:<38} {}\n", row.name, row.what);

@@ -31,15 +31,14 @@ std::atomic<bool> interrupted = false;
 
 void on_interrupt(int) { interrupted = true; }
 
+template <class Iterator>
 std::vector<fs::path> toml_files(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
+  for (const auto& entry : Iterator(folder))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
-
-std::string name_of(const Experiment& e) { return e.folder.empty() ? e.name : e.folder + "/" + e.name; }
 
 /// One part of one case: the unit of work.
 struct Task {
@@ -67,13 +66,13 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
   std::vector<Task> tasks;
   for (const PreparedCase& p : prepared)
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
-      std::string key = name_of(p.experiment);
+      std::string key = case_name(p.experiment.file);
       std::replace(key.begin(), key.end(), '/', '-');
       const std::string nu = fmt::format("nu{:g}", p.experiment.materials[m].poisson_ratio);
       const std::string stamp = fmt::format("{} {} {:016x}", SPRINGPROOF_VERSION, nu, std::hash<std::string>()(p.experiment.text));
       tasks.push_back({&p, m, options.out / "parts" / (key + "-" + nu + ".cbor"),
                        options.vtu ? options.out / "vtu" / key : fs::path(), stamp,
-                       fmt::format("{}  {}", name_of(p.experiment), nu), {}});
+                       fmt::format("{}  {}", case_name(p.experiment.file), nu), {}});
     }
   return tasks;
 }
@@ -191,7 +190,12 @@ int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
 
 }  // namespace
 
-std::vector<fs::path> built_in_cases() { return toml_files(SPRINGPROOF_EXPERIMENTS_DIR); }
+std::string case_name(const fs::path& file) {
+  const fs::path relative = fs::proximate(fs::absolute(file), SPRINGPROOF_EXPERIMENTS_DIR);
+  return *relative.begin() == ".." ? file.stem().string() : (relative.parent_path() / relative.stem()).string();
+}
+
+std::vector<fs::path> built_in_cases() { return toml_files<fs::recursive_directory_iterator>(SPRINGPROOF_EXPERIMENTS_DIR); }
 
 std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
   std::vector<fs::path> cases;
@@ -200,7 +204,7 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
     std::vector<fs::path> found;
     for (const fs::path& path : {fs::path(name), built_in, fs::path(built_in.string() + ".toml")}) {
       if (fs::is_directory(path))
-        found = toml_files(path);
+        found = toml_files<fs::directory_iterator>(path);
       else if (fs::exists(path))
         found = {path};
       if (!found.empty()) break;

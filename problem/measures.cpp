@@ -33,8 +33,8 @@ struct Measure {
 
 constexpr Measure measures[] = {
     {"displacement_error", nullptr}, {"displacement_error_max", nullptr},    {"section_distance", nullptr},
-    {"volume_change", nullptr},      {"volume_change_first_order", nullptr}, {"reaction", reaction_rows},
-    {"probe", probe_rows},
+    {"volume_change", nullptr},      {"volume_change_magnitude", nullptr},   {"volume_change_first_order", nullptr},
+    {"reaction", reaction_rows},     {"probe", probe_rows},
 };
 
 }  // namespace

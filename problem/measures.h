@@ -9,7 +9,8 @@ namespace springproof {
 struct Experiment;
 
 /// Names allowed in [compare] measures: displacement_error, displacement_error_max, section_distance,
-/// volume_change, volume_change_first_order, reaction, probe.
+/// volume_change, volume_change_magnitude (its absolute value, the papers' e), volume_change_first_order, reaction,
+/// probe.
 std::vector<std::string> measure_names();
 
 /// Names of the rows that a measure gives for an experiment, as [[expect]] and [[published]] write them. Most

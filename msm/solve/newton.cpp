@@ -28,6 +28,7 @@ struct Newton {
   std::unique_ptr<Multigrid> multigrid;  ///< of the rest state, kept throughout; empty: direct solves
   BlockMatrix K;                         ///< tangent at the last factored state
   DirectSolver direct;                   ///< its factors
+  double stiffness = 0;                  ///< largest diagonal entry at rest [N/m]
   int iterations = 0;
 
   Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
@@ -38,15 +39,17 @@ struct Newton {
 
   long unknowns() const { return std::count(fixed.begin(), fixed.end(), 0); }
 
-  /// Unbalanced force on free unknowns, relative to the forces that are in balance.
-  double residual(const NodalVectors& internal, const NodalVectors& external, Eigen::VectorXd& r) const {
-    r = flat(internal) + flat(external);
+  /// Unbalanced force on free unknowns, relative to the forces that are in balance (or, for motions that need next
+  /// to none, a thousandth of stiffness times displacement).
+  double residual(const NodalVectors& x, const NodalVectors& external, Eigen::VectorXd& r) const {
+    r = flat(forces(model, x)) + flat(external);
     double on_fixed = 0, on_free = 0;
     for (Eigen::Index i = 0; i < r.size(); ++i) {
       (fixed[i] ? on_fixed : on_free) += r[i] * r[i];
       if (fixed[i]) r[i] = 0;
     }
-    const double scale = std::max(std::sqrt(on_fixed), external.norm());
+    const double floor = 1e-3 * stiffness * (x - model.network.X).cwiseAbs().maxCoeff();
+    const double scale = std::max({std::sqrt(on_fixed), external.norm(), floor});
     return scale > 0 ? std::sqrt(on_free) / scale : std::sqrt(on_free);
   }
 
@@ -99,7 +102,7 @@ struct Newton {
       if (fixed[i]) du.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i] - x.data()[i];
     Eigen::VectorXd r, Kdu, correction;
     K.multiply(flat(du), Kdu);
-    residual(forces(model, x), bc.external, r);
+    residual(x, bc.external, r);
     solve(r - Kdu, 1e-3, correction);
     return x + du + Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
   }
@@ -114,7 +117,7 @@ struct Newton {
       const double now = potential(trial, external);
       Eigen::VectorXd ignored;
       const bool lower = now <= start + 1e-4 * t * slope;
-      const bool at_noise = std::abs(now - start) <= noise && residual(forces(model, trial), external, ignored) < relative;
+      const bool at_noise = std::abs(now - start) <= noise && residual(trial, external, ignored) < relative;
       if (std::isfinite(now) && (lower || at_noise)) {
         x = trial;
         return true;
@@ -128,9 +131,8 @@ struct Newton {
     NodalVectors trial = predict(x, bc);
     for (int i = 0; i < options.max_iterations; ++i) {
       Eigen::VectorXd r, du;
-      const NodalVectors internal = forces(model, trial);
-      if (!internal.allFinite()) return Outcome::not_converged;
-      relative = residual(internal, bc.external, r);
+      relative = residual(trial, bc.external, r);
+      if (!std::isfinite(relative)) return Outcome::not_converged;
       const bool definite = factor(trial);
       if (relative <= options.tolerance) {
         if (!definite || !stable()) return Outcome::unstable;
@@ -170,6 +172,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   } else if (!newton.factor(x)) {
     result.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
   } else {
+    newton.stiffness = newton.K.diagonal().maxCoeff();
     double step = options.first_step;
     while (result.load_reached < 1 && step >= options.smallest_step) {
       const double next = std::min(1.0, result.load_reached + step);
