@@ -27,6 +27,7 @@ struct ElasticSystem {
   Form form;
   double mu, lambda;  ///< [Pa]
   double tolerance;   ///< relative residual
+  bool wide_vectors;  ///< where the processor has them
 };
 
 struct ElasticAnswer {

@@ -26,7 +26,7 @@ ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVecto
 
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
 #ifdef SPRINGPROOF_HAVE_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+  if (system.wide_vectors && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
     return avx2::solve(system, load, displacement);
 #endif
   return one_lane::solve(system, load, displacement);
@@ -70,7 +70,8 @@ void solve_linear(const GridProblem& problem, const Body3& body, dealii::DoFHand
                        form_for(problem),
                        shear_modulus(problem.material),
                        lame_lambda(problem.material),
-                       problem.tolerance};
+                       problem.tolerance,
+                       problem.wide_vectors};
   for (const Prescribed& p : held) {
     system.constrained.push_back(p.dof);
     u[p.dof] = *prescribed_displacement(problem.loads[p.load], p.X, Kinematics::linear)[p.component];
@@ -113,7 +114,7 @@ Solution solve_grid(const GridProblem& problem) {
   solution.law = problem.law;
   solution.degrees_of_freedom = dof_handler.n_dofs();
   if (problem.law != "linear")
-    throw InputError(fmt::format("unknown law \"{}\"; there is: linear", problem.law));
+    throw InputError(fmt::format("unknown law \"{}\"; there are: linear", problem.law));
   solve_linear(problem, *body, dof_handler, solution);
   solution.seconds = cpu_seconds() - start;
   solution.memory_MiB = peak_memory_MiB();

@@ -17,8 +17,9 @@ struct GridProblem {
   IsotropicMaterial material;
   std::vector<Load> loads;
   std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none
-  NodalVectors points;      ///< rest positions at which the displacement is wanted, n x 3 [m]
-  double tolerance = 1e-9;  ///< relative residual
+  NodalVectors points;       ///< rest positions at which the displacement is wanted, n x 3 [m]
+  double tolerance = 1e-9;   ///< relative residual
+  bool wide_vectors = true;  ///< use the wide vectors of the processor, where it has them
 };
 
 /// Solution::grid is left to the caller.  A solver that fails gives ok = false.

@@ -1,0 +1,90 @@
+// The way through the separate program: request, answer, errors.
+#include "fem_reference/reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "fem_reference/solve_grid.h"
+
+namespace springproof {
+namespace {
+
+std::string squeezed_cube(const std::string& patch) {
+  return R"(
+kinematics = "linear"
+[body]
+geo = "block.geo"
+size_m = [5, 5, 5]
+cells = [4, 4, 4]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.25
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = ")" +
+         patch +
+         R"("
+displacement_m = [0, 0, -0.25]
+[compare]
+models = ["hybmss"]
+measures = ["volume_change"]
+)";
+}
+
+fem::Request request(const std::string& patch = "z_max") {
+  fem::Request request;
+  request.experiment = parse_experiment(squeezed_cube(patch), "cube.toml");
+  request.material = request.experiment.materials.front();
+  request.grids = {{{4, 4, 4}, 2, 1.0}, {{6, 6, 6}, 1, 1.5}};
+  request.points = Eigen::RowVector3d(1, 2, 3);
+  return request;
+}
+
+TEST(FemReference, AnswersAsTheSolverInThisProcess) {
+  ASSERT_TRUE(fem::available());
+  EXPECT_EQ(fem::version(), fem::library_versions());
+  const std::vector<fem::Solution> solutions = fem::solve(request());
+  ASSERT_EQ(solutions.size(), 2u);
+
+  fem::GridProblem problem;
+  problem.coarse = block_mesh(Vec3(5, 5, 5), {3, 3, 3});
+  problem.refinements = 1;
+  problem.place = fem::graded(Vec3::Zero(), Vec3(5, 5, 5), 1.5);
+  problem.degree = 1;
+  problem.material = request().material;
+  problem.loads = request().experiment.loads;
+  problem.points = request().points;
+  const fem::Solution here = fem::solve_grid(problem), &there = solutions[1];
+  ASSERT_TRUE(there.ok) << there.message;
+  EXPECT_EQ(there.grid.cells, (Cells{6, 6, 6}));
+  EXPECT_EQ(there.degrees_of_freedom, 3 * 7 * 7 * 7);
+  EXPECT_EQ(there.form, here.form);
+  EXPECT_LE((there.displacement - here.displacement).norm(), 1e-8);
+  ASSERT_EQ(there.reactions.size(), 2u);
+  EXPECT_EQ(there.reactions[1].patch, "z_max");
+  EXPECT_NEAR(there.reactions[1].force[2], here.reactions[1].force[2], 1e-4);
+  EXPECT_NEAR(there.volume_change, here.volume_change, 1e-9);
+}
+
+TEST(FemReference, PassesOnThatTheInputIsWrong) {
+  try {
+    fem::solve(request("lid"));
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("lid"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("z_max"), std::string::npos);
+  }
+}
+
+TEST(FemReference, SaysWhyTheProgramFailed) {
+  setenv("SPRINGPROOF_FEM_PROGRAM", "/bin/false", 1);
+  EXPECT_THROW(fem::solve(request()), std::runtime_error);
+  EXPECT_EQ(fem::version(), "");
+  unsetenv("SPRINGPROOF_FEM_PROGRAM");
+}
+
+}  // namespace
+}  // namespace springproof
