@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# problem <- meshes <- {msm, fem_reference} <- comparisons: each module compiles with what lies below it and not with
+# what lies beside or above.   arrows.sh COMPILER BUILD_DIRECTORY EIGEN_INCLUDE
+set -u
+compiler=$1 views=$2/arrows eigen=$3
+failures=0
+declare -A below=(
+  [problem]="problem" [meshes]="problem meshes" [msm]="problem meshes msm"
+  [fem_reference]="problem meshes fem_reference" [comparisons]="problem meshes msm fem_reference comparisons"
+)
+declare -A header=(
+  [problem]=problem/material.h [meshes]=meshes/mesh.h [msm]=msm/network.h
+  [fem_reference]=fem_reference/reference.h [comparisons]=comparisons/results.h
+)
+for module in "${!below[@]}"; do
+  paths=(-isystem "$eigen")
+  for m in ${below[$module]}; do paths+=("-I$views/$m"); done
+  for other in "${!header[@]}"; do
+    allowed=no
+    [[ " ${below[$module]} " == *" $other "* ]] && allowed=yes
+    compiles=no
+    echo "#include \"${header[$other]}\"" | "$compiler" -std=c++20 "${paths[@]}" -fsyntax-only -x c++ - 2>/dev/null && compiles=yes
+    if [ $allowed != $compiles ]; then
+      echo "FAILED: in $module, an include of ${header[$other]} compiles: $compiles, allowed: $allowed"
+      failures=$((failures + 1))
+    fi
+  done
+done
+if grep -rnE '#include +"\.\./' --include=*.h --include=*.cpp "$(readlink -f "$views/problem/problem/..")"/{problem,meshes,msm,fem_reference,comparisons}; then
+  echo "FAILED: includes that go around the arrows"
+  failures=$((failures + 1))
+fi
+[ $failures -eq 0 ] && echo "arrows hold"
+exit $((failures > 0))

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# Unusable input: exit status 2, one clear line on stderr, nothing written.   bad_input.sh PROGRAM
+set -u
+program=$1
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+failures=0
+
+good=$(cat <<'TOML'
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [2, 2, 2]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.25
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+displacement_m = [0, 0, 0.01]
+[compare]
+models = ["hybmss"]
+TOML
+)
+
+# expect NAME PATTERN ARGUMENTS...: status 2, one line that matches, no output folder
+expect() {
+  local name=$1 pattern=$2
+  shift 2
+  rm -rf "$work/out"
+  "$program" "$@" >"$work/stdout" 2>"$work/stderr"
+  local status=$?
+  if [ $status -ne 2 ] || [ "$(wc -l <"$work/stderr")" -ne 1 ] || ! grep -qE "$pattern" "$work/stderr" || [ -e "$work/out" ]; then
+    echo "FAILED: $name: status $status, stderr:"
+    cat "$work/stderr"
+    failures=$((failures + 1))
+  fi
+}
+
+# edited NAME PATTERN SED-EXPRESSION: the good case, spoilt
+edited() {
+  sed -E "$3" <<<"$good" >"$work/case.toml"
+  expect "$1" "$2" compare "$work/case.toml" --out "$work/out"
+}
+
+edited "unknown key" "case.toml:4:1: .*cell.*did you mean 'cells'" 's/^cells/cell/'
+edited "nu = 0.5" "case.toml:7:.*poisson_ratio.*0\.5" 's/0\.25/0.5/'
+edited "nu = 0.6" "case.toml:7:.*poisson_ratio.*0\.6" 's/0\.25/0.6/'
+edited "E < 0" "case.toml:6:.*youngs_modulus" 's/1e4/-1e4/'
+edited "E is text" "case.toml:6:.*youngs_modulus" 's/1e4/"soft"/'
+edited "cells = 0" "case.toml:4:.*cells" 's/\[2, 2, 2\]/[2, 0, 2]/'
+edited "not cubes" "cubes" 's/\[2, 2, 2\]/[2, 2, 3]/'
+edited "no such patch" "z_top" 's/z_max/z_top/'
+edited "unconstrained body" "not held" 's/\[0, 0, 0\]/["free", "free", 0]/; s/\[0, 0, 0\.01\]/["free", "free", 0.01]/'
+edited "no such model" "hybms.*did you mean 'hybmss'" 's/"hybmss"/"hybms"/'
+edited "no such body" "ball.geo" 's/block.geo/ball.geo/'
+edited "three moduli" "material" 's/^poisson_ratio/shear_modulus_Pa = 1\npoisson_ratio/'
+edited "truncated" "case.toml:[0-9]+:[0-9]+" 's/0\.01\]//'
+edited "empty" "case.toml" 's/.*//'
+expect "missing file" "nothing.toml" compare "$work/nothing.toml" --out "$work/out"
+head -c 300 /dev/urandom >"$work/noise.toml"
+expect "noise" "noise.toml" compare "$work/noise.toml" --out "$work/out"
+echo "$good" >"$work/good.toml"
+touch "$work/file"
+expect "unwritable output" "cannot write" compare "$work/good.toml" --out "$work/file/out"
+expect "material: nu = 0.5" "poisson_ratio" material -E 1 --nu 0.5
+expect "material: one modulus" "two" material -E 1
+expect "material: no such model" "did you mean" material -E 1 --nu 0.3 --model hybms
+
+[ $failures -eq 0 ] && echo "all refused as they should be"
+exit $((failures > 0))

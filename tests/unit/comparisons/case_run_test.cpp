@@ -1,0 +1,99 @@
+// Measures, verdicts and kept parts.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "comparisons/case_run.h"
+#include "comparisons/measures.h"
+#include "comparisons/part_file.h"
+
+namespace springproof {
+namespace {
+
+TEST(Measures, DistancesAreWhatTheySay) {
+  const Mesh mesh = block_mesh({1, 1, 1}, {2, 2, 2});
+  NodalVectors v = NodalVectors::Zero(27, 3);
+  v.col(2).setConstant(0.5);
+  NodalVectors u = v;
+  u.col(0).setConstant(0.1);
+  EXPECT_NEAR(displacement_error(u, v, nodal_volumes(mesh)), 0.2, 1e-14);
+  EXPECT_NEAR(section_distance(mesh, {{0.5, 0.5, 0.5}, {0, 0, 2}}, u, v), 0.1, 1e-14);
+  u(13, 1) = 0.4;
+  EXPECT_NEAR(displacement_error_max(u, v), std::hypot(0.1, 0.4) / 0.5, 1e-14);
+  EXPECT_THROW(section_distance(mesh, {{0, 0, 0.3}, {0, 0, 1}}, u, v), InputError);
+}
+
+TEST(Measures, InterpolationIsExactForTrilinearFields) {
+  const Mesh mesh = block_mesh({1, 2, 3}, {2, 3, 4});
+  NodalVectors u(mesh.nodes.rows(), 3);
+  const auto field = [](const Vec3& X) { return Vec3(1 + X[0], 2 * X[1] - X[2], X[0] - 3 * X[2]); };
+  for (int n = 0; n < u.rows(); ++n) u.row(n) = field(mesh.nodes.row(n)).transpose();
+  NodalVectors points(3, 3);
+  points << 0.13, 1.9, 2.7, 1, 2, 3, 0.5, 0.01, 0;
+  const NodalVectors at = interpolate(mesh, u, points);
+  for (int i = 0; i < 3; ++i) EXPECT_LE((at.row(i).transpose() - field(points.row(i))).norm(), 1e-13);
+  points(0, 0) = 1.5;
+  EXPECT_THROW(interpolate(mesh, u, points), InputError);
+}
+
+CaseResult one_row(double value, double reference, double uncertainty) {
+  CaseResult result;
+  result.experiment.body.cells = {{4, 4, 4}};
+  result.experiment.materials = {{1e4, 0.25, 1000}};
+  result.rows = {{"case", "linear", "hybmss", 0.25, {4, 4, 4}, "volume_change", value, "1", reference, uncertainty, value - reference}};
+  return result;
+}
+
+Verdict verdict(CaseResult result, const Expectation& e) {
+  result.experiment.expectations = {e};
+  judge(result);
+  EXPECT_EQ(result.checks.size(), 1u);
+  return result.checks.at(0).verdict;
+}
+
+TEST(Judge, DecidesByToleranceAndByTheReferencesUncertainty) {
+  Expectation e{"hybmss", {}, {}, "volume_change", Source::extrapolated_fem, {}, 0.01, false, "", {}};
+  EXPECT_EQ(verdict(one_row(0.105, 0.1, 0.001), e), Verdict::pass);
+  EXPECT_EQ(verdict(one_row(0.111, 0.1, 0.001), e), Verdict::fail);
+  EXPECT_EQ(verdict(one_row(0.105, 0.1, 0.0026), e), Verdict::reference_too_coarse);
+  CaseResult without = one_row(0.105, 0.1, 0);
+  without.rows[0].reference.reset();
+  without.rows[0].reference_uncertainty.reset();
+  EXPECT_EQ(verdict(without, e), Verdict::no_reference);
+  e.source = Source::published;
+  e.value = 0.12;
+  EXPECT_EQ(verdict(without, e), Verdict::fail);
+  e.within = 0.2;
+  e.relative = true;
+  EXPECT_EQ(verdict(without, e), Verdict::pass);
+  e.model = "msm_18";
+  EXPECT_EQ(verdict(without, e), Verdict::no_result);
+}
+
+TEST(PartFile, ComesBackWholeOrNotAtAll) {
+  const auto file = std::filesystem::temp_directory_path() / "springproof_part_test.cbor";
+  Part part;
+  part.runs = {{"hybmss", "msm", 0.25, {1, 2, 3}, "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99}};
+  part.rows = one_row(0.1, 0.2, 0.003).rows;
+  part.rows.push_back({"case", "linear", "fem", 0.25, {4, 4, 4}, "volume_change", 0.1, "1", {}, {}, {}});
+  part.references = {{0.25, "volume_change", "1", {{1, 1, 1}}, {0.1, 0.2}, {}, 0.2, 0.1, "note"}};
+  part.pictures = {{"fem", 0.25, {4, 4, 4}, {0, 1, 2}, {3, 4, 5}, {}, {0, 0, 0, 0}}};
+  save_part(file, "stamp", part);
+  const std::optional<Part> back = load_part(file, "stamp");
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->runs.at(0).message, "why not");
+  EXPECT_EQ(back->runs.at(0).unknowns, 99);
+  EXPECT_EQ(back->rows.at(0).reference, 0.2);
+  EXPECT_FALSE(back->rows.at(1).reference);
+  EXPECT_FALSE(back->references.at(0).observed_order);
+  EXPECT_EQ(back->pictures.at(0).displacement, (std::vector<float>{3, 4, 5}));
+  EXPECT_FALSE(load_part(file, "other stamp"));
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_FALSE(load_part(file, "stamp"));
+  std::filesystem::remove(file);
+  EXPECT_FALSE(load_part(file, "stamp"));
+}
+
+}  // namespace
+}  // namespace springproof

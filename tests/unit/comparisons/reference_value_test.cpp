@@ -1,0 +1,59 @@
+#include "comparisons/reference_value.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace springproof {
+namespace {
+
+std::vector<double> sequence(double limit, double error, double order) {
+  return {limit + error, limit + error / std::pow(2, order), limit + error / std::pow(4, order)};
+}
+
+TEST(ReferenceValue, RecoversLimitAndOrder) {
+  for (double order : {0.7, 1.4, 2.0, 3.0}) {
+    const ReferenceValue v = extrapolate(sequence(7.5, -0.3, order), 1e-12);
+    ASSERT_TRUE(v.observed_order);
+    EXPECT_NEAR(*v.observed_order, order, 1e-9);
+    EXPECT_NEAR(v.value, 7.5, 1e-9);
+    // GCI: Fs times the finest grid's own error
+    EXPECT_NEAR(v.uncertainty, 1.25 * 0.3 / std::pow(4, order), 1e-9);
+  }
+}
+
+TEST(ReferenceValue, CapsTheOrderItTrusts) {
+  const ReferenceValue v = extrapolate(sequence(1, 0.1, 9), 0);
+  EXPECT_NEAR(*v.observed_order, 9, 1e-6);
+  const double last = 0.1 / 512 - 0.1 / (512.0 * 512);
+  EXPECT_NEAR(v.uncertainty, 1.25 * last / 15, 1e-12);
+}
+
+TEST(ReferenceValue, SaysWhenItIsNotMonotone) {
+  for (const std::vector<double>& values : {std::vector<double>{1, 2, 1.5}, {1, 1.1, 1.3}}) {
+    const ReferenceValue v = extrapolate(values, 0);
+    EXPECT_FALSE(v.observed_order);
+    EXPECT_EQ(v.value, values.back());
+    EXPECT_GE(v.uncertainty, *std::max_element(values.begin(), values.end()) - *std::min_element(values.begin(), values.end()));
+  }
+}
+
+TEST(ReferenceValue, RoundOffIsNotAnOrder) {
+  const ReferenceValue v = extrapolate({5.0, 5.0 + 1e-10, 5.0 - 1e-10}, 1e-9);
+  EXPECT_FALSE(v.observed_order);
+  EXPECT_EQ(v.uncertainty, 1e-9);
+}
+
+TEST(ReferenceValue, NeedsThreeGrids) { EXPECT_THROW(extrapolate({1, 2}, 0), std::invalid_argument); }
+
+TEST(ReferenceField, RecoversTheLimitField) {
+  const NodalVectors limit = NodalVectors::Random(50, 3), error = 0.1 * NodalVectors::Random(50, 3);
+  const Eigen::VectorXd weights = Eigen::VectorXd::Random(50).cwiseAbs() + Eigen::VectorXd::Ones(50);
+  const ReferenceField f = extrapolate(std::vector<NodalVectors>{limit + error, limit + error / 4, limit + error / 16}, weights);
+  EXPECT_NEAR(*f.observed_order, 2, 1e-9);
+  EXPECT_LE((f.displacement - limit).norm(), 1e-12);
+  EXPECT_NEAR(f.uncertainty, 1.25 * weighted_norm(error, weights) / 16 / weighted_norm(limit + error / 16, weights), 1e-9);
+}
+
+}  // namespace
+}  // namespace springproof
