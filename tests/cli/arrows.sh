@@ -2,8 +2,9 @@
 # problem <- meshes <- {msm, fem_reference} <- comparisons: each module compiles with what lies below it and not with
 # what lies beside or above.   arrows.sh COMPILER BUILD_DIRECTORY EIGEN_INCLUDE
 set -u
-compiler=$1 views=$2/arrows eigen=$3
+compiler=$1 views=$(readlink -f "$2")/arrows eigen=$3
 failures=0
+cd /  # a quoted include is looked for in the working directory too
 declare -A below=(
   [problem]="problem" [meshes]="problem meshes" [msm]="problem meshes msm"
   [fem_reference]="problem meshes fem_reference" [comparisons]="problem meshes msm fem_reference comparisons"
