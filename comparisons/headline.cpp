@@ -181,6 +181,8 @@ class Collector {
     const Json experiment = result.value("experiment", Json::object());
     case_name_ = string_of(experiment, "name");
     large_ = string_of(experiment, "kinematics") != "linear";
+    const Json& measures = list_of(experiment, "measures");
+    compares_displacement_ = std::find(measures.begin(), measures.end(), "displacement_error") != measures.end();
     for (const Json& run : list_of(result, "runs")) add_run(run);
     std::map<std::string, double> finest;
     for (const Json& row : list_of(result, "rows")) {
@@ -215,7 +217,7 @@ class Collector {
   void add_run(const Json& run) {
     const std::string model = string_of(run, "model");
     if (string_of(run, "kind") == "fem") fem_.insert(model);
-    if (string_of(run, "kind") == "msm") models_[{large_, model}];
+    if (compares_displacement_ && string_of(run, "kind") == "msm") models_[{large_, model}];
     order_of(model);
     if (!run.value("ok", false)) headline_.failed_runs.push_back(run_line(case_name_, run));
   }
@@ -245,7 +247,7 @@ class Collector {
 
   Headline headline_;
   std::string case_name_;
-  bool large_ = false;
+  bool large_ = false, compares_displacement_ = false;
   std::map<std::pair<bool, std::string>, ModelErrors> models_;
   std::set<std::string> fem_;
   std::vector<std::string> order_;

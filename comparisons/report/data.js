@@ -186,18 +186,28 @@ function prepareCase(data) {
   result.runAt = new Map(result.runs.map(run => [key(run), run]));
   result.rowAt = new Map(result.rows.map(row => [row.measure + '|' + key(row), row]));
   result.referenceAt = new Map(result.rows.map(row => [`${row.measure}|${row.poisson_ratio}`, row.reference]));
-  result.measures = distinct(result.rows.map(row => row.measure));
+  const named = distinct(result.rows.map(row => row.measure));
+  const leads = measure => isDistance(measure) ? 0 : measure.startsWith('volume') ? 1 : 2;
+  result.measures = [0, 1, 2].flatMap(rank => named.filter(measure => leads(measure) === rank));
   result.nus = distinct(result.rows.concat(result.runs).map(row => row.poisson_ratio)).sort((a, b) => a - b);
-  result.models = distinct(result.runs.concat(result.rows).map(row => row.model));
+  // The reference's own runs have no rows; they are not a model that is compared.
+  result.models = distinct([...result.runs.filter(run => run.kind !== 'fem'), ...result.rows].map(item => item.model));
   result.cells = distinct(result.rows.map(row => row.cells)).sort(bySize);
   result.scales = new Map(result.measures.map(measure => [measure, errorScale(result, measure)]));
-  result.vanishing = new Set(result.measures.filter(measure => vanishes(result, measure)));
+  const forces = forceScale(result);
+  result.minor = new Set(result.measures.filter(measure => vanishes(result, measure, forces)));
+  for (const measure of result.measures)
+    if (!result.minor.has(measure) && repeats(result, measure)) result.minor.add(measure);
   return result;
 }
 
-const findRun = (result, {model, cells, poisson_ratio}) => result.runAt.get(`${model}|${cellsText(cells)}|${poisson_ratio}`);
-const findRow = (result, measure, {model, cells, poisson_ratio}) =>
-  result.rowAt.get(`${measure}|${model}|${cellsText(cells)}|${poisson_ratio}`);
+function findRun(result, {model, cells, poisson_ratio}) {
+  return result.runAt.get(`${model}|${cellsText(cells)}|${poisson_ratio}`);
+}
+
+function findRow(result, measure, {model, cells, poisson_ratio}) {
+  return result.rowAt.get(`${measure}|${model}|${cellsText(cells)}|${poisson_ratio}`);
+}
 
 /// Reference of the magnitude of a vector's component, e.g. of force.z_max.magnitude for force.z_max.x.
 function magnitudeOf(result, row) {
@@ -205,12 +215,33 @@ function magnitudeOf(result, row) {
   return result.referenceAt.get(`${row.measure.slice(0, -1)}magnitude|${row.poisson_ratio}`) ?? null;
 }
 
-/// A reference that is zero up to its own uncertainty, or beside the vector's other components.
-function vanishes(result, measure) {
+/// The largest force in a case [N], torques counted with the body's length as lever.
+function forceScale(result) {
+  const length = Math.max(0, ...(result.experiment.body?.size || [])) || 1;
+  return result.rows.reduce((top, {measure, value}) => !/^(force|torque)\..*magnitude$/.test(measure) ? top :
+    Math.max(top, Math.abs(value) / (measure.startsWith('torque') ? length : 1)), 0);
+}
+
+/// A measure that is zero up to its reference's uncertainty, or to round-off beside the others: torque in compression.
+function vanishes(result, measure, forces) {
   if (isDistance(measure)) return false;
-  const rows = result.rows.filter(row => row.measure === measure && isNumber(row.reference));
-  return rows.length > 0 && rows.every(row => Math.abs(row.reference) <=
-    Math.max(row.reference_uncertainty || 0, 1e-6 * (magnitudeOf(result, row) || 0)));
+  const length = Math.max(0, ...(result.experiment.body?.size || [])) || 1;
+  const beside = measure.startsWith('force.') ? forces : measure.startsWith('torque.') ? forces * length : 0;
+  const rows = result.rows.filter(row => row.measure === measure);
+  return rows.every(row => Math.abs(row.reference ?? row.value) <=
+    Math.max(row.reference_uncertainty || 0, 1e-7 * beside, 1e-7 * (magnitudeOf(result, row) || 0)));
+}
+
+/// A reaction that equals an earlier one in size: the other plate's, or the only component of a magnitude.
+function repeats(result, measure) {
+  if (!/^(force|torque)\./.test(measure)) return false;
+  const kind = measure.split('.')[0] + '.';
+  const rows = result.rows.filter(row => row.measure === measure);
+  const earlier = result.measures.slice(0, result.measures.indexOf(measure)).filter(other => other.startsWith(kind));
+  return earlier.some(other => !result.minor.has(other) && rows.every(row => {
+    const twin = findRow(result, other, row);
+    return twin && Math.abs(Math.abs(twin.value) - Math.abs(row.value)) <= 1e-6 * Math.abs(row.value);
+  }));
 }
 
 /// How the error of a measure is drawn: percent, percentage points, percent of the reference, or its own unit.

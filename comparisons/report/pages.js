@@ -1,6 +1,8 @@
 'use strict';
 // The table of cases and a page per case: problem, reference and its uncertainty, results, tolerances.
 
+const right = (...text) => el('th', {class: 'number'}, text);   // a heading over numbers
+
 // ---- verdicts and tints
 
 const verdictKinds = {'pass': 'pass', 'fail': 'fail', 'reference too coarse': 'coarse', 'no reference': 'none', 'no result': 'none'};
@@ -54,25 +56,41 @@ function heldText(result) {
   return result.checks.length > 0 ? `${held} of ${result.checks.length} hold` : null;
 }
 
-function caseRow(result) {
+/// The models of most cases get a column each, the others share one.
+function splitModels() {
+  const counts = new Map(models.map(model => [model, cases.filter(c => c.models.includes(model)).length]));
+  const leading = [...models].sort((a, b) => counts.get(b) - counts.get(a)).slice(0, models.length > 8 ? 7 : 8);
+  return {leading: models.filter(m => leading.includes(m)), others: models.filter(m => !leading.includes(m))};
+}
+
+function otherModel(result, model) {
+  const worst = worstOf(result, rowsAt(result, 'displacement_error').filter(row => row.model === model));
+  const failed = result.runs.some(run => run.model === model && !run.ok);
+  return worst ? `${model}: ${percent(worst.error)}` : failed ? `${model}: without result` : null;
+}
+
+function caseRow(result, {leading, others}) {
   const {experiment} = result;
   return el('tr', {},
     el('td', {}, el('a', {href: '#' + result.id}, el('b', {}, result.name)),
        el('small', {}, [experiment.folder, experiment.what].filter(Boolean).join(': '))),
     el('td', {}, verdictChip(caseVerdict(result)), el('small', {}, heldText(result))),
     el('td', {}, experiment.kinematics || '–'),
-    models.map(model => worstCell(result, model)),
+    leading.map(model => worstCell(result, model)),
+    others.length > 0 ? el('td', {}, others.map(model => el('small', {}, otherModel(result, model)))) : null,
     el('td', {class: 'number'}, worstUncertainty(result)),
     el('td', {class: 'number'}, seconds(result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0))));
 }
 
 function casesSection(section) {
   if (cases.length === 0) return section.append(notice('No case was run.'));
-  const head = ['Case', 'Expectations', 'Kinematics', ...models.map(model => el('th', {class: 'number'}, modelName(model))),
-                el('th', {class: 'number'}, 'Uncertainty of the reference'), el('th', {class: 'number'}, 'Time of all runs')];
+  const split = splitModels();
+  const head = ['Case', 'Expectations', 'Kinematics', ...split.leading.map(model => right(modelName(model))),
+                ...(split.others.length > 0 ? ['Other models'] : []),
+                right('Uncertainty of the reference'), right('Time of all runs')];
   section.append(
     el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution.'),
-    table('cases', head, cases.map(caseRow)), tintLegend());
+    table('cases', head, cases.map(result => caseRow(result, split))), tintLegend());
 }
 
 // ---- problem
@@ -125,7 +143,6 @@ function problemPart(result) {
 
 // ---- reference
 
-const right = (...text) => el('th', {class: 'number'}, text);
 const withUnit = (text, unit) => unit ? `${text} [${unit}]` : text;
 
 function referenceTable(measure, records) {
@@ -151,13 +168,13 @@ function referencePart(result) {
     measures.length === 0 ? notice('There is no record of a reference for this case.')
       : el('p', {class: 'note'}, 'Finite elements on successively finer grids; where their values fall into a regular ' +
            'sequence, the limit is extrapolated (Richardson), and the uncertainty is the grid convergence index.'),
-    tables(measures.filter(m => !result.vanishing.has(m))),
-    vanishingFold(measures.filter(m => result.vanishing.has(m)), tables)];
+    tables(measures.filter(m => !result.minor.has(m))),
+    minorFold(measures.filter(m => result.minor.has(m)), tables)];
 }
 
-function vanishingFold(measures, tables) {
+function minorFold(measures, tables) {
   return measures.length === 0 ? null : el('details', {class: 'fold'},
-    el('summary', {}, `Measures whose reference is zero up to its uncertainty: ${measures.length}`), tables(measures));
+    el('summary', {}, `Measures that vanish here or repeat another in size: ${measures.length}`), tables(measures));
 }
 
 // ---- results
@@ -167,7 +184,7 @@ function resultCell(result, measure, at, write) {
   if (row) {
     const attributes = {class: 'number ' + tint(result, row), title: `${row.value} ${row.unit}`};
     if (isDistance(measure)) return el('td', attributes, inPercent(measure, row.unit) ? percent(100 * row.value) : write.text(row.value));
-    return el('td', attributes, write.text(row.value), el('small', {}, errorText(result, row)));
+    return el('td', attributes, write.text(row.value), isNumber(row.error) ? el('small', {}, errorText(result, row)) : null);
   }
   const run = findRun(result, at);
   return run && !run.ok ? el('td', {class: 'number lost', title: run.message}, 'no result') : el('td', {class: 'number'}, '–');
@@ -185,7 +202,7 @@ function referenceLine(result, measure, write) {
 }
 
 function resolutionsOf(result, model) {
-  return distinct(result.rows.concat(result.runs).filter(item => item.model === model).map(item => item.cells)).sort(bySize);
+  return distinct([...result.rows, ...result.runs].filter(item => item.model === model).map(item => item.cells)).sort(bySize);
 }
 
 function resultTable(result, measure) {
@@ -196,7 +213,7 @@ function resultTable(result, measure) {
       el('th', {scope: 'row'}, i === 0 ? modelName(model) : ''), el('td', {}, cellsText(cells)),
       result.nus.map(nu => resultCell(result, measure, {model, cells, poisson_ratio: nu}, write)))));
   const scale = result.scales.get(measure).unit;
-  const small = isDistance(measure) ? '' : `below each value its error${scale.startsWith('%') ? ' in ' + scale : ''}`;
+  const small = isDistance(measure) || !rows.some(row => isNumber(row.error)) ? '' : `below each value its error${scale.startsWith('%') ? ' in ' + scale : ''}`;
   return [el('h5', {}, withUnit(measureText(measure), write.unit),
              el('small', {}, [measureMeanings[measure], small].filter(Boolean).join('; '))),
     table('results', ['model', 'cells', ...result.nus.map(nu => right(`ν = ${nuText(nu)}`))],
@@ -206,8 +223,8 @@ function resultTable(result, measure) {
 function resultsPart(result) {
   const tables = list => list.map(measure => resultTable(result, measure));
   return [el('h4', {}, 'Results'), result.measures.length === 0 ? notice('No run of this case gave a result.')
-    : [tables(result.measures.filter(m => !result.vanishing.has(m))),
-       vanishingFold(result.measures.filter(m => result.vanishing.has(m)), tables), tintLegend()]];
+    : [tables(result.measures.filter(m => !result.minor.has(m))),
+       minorFold(result.measures.filter(m => result.minor.has(m)), tables), tintLegend()]];
 }
 
 // ---- expectations, published values, runs

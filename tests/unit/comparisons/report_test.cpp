@@ -176,6 +176,10 @@ TEST_F(ReportInBrowser, ShowsTheCase) {
   EXPECT_NE(body.find("<td class=\"number\">2.60</td>"), std::string::npos)
       << "observed order of the reference";
   EXPECT_NE(body.find("<td class=\"number\">≤ 1 %</td>"), std::string::npos) << "expectation";
+  EXPECT_NE(body.find("force on z_min, magnitude [N]"), std::string::npos) << "results";
+  EXPECT_NE(body.find("Measures that vanish here or repeat another in size: 5"), std::string::npos)
+      << "both x components, z of z_min, magnitude and z of z_max";
+  EXPECT_NE(body.find("510.00<small>+2.0 %</small>"), std::string::npos) << "value and its error";
   EXPECT_NE(body.find("explicit run, not settled"), std::string::npos) << "published value";
 }
 

@@ -95,7 +95,7 @@ TEST(ResultsJson, ExperimentIsToldWithUnitsAndLabels) {
 
 TEST(ResultsJson, HoldsEveryRowRunReferenceCheckAndPublishedValue) {
   const Json json = to_json(sample_case());
-  EXPECT_EQ(json.at("rows").size(), 8u);
+  EXPECT_EQ(json.at("rows").size(), 32u);
   EXPECT_EQ(json.at("runs").size(), 5u);
   EXPECT_EQ(json.at("references").at(0).at("values"), Json::parse("[-0.02,-0.025,-0.0258]"));
   EXPECT_EQ(json.at("checks").at(1).at("verdict"), "fail");

@@ -53,6 +53,16 @@ inline CaseResult sample_case() {
           {"compress", "linear", "hybmss", nu, cells, "displacement_error", error, "1", {}, 0.001, error});
       c.rows.push_back(
           {"compress", "linear", "hybmss", nu, cells, "volume_change", -0.025, "1", -0.026, 1e-4, 0.001});
+      for (const char* plate : {"z_min", "z_max"}) {
+        const std::string force = std::string("force.") + plate;
+        const double sign = force == "force.z_min" ? 1 : -1;
+        c.rows.push_back(
+            {"compress", "linear", "hybmss", nu, cells, force + ".magnitude", 510, "N", 500, 1, 10});
+        c.rows.push_back(
+            {"compress", "linear", "hybmss", nu, cells, force + ".x", 1e-9, "N", 2e-9, 1e-6, -1e-9});
+        c.rows.push_back({"compress", "linear", "hybmss", nu, cells, force + ".z", sign * 510, "N",
+                          sign * 500, 1, sign * 10});
+      }
     }
     c.references.push_back({nu,
                             "volume_change",
