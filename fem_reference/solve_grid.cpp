@@ -123,13 +123,15 @@ Solution solve_grid(const GridProblem& problem) {
 
 std::function<Vec3(const Vec3&)> graded(const Vec3& low, const Vec3& high, double exponent) {
   if (exponent == 1.0) return {};
+  const double reach = (high - low).minCoeff() / 2;  // the same on every axis, or a slender body's cells go flat
   return [=](const Vec3& X) {
     Vec3 x = X;
     for (int c = 0; c < 3; ++c) {
-      const double side = high[c] - low[c];
-      const double t = (X[c] - low[c]) / side;
-      if (t < 0.5) x[c] = low[c] + side * std::pow(std::max(2 * t, 0.0), exponent) / 2;
-      if (t > 0.5) x[c] = high[c] - side * std::pow(std::max(2 - 2 * t, 0.0), exponent) / 2;
+      const double from_low = std::max(X[c] - low[c], 0.0), from_high = std::max(high[c] - X[c], 0.0);
+      if (from_low < reach)
+        x[c] = low[c] + reach * std::pow(from_low / reach, exponent);
+      else if (from_high < reach)
+        x[c] = high[c] - reach * std::pow(from_high / reach, exponent);
     }
     return x;
   };
