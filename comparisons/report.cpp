@@ -53,6 +53,24 @@ std::string script_json(const Json& json) {
   return out;
 }
 
+/// The results with each case's rows as one table {"columns", "values"}: half the size.
+Json packed(Json results) {
+  static const std::vector<std::string> columns = {
+      "kinematics", "model",     "poisson_ratio",         "cells", "measure", "value",
+      "unit",       "reference", "reference_uncertainty", "error"};
+  if (!results.contains("cases")) return results;
+  for (Json& result : results.at("cases")) {
+    Json values = Json::array();
+    for (const Json& row : result.at("rows")) {
+      Json line = Json::array();
+      for (const std::string& column : columns) line.push_back(row.at(column));
+      values.push_back(std::move(line));
+    }
+    result["rows"] = {{"columns", columns}, {"values", std::move(values)}};
+  }
+  return results;
+}
+
 std::string list_html(const std::vector<std::string>& lines) {
   constexpr std::size_t most = 20;
   std::string out = "<ul>\n";
@@ -136,7 +154,7 @@ void write_report(const std::filesystem::path& file, const Json& results, const 
   using namespace report_assets;
   write_file(file, filled(template_html, {{"style_css", std::string(style_css)},
                                           {"headline", headline_html(results)},
-                                          {"results", script_json(results)},
+                                          {"results", script_json(packed(results))},
                                           {"pictures", script_json(pictures)},
                                           {"chart_js", std::string(chart_js)},
                                           {"three_js", std::string(three_js)},

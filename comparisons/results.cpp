@@ -236,6 +236,8 @@ void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
+constexpr long not_finite = -32768;
+
 std::string base64_floats(const std::vector<float>& values) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(4 * values.size());
@@ -246,6 +248,21 @@ std::string base64_floats(const std::vector<float>& values) {
     append_little_endian(bits, bytes);
   }
   return base64(bytes);
+}
+
+/// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough to look at.
+Json shorts_json(const std::vector<float>& values) {
+  double largest = 0;
+  for (float value : values)
+    if (std::isfinite(value)) largest = std::max<double>(largest, std::abs(value));
+  const double scale = largest > 0 ? largest / 32767 : 1;
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(2 * values.size());
+  for (float value : values) {
+    const long steps = std::isfinite(value) ? std::lround(value / scale) : not_finite;
+    append_little_endian(static_cast<std::uint16_t>(steps), bytes);
+  }
+  return {{"scale", scale}, {"base64", base64(bytes)}};
 }
 
 /// Triangles (fourth number -1) repeat their last corner.
@@ -335,8 +352,8 @@ Json pictures_to_json(const CaseResult& result) {
                         {"poisson_ratio", number(p.poisson_ratio)},
                         {"cells", p.cells},
                         {"mesh", mesh},
-                        {"displacement", base64_floats(p.displacement)},
-                        {"difference", base64_floats(p.difference)}});
+                        {"displacement", shorts_json(p.displacement)},
+                        {"difference", shorts_json(p.difference)}});
   }
   return {{"case", result.experiment.name},
           {"folder", result.experiment.folder},

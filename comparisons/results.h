@@ -116,7 +116,7 @@ std::string describe(const Load& load);
 nlohmann::json to_json(const CaseResult& result);
 
 /// {"case", "folder", "meshes", "pictures"}: surfaces of equal rest shape are stored once; arrays are base64 of
-/// little-endian float32 and uint16 or uint32 (docs/results.md).
+/// little-endian numbers, displacements as 16-bit multiples of a scale (docs/results.md).
 /// @throws std::invalid_argument if the arrays of a picture do not fit each other.
 nlohmann::json pictures_to_json(const CaseResult& result);
 

@@ -145,6 +145,7 @@ const measureNames = {
   displacement_error: 'displacement error',
   displacement_error_max: 'largest displacement error',
   volume_change: 'volume change',
+  volume_change_magnitude: 'size of the volume change',
   volume_change_first_order: 'volume change, first order',
   section_distance: 'mean distance on the section',
 };
@@ -153,6 +154,7 @@ const measureMeanings = {
   displacement_error: '|u − u_fem| in the L2 norm over the body, divided by |u_fem|',
   displacement_error_max: 'largest |u − u_fem| over the nodes, divided by the largest |u_fem|',
   volume_change: '(V′ − V) / V of the deformed cells, exact; errors in percentage points',
+  volume_change_magnitude: '|V′ − V| / V, as the paper prints it; errors in percentage points',
   volume_change_first_order: 'integral of div u over V; errors in percentage points',
   section_distance: 'mean |u − u_fem| over the nodes of the section',
 };
@@ -172,6 +174,11 @@ const distinct = items => [...new Map(items.map(item => [String(item), item])).v
 const cases = (results.cases || []).map(prepareCase);
 const models = orderModels();
 
+/// A table {columns, values} as objects.
+function unpack({columns, values}) {
+  return values.map(line => Object.fromEntries(columns.map((column, i) => [column, line[i]])));
+}
+
 function prepareCase(data) {
   const experiment = data.experiment || {};
   const result = {
@@ -179,7 +186,7 @@ function prepareCase(data) {
     name: experiment.name || '?',
     id: 'case-' + [experiment.folder, experiment.name].filter(Boolean).join('-').replace(/[^\w-]/g, '_'),
     linear: experiment.kinematics === 'linear',
-    runs: data.runs || [], rows: data.rows || [], references: data.references || [],
+    runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
     checks: data.checks || [], published: data.published || [],
   };
   const key = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;

@@ -26,6 +26,8 @@ function bytesOf(base64) {
 }
 
 const floatsOf = base64 => new Float32Array(bytesOf(base64));
+/// 16-bit multiples of a scale; -32768 stands for no number.
+const shortsOf = ({scale, base64}) => Float32Array.from(new Int16Array(bytesOf(base64)), n => n === -32768 ? NaN : scale * n);
 const quadsOf = ({type, base64}) => type === 'uint16' ? new Uint16Array(bytesOf(base64)) : new Uint32Array(bytesOf(base64));
 
 let pictureFiles = null;
@@ -45,8 +47,8 @@ function decode(file, picture) {
   if (decoded.has(picture)) return decoded.get(picture);
   const mesh = file.meshes[picture.mesh];
   mesh.decoded = mesh.decoded || {rest: floatsOf(mesh.rest), quads: quadsOf(mesh.quads)};
-  const shape = {...mesh.decoded, displacement: floatsOf(picture.displacement).map(u => Number.isFinite(u) ? u : 0),
-                 difference: floatsOf(picture.difference)};
+  const shape = {...mesh.decoded, displacement: shortsOf(picture.displacement).map(u => Number.isFinite(u) ? u : 0),
+                 difference: shortsOf(picture.difference)};
   shape.size = norms(shape.displacement);
   decoded.set(picture, shape);
   return shape;

@@ -1,10 +1,11 @@
 // Measures, verdicts and kept parts.
+#include "comparisons/case_run.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "comparisons/case_run.h"
 #include "comparisons/measures.h"
 #include "comparisons/part_file.h"
 
@@ -41,7 +42,17 @@ CaseResult one_row(double value, double reference, double uncertainty) {
   CaseResult result;
   result.experiment.body.cells = {{4, 4, 4}};
   result.experiment.materials = {{1e4, 0.25, 1000}};
-  result.rows = {{"case", "linear", "hybmss", 0.25, {4, 4, 4}, "volume_change", value, "1", reference, uncertainty, value - reference}};
+  result.rows = {{"case",
+                  "linear",
+                  "hybmss",
+                  0.25,
+                  {4, 4, 4},
+                  "volume_change",
+                  value,
+                  "1",
+                  reference,
+                  uncertainty,
+                  value - reference}};
   return result;
 }
 

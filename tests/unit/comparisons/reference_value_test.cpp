@@ -34,7 +34,8 @@ TEST(ReferenceValue, SaysWhenItIsNotMonotone) {
     const ReferenceValue v = extrapolate(values, 0);
     EXPECT_FALSE(v.observed_order);
     EXPECT_EQ(v.value, values.back());
-    EXPECT_GE(v.uncertainty, *std::max_element(values.begin(), values.end()) - *std::min_element(values.begin(), values.end()));
+    EXPECT_GE(v.uncertainty, *std::max_element(values.begin(), values.end()) -
+                                 *std::min_element(values.begin(), values.end()));
   }
 }
 
@@ -44,15 +45,19 @@ TEST(ReferenceValue, RoundOffIsNotAnOrder) {
   EXPECT_EQ(v.uncertainty, 1e-9);
 }
 
-TEST(ReferenceValue, NeedsThreeGrids) { EXPECT_THROW(extrapolate({1, 2}, 0), std::invalid_argument); }
+TEST(ReferenceValue, NeedsThreeGrids) {
+  EXPECT_THROW(extrapolate({1, 2}, 0), std::invalid_argument);
+}
 
 TEST(ReferenceField, RecoversTheLimitField) {
   const NodalVectors limit = NodalVectors::Random(50, 3), error = 0.1 * NodalVectors::Random(50, 3);
   const Eigen::VectorXd weights = Eigen::VectorXd::Random(50).cwiseAbs() + Eigen::VectorXd::Ones(50);
-  const ReferenceField f = extrapolate(std::vector<NodalVectors>{limit + error, limit + error / 4, limit + error / 16}, weights);
+  const ReferenceField f =
+      extrapolate(std::vector<NodalVectors>{limit + error, limit + error / 4, limit + error / 16}, weights);
   EXPECT_NEAR(*f.observed_order, 2, 1e-9);
   EXPECT_LE((f.displacement - limit).norm(), 1e-12);
-  EXPECT_NEAR(f.uncertainty, 1.25 * weighted_norm(error, weights) / 16 / weighted_norm(limit + error / 16, weights), 1e-9);
+  EXPECT_NEAR(f.uncertainty,
+              1.25 * weighted_norm(error, weights) / 16 / weighted_norm(limit + error / 16, weights), 1e-9);
 }
 
 }  // namespace

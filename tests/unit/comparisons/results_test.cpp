@@ -119,13 +119,28 @@ TEST(ResultsJson, EveryVerdictHasItsWords) {
 
 TEST(PicturesJson, ArraysAreLittleEndianBase64) {
   Picture p = sample_picture("hybmss", 0.25);
-  p.difference = {1.0f, -2.0f, 0.0f, 0.5f};  // 0000803f 000000c0 00000000 0000003f
+  p.rest = {1.0f, -2.0f, 0.0f, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0};  // 0000803f 000000c0 00000000 0000003f
+  p.difference = {0, 32767, 1.4f, std::nanf("")};              // 0000 ff7f 0100 0080 at scale 1
   CaseResult c;
   c.pictures = {p};
   const Json json = pictures_to_json(c);
-  EXPECT_EQ(json.at("pictures").at(0).at("difference"), "AACAPwAAAMAAAAAAAAAAPw==");
-  EXPECT_EQ(json.at("meshes").at(0).at("quads").at("type"), "uint16");
-  EXPECT_EQ(json.at("meshes").at(0).at("quads").at("base64"), "AAABAAIAAwA=");  // 0000 0100 0200 0300
+  const Json& mesh = json.at("meshes").at(0);
+  EXPECT_EQ(mesh.at("rest").get<std::string>().substr(0, 20), "AACAPwAAAMAAAAAAAAAA");
+  EXPECT_EQ(mesh.at("quads").at("type"), "uint16");
+  EXPECT_EQ(mesh.at("quads").at("base64"), "AAABAAIAAwA=");  // 0000 0100 0200 0300
+  const Json& difference = json.at("pictures").at(0).at("difference");
+  EXPECT_EQ(difference.at("scale"), 1.0);
+  EXPECT_EQ(difference.at("base64"), "AAD/fwEAAIA=");
+}
+
+TEST(PicturesJson, DisplacementIsScaledToItsLargestComponent) {
+  Picture p = sample_picture("fem", 0.25);
+  p.displacement = {-0.5f, 0, 0, 0.25f, 0, 0, 0, 0, 0, 0, 0, 0};
+  CaseResult c;
+  c.pictures = {p};
+  const Json u = pictures_to_json(c).at("pictures").at(0).at("displacement");
+  EXPECT_DOUBLE_EQ(u.at("scale"), 0.5 / 32767);
+  EXPECT_EQ(u.at("base64").get<std::string>().substr(0, 8), "AYAAAAAA");  // 0180 0000 0000: -32767, 0, 0
 }
 
 TEST(PicturesJson, EqualSurfacesAreStoredOnce) {
@@ -136,7 +151,7 @@ TEST(PicturesJson, EqualSurfacesAreStoredOnce) {
   EXPECT_EQ(json.at("meshes").size(), 2u);
   EXPECT_EQ(json.at("pictures").at(1).at("mesh"), 0);
   EXPECT_EQ(json.at("pictures").at(2).at("mesh"), 1);
-  EXPECT_EQ(json.at("pictures").at(1).at("difference"), "");
+  EXPECT_EQ(json.at("pictures").at(1).at("difference").at("base64"), "");
 }
 
 TEST(PicturesJson, TrianglesRepeatTheirLastCorner) {
