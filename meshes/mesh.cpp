@@ -85,28 +85,29 @@ std::optional<std::array<int, 3>> index_in(const Grid& grid, const Mesh& mesh, c
   return index;
 }
 
+bool all_different(std::vector<std::int64_t> keys) {
+  std::sort(keys.begin(), keys.end());
+  return std::adjacent_find(keys.begin(), keys.end()) == keys.end();
+}
+
 /// One cell per lattice box, one mesh node per lattice point: what a grid promises to structured kernels.
-bool is_one_to_one(const Grid& grid, const std::vector<Hexahedron>& hexahedra) {
-  auto key = [&](const std::array<int, 3>& i) {
-    return (std::int64_t{i[2]} * (grid.cells[1] + 1) + i[1]) * (grid.cells[0] + 1) + i[0];
+bool is_one_to_one(const Grid& grid, const Mesh& mesh) {
+  auto key = [&](int i, int j, int k) {
+    return (std::int64_t{k} * (grid.cells[1] + 1) + j) * (grid.cells[0] + 1) + i;
   };
-  std::vector<std::int64_t> cells;
-  std::vector<std::pair<std::int64_t, int>> points;
-  for (std::size_t h = 0; h < hexahedra.size(); ++h) {
-    const auto& index = grid.cell_index[h];
-    cells.push_back(key(index));
+  std::vector<std::int64_t> cells, points;
+  std::vector<bool> seen(mesh.nodes.rows(), false);
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
+    const auto [i, j, k] = grid.cell_index[h];
+    cells.push_back(key(i, j, k));
     for (int corner = 0; corner < 8; ++corner) {
-      const auto& offset = hexahedron_corners[corner];
-      points.emplace_back(key({index[0] + offset[0], index[1] + offset[1], index[2] + offset[2]}),
-                          hexahedra[h][corner]);
+      const int n = mesh.hexahedra[h][corner];
+      const auto [di, dj, dk] = hexahedron_corners[corner];
+      if (!seen[n]) points.push_back(key(i + di, j + dj, k + dk));
+      seen[n] = true;
     }
   }
-  std::sort(cells.begin(), cells.end());
-  if (std::adjacent_find(cells.begin(), cells.end()) != cells.end()) return false;
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return std::adjacent_find(points.begin(), points.end(),
-                            [](const auto& a, const auto& b) { return a.first == b.first; }) == points.end();
+  return all_different(std::move(cells)) && all_different(std::move(points));
 }
 
 }  // namespace
@@ -173,7 +174,7 @@ std::optional<Grid> detect_grid(const Mesh& mesh) {
     if (!index) return std::nullopt;
     grid->cell_index.push_back(*index);
   }
-  if (!is_one_to_one(*grid, mesh.hexahedra)) return std::nullopt;
+  if (!is_one_to_one(*grid, mesh)) return std::nullopt;
   return grid;
 }
 

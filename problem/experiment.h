@@ -92,7 +92,7 @@ struct PublishedValue {
   SourceLocation location;
 };
 
-/// Finite-strain law of the reference (a name fem_reference knows), or "linear".
+/// A case: one body, what is done to it, the materials and models it is run with, and what should come out.
 struct Experiment {
   std::string name;       ///< the file's stem
   std::string folder;     ///< name of the folder that holds it, e.g. "golec_2019"
@@ -101,7 +101,7 @@ struct Experiment {
   std::string what;
   std::string kinematics = "linear";   ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke", "st_venant_kirchhoff"
   Body body;
-  std::vector<IsotropicMaterial> materials;   ///< one per Poisson's ratio, in the file's order
+  std::vector<IsotropicMaterial> materials;   ///< in the file's order, each Poisson's ratio once
   std::vector<Load> loads;
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;

@@ -120,8 +120,7 @@ TEST_F(Gmsh, CurvedBody) {
   }
 }
 
-// Extruded downwards, gmsh's cells are mirrored and its surfaces point the other way.
-TEST_F(Gmsh, MirroredCellsAreTurnedRound) {
+TEST_F(Gmsh, ExtrudedDownwards) {
   const fs::path geo = write("down.geo", std::string(parameters) + R"(
     Point(1) = {0, 0, 0};
     a[] = Extrude {size_x, 0, 0} { Point{1}; Layers{nx}; };
@@ -135,6 +134,49 @@ TEST_F(Gmsh, MirroredCellsAreTurnedRound) {
   const Mesh expected = block_mesh({1, 2, 3}, {2, 3, 4});
   EXPECT_EQ(mesh.hexahedra, expected.hexahedra);
   EXPECT_EQ(patch(mesh, "z_max").facets, patch(expected, "z_max").facets);
+}
+
+/// A mesh of one cell with the given corner order and its top facet pointing inward.
+std::string one_cell_msh(const std::string& corners) {
+  return R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+2 1 "top"
+3 2 "body"
+$EndPhysicalNames
+$Nodes
+8
+1 0 0 0
+2 1 0 0
+3 1.1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+$EndNodes
+$Elements
+2
+1 3 2 1 1 5 8 7 6
+2 5 2 2 1 )" +
+         corners + "\n$EndElements\n";
+}
+
+TEST_F(Gmsh, MirroredCellsAreTurnedRound) {
+  write("cell.msh", one_cell_msh("5 6 7 8 1 2 3 4"));
+  const Mesh mesh = mesh_geo(write("merge.geo", "Merge \"cell.msh\";\n"), {1, 1, 1}, {1, 1, 1});
+  EXPECT_NEAR(volume(mesh, mesh.nodes), 1 + 0.1 / 4,
+              test::round_off);  // the moved corner's share of a quarter
+  const auto facet = patch(mesh, "top").facets.at(0);
+  const Vec3 a = mesh.nodes.row(facet[0]), b = mesh.nodes.row(facet[1]), c = mesh.nodes.row(facet[2]);
+  EXPECT_TRUE((b - a).cross(c - b).isApprox(Vec3(0, 0, 1), test::round_off));
+}
+
+TEST_F(Gmsh, TwistedCellsAreRefused) {
+  write("cell.msh", one_cell_msh("1 3 2 4 5 6 7 8"));
+  EXPECT_NE(message_of(write("merge.geo", "Merge \"cell.msh\";\n")).find("inverted"), std::string::npos);
 }
 
 TEST_F(Gmsh, SecondOrderScriptsStillGiveEightNodes) {
