@@ -43,7 +43,7 @@ function worstCell(result, model) {
   const lost = failed ? el('small', {class: 'lost'}, `${failed} without result`) : null;
   if (!worst) return el('td', {class: 'number'}, failed ? lost : '–');
   return el('td', {class: 'number ' + tint(result, worst.row)}, percent(worst.error),
-            el('small', {}, `at ν = ${nuText(worst.row.poisson_ratio)}`), lost);
+            el('small', {}, `ν = ${nuText(worst.row.poisson_ratio)}`), lost);
 }
 
 function worstUncertainty(result) {
@@ -72,24 +72,24 @@ function otherModel(result, model) {
 function caseRow(result, {leading, others}) {
   const {experiment} = result;
   return el('tr', {},
-    el('td', {}, el('a', {href: '#' + result.id}, el('b', {}, result.name)),
-       el('small', {}, [experiment.folder, experiment.what].filter(Boolean).join(': '))),
+    el('td', {title: experiment.what}, el('a', {href: '#' + result.id}, el('b', {}, result.name)),
+       el('small', {}, experiment.folder)),
     el('td', {}, verdictChip(caseVerdict(result)), el('small', {}, heldText(result))),
-    el('td', {}, experiment.kinematics || '–'),
+    el('td', {}, experiment.kinematics || '–',
+       el('small', {}, seconds(result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0)))),
+    el('td', {class: 'number'}, '± ' + worstUncertainty(result)),
     leading.map(model => worstCell(result, model)),
-    others.length > 0 ? el('td', {}, others.map(model => el('small', {}, otherModel(result, model)))) : null,
-    el('td', {class: 'number'}, worstUncertainty(result)),
-    el('td', {class: 'number'}, seconds(result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0))));
+    others.length > 0 ? el('td', {}, others.map(model => el('small', {}, otherModel(result, model)))) : null);
 }
 
 function casesSection(section) {
   if (cases.length === 0) return section.append(notice('No case was run.'));
   const split = splitModels();
-  const head = ['Case', 'Expectations', 'Kinematics', ...split.leading.map(model => right(modelName(model))),
-                ...(split.others.length > 0 ? ['Other models'] : []),
-                right('Uncertainty of the reference'), right('Time of all runs')];
+  const head = ['Case', 'Expectations', 'Kinematics, time', right('Reference'),
+                ...split.leading.map(model => right(modelName(model))), ...(split.others.length > 0 ? ['Other models'] : [])];
   section.append(
-    el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution.'),
+    el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution; ' +
+       'beside it the largest uncertainty of the reference, and the time of all runs.'),
     table('cases', head, cases.map(result => caseRow(result, split))), tintLegend());
 }
 
