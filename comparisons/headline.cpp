@@ -182,7 +182,8 @@ class Collector {
     case_name_ = string_of(experiment, "name");
     large_ = string_of(experiment, "kinematics") != "linear";
     const Json& measures = list_of(experiment, "measures");
-    compares_displacement_ = std::find(measures.begin(), measures.end(), "displacement_error") != measures.end();
+    compares_displacement_ =
+        std::find(measures.begin(), measures.end(), "displacement_error") != measures.end();
     for (const Json& run : list_of(result, "runs")) add_run(run);
     std::map<std::string, double> finest;
     for (const Json& row : list_of(result, "rows")) {

@@ -6,10 +6,10 @@
 
 namespace springproof {
 
-/// Writes the page.  `results` is the document written to results.json, `pictures` an array of one entry per case
-/// ({"case": name, "pictures": [...]}), as made by pictures_to_json.
-/// The page carries Chart.js, three.js and OrbitControls inline, once.
+/// Writes the page.  `results` is the document written to results.json, `pictures` an array with what
+/// pictures_to_json made of each case.  The page carries Chart.js, three.js and OrbitControls inline, once.
 /// @throws std::runtime_error if the file cannot be written (nothing half-written is left).
-void write_report(const std::filesystem::path& file, const nlohmann::json& results, const nlohmann::json& pictures);
+void write_report(const std::filesystem::path& file, const nlohmann::json& results,
+                  const nlohmann::json& pictures);
 
 }  // namespace springproof
