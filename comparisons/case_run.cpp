@@ -17,7 +17,7 @@ namespace springproof {
 namespace {
 
 // Elements of the finest reference grid (Q2): what a few seconds of one core can solve.
-constexpr double linear_reference_elements = 8000;
+constexpr double linear_reference_elements = 4096;
 constexpr double finite_reference_elements = 1000;
 
 /// Near-cubic elements, counts divisible by four so that the grid can be halved twice.
@@ -106,7 +106,7 @@ Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model
 /// Runs the reference grids, and eight-node elements on the lattices' own cells; fills run.reference.
 std::vector<fem::Solution> run_fem(PartRun& run) {
   const Cells fine = run.prepared.reference_cells;
-  fem::Request request{run.experiment(), run.material, {}, sample_points(run.prepared), 1e-9};
+  fem::Request request{run.experiment(), run.material, {}, sample_points(run.prepared), 1e-8};
   for (int divisor : {4, 2, 1})
     request.grids.push_back({{fine[0] / divisor, fine[1] / divisor, fine[2] / divisor}, 2, run.experiment().reference.grading});
   for (const Cells& cells : run.experiment().body.cells) request.grids.push_back({cells, 1, 1.0});
