@@ -11,7 +11,8 @@ std::optional<Eigen::Matrix<double, 8, 1>> shape_functions(const Mesh& mesh, con
   Eigen::Matrix<double, 8, 1> shape;
   Vec3 xi(0.5, 0.5, 0.5);
   for (int iteration = 0; iteration < 30; ++iteration) {
-    Vec3 at = Vec3::Zero();
+    Vec3 miss =
+        Vec3::Zero();  // from the point: far from the origin, coordinates themselves would lose digits
     Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
     for (int n = 0; n < 8; ++n) {
       double f[3], df[3];
@@ -19,12 +20,12 @@ std::optional<Eigen::Matrix<double, 8, 1>> shape_functions(const Mesh& mesh, con
         f[d] = hexahedron_corners[n][d] ? xi[d] : 1 - xi[d];
         df[d] = hexahedron_corners[n][d] ? 1 : -1;
       }
-      const Vec3 p = mesh.nodes.row(cell[n]).transpose();
+      const Vec3 p = mesh.nodes.row(cell[n]).transpose() - point;
       shape[n] = f[0] * f[1] * f[2];
-      at += shape[n] * p;
+      miss += shape[n] * p;
       jacobian += p * Eigen::RowVector3d(df[0] * f[1] * f[2], f[0] * df[1] * f[2], f[0] * f[1] * df[2]);
     }
-    const Vec3 step = jacobian.partialPivLu().solve(point - at);
+    const Vec3 step = jacobian.partialPivLu().solve(-miss);
     xi += step;
     if (!(xi.norm() < 10)) return {};
     if (step.norm() > 1e-13) continue;
