@@ -20,6 +20,9 @@ namespace {
 constexpr double linear_reference_elements = 4096;
 constexpr double finite_reference_elements = 1000;
 
+// Cells of one lattice: what its matrices can hold in a workstation's memory.
+constexpr double largest_lattice = 4e6;
+
 /// Near-cubic elements, counts divisible by four so that the grid can be halved twice.
 Cells reference_cells(const Experiment& e) {
   if (e.reference.cells[0] > 0) return e.reference.cells;
@@ -235,12 +238,19 @@ PreparedCase prepare(const Experiment& experiment) {
   for (int n : prepared.reference_cells)
     if (n % 4 != 0)
       throw InputError(fmt::format("{}: reference.cells: {} is not divisible by 4 (the grid is halved twice)", experiment.file.string(), n));
+  for (const Cells& c : experiment.body.cells)
+    if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
+      throw InputError(experiment.body.where, fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
+                                                          c[0], c[1], c[2], total, largest_lattice));
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   try {
     const auto geo = find_geo(experiment.body, experiment.file);
     for (const Cells& cells : experiment.body.cells) {
       prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(geo, experiment.body.size, cells)));
       const Mesh& mesh = *prepared.meshes.back();
+      std::vector<std::string> patches;
+      for (const Patch& p : mesh.patches) patches.push_back(p.name);
+      check_patches(experiment, patches);
       require_supported(transfer(experiment.loads, mesh, 1000, experiment.model_kinematics()), mesh);
       for (const ModelParameters& p : prepared.models) build_model(p, mesh, experiment.materials.front());
       const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);

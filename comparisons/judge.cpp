@@ -30,10 +30,15 @@ void decide(const Expectation& e, Check& check) {
     check.verdict = Verdict::no_result;
   else if (by_fem && !check.reference_uncertainty)
     check.verdict = Verdict::no_reference;
-  else if (check.reference_uncertainty && *check.reference_uncertainty > largest_uncertainty_fraction * check.within)
-    check.verdict = Verdict::reference_too_coarse;
-  else
-    check.verdict = std::abs(*check.computed - check.expected) <= check.within ? Verdict::pass : Verdict::fail;
+  else {
+    const double miss = std::abs(*check.computed - check.expected), doubt = check.reference_uncertainty.value_or(0);
+    if (miss > check.within + doubt)
+      check.verdict = Verdict::fail;
+    else if (doubt > largest_uncertainty_fraction * check.within)
+      check.verdict = Verdict::reference_too_coarse;
+    else
+      check.verdict = miss <= check.within ? Verdict::pass : Verdict::fail;
+  }
 }
 
 Check judge_one(const CaseResult& result, const Expectation& e, double nu, const Cells& cells) {

@@ -176,7 +176,7 @@ int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   const nlohmann::json doc = document(results);
   nlohmann::json pictures = nlohmann::json::array();
   for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
-  write_file(out / "results.json", doc.dump(1));
+  write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   write_file(out / "results.csv", to_csv(results));
   write_report(out / "report.html", doc, pictures);
   const Headline h = headline(doc);
