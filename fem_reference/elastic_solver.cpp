@@ -24,8 +24,9 @@
 #endif
 
 #include "fem_reference/elastic_system.h"
-#include "fem_reference/minres.h"
+#include "fem_reference/krylov.h"
 #include "fem_reference/mixed_operator.h"
+#include "fem_reference/newton.h"
 #include "fem_reference/stiffness.h"
 #include "fem_reference/v_cycle.h"
 
@@ -130,6 +131,14 @@ ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVecto
                               : solve_mixed_form<2>(system, load, displacement);
   return system.degree == 1 ? solve_displacement_form<1>(system, load, displacement)
                             : solve_displacement_form<2>(system, load, displacement);
+}
+
+FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                   DofVector& displacement) {
+  FiniteAnswer answer = system.degree == 1 ? Newton<1>(system, problem, load).solve(displacement)
+                                           : Newton<2>(system, problem, load).solve(displacement);
+  answer.method = "Newton, GMRES, matrix-free multigrid";
+  return answer;
 }
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

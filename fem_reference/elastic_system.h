@@ -5,8 +5,11 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "fem_reference/laws.h"
 
 namespace springproof::fem {
 
@@ -35,10 +38,29 @@ struct ElasticAnswer {
   int iterations = 0;
   double residual = 0;  ///< |free part of load - internal force| / that of the start
   bool converged = false;
+  double load_reached = 1;  ///< fraction of the load that internal_force balances
   std::string method;
 };
 
 /// Solves for the free part of `displacement`, whose constrained entries hold the prescribed values.
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
+
+/// What finite strain adds.
+struct FiniteProblem {
+  Law law;
+  /// Sets the prescribed entries to their values at a fraction of the load; all others to zero.
+  std::function<void(double factor, DofVector& displacement)> prescribe;
+  double first_step = 1;            ///< fraction of the load
+  double smallest_step = 1. / 512;  ///< steps that fail are halved down to this
+};
+
+struct FiniteAnswer : ElasticAnswer {
+  double min_jacobian = 1;
+  int newton_iterations = 0, load_steps = 0;
+};
+
+/// Total Lagrangian Newton's method; the load is dead.  If it fails, the answer is that of the load reached.
+FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                          DofVector& displacement);
 
 }  // namespace springproof::fem

@@ -22,34 +22,75 @@ struct MixedVector {
   double dot(const MixedVector& other) const { return u * other.u + p * other.p; }
 };
 
-// [ 2 mu eps : eps   p div v      ]   symmetric, indefinite; p = lambda div u, projected on 1 (and the three
-// [ q div u          -p q / lambda ]   coordinates of the reference cell, for Q2).
+/// Pressures of a cell: a constant (Q1), or a constant and the three coordinates of the reference cell (Q2).
+template <int degree>
+struct PressureSpace {
+  using Cell = typename Stiffness<degree, double>::Cell;
+  using Cells = typename Stiffness<degree, double>::Cells;
+  using Lane = Lanes<double>;
+  static constexpr int functions = degree == 1 ? 1 : 4;
+  using Coefficients = std::array<Lane, functions>;
+
+  explicit PressureSpace(const Cells& cells) {
+    const dealii::QGauss<3> quadrature(degree + 1);
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+      for (int f = 0; f < functions; ++f) basis[f][q] = f == 0 ? 1 : 2 * quadrature.point(q)[f - 1] - 1;
+
+    inverse_mass.reinit(cells.n_cell_batches() * functions * Lane::size());
+    Cell u(cells);
+    for (unsigned int batch = 0; batch < cells.n_cell_batches(); ++batch) {
+      u.reinit(batch);
+      Coefficients mass{};
+      for (unsigned int q = 0; q < Cell::static_n_q_points; ++q)
+        for (int f = 0; f < functions; ++f) mass[f] += basis[f][q] * basis[f][q] * u.JxW(q);
+      for (int f = 0; f < functions; ++f)
+        for (unsigned int lane = 0; lane < cells.n_active_entries_per_cell_batch(batch); ++lane)
+          inverse_mass.local_element((batch * functions + f) * Lane::size() + lane) = 1 / mass[f][lane];
+    }
+  }
+
+  Coefficients read(const Vector<double>& p, unsigned int batch) const {
+    Coefficients c;
+    for (int f = 0; f < functions; ++f) c[f].load(p.begin() + (batch * functions + f) * Lane::size());
+    return c;
+  }
+
+  void write(const Coefficients& c, unsigned int batch, Vector<double>& p) const {
+    for (int f = 0; f < functions; ++f) c[f].store(p.begin() + (batch * functions + f) * Lane::size());
+  }
+
+  Lane value(const Coefficients& c, unsigned int q) const {
+    Lane p = c[0];
+    for (int f = 1; f < functions; ++f) p += c[f] * basis[f][q];
+    return p;
+  }
+
+  /// y = scale * M^-1 x with the diagonal of the mass matrix M.
+  void divide_by_mass(double scale, const Vector<double>& x, Vector<double>& y) const {
+    for (unsigned int i = 0; i < x.locally_owned_size(); ++i)
+      y.local_element(i) = scale * inverse_mass.local_element(i) * x.local_element(i);
+  }
+
+  std::array<std::array<double, Cell::static_n_q_points>, functions> basis;
+  Vector<double> inverse_mass;  ///< of the diagonal; zero in lanes without a cell
+};
+
+// [ 2 mu eps : eps   p div v      ]   symmetric, indefinite; p = lambda div u, projected on the pressure
+// space. [ q div u          -p q / lambda ]
 template <int degree>
 class MixedOperator {
  public:
   using Shear = Stiffness<degree, double>;
   using Cell = typename Shear::Cell;
   using Lane = Lanes<double>;
-  static constexpr int functions = degree == 1 ? 1 : 4;
 
-  MixedOperator(const Shear& shear, double lambda) : shear_(shear), lambda_(lambda) {
-    inverse_mass_.reinit(pressures());
-    Cell u(shear_.cells());
-    for (unsigned int batch = 0; batch < shear_.cells().n_cell_batches(); ++batch) {
-      u.reinit(batch);
-      std::array<Lane, functions> mass{};
-      for (unsigned int q = 0; q < Cell::static_n_q_points; ++q)
-        for (int f = 0; f < functions; ++f) mass[f] += basis_[f][q] * basis_[f][q] * u.JxW(q);
-      for (int f = 0; f < functions; ++f)
-        for (unsigned int lane = 0; lane < shear_.cells().n_active_entries_per_cell_batch(batch); ++lane)
-          inverse_mass_.local_element((batch * functions + f) * Lane::size() + lane) = 1 / mass[f][lane];
-    }
-  }
+  MixedOperator(const Shear& shear, double lambda)
+      : shear_(shear), pressure_(shear.cells()), lambda_(lambda) {}
 
   MixedVector vector() const {
     MixedVector x;
     x.u = shear_.vector();
-    x.p.reinit(pressures());
+    x.p.reinit(pressure_.inverse_mass);
     return x;
   }
 
@@ -68,56 +109,38 @@ class MixedOperator {
           for (unsigned int batch = range.first; batch < range.second; ++batch) {
             u.reinit(batch);
             u.gather_evaluate(displacement, gradients);
-            submit(u, batch, x.p, y.p);
+            pressure_.write(submit(u, pressure_.read(x.p, batch)), batch, y.p);
             u.integrate_scatter(gradients, force);
           }
         };
     shear_.cells().cell_loop(add, y.u, x.u, true);
   }
 
-  /// Multiplies the pressure by (M (1/lambda + 1/(2 mu)))^-1, with the diagonal of the mass matrix M.
+  /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1.
   void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {
-    const double scale = 1 / (1 / lambda_ + 0.5 / shear_.coefficients().mu);
-    for (unsigned int i = 0; i < x.locally_owned_size(); ++i)
-      y.local_element(i) = scale * inverse_mass_.local_element(i) * x.local_element(i);
+    pressure_.divide_by_mass(1 / (1 / lambda_ + 0.5 / shear_.coefficients().mu), x, y);
   }
 
  private:
-  using Basis = std::array<std::array<double, Cell::static_n_q_points>, functions>;
-
-  static Basis make_basis() {
-    const dealii::QGauss<3> quadrature(degree + 1);
-    Basis basis;
-    for (unsigned int q = 0; q < quadrature.size(); ++q)
-      for (int f = 0; f < functions; ++f) basis[f][q] = f == 0 ? 1 : 2 * quadrature.point(q)[f - 1] - 1;
-    return basis;
-  }
-
-  unsigned int pressures() const { return shear_.cells().n_cell_batches() * functions * Lane::size(); }
-
-  void submit(Cell& u, unsigned int batch, const Vector<double>& p_from, Vector<double>& r_to) const {
+  typename PressureSpace<degree>::Coefficients submit(
+      Cell& u, const typename PressureSpace<degree>::Coefficients& p) const {
     const Lane mu = shear_.coefficients().mu, compliance = 1 / lambda_;
-    std::array<Lane, functions> p, r{};
-    for (int f = 0; f < functions; ++f) p[f].load(p_from.begin() + (batch * functions + f) * Lane::size());
+    typename PressureSpace<degree>::Coefficients r{};
     for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
       const auto h = u.get_gradient(q);
-      Lane pressure = p[0];
-      for (int f = 1; f < functions; ++f) pressure += p[f] * basis_[f][q];
-      const Lane excess = (h[0][0] + h[1][1] + h[2][2] - compliance * pressure) * u.JxW(q);
-      for (int f = 0; f < functions; ++f) r[f] += basis_[f][q] * excess;
-      dealii::Tensor<2, 3, Lane> stress;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) stress[i][j] = mu * (h[i][j] + h[j][i]);
+      const Lane pressure = pressure_.value(p, q);
+      const Lane excess = (dealii::trace(h) - compliance * pressure) * u.JxW(q);
+      for (int f = 0; f < pressure_.functions; ++f) r[f] += pressure_.basis[f][q] * excess;
+      dealii::Tensor<2, 3, Lane> stress = mu * (h + dealii::transpose(h));
       for (int i = 0; i < 3; ++i) stress[i][i] += pressure;
       u.submit_gradient(stress, q);
     }
-    for (int f = 0; f < functions; ++f) r[f].store(r_to.begin() + (batch * functions + f) * Lane::size());
+    return r;
   }
 
   const Shear& shear_;
+  PressureSpace<degree> pressure_;
   double lambda_;
-  Basis basis_ = make_basis();
-  Vector<double> inverse_mass_;
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

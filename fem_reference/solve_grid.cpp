@@ -19,17 +19,34 @@ namespace springproof::fem {
 
 namespace one_lane {
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
-}
+FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                   DofVector& displacement);
+}  // namespace one_lane
 namespace avx2 {
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
+FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                   DofVector& displacement);
+}  // namespace avx2
+
+#ifdef SPRINGPROOF_HAVE_AVX2
+static bool use_avx2(const ElasticSystem& system) {
+  return system.wide_vectors && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 }
+#endif
 
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
 #ifdef SPRINGPROOF_HAVE_AVX2
-  if (system.wide_vectors && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return avx2::solve(system, load, displacement);
+  if (use_avx2(system)) return avx2::solve(system, load, displacement);
 #endif
   return one_lane::solve(system, load, displacement);
+}
+
+FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                          DofVector& displacement) {
+#ifdef SPRINGPROOF_HAVE_AVX2
+  if (use_avx2(system)) return avx2::solve(system, problem, load, displacement);
+#endif
+  return one_lane::solve(system, problem, load, displacement);
 }
 
 namespace {
@@ -44,11 +61,13 @@ double peak_memory_MiB() {
   return usage.ru_maxrss / 1024.0;
 }
 
-// Above 0.4 the pressure becomes an unknown, so that the solver does not depend on Poisson's ratio.  For Q1
-// that is the same discretisation as the mean dilatation; Q2 changes from full integration to a linear
-// pressure per cell.
+// Where the solid is nearly incompressible the pressure becomes an unknown, so that the solver does not
+// depend on Poisson's ratio.  For Q1 that is the same discretisation as the mean dilatation, which conjugate
+// gradients manage for longer; Q2 changes from full integration to a linear pressure per cell.
 Form form_for(const GridProblem& problem) {
-  if (problem.material.poisson_ratio > 0.4) return Form::mixed;
+  const double nu = problem.material.poisson_ratio;
+  const double limit = problem.degree == 2 ? 0.4 : problem.law == "linear" ? 0.4995 : 0.45;
+  if (nu > limit) return Form::mixed;
   return problem.degree == 1 ? Form::mean_dilatation : Form::pointwise;
 }
 
@@ -57,38 +76,92 @@ std::string element_name(const ElasticSystem& system) {
   return system.form == Form::mixed ? "Q2-P1disc mixed" : "Q2 displacement";
 }
 
-void solve_linear(const GridProblem& problem, const Body3& body, dealii::DoFHandler<3>& dof_handler,
-                  Solution& solution) {
-  const std::vector<Prescribed> held = prescribed(dof_handler, body, problem.loads);
-  check_held(held);
-  const DofVector load = load_vector(dof_handler, body, problem.loads, problem.material, problem.body_force);
-  DofVector u(dof_handler.n_dofs());
-  ElasticSystem system{dof_handler,
-                       {},
-                       prescribed_on_levels(dof_handler, body, problem.loads),
-                       problem.degree,
-                       form_for(problem),
-                       shear_modulus(problem.material),
-                       lame_lambda(problem.material),
-                       problem.tolerance,
-                       problem.wide_vectors};
-  for (const Prescribed& p : held) {
-    system.constrained.push_back(p.dof);
-    u[p.dof] = *prescribed_displacement(problem.loads[p.load], p.X, Kinematics::linear)[p.component];
+// What a grid and its loads become, whatever the law.
+struct Discrete {
+  Discrete(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler)
+      : held(prescribed(dof_handler, body, problem.loads)),
+        load(load_vector(dof_handler, body, problem.loads, problem.material, problem.body_force)),
+        system{dof_handler,
+               {},
+               prescribed_on_levels(dof_handler, body, problem.loads),
+               problem.degree,
+               form_for(problem),
+               shear_modulus(problem.material),
+               lame_lambda(problem.material),
+               problem.tolerance,
+               problem.wide_vectors} {
+    check_held(held);
+    for (const Prescribed& p : held) system.constrained.push_back(p.dof);
   }
-  ElasticAnswer answer = solve_elastic(system, load, u);
 
-  solution.ok = answer.converged;
+  std::vector<Prescribed> held;
+  DofVector load;
+  ElasticSystem system;
+};
+
+void prescribe(const GridProblem& problem, const Discrete& discrete, Kinematics kinematics, double factor,
+               DofVector& u) {
+  u = 0;
+  for (const Prescribed& p : discrete.held)
+    u[p.dof] = *prescribed_displacement(problem.loads[p.load], p.X, kinematics, factor)[p.component];
+}
+
+ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete, DofVector& u,
+                           Solution& solution) {
+  prescribe(problem, discrete, Kinematics::linear, 1, u);
+  const ElasticAnswer answer = solve_elastic(discrete.system, discrete.load, u);
+  solution.form = fmt::format("{}, {}", element_name(discrete.system), answer.method);
   if (!answer.converged)
     solution.message =
         fmt::format("the linear solver stopped at a relative residual of {:.2e}", answer.residual);
-  solution.form = fmt::format("{}, {}", element_name(system), answer.method);
+  return answer;
+}
+
+// Small enough that the linear predictor stays near the path: it inflates what turns, and it knows volume
+// only to first order.
+double first_load_step(const GridProblem& problem) {
+  double step = problem.material.poisson_ratio > 0.45 ? 0.25 : 1;
+  for (const Load& load : problem.loads)
+    if (const auto* turn = std::get_if<PrescribedRotation>(&load))
+      step = std::min(step, 0.35 / std::abs(turn->angle));
+  return step;
+}
+
+ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discrete, DofVector& u,
+                              Solution& solution) {
+  const std::optional<Law> law = law_named(problem.law);
+  if (!law)
+    throw InputError(fmt::format("unknown law \"{}\"; there are: linear, {}", problem.law, law_names()));
+  FiniteProblem finite{*law, [&](double factor, DofVector& to) {
+                         prescribe(problem, discrete, Kinematics::finite, factor, to);
+                       }};
+  finite.first_step = first_load_step(problem);
+  const FiniteAnswer answer = solve_finite(discrete.system, finite, discrete.load, u);
+  solution.form = fmt::format("{}, {}: {} load steps, {} Newton steps", element_name(discrete.system),
+                              answer.method, answer.load_steps, answer.newton_iterations);
+  if (!answer.converged)
+    solution.message =
+        fmt::format("no equilibrium found beyond {:.4g} % of the load (smallest det F there {:.3g})",
+                    100 * answer.load_reached, answer.min_jacobian);
+  return answer;
+}
+
+void solve_into(Solution& solution, const GridProblem& problem, const Body3& body,
+                const dealii::DoFHandler<3>& dof_handler) {
+  const Discrete discrete(problem, body, dof_handler);
+  const std::vector<Location> places = locate(body.triangulation, problem.points);
+  DofVector u(dof_handler.n_dofs());
+  const bool linear = problem.law == "linear";
+  const ElasticAnswer answer =
+      linear ? solve_linear(problem, discrete, u, solution) : solve_nonlinear(problem, discrete, u, solution);
+  solution.ok = answer.converged;
   solution.iterations = answer.iterations;
   solution.residual = answer.residual;
   DofVector imbalance = answer.internal_force;
-  imbalance -= load;
-  solution.reactions = reactions(dof_handler, body, problem.loads, held, imbalance, nullptr);
-  solution.displacement = displacement_at(locate(body.triangulation, problem.points), dof_handler, u);
+  imbalance.add(-answer.load_reached, discrete.load);
+  solution.reactions =
+      reactions(dof_handler, body, problem.loads, discrete.held, imbalance, linear ? nullptr : &u);
+  solution.displacement = displacement_at(places, dof_handler, u);
   const VolumeMeasure volume = measure_volume(dof_handler, u);
   solution.volume_change = volume.change;
   solution.volume_change_first_order = volume.change_first_order;
@@ -113,9 +186,7 @@ Solution solve_grid(const GridProblem& problem) {
   Solution solution;
   solution.law = problem.law;
   solution.degrees_of_freedom = dof_handler.n_dofs();
-  if (problem.law != "linear")
-    throw InputError(fmt::format("unknown law \"{}\"; there are: linear", problem.law));
-  solve_linear(problem, *body, dof_handler, solution);
+  solve_into(solution, problem, *body, dof_handler);
   solution.seconds = cpu_seconds() - start;
   solution.memory_MiB = peak_memory_MiB();
   return solution;
@@ -123,7 +194,8 @@ Solution solve_grid(const GridProblem& problem) {
 
 std::function<Vec3(const Vec3&)> graded(const Vec3& low, const Vec3& high, double exponent) {
   if (exponent == 1.0) return {};
-  const double reach = (high - low).minCoeff() / 2;  // the same on every axis, or a slender body's cells go flat
+  const double reach =
+      (high - low).minCoeff() / 2;  // the same on every axis, or a slender body's cells go flat
   return [=](const Vec3& X) {
     Vec3 x = X;
     for (int c = 0; c < 3; ++c) {

@@ -124,25 +124,57 @@ class Stiffness : public dealii::Subscriptor {
     return diagonal;
   }
 
+  // From now on the stiffness of the body deformed by u, per rest volume: gradients are taken in the deformed
+  // position.  Cells that u turns inside out stay as they are at rest.
+  void deform(const Vector<Number>& displacement) {
+    to_rest_.resize(cells_.n_cell_batches() * Cell::static_n_q_points);
+    Cell u(cells_);
+    for (unsigned int batch = 0; batch < cells_.n_cell_batches(); ++batch) {
+      u.reinit(batch);
+      u.gather_evaluate(displacement, gradients);
+      for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
+        auto F = u.get_gradient(q);
+        for (int i = 0; i < 3; ++i) F[i][i] += Number(1);
+        const Lanes<Number> J = dealii::determinant(F);
+        for (std::size_t lane = 0; lane < Lanes<Number>::size(); ++lane)
+          if (J[lane] < Number(0.05))
+            for (int i = 0; i < 3; ++i)
+              for (int j = 0; j < 3; ++j) F[i][j][lane] = i == j;
+        to_rest_[batch * Cell::static_n_q_points + q] = dealii::invert(F);
+      }
+    }
+  }
+
  private:
+  // Displacement gradient in the deformed position.
+  dealii::Tensor<2, 3, Lanes<Number>> gradient(const Cell& u, unsigned int q) const {
+    const dealii::Tensor<2, 3, Lanes<Number>> h = u.get_gradient(q);
+    return to_rest_.empty() ? h : h * to_rest(u, q);
+  }
+
+  const dealii::Tensor<2, 3, Lanes<Number>>& to_rest(const Cell& u, unsigned int q) const {
+    return to_rest_[u.get_current_cell_index() * Cell::static_n_q_points + q];
+  }
+
   void submit_stress(Cell& u) const {
     const Lanes<Number> mu = coefficients_.mu, lambda = coefficients_.lambda;
     Lanes<Number> mean = Number(0), volume = Number(0);
     if (coefficients_.mean_dilatation) {
       for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
-        mean += u.get_divergence(q) * u.JxW(q);
+        mean += dealii::trace(gradient(u, q)) * u.JxW(q);
         volume += u.JxW(q);
       }
       mean /= volume;
     }
     for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
-      const auto h = u.get_gradient(q);
+      const auto h = gradient(u, q);
       const Lanes<Number> pressure =
           lambda * (coefficients_.mean_dilatation ? mean : h[0][0] + h[1][1] + h[2][2]);
       dealii::Tensor<2, 3, Lanes<Number>> stress;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) stress[i][j] = mu * (h[i][j] + h[j][i]);
       for (int i = 0; i < 3; ++i) stress[i][i] += pressure;
+      if (!to_rest_.empty()) stress = stress * dealii::transpose(to_rest(u, q));
       u.submit_gradient(stress, q);
     }
   }
@@ -163,7 +195,8 @@ class Stiffness : public dealii::Subscriptor {
         unit[0] = slope(i, qx) * value(j, qy) * value(k, qz);
         unit[1] = value(i, qx) * slope(j, qy) * value(k, qz);
         unit[2] = value(i, qx) * value(j, qy) * slope(k, qz);
-        const auto dN = u.inverse_jacobian(q) * unit;
+        auto dN = u.inverse_jacobian(q) * unit;
+        if (!to_rest_.empty()) dN = dealii::transpose(to_rest(u, q)) * dN;
         const Lanes<Number> JxW = u.JxW(q);
         for (int c = 0; c < 3; ++c) {
           squares[c] += JxW * dN[c] * dN[c];
@@ -181,6 +214,8 @@ class Stiffness : public dealii::Subscriptor {
   }
 
   Cells cells_;
+  dealii::AlignedVector<dealii::Tensor<2, 3, Lanes<Number>>>
+      to_rest_;  // inverse deformation gradient, or empty
   std::vector<unsigned int> constrained_;
   Coefficients<Number> coefficients_;
   mutable std::vector<Number> saved_;

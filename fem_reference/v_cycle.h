@@ -47,6 +47,15 @@ class VCycle {
     transfer_.copy_from_mg(dof_handler_, y, x_);
   }
 
+  // Takes the body as deformed by u.
+  void deform(const Vector<double>& u) {
+    transfer_.interpolate_to_mg(dof_handler_, t_, u);
+    for (unsigned int l = 0; l < levels_.size(); ++l) {
+      levels_[l]->deform(t_[l]);
+      smoothers_[l]->initialize(*levels_[l], smoother_data(l));
+    }
+  }
+
  private:
   typename Smoother::AdditionalData smoother_data(unsigned int level) const {
     typename Smoother::AdditionalData data;

@@ -1,0 +1,57 @@
+// Isotropic laws at finite strain, written in the principal values of the right Cauchy-Green tensor C = F^T
+// F.
+//
+// All share one form: the second Piola-Kirchhoff stress S = S_shear(C) + p Q(C), with a pressure p that
+// depends on a dilatation g alone.  So the elements may average g, or make p an unknown, without knowing the
+// law; and what they average is the volume itself.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace springproof::fem {
+
+enum class Law {
+  hencky,              ///< Kirchhoff stress = 2 mu ln V + lambda ln J I; hyperelastic
+  log_cauchy,          ///< Cauchy stress = 2 mu ln V + lambda ln J I (as LS-Dyna's hypoelastic solid); not
+                       ///< hyperelastic
+  neo_hooke,           ///< W = mu/2 (tr C - 3 - 2 ln J) + lambda/2 ln^2 J
+  st_venant_kirchhoff  ///< S = 2 mu E + lambda tr E I, E = (C - I)/2
+};
+
+/// Nothing if there is no such law.
+std::optional<Law> law_named(const std::string& name);
+
+/// "hencky, log_cauchy, ..." for messages.
+std::string law_names();
+
+using Matrix3 = std::array<std::array<double, 3>, 3>;
+using Voigt = std::array<double, 6>;  ///< xx yy zz xy yz xz
+
+struct LawResponse {
+  Voigt S;                 ///< second Piola-Kirchhoff stress [Pa]
+  Voigt Q;                 ///< dS / dp
+  Voigt G;                 ///< dg / dC, each shear pair counted once
+  std::array<Voigt, 6> D;  ///< dS / dC at fixed p [Pa], for increments (dCxx dCyy dCzz 2dCxy 2dCyz 2dCxz)
+};
+
+/// Response at deformation gradient F (det F > 0) and pressure p [Pa]; mu is the shear modulus [Pa].
+LawResponse respond(Law law, double mu, double p, const Matrix3& F);
+
+/// The dilatation g = J - 1, or tr E for St. Venant-Kirchhoff.
+double dilatation(Law law, const Matrix3& F);
+
+struct ValueAndSlope {
+  double value, slope;
+};
+
+/// p(g) [Pa]: lambda ln J / J, lambda ln J (log_cauchy), lambda tr E (St. Venant-Kirchhoff).
+ValueAndSlope pressure(Law law, double lambda, double g);
+
+/// Its inverse g(p).  Where hencky and neo_hooke have none (lambda / e < p, J beyond e) the largest there is.
+ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p);
+
+double determinant(const Matrix3& F);
+
+}  // namespace springproof::fem
