@@ -103,7 +103,7 @@ double noise_of(const std::string& measure, const std::map<std::string, double>&
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
   return {model,   "fem", run.material.poisson_ratio, s.grid.cells, s.law.empty() ? run.experiment().kinematics : s.law,
           s.ok,    s.message, s.form,                 s.iterations, s.residual,
-          s.seconds, s.degrees_of_freedom};
+          s.seconds, s.degrees_of_freedom, s.memory_MiB};
 }
 
 /// Runs the reference grids, and eight-node elements on the lattices' own cells; fills run.reference.
@@ -119,7 +119,7 @@ std::vector<fem::Solution> run_fem(PartRun& run) {
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {
-    run.part.runs.push_back({"fem_q2", "fem", run.material.poisson_ratio, fine, run.experiment().kinematics, false, e.what(), "", 0, 0, 0, 0});
+    run.part.runs.push_back({"fem_q2", "fem", run.material.poisson_ratio, fine, run.experiment().kinematics, false, e.what(), "", 0, 0, 0, 0, 0});
     return {};
   }
   run.grids.assign(solutions.begin(), solutions.begin() + 3);
@@ -223,7 +223,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Equilibrium state = kinematics == Kinematics::linear ? solve_linear(model, conditions) : solve_finite(model, path);
   const std::string kind = kinematics == Kinematics::linear ? "linear" : "finite";
   run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, state.ok, state.message,
-                           state.solver, state.iterations, state.residual, state.seconds, state.unknowns});
+                           state.solver, state.iterations, state.residual, state.seconds, state.unknowns, state.memory_MiB});
   if (!state.ok) return;
   const Field field = to_field(state, mesh, e.loads, conditions, kinematics);
   const NodalVectors probes = interpolate(*mesh, field.displacement, points_of(e.probes));

@@ -147,7 +147,8 @@ Json json_of(const Run& r) {
           {"iterations", r.iterations},
           {"residual", number(r.residual)},
           {"seconds", number(r.seconds)},
-          {"unknowns", r.unknowns}};
+          {"unknowns", r.unknowns},
+          {"memory_MiB", number(r.memory_MiB)}};
 }
 
 Json json_of(const ReferenceRecord& r) {

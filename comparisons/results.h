@@ -41,6 +41,7 @@ struct Run {
   double residual = 0;             ///< relative
   double seconds = 0;
   long unknowns = 0;
+  double memory_MiB = 0;           ///< largest resident memory of the solver's program up to the end of this run
 };
 
 /// How sure the reference is of one measure: three grids, observed order, Richardson limit, GCI.

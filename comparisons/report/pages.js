@@ -279,7 +279,7 @@ function publishedPart(result) {
 function runRow(run) {
   return el('tr', {class: run.ok ? '' : 'lost'}, [modelName(run.model), nuText(run.poisson_ratio), cellsText(run.cells), run.kinematics,
     run.solver].map(cell => el('td', {}, cell)),
-    [String(run.iterations ?? '–'), number(run.residual, 2), seconds(run.seconds), number(run.unknowns, 9)]
+    [String(run.iterations ?? '–'), number(run.residual, 2), seconds(run.seconds), number(run.unknowns, 9), number(run.memory_MiB, 4)]
       .map(cell => el('td', {class: 'number'}, cell)), el('td', {}, run.message));
 }
 
@@ -289,7 +289,7 @@ function runsPart(result) {
   return el('details', {class: 'fold'},
     el('summary', {}, `Runs: ${result.runs.length}` + (failed ? `, ${failed} without result` : '') + `, ${seconds(time)}`),
     table('runs', ['model', 'ν', 'cells', 'kinematics', 'solver', right('iterations'), right('residual'), right('time'),
-                   right('unknowns'), 'message'], result.runs.map(runRow)));
+                   right('unknowns'), right('memory [MiB]'), 'message'], result.runs.map(runRow)));
 }
 
 // ---- the page of a case

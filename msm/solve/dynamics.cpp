@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <ctime>
 
 #include "msm/solve/cell_stiffness.h"
+#include "msm/solve/cost.h"
 
 namespace springproof {
 namespace {
@@ -25,7 +25,7 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
 
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options) {
-  const std::clock_t start = std::clock();
+  const double start = cpu_seconds();
   DynamicsResult result;
   const double dt = result.time_step = checked_time_step(model, density, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
@@ -82,7 +82,8 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   }
   state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s", result.steps, dt);
   state.iterations = static_cast<int>(result.steps);
-  state.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  state.seconds = cpu_seconds() - start;
+  state.memory_MiB = peak_memory_MiB();
   return result;
 }
 

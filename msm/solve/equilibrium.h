@@ -19,8 +19,9 @@ struct Equilibrium {
   int iterations = 0;           ///< of the linear solver, all steps together
   double residual = 0;          ///< |unbalanced force| / |force scale|, of the returned state
   double load_reached = 1;      ///< fraction of the load
-  double seconds = 0;           ///< CPU time
+  double seconds = 0;           ///< CPU time of the thread
   long unknowns = 0;            ///< free unknowns
+  double memory_MiB = 0;        ///< largest resident memory of the program so far
 };
 
 enum class LinearSolver { automatic, cholesky, multigrid, mixed_multigrid };

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <ctime>
-
 #include "meshes/volume.h"
 #include "msm/calibrate.h"
 #include "msm/solve/cell_stiffness.h"
+#include "msm/solve/cost.h"
 #include "msm/solve/equilibrium.h"
 #include "msm/solve/krylov.h"
 #include "msm/solve/mixed_multigrid.h"
@@ -111,7 +110,7 @@ void solve_mixed(const LinearProblem& p, CellStiffness cell, double G, Equilibri
 
 Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions& conditions,
                          const LinearOptions& options) {
-  const std::clock_t start = std::clock();
+  const double start = cpu_seconds();
   Equilibrium result;
   for (char fixed : conditions.fixed) result.unknowns += !fixed;
   const LinearProblem problem{model, conditions, options, flat(conditions.prescribed), flat(conditions.external)};
@@ -133,7 +132,8 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   } catch (const std::runtime_error& e) {
     result.message = e.what();
   }
-  result.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  result.seconds = cpu_seconds() - start;
+  result.memory_MiB = peak_memory_MiB();
   return result;
 }
 

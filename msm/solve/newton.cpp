@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "meshes/volume.h"
 #include "msm/solve/cell_stiffness.h"
+#include "msm/solve/cost.h"
 #include "msm/solve/equilibrium.h"
 #include "msm/solve/krylov.h"
 #include "msm/solve/multigrid.h"
@@ -160,7 +160,7 @@ std::string describe(Outcome outcome, double reached) {
 }  // namespace
 
 Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options) {
-  const std::clock_t start = std::clock();
+  const double start = cpu_seconds();
   const BoundaryConditions full = load_path(1.0);
   Newton newton(model, load_path, options, full.fixed);
   Equilibrium result;
@@ -199,7 +199,8 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
                               steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
   result.unknowns = newton.unknowns();
-  result.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  result.seconds = cpu_seconds() - start;
+  result.memory_MiB = peak_memory_MiB();
   return result;
 }
 

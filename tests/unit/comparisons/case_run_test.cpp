@@ -68,6 +68,8 @@ TEST(Judge, DecidesByToleranceAndByTheReferencesUncertainty) {
   EXPECT_EQ(verdict(one_row(0.105, 0.1, 0.001), e), Verdict::pass);
   EXPECT_EQ(verdict(one_row(0.111, 0.1, 0.001), e), Verdict::fail);
   EXPECT_EQ(verdict(one_row(0.105, 0.1, 0.0026), e), Verdict::reference_too_coarse);
+  EXPECT_EQ(verdict(one_row(0.111, 0.1, 0.0026), e), Verdict::reference_too_coarse);
+  EXPECT_EQ(verdict(one_row(0.2, 0.1, 0.0026), e), Verdict::fail);  // beyond doubt
   CaseResult without = one_row(0.105, 0.1, 0);
   without.rows[0].reference.reset();
   without.rows[0].reference_uncertainty.reset();
@@ -85,7 +87,7 @@ TEST(Judge, DecidesByToleranceAndByTheReferencesUncertainty) {
 TEST(PartFile, ComesBackWholeOrNotAtAll) {
   const auto file = std::filesystem::temp_directory_path() / "springproof_part_test.cbor";
   Part part;
-  part.runs = {{"hybmss", "msm", 0.25, {1, 2, 3}, "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99}};
+  part.runs = {{"hybmss", "msm", 0.25, {1, 2, 3}, "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99, 12.5}};
   part.rows = one_row(0.1, 0.2, 0.003).rows;
   part.rows.push_back({"case", "linear", "fem", 0.25, {4, 4, 4}, "volume_change", 0.1, "1", {}, {}, {}});
   part.references = {{0.25, "volume_change", "1", {{1, 1, 1}}, {0.1, 0.2}, {}, 0.2, 0.1, "note"}};
