@@ -1,6 +1,8 @@
 // Newton's method with load steps.  Part of elastic_solver.cpp, as stiffness.h.
 #pragma once
 
+#include <deal.II/grid/grid_tools.h>
+
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/finite_operator.h"
 #include "fem_reference/krylov.h"
@@ -23,7 +25,8 @@ class Newton {
         r_(x_),
         f_(x_),
         dx_(x_),
-        z_(x_) {}
+        z_(x_),
+        round_off_(round_off(system)) {}
 
   FiniteAnswer solve(DofVector& displacement) {
     FiniteAnswer answer;
@@ -64,10 +67,9 @@ class Newton {
     r_ = f_;
     r_.sadd(-1, 0, r_);
     r_.u.add(factor, load_);
-    double reaction = r_.u.l2_norm();
+    const double at_work = std::max(r_.u.l2_norm(), factor * load_.l2_norm());
     base_.clear_constrained(r_.u);
-    reaction = std::max(reaction, factor * load_.l2_norm());
-    return reaction > 0 ? r_.u.l2_norm() / reaction : 0;
+    return r_.u.l2_norm() / std::max(at_work, round_off_ / system_.tolerance);
   }
 
   bool equilibrate(double from, double to, FiniteAnswer& answer) {
@@ -82,23 +84,23 @@ class Newton {
     K_.apply(f_, given);
     base_.clear_constrained(f_.u);
     r_.add(-1, f_);
+    const bool moved = given.u.linfty_norm() > 0;
     double eta = 1e-3;
-    double last = std::numeric_limits<double>::infinity();
     for (int iteration = 0; iteration < 25; ++iteration) {
-      correct(eta, answer);
+      if (!correct(eta, answer)) return false;
       if (iteration == 0) dx_.add(1, given);
-      if (!advance(iteration == 0)) return false;
+      if (!advance(iteration == 0 && moved)) return false;
       const double now = residual(to);
       ++answer.newton_iterations;
       if (now <= system_.tolerance && pressure_residual() <= system_.tolerance) return true;
-      if (!(now < 1e3 * last)) return false;
+      if (iteration >= 12 && now > 1e-3) return false;  // wanders: a shorter load step is cheaper
       eta = std::clamp(0.1 * now, 1e-6, 1e-2);
-      last = now;
     }
     return false;
   }
 
-  void correct(double eta, FiniteAnswer& answer) {
+  // dx_ with K dx_ = r_, roughly.  A system that resists has lost its stability: false.
+  bool correct(double eta, FiniteAnswer& answer) {
     multigrid_.deform(x_.u);
     dx_.sadd(0, 0, dx_);
     const auto precondition = [&](MixedVector& z, const MixedVector& r) {
@@ -106,11 +108,13 @@ class Newton {
       K_.precondition_pressure(z.p, r.p);
     };
     const auto multiply = [&](MixedVector& y, const MixedVector& v) { K_.vmult(y, v); };
-    answer.iterations += gmres(multiply, precondition, r_, eta, 200, dx_).iterations;
+    const KrylovOutcome outcome = gmres(multiply, precondition, r_, eta, 120, dx_);
+    answer.iterations += outcome.iterations;
+    return outcome.reduction < 0.2;
   }
 
-  // x_ += dx_, or less of it, so that no cell turns inside out; the first step carries the prescribed
-  // increment and cannot be shortened.
+  // x_ += dx_, or less of it, so that no cell turns inside out; one that carries a prescribed
+  // increment cannot be shortened.
   bool advance(bool whole) {
     const MixedVector start = x_;
     for (double part = 1; part > 0.05; part /= 2) {
@@ -129,6 +133,13 @@ class Newton {
     return z_.p.linfty_norm() / (2 * system_.mu);
   }
 
+  // Size of the forces that rounding alone makes of a strain of one.
+  static double round_off(const ElasticSystem& system) {
+    const auto& triangulation = system.dof_handler.get_triangulation();
+    const double length = dealii::GridTools::minimal_cell_diameter(triangulation);
+    return 1e-14 * system.mu * length * length * std::sqrt(double(system.dof_handler.n_dofs()));
+  }
+
   const ElasticSystem& system_;
   const FiniteProblem& problem_;
   const DofVector& load_;
@@ -136,6 +147,7 @@ class Newton {
   VCycle<degree> multigrid_;
   FiniteOperator<degree> K_;
   MixedVector x_, r_, f_, dx_, z_;
+  double round_off_;
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE
