@@ -12,10 +12,10 @@
 namespace springproof::fem {
 namespace {
 
-// Halves the cells as long as all counts stay even and at least 2: the coarsest level of the multigrid.
+// Halves the cells as long as all counts are even: the coarsest level of the multigrid.
 int halve(Cells& cells) {
   int times = 0;
-  const auto can_be_halved = [](int n) { return n % 2 == 0 && n >= 4; };
+  const auto can_be_halved = [](int n) { return n % 2 == 0; };
   while (std::all_of(cells.begin(), cells.end(), can_be_halved)) {
     for (int& n : cells) n /= 2;
     ++times;
@@ -26,9 +26,15 @@ int halve(Cells& cells) {
 Solution solve_one(const Request& request, const Discretisation& grid) {
   const Experiment& experiment = request.experiment;
   GridProblem problem;
+  const std::filesystem::path geo = find_geo(experiment.body, experiment.file);
   Cells coarse = grid.cells;
   problem.refinements = halve(coarse);
-  problem.coarse = mesh_geo(find_geo(experiment.body, experiment.file), experiment.body.size, coarse);
+  problem.coarse = mesh_geo(geo, experiment.body.size, coarse);
+  if (problem.refinements > 0 && !problem.coarse.grid) {
+    // A curved surface would keep the facets of the coarse mesh.
+    problem.refinements = 0;
+    problem.coarse = mesh_geo(geo, experiment.body.size, grid.cells);
+  }
   problem.place = graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(),
                          grid.grading);
   problem.degree = grid.degree;
