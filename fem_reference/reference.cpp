@@ -2,9 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -55,6 +59,28 @@ std::string read_file(const fs::path& file) {
   return text.str();
 }
 
+// The programs under way, for interrupt().
+std::array<std::atomic<pid_t>, 64> children;
+
+class ChildSlot {
+ public:
+  explicit ChildSlot(pid_t child) {
+    for (auto& c : children)
+      if (pid_t free = 0; c.compare_exchange_strong(free, child)) {
+        slot_ = &c;
+        return;
+      }
+  }
+  ~ChildSlot() {
+    if (slot_) *slot_ = 0;
+  }
+  ChildSlot(const ChildSlot&) = delete;
+  ChildSlot& operator=(const ChildSlot&) = delete;
+
+ private:
+  std::atomic<pid_t>* slot_ = nullptr;
+};
+
 // The wait status of the program run with standard output and error written to files.
 int run_program(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& output,
                 const fs::path& errors) {
@@ -65,6 +91,7 @@ int run_program(const fs::path& file, const std::vector<std::string>& arguments,
   if (child < 0)
     throw std::runtime_error(fmt::format("cannot start {}: {}", file.string(), std::strerror(errno)));
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer of a caller that is gone
     const int out = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int err = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     dup2(out, STDOUT_FILENO);
@@ -72,6 +99,7 @@ int run_program(const fs::path& file, const std::vector<std::string>& arguments,
     execv(file.c_str(), argv.data());
     _exit(127);
   }
+  const ChildSlot slot(child);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -106,6 +134,11 @@ std::vector<Solution> solve(const Request& request) {
         fmt::format("springproof-fem failed with status {}: {}", WEXITSTATUS(status), last_words));
   std::ifstream in(answer, std::ios::binary);
   return solutions_from_json(nlohmann::json::from_cbor(in));
+}
+
+void interrupt() {
+  for (const auto& c : children)
+    if (const pid_t child = c; child > 0) kill(child, SIGTERM);
 }
 
 bool available() {

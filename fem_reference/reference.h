@@ -16,7 +16,7 @@ namespace springproof::fem {
 struct Discretisation {
   Cells cells;           ///< hexahedra along each side of the block
   int degree = 2;        ///< 1 (Q1, mean dilatation B-bar) or 2 (Q2)
-  double grading = 1.0;  ///< xi -> graded towards both ends of every side, exponent; 1 = uniform
+  double grading = 1.0;  ///< draws cells towards the faces of the block (fem::graded), exponent; 1 = uniform
 };
 
 struct Request {
@@ -51,10 +51,13 @@ struct Solution {
 /// @throws std::runtime_error if the program cannot be run or is killed (with its last words).
 std::vector<Solution> solve(const Request& request);
 
+/// Ends every solve() under way, which then throws; may be called in a signal handler.
+void interrupt();
+
 /// True if `springproof-fem` is there to be run.
 bool available();
 
-/// "deal.II 9.4.1, PETSc ..." of the program, empty if not available.
+/// "deal.II 9.4.1, AVX2" of the program, empty if not available.
 std::string version();
 
 }  // namespace springproof::fem

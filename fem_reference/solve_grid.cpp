@@ -5,7 +5,6 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
 #include <fmt/format.h>
-#include <petscversion.h>
 #include <sys/resource.h>
 
 #include <ctime>
@@ -29,14 +28,14 @@ FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, co
 }  // namespace avx2
 
 #ifdef SPRINGPROOF_HAVE_AVX2
-static bool use_avx2(const ElasticSystem& system) {
-  return system.wide_vectors && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+static bool processor_has_avx2() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 }
 #endif
 
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
 #ifdef SPRINGPROOF_HAVE_AVX2
-  if (use_avx2(system)) return avx2::solve(system, load, displacement);
+  if (system.wide_vectors && processor_has_avx2()) return avx2::solve(system, load, displacement);
 #endif
   return one_lane::solve(system, load, displacement);
 }
@@ -44,7 +43,7 @@ ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, 
 FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
                           DofVector& displacement) {
 #ifdef SPRINGPROOF_HAVE_AVX2
-  if (use_avx2(system)) return avx2::solve(system, problem, load, displacement);
+  if (system.wide_vectors && processor_has_avx2()) return avx2::solve(system, problem, load, displacement);
 #endif
   return one_lane::solve(system, problem, load, displacement);
 }
@@ -210,8 +209,11 @@ std::function<Vec3(const Vec3&)> graded(const Vec3& low, const Vec3& high, doubl
 }
 
 std::string library_versions() {
-  return fmt::format("deal.II {}, PETSc {}.{}.{}", DEAL_II_PACKAGE_VERSION, PETSC_VERSION_MAJOR,
-                     PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
+  bool wide = false;
+#ifdef SPRINGPROOF_HAVE_AVX2
+  wide = processor_has_avx2();
+#endif
+  return fmt::format("deal.II {}, {}", DEAL_II_PACKAGE_VERSION, wide ? "AVX2" : "one lane");
 }
 
 }  // namespace springproof::fem

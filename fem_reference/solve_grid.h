@@ -27,11 +27,12 @@ struct GridProblem {
 /// it.
 Solution solve_grid(const GridProblem& problem);
 
-/// Draws coordinates within the box [low, high] towards its faces, symmetrically: t -> (2t)^exponent / 2 on
-/// the lower half of each axis.  Faces, edges and middle planes stay.
+/// Draws coordinates within the box [low, high] towards its faces, over half the shortest side r on every
+/// axis: the distance d < r to a face becomes r (d/r)^exponent.  Faces stay, and the rest of a slender body
+/// stays uniform.
 std::function<Vec3(const Vec3&)> graded(const Vec3& low, const Vec3& high, double exponent);
 
-/// "deal.II 9.4.1, PETSc 3.18.1".
+/// "deal.II 9.4.1, AVX2" or "..., one lane": what answers on this machine.
 std::string library_versions();
 
 }  // namespace springproof::fem
