@@ -89,15 +89,18 @@ std::map<std::string, double> measures_of(const PartRun& run, const fem::Solutio
   return scalar_measures(sampled_field(run, 0, s), run.experiment().probes, s.displacement.bottomRows(probes));
 }
 
-/// Round-off of a measure: the solver's tolerance times the size of the vector it is a component of.
-double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size) {
-  double scale = std::abs(values.at(measure));
-  if (const auto dot = measure.rfind('.'); dot != std::string::npos) {
-    const std::string stem = measure.substr(0, dot);
-    scale = values.at(stem + ".magnitude");
-    if (stem.starts_with("torque.")) scale += body_size * values.at("force" + stem.substr(6) + ".magnitude");
+/// Round-off of a measure: the solver's tolerance times the largest force (times the body's size for torques, over it
+/// for forces that balance torques), or times the strain.
+double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size, double largest_displacement) {
+  constexpr double relative = 1e-7;
+  if (measure.starts_with("displacement.")) return relative * largest_displacement;
+  if (measure.starts_with("volume_change")) return relative * largest_displacement / body_size;
+  double force = 0;
+  for (const auto& [name, value] : values) {
+    if (name.starts_with("force.")) force = std::max(force, std::abs(value));
+    if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body_size);
   }
-  return 1e-7 * scale;
+  return relative * force * (measure.starts_with("torque.") ? body_size : 1);
 }
 
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
@@ -116,8 +119,6 @@ std::vector<fem::Solution> run_fem(PartRun& run) {
   std::vector<fem::Solution> solutions;
   try {
     solutions = fem::solve(request);
-  } catch (const InputError&) {
-    throw;
   } catch (const std::runtime_error& e) {
     run.part.runs.push_back({"fem_q2", "fem", run.material.poisson_ratio, fine, run.experiment().kinematics, false, e.what(), "", 0, 0, 0, 0, 0});
     return {};
@@ -133,9 +134,10 @@ void build_reference(PartRun& run) {
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : run.grids) values.push_back(measures_of(run, s));
   std::map<std::string, ReferenceValue> scalars;
+  const double largest_displacement = run.grids[2].displacement.rowwise().norm().maxCoeff();
   for (const auto& [measure, fine] : values[2]) {
     const std::vector<double> sequence = {values[0].at(measure), values[1].at(measure), fine};
-    const ReferenceValue v = scalars[measure] = extrapolate(sequence, noise_of(measure, values[2], run.experiment().body.size.norm()));
+    const ReferenceValue v = scalars[measure] = extrapolate(sequence, noise_of(measure, values[2], run.experiment().body.size.norm(), largest_displacement));
     if (!wanted(measure, run.experiment().measures)) continue;
     run.part.references.push_back({run.material.poisson_ratio, measure, unit_of(measure), {}, sequence, v.observed_order, v.value, v.uncertainty, v.note});
   }
@@ -184,7 +186,10 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
     run.part.rows.push_back(row);
   }
   if (!reference) return;
-  const double size = weighted_norm(reference->field.displacement, nodal_volumes(*run.prepared.meshes[lattice]));
+  // What the reference may be off, node by node, measured by the same ruler.
+  NodalVectors doubt = reference->field.displacement;
+  doubt.col(0) += reference->field.nodal_uncertainty;
+  const std::map<std::string, double> uncertainty = distances(run, lattice, doubt);
   for (const auto& [measure, value] : distances(run, lattice, u)) {
     if (!wanted(measure, run.experiment().measures)) continue;
     Row row = blank;
@@ -192,7 +197,7 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
     row.value = value;
     row.unit = unit_of(measure);
     row.reference = 0.0;
-    row.reference_uncertainty = reference->field.uncertainty * (row.unit == "m" ? size : 1.0);
+    row.reference_uncertainty = uncertainty.at(measure);
     row.error = value;
     run.part.rows.push_back(row);
   }
@@ -207,7 +212,7 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu_folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  std::string name = fmt::format("{}_nu{:g}_{}x{}x{}.vtu", model, run.material.poisson_ratio, cells[0], cells[1], cells[2]);
+  std::string name = fmt::format("{}_nu{}_{}x{}x{}.vtu", model, run.material.poisson_ratio, cells[0], cells[1], cells[2]);
   std::replace(name.begin(), name.end(), ' ', '_');
   write_vtu(run.vtu_folder / name, field, extra);
 }
@@ -234,7 +239,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
 }  // namespace
 
 PreparedCase prepare(const Experiment& experiment) {
-  PreparedCase prepared{experiment, {}, {}, reference_cells(experiment)};
+  PreparedCase prepared{experiment, {}, {}, reference_cells(experiment), {}};
   for (int n : prepared.reference_cells)
     if (n % 4 != 0)
       throw InputError(fmt::format("{}: reference.cells: {} is not divisible by 4 (the grid is halved twice)", experiment.file.string(), n));
@@ -242,11 +247,18 @@ PreparedCase prepare(const Experiment& experiment) {
     if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
       throw InputError(experiment.body.where, fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
                                                           c[0], c[1], c[2], total, largest_lattice));
+  for (const Expectation& e : experiment.expectations) {
+    if (e.value) continue;
+    if (e.model == "fem")
+      throw InputError(e.location, "value: an expectation of the reference itself needs one");
+    if (e.relative && is_distance(e.measure))
+      throw InputError(e.location, fmt::format("within_relative: {} is expected to be 0; give an absolute `within`", e.measure));
+  }
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   try {
-    const auto geo = find_geo(experiment.body, experiment.file);
+    prepared.geo = find_geo(experiment.body, experiment.file);
     for (const Cells& cells : experiment.body.cells) {
-      prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(geo, experiment.body.size, cells)));
+      prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, experiment.body.size, cells)));
       const Mesh& mesh = *prepared.meshes.back();
       std::vector<std::string> patches;
       for (const Patch& p : mesh.patches) patches.push_back(p.name);

@@ -17,6 +17,7 @@ struct PreparedCase {
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids
+  std::filesystem::path geo;                        ///< the body's gmsh script
 };
 
 /// @throws InputError for everything a user can get wrong, before any long work starts.

@@ -65,7 +65,7 @@ std::string minus(std::string number) {
 }
 
 std::string number_text(std::optional<double> x) {
-  return x ? minus(fmt::format("{:.6g}", *x)) : "nothing";
+  return x ? minus(fmt::format("{}", *x)) : "nothing";
 }
 
 /// Two significant digits, a fraction as percent: 0.0191 -> "1.9".

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "comparisons/case_run.h"
@@ -24,10 +25,10 @@ const ReferenceRecord* find_reference(const CaseResult& result, double nu, const
   return nullptr;
 }
 
-void decide(const Expectation& e, Check& check) {
+void decide(const Expectation& e, bool any_reference, Check& check) {
   const bool by_fem = e.source == Source::extrapolated_fem;
   if (!check.computed)
-    check.verdict = Verdict::no_result;
+    check.verdict = is_distance(e.measure) && !any_reference ? Verdict::no_reference : Verdict::no_result;
   else if (by_fem && !check.reference_uncertainty)
     check.verdict = Verdict::no_reference;
   else {
@@ -57,7 +58,9 @@ Check judge_one(const CaseResult& result, const Expectation& e, double nu, const
     }
   }
   check.within = e.relative ? e.within * std::abs(check.expected) : e.within;
-  decide(e, check);
+  const bool any_reference = std::any_of(result.references.begin(), result.references.end(),
+                                         [&](const ReferenceRecord& r) { return same(r.poisson_ratio, nu); });
+  decide(e, any_reference, check);
   return check;
 }
 
@@ -69,9 +72,8 @@ void judge(CaseResult& result) {
     for (const IsotropicMaterial& material : experiment.materials) {
       if (e.poisson_ratio && !same(*e.poisson_ratio, material.poisson_ratio)) continue;
       const std::vector<Cells> everywhere =
-          e.model == "fem" ? std::vector<Cells>{experiment.body.cells.front()} : experiment.body.cells;
-      for (const Cells& cells : everywhere)
-        if (!e.cells || *e.cells == cells) result.checks.push_back(judge_one(result, e, material.poisson_ratio, cells));
+          e.model == "fem" ? std::vector<Cells>{experiment.body.cells.front()} : e.cells ? std::vector<Cells>{*e.cells} : experiment.body.cells;
+      for (const Cells& cells : everywhere) result.checks.push_back(judge_one(result, e, material.poisson_ratio, cells));
     }
   for (const PublishedValue& p : experiment.published) {
     PublishedRow row{p.model, p.poisson_ratio, p.measure, unit_of(p.measure), p.value, {}, p.where, p.remark};

@@ -53,7 +53,7 @@ int main(int argc, char** argv) try {
   compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")->check(CLI::NonNegativeNumber);
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
   compare_command->add_flag("!--no-vtu", options.vtu, "write no VTU files");
-  compare_command->footer("Exit status: 0 every expectation holds, 1 one does not, 2 the input is unusable, 130 interrupted.");
+  compare_command->footer("Exit status: 0 every expectation holds, 1 one does not or cannot be judged, 2 the input is unusable, 130 interrupted.");
 
   CLI::App* list_command = app.add_subcommand("list", "Built-in cases, models and measures");
 

@@ -7,7 +7,21 @@
 namespace springproof {
 namespace {
 
-double gain(double order) { return std::pow(2.0, order) - 1; }
+constexpr double lowest_order = 0.5, highest_order = 2, suspicious_order = 2.5;
+
+/// What f3 - f2 is multiplied by for the step to the limit, and for the uncertainty.
+struct Factors {
+  double limit, uncertainty;
+};
+
+Factors factors(double order) {
+  const double limit = 1 / (std::pow(2.0, std::min(order, highest_order)) - 1);
+  return {limit, safety_factor * (order > suspicious_order ? 1 : limit)};
+}
+
+const char* note(double order) {
+  return order > suspicious_order ? "Richardson; order too high to be trusted, full last difference" : "Richardson, GCI";
+}
 
 }  // namespace
 
@@ -15,30 +29,34 @@ double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) {
   return std::sqrt((u.rowwise().squaredNorm().array() * weights.array()).sum() / weights.sum());
 }
 
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order) {
+ReferenceValue extrapolate(const std::vector<double>& values, double noise) {
   if (values.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const double f1 = values[values.size() - 3], f2 = values[values.size() - 2], f3 = values.back();
   const double coarse = f2 - f1, fine = f3 - f2;
   if (std::max(std::abs(coarse), std::abs(fine)) <= noise) return {f3, noise, {}, "equal on all grids to solver accuracy"};
-  if (coarse * fine <= 0 || std::abs(fine) >= std::abs(coarse)) {
+  const double order = coarse * fine > 0 ? std::log2(coarse / fine) : 0;
+  if (order < lowest_order) {
     const double spread = std::max({f1, f2, f3}) - std::min({f1, f2, f3});
-    return {f3, safety_factor * spread + noise, {}, "not monotone: finest grid, spread of the three grids"};
+    return {f3, safety_factor * spread + noise, {}, "not converging monotonically: finest grid, spread of the three"};
   }
-  const double order = std::log2(coarse / fine), used = std::clamp(order, 0.5, highest_order);
-  return {f3 + fine / gain(used), safety_factor * std::abs(fine) / gain(used) + noise, order, "Richardson, GCI"};
+  const Factors by = factors(order);
+  return {f3 + by.limit * fine, by.uncertainty * std::abs(fine) + noise, order, note(order)};
 }
 
-ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights,
-                           double highest_order) {
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights) {
   if (fields.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const NodalVectors &u1 = fields[fields.size() - 3], &u2 = fields[fields.size() - 2], &u3 = fields.back();
-  const double size = weighted_norm(u3, weights);
+  const double size = weighted_norm(u3, weights), noise = 1e-8 * size;
   const double coarse = weighted_norm(u2 - u1, weights), fine = weighted_norm(u3 - u2, weights);
-  if (size == 0) return {u3, 0, {}, "no displacement"};
-  if (std::max(coarse, fine) <= 1e-8 * size) return {u3, 1e-8, {}, "equal on all grids to solver accuracy"};
-  if (fine >= coarse) return {u3, safety_factor * std::max(coarse, fine) / size, {}, "not converging: finest grid, largest difference"};
-  const double order = std::log2(coarse / fine), used = std::clamp(order, 0.5, highest_order);
-  return {u3 + (u3 - u2) / gain(used), safety_factor * fine / gain(used) / size, order, "Richardson, GCI"};
+  const auto result = [&](double limit, double factor, std::optional<double> order, const char* text) {
+    const Eigen::VectorXd nodal = (factor * (u3 - u2).rowwise().norm()).array() + noise;
+    return ReferenceField{u3 + limit * (u3 - u2), size > 0 ? (factor * fine + noise) / size : 0, nodal, order, text};
+  };
+  if (std::max(coarse, fine) <= noise) return result(0, 0, {}, "equal on all grids to solver accuracy");
+  const double order = std::log2(coarse / fine);
+  if (order < lowest_order) return result(0, safety_factor * std::max(coarse, fine) / fine, {}, "not converging: finest grid, largest difference");
+  const Factors by = factors(order);
+  return result(by.limit, by.uncertainty, order, note(order));
 }
 
 }  // namespace springproof

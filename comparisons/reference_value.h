@@ -20,20 +20,22 @@ struct ReferenceValue {
 inline constexpr double safety_factor = 1.25;   ///< Fs for three grids (Roache)
 
 /// Limit of a quantity computed on grids of cell sizes h, h/2, h/4 (coarse to fine; the last three of more).
-/// Monotone: Richardson extrapolation, uncertainty Fs |f3 - f2| / (2^p - 1).  Otherwise the finest value, uncertainty
-/// Fs times the spread.  The order used is held between 0.5 and `highest_order`.  `noise`: round-off of the values.
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order = 4);
+/// Monotone with an order p of 1/2 or more: Richardson extrapolation, uncertainty Fs |f3 - f2| / (2^p - 1), p taken as
+/// at most 2, since clamped edges keep the true order there whatever a sequence shows; where it shows more than 2.5,
+/// accidental cancellation is likely and the uncertainty is Fs |f3 - f2|.
+/// Otherwise the finest value, uncertainty Fs times the spread.  `noise`: round-off of the values.
+ReferenceValue extrapolate(const std::vector<double>& values, double noise);
 
 /// The same for a displacement field sampled at the same points on three grids: order and uncertainty from weighted L2
 /// norms of the differences; `uncertainty` is relative to the limit's norm.
 struct ReferenceField {
   NodalVectors displacement;
   double uncertainty = 0;
+  Eigen::VectorXd nodal_uncertainty;   ///< the same at each node, absolute [m]
   std::optional<double> observed_order;
   std::string note;
 };
-ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights,
-                           double highest_order = 4);
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights);
 
 /// Weighted L2 norm of a nodal field: sqrt(sum w |u|^2 / sum w).
 double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights);

@@ -29,7 +29,10 @@ namespace fs = std::filesystem;
 
 std::atomic<bool> interrupted = false;
 
-void on_interrupt(int) { interrupted = true; }
+void on_interrupt(int) {
+  interrupted = true;
+  fem::interrupt();
+}
 
 template <class Iterator>
 std::vector<fs::path> toml_files(const fs::path& folder) {
@@ -38,6 +41,18 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
+}
+
+/// The case's name as a file name.
+std::string key_of(const fs::path& file) {
+  std::string key = case_name(file);
+  std::replace(key.begin(), key.end(), '/', '-');
+  return key;
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// One part of one case: the unit of work.
@@ -53,6 +68,7 @@ struct Task {
 };
 
 void require_writable(const fs::path& folder) {
+  if (folder.empty()) throw InputError("--out: needs the name of a folder");
   std::error_code error;
   fs::create_directories(folder / "parts", error);
   const fs::path trial = folder / ".writable";
@@ -64,12 +80,13 @@ void require_writable(const fs::path& folder) {
 
 std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const SuiteOptions& options) {
   std::vector<Task> tasks;
+  const std::string fem = fem::version();
   for (const PreparedCase& p : prepared)
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
-      std::string key = case_name(p.experiment.file);
-      std::replace(key.begin(), key.end(), '/', '-');
-      const std::string nu = fmt::format("nu{:g}", p.experiment.materials[m].poisson_ratio);
-      const std::string stamp = fmt::format("{} {} {:016x}", SPRINGPROOF_VERSION, nu, std::hash<std::string>()(p.experiment.text));
+      const std::string key = key_of(p.experiment.file);
+      const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
+      const std::string stamp = fmt::format("{} | {} | {} | {} | {:016x}", SPRINGPROOF_VERSION, fem, nu, options.vtu,
+                                            std::hash<std::string>()(p.experiment.text + read_text(p.geo)));
       tasks.push_back({&p, m, options.out / "parts" / (key + "-" + nu + ".cbor"),
                        options.vtu ? options.out / "vtu" / key : fs::path(), stamp,
                        fmt::format("{}  {}", case_name(p.experiment.file), nu), {}});
@@ -185,7 +202,7 @@ int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   for (const std::string& line : h.failed_runs) fmt::print("no result: {}\n", line);
   for (const std::string& line : h.failed_checks) fmt::print("FAILED: {}\n", line);
   fmt::print("\n{}\nreport: {}\n", expectations_sentence(h), (out / "report.html").string());
-  return h.failed + h.no_result;
+  return h.failed + h.no_result + h.no_reference + h.reference_too_coarse;
 }
 
 }  // namespace
@@ -212,7 +229,9 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
     if (found.empty())
       throw InputError(fmt::format("{}: no such case file, and no folder with case files (*.toml); `springproof list` "
                                    "shows the built-in ones", name));
-    append(found, cases);
+    for (const fs::path& file : found)
+      if (std::none_of(cases.begin(), cases.end(), [&](const fs::path& c) { return fs::equivalent(c, file); }))
+        cases.push_back(file);
   }
   return cases;
 }
@@ -220,6 +239,11 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
   for (const fs::path& file : cases) prepared.push_back(prepare(read_experiment(file)));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (key_of(cases[i]) == key_of(cases[j]))
+        throw InputError(fmt::format("{} and {} have the same name; rename one, or compare them one at a time",
+                                     cases[j].string(), cases[i].string()));
   require_writable(options.out);
   std::vector<Task> tasks = make_tasks(prepared, options);
   if (!fem::available())

@@ -13,7 +13,7 @@ namespace {
 constexpr Key compare_schema[] = {{"models", Presence::optional, ""}, {"measures", Presence::optional, ""}};
 
 constexpr Key expect_schema[] = {
-    {"model", Presence::required, "a model of [compare], or fem, fem_q1, fem_q2"},
+    {"model", Presence::required, "a model of [compare], or fem, fem_q1"},
     {"poisson_ratio", Presence::optional, ""},
     {"cells", Presence::optional, ""},
     {"measure", Presence::required, "the name of a row"},
@@ -32,7 +32,7 @@ constexpr Key published_schema[] = {
     {"where", Presence::required, "table or figure"},
     {"remark", Presence::optional, ""}};
 
-const std::vector<std::string> fem_names = {"fem", "fem_q1", "fem_q2"};
+const std::vector<std::string> fem_names = {"fem", "fem_q1"};
 const std::vector<std::string> default_measures = {"displacement_error", "volume_change", "reaction"};
 
 std::string label_of(const ModelChoice& choice) {

@@ -12,7 +12,7 @@ std::vector<double> sequence(double limit, double error, double order) {
 }
 
 TEST(ReferenceValue, RecoversLimitAndOrder) {
-  for (double order : {0.7, 1.4, 2.0, 3.0}) {
+  for (double order : {0.7, 1.4, 2.0}) {
     const ReferenceValue v = extrapolate(sequence(7.5, -0.3, order), 1e-12);
     ASSERT_TRUE(v.observed_order);
     EXPECT_NEAR(*v.observed_order, order, 1e-9);
@@ -22,11 +22,22 @@ TEST(ReferenceValue, RecoversLimitAndOrder) {
   }
 }
 
-TEST(ReferenceValue, CapsTheOrderItTrusts) {
-  const ReferenceValue v = extrapolate(sequence(1, 0.1, 9), 0);
-  EXPECT_NEAR(*v.observed_order, 9, 1e-6);
-  const double last = 0.1 / 512 - 0.1 / (512.0 * 512);
-  EXPECT_NEAR(v.uncertainty, 1.25 * last / 15, 1e-12);
+TEST(ReferenceValue, DoesNotTrustHighOrders) {
+  // Two grids that happen to agree look like a high order: torsion at nu = 0.499 showed 5.4 on grids up to 8^3, and was
+  // off by 27 times an uncertainty that believed it.
+  const ReferenceValue v = extrapolate(sequence(1, 0.1, 5), 0);
+  EXPECT_NEAR(*v.observed_order, 5, 1e-6);
+  const double last = 0.1 / 32 - 0.1 / 1024;
+  EXPECT_NEAR(v.uncertainty, 1.25 * last, 1e-12);
+  // Between 2 and 2.5 the order is taken as 2.
+  const double fine = 0.1 * (std::pow(2, -2.3) - std::pow(4, -2.3));
+  EXPECT_NEAR(extrapolate(sequence(1, 0.1, 2.3), 0).uncertainty, 1.25 * fine / 3, 1e-12);
+}
+
+TEST(ReferenceValue, SlowConvergenceIsNotExtrapolated) {
+  const ReferenceValue v = extrapolate(sequence(1, 0.1, 0.2), 0);
+  EXPECT_FALSE(v.observed_order);
+  EXPECT_GE(v.uncertainty, 0.25 * 0.1 / std::pow(4, 0.2));
 }
 
 TEST(ReferenceValue, SaysWhenItIsNotMonotone) {
@@ -57,7 +68,7 @@ TEST(ReferenceField, RecoversTheLimitField) {
   EXPECT_NEAR(*f.observed_order, 2, 1e-9);
   EXPECT_LE((f.displacement - limit).norm(), 1e-12);
   EXPECT_NEAR(f.uncertainty,
-              1.25 * weighted_norm(error, weights) / 16 / weighted_norm(limit + error / 16, weights), 1e-9);
+              1.25 * weighted_norm(error, weights) / 16 / weighted_norm(limit + error / 16, weights) + 1e-8, 1e-9);
 }
 
 }  // namespace
