@@ -89,6 +89,13 @@ std::map<std::string, double> measures_of(const PartRun& run, const fem::Solutio
   return scalar_measures(sampled_field(run, 0, s), run.experiment().probes, s.displacement.bottomRows(probes));
 }
 
+/// False for the force or torque on a patch that shares held nodes with another: no reference can be given.
+bool comparable(const PreparedCase& prepared, const std::string& measure) {
+  if (!measure.starts_with("force.") && !measure.starts_with("torque.")) return true;
+  const auto from = measure.find('.') + 1;
+  return !prepared.sharing.contains(measure.substr(from, measure.rfind('.') - from));
+}
+
 /// Round-off of a measure: the solver's tolerance times the largest force (times the body's size for torques, over it
 /// for forces that balance torques), or times the strain.
 double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size, double largest_displacement) {
@@ -138,7 +145,7 @@ void build_reference(PartRun& run) {
   for (const auto& [measure, fine] : values[2]) {
     const std::vector<double> sequence = {values[0].at(measure), values[1].at(measure), fine};
     const ReferenceValue v = scalars[measure] = extrapolate(sequence, noise_of(measure, values[2], run.experiment().body.size.norm(), largest_displacement));
-    if (!wanted(measure, run.experiment().measures)) continue;
+    if (!wanted(measure, run.experiment().measures) || !comparable(run.prepared, measure)) continue;
     run.part.references.push_back({run.material.poisson_ratio, measure, unit_of(measure), {}, sequence, v.observed_order, v.value, v.uncertainty, v.note});
   }
   for (std::size_t i = 0; i < run.prepared.meshes.size(); ++i) {
@@ -177,7 +184,7 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
     row.measure = measure;
     row.value = value;
     row.unit = unit_of(measure);
-    if (reference) {
+    if (reference && comparable(run.prepared, measure)) {
       const ReferenceValue& r = reference->scalars.at(measure);
       row.reference = r.value;
       row.reference_uncertainty = r.uncertainty;
@@ -239,7 +246,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
 }  // namespace
 
 PreparedCase prepare(const Experiment& experiment) {
-  PreparedCase prepared{experiment, {}, {}, reference_cells(experiment), {}};
+  PreparedCase prepared{experiment, {}, {}, reference_cells(experiment), {}, {}};
   for (int n : prepared.reference_cells)
     if (n % 4 != 0)
       throw InputError(fmt::format("{}: reference.cells: {} is not divisible by 4 (the grid is halved twice)", experiment.file.string(), n));
@@ -263,6 +270,7 @@ PreparedCase prepare(const Experiment& experiment) {
       std::vector<std::string> patches;
       for (const Patch& p : mesh.patches) patches.push_back(p.name);
       check_patches(experiment, patches);
+      prepared.sharing = patches_sharing_supports(experiment.loads, mesh, experiment.model_kinematics());
       require_supported(transfer(experiment.loads, mesh, 1000, experiment.model_kinematics()), mesh);
       for (const ModelParameters& p : prepared.models) build_model(p, mesh, experiment.materials.front());
       const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "comparisons/results.h"
@@ -17,6 +18,7 @@ struct PreparedCase {
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids
+  std::set<std::string> sharing;                    ///< patches whose separate forces are a convention
   std::filesystem::path geo;                        ///< the body's gmsh script
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "meshes/locate.h"
 
@@ -97,6 +98,24 @@ void require_supported(const BoundaryConditions& bc, const Mesh& mesh) {
   throw InputError(fmt::format(
       "the body is not held: the loads leave a rigid motion free ({}); prescribe displacements that prevent it",
       count > 0 ? names[dominant] : "all six"));
+}
+
+std::set<std::string> patches_sharing_supports(const std::vector<Load>& loads, const Mesh& mesh, Kinematics kinematics) {
+  std::set<std::string> sharing;
+  std::map<int, std::string> first;
+  for (const Load& load : loads) {
+    if (!prescribes_displacement(load)) continue;
+    const std::string& name = *patch_of(load);
+    for (int node : nodes_of(patch(mesh, name))) {
+      const PrescribedValue value = prescribed_displacement(load, mesh.nodes.row(node).transpose(), kinematics);
+      for (int d = 0; d < 3; ++d) {
+        if (!value[d]) continue;
+        const std::string& other = first.emplace(3 * node + d, name).first->second;
+        if (other != name) sharing.insert({name, other});
+      }
+    }
+  }
+  return sharing;
 }
 
 std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh,

@@ -1,6 +1,8 @@
 // Loads carried over to the nodes of a network; what the supports then answer.
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "meshes/field.h"
@@ -30,5 +32,9 @@ void require_supported(const BoundaryConditions& conditions, const Mesh& mesh);
 std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh,
                                            const BoundaryConditions& conditions, const NodalVectors& support,
                                            const NodalVectors& displacement, Kinematics kinematics);
+
+/// Patches that prescribe an unknown which another patch prescribes too (held edges in common): how the support force of
+/// such an unknown is shared between them is a convention, so their separate forces are no property of the solid.
+std::set<std::string> patches_sharing_supports(const std::vector<Load>& loads, const Mesh& mesh, Kinematics kinematics);
 
 }  // namespace springproof

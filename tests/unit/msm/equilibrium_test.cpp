@@ -235,6 +235,17 @@ TEST(Supports, FreeRigidMotionsAreNamed) {
   EXPECT_THROW(transfer({PointForce{{2, 0, 0}, {1, 0, 0}}}, mesh, 1, Kinematics::linear), InputError);
 }
 
+TEST(Supports, PatchesWithHeldEdgesInCommonAreFound) {
+  const Mesh mesh = block_mesh({1, 1, 1}, {2, 2, 2});
+  const Load bottom = PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, top = PrescribedDisplacement{"z_max", {0.0, 0.0, 0.1}};
+  const Load side = PrescribedDisplacement{"x_min", {0.0, free_component, free_component}};
+  using Names = std::set<std::string>;
+  EXPECT_EQ(patches_sharing_supports({bottom, top}, mesh, Kinematics::linear), Names{});
+  EXPECT_EQ(patches_sharing_supports({bottom, side}, mesh, Kinematics::linear), (Names{"x_min", "z_min"}));
+  const Load slip = PrescribedDisplacement{"y_min", {free_component, 0.0, free_component}};
+  EXPECT_EQ(patches_sharing_supports({slip, side}, mesh, Kinematics::linear), Names{});
+}
+
 TEST(Supports, TransferKeepsForceAndMoment) {
   const Mesh mesh = block_mesh({1, 2, 3}, {2, 4, 6});
   const auto resultant = [&](const Load& load) {
