@@ -18,6 +18,7 @@ const Vec3 size(2, 1, 1.5);
 fem::GridProblem clamped_beam(int degree, double nu) {
   fem::GridProblem problem = test::fem_block(size, {4, 2, 3}, 1, degree, nu);
   problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}};
+  if (nu > 0.4) problem.tolerance = 1e-10;  // round-off of the pressure form stops the residual near 1e-11
   return problem;
 }
 
