@@ -77,12 +77,10 @@ KrylovOutcome gmres(const Multiply& multiply, const Precondition& precondition, 
     Vector w = b, Pw = b;
     multiply(w, z[j]);
     std::vector<double> h(j + 1, 0.0);
-    for (int repeat = 0; repeat < 2; ++repeat)
-      for (int i = 0; i <= j; ++i) {
-        const double overlap = w.dot(z[i]);
-        h[i] += overlap;
-        w.add(-overlap, v[i]);
-      }
+    for (int i = 0; i <= j; ++i) {
+      h[i] = w.dot(z[i]);
+      w.add(-h[i], v[i]);
+    }
     precondition(Pw, w);
     const double norm = std::sqrt(std::max(w.dot(Pw), 0.0));
     for (int i = 0; i < j; ++i) {

@@ -84,6 +84,7 @@ class Newton {
     K_.apply(f_, given);
     base_.clear_constrained(f_.u);
     r_.add(-1, f_);
+    const double tolerance = to < 1 ? std::max(system_.tolerance, 1e-4) : system_.tolerance;
     const bool moved = given.u.linfty_norm() > 0;
     double eta = 1e-3;
     for (int iteration = 0; iteration < 25; ++iteration) {
@@ -92,9 +93,9 @@ class Newton {
       if (!advance(iteration == 0 && moved)) return false;
       const double now = residual(to);
       ++answer.newton_iterations;
-      if (now <= system_.tolerance && pressure_residual() <= system_.tolerance) return true;
+      if (now <= tolerance && pressure_residual() <= tolerance) return true;
       if (iteration >= 12 && now > 1e-3) return false;  // wanders: a shorter load step is cheaper
-      eta = std::clamp(0.1 * now, 1e-6, 1e-2);
+      eta = std::clamp(std::max(0.1 * now, 0.3 * tolerance / now), 1e-6, 1e-2);
     }
     return false;
   }
