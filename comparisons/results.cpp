@@ -82,6 +82,18 @@ std::string sentence(const PrescribedRotation& load) {
                      load.angle * 180 / std::numbers::pi, text(load.axis), text(load.point));
 }
 
+std::string sentence(const PrescribedField& load) {
+  return fmt::format("{}: moved by the exact field '{}'", load.on, load.field);
+}
+
+std::string sentence(const FieldBodyForce& load) {
+  return fmt::format("whole body: the body force of the exact field '{}'", load.field);
+}
+
+std::string sentence(const Pressure& load) {
+  return fmt::format("{}: pressed by {:.6g} Pa", load.on, load.pressure);
+}
+
 std::string sentence(const Traction& load) {
   return fmt::format("{}: loaded by a traction of {} Pa", load.on, text(load.traction));
 }

@@ -45,6 +45,29 @@ void add_uniform(const Mesh& mesh, const std::string& on, const Vec3& traction, 
   external += (is_total ? area / area.sum() : area) * traction.transpose();
 }
 
+/// Shares of a facet's pressure: integral of N_i * (area vector); by 2 x 2 Gauss points, which is exact.
+void add_facet_pressure(const Mesh& mesh, const std::array<int, 4>& facet, double pressure, NodalVectors& external) {
+  const auto X = [&](int i) -> Vec3 { return mesh.nodes.row(facet[i]).transpose(); };
+  if (facet[3] < 0) {
+    const Vec3 share = -pressure / 6 * (X(1) - X(0)).cross(X(2) - X(0));
+    for (int i = 0; i < 3; ++i) external.row(facet[i]) += share.transpose();
+    return;
+  }
+  const double gauss[2] = {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)};
+  for (const double s : gauss)
+    for (const double t : gauss) {
+      const Vec3 along_s = (1 - t) * (X(1) - X(0)) + t * (X(2) - X(3));
+      const Vec3 along_t = (1 - s) * (X(3) - X(0)) + s * (X(2) - X(1));
+      const Vec3 force = -pressure / 4 * along_s.cross(along_t);
+      const double shape[4] = {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
+      for (int i = 0; i < 4; ++i) external.row(facet[i]) += shape[i] * force.transpose();
+    }
+}
+
+void add_pressure(const Mesh& mesh, const std::string& on, double pressure, NodalVectors& external) {
+  for (const auto& facet : patch(mesh, on).facets) add_facet_pressure(mesh, facet, pressure, external);
+}
+
 }  // namespace
 
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
@@ -59,12 +82,16 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, do
         prescribe(load, static_cast<int>(i), mesh, kinematics, factor, bc);
       else if (const auto* t = std::get_if<Traction>(&load))
         add_uniform(mesh, t->on, factor * t->traction, false, bc.external);
+      else if (const auto* q = std::get_if<Pressure>(&load))
+        add_pressure(mesh, q->on, factor * q->pressure, bc.external);
       else if (const auto* f = std::get_if<PatchForce>(&load))
         add_uniform(mesh, f->on, factor * f->force, true, bc.external);
       else if (const auto* g = std::get_if<Gravity>(&load))
         bc.external += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
       else if (const auto* p = std::get_if<PointForce>(&load))
         add_point_force({p->at, factor * p->force}, mesh, bc.external);
+      else if (std::holds_alternative<FieldBodyForce>(load))
+        throw InputError(fmt::format("load {}: body_force_of: the mass-spring models take no such load", i + 1));
     } catch (const std::invalid_argument& e) {
       throw InputError(fmt::format("load {}: {}", i + 1, e.what()));
     }

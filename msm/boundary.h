@@ -17,9 +17,9 @@ struct BoundaryConditions {
   NodalVectors external;      ///< nodal forces at the full load [N]
 };
 
-/// Transfers the loads to the mesh's nodes.  Tractions by the facets' shape functions, gravity by nodal mass, a point
+/// Transfers the loads to the mesh's nodes.  Tractions and pressure by the facets' shape functions, gravity by nodal mass, a point
 /// force by the shape functions of the cell that holds it: resultant and moment are kept.
-/// @throws InputError: no such patch, a point force outside the body, two loads that prescribe different values at
+/// @throws InputError: a body force of an exact field, no such patch, a point force outside the body, two loads that prescribe different values at
 ///   one node.
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
                             double factor = 1.0);

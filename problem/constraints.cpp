@@ -4,6 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "problem/exact_field.h"
+
 namespace springproof {
 namespace {
 
@@ -33,14 +35,18 @@ PrescribedValue value_at(const PrescribedRotation& load, const Vec3& X, Kinemati
   return all_components(std::sin(angle) * turned + 2 * half_sine * half_sine * load.axis.cross(turned));
 }
 
+PrescribedValue value_at(const PrescribedField& load, const Vec3& X, Kinematics, double factor) {
+  return all_components(factor * exact_displacement(load.field, X));
+}
+
 template <class OtherLoad>
 PrescribedValue value_at(const OtherLoad&, const Vec3&, Kinematics, double) {
   return {};
 }
 
 template <class T>
-constexpr bool prescribes = std::is_same_v<T, PrescribedDisplacement> ||
-                            std::is_same_v<T, PrescribedAffine> || std::is_same_v<T, PrescribedRotation>;
+constexpr bool prescribes = std::is_same_v<T, PrescribedDisplacement> || std::is_same_v<T, PrescribedAffine> ||
+                            std::is_same_v<T, PrescribedRotation> || std::is_same_v<T, PrescribedField>;
 
 }  // namespace
 

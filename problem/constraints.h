@@ -33,10 +33,22 @@ struct PrescribedRotation {
   double angle = 0;            ///< [rad]
 };
 
+/// A named displacement field, prescribed on a patch (problem/exact_field.h).
+struct PrescribedField {
+  std::string on;
+  std::string field;
+};
+
 /// Force per rest area, constant in direction (dead load) [Pa].
 struct Traction {
   std::string on;
   Vec3 traction = Vec3::Zero();
+};
+
+/// Traction -pressure * outward rest normal (dead load) [Pa]; positive presses on the body.
+struct Pressure {
+  std::string on;
+  double pressure = 0;
 };
 
 /// Total force [N], spread over the patch as a uniform traction.
@@ -56,10 +68,15 @@ struct PointForce {
   Vec3 force = Vec3::Zero();
 };
 
-using Load = std::variant<PrescribedDisplacement, PrescribedAffine, PrescribedRotation, Traction, PatchForce,
-                          Gravity, PointForce>;
+/// The body force that keeps a named displacement field in equilibrium (problem/exact_field.h); small strains.
+struct FieldBodyForce {
+  std::string field;
+};
 
-/// Name of the patch a load acts on; nullptr for gravity and point forces.
+using Load = std::variant<PrescribedDisplacement, PrescribedAffine, PrescribedRotation, PrescribedField, Traction,
+                          Pressure, PatchForce, Gravity, PointForce, FieldBodyForce>;
+
+/// Name of the patch a load acts on; nullptr for gravity, point and body forces.
 const std::string* patch_of(const Load& load);
 
 /// True for the loads that prescribe displacement.

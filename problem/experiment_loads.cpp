@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "problem/exact_field.h"
 #include "problem/experiment_parts.h"
 
 namespace springproof {
@@ -22,6 +23,9 @@ constexpr Key rotation_schema[] = {on_key,
                                    {"rotation_deg", Presence::required, "an angle"},
                                    {"axis", Presence::required, "[x, y, z], the direction of the axis"},
                                    {"about_m", Presence::required, "[x, y, z], a point of the axis"}};
+constexpr Key field_schema[] = {on_key, {"field", Presence::required, "the name of an exact field"}};
+constexpr Key pressure_schema[] = {on_key, {"pressure_Pa", Presence::required, "a number"}};
+constexpr Key body_force_schema[] = {{"body_force_of", Presence::required, "the name of an exact field"}};
 constexpr Key traction_schema[] = {on_key, {"traction_Pa", Presence::required, vector_words}};
 constexpr Key patch_force_schema[] = {on_key, {"force_N", Presence::required, vector_words}};
 constexpr Key point_force_schema[] = {{"force_N", Presence::required, vector_words},
@@ -34,9 +38,12 @@ constexpr Key any_load_schema[] = {{"on", Presence::optional, ""},
                                    {"rotation_deg", Presence::optional, ""},
                                    {"axis", Presence::optional, ""},
                                    {"about_m", Presence::optional, ""},
+                                   {"field", Presence::optional, ""},
                                    {"traction_Pa", Presence::optional, ""},
+                                   {"pressure_Pa", Presence::optional, ""},
                                    {"force_N", Presence::optional, ""},
                                    {"gravity_m_s2", Presence::optional, ""},
+                                   {"body_force_of", Presence::optional, ""},
                                    {"at_m", Presence::optional, ""}};
 
 Load read_displacement(const TomlTable& table, const std::string& on) {
@@ -68,6 +75,14 @@ Load read_rotation(const TomlTable& table, const std::string& on) {
                             degrees * std::numbers::pi / 180};
 }
 
+Load read_field(const TomlTable& table, const std::string& on) {
+  return PrescribedField{on, as_choice(table.at("field"), exact_field_names())};
+}
+
+Load read_pressure(const TomlTable& table, const std::string& on) {
+  return Pressure{on, as_number(table.at("pressure_Pa"))};
+}
+
 Load read_traction(const TomlTable& table, const std::string& on) {
   return Traction{on, as_vector(table.at("traction_Pa"))};
 }
@@ -84,6 +99,10 @@ Load read_gravity(const TomlTable& table, const std::string&) {
   return Gravity{as_vector(table.at("gravity_m_s2"))};
 }
 
+Load read_body_force(const TomlTable& table, const std::string&) {
+  return FieldBodyForce{as_choice(table.at("body_force_of"), exact_field_names())};
+}
+
 /// A kind of load is recognised by its keys and then read with its own schema.
 struct LoadKind {
   const char* marks[2];  ///< keys that must all be there (nullptr: no second)
@@ -97,17 +116,21 @@ const LoadKind load_kinds[] = {
     {{"displacement_gradient", nullptr}, affine_schema, read_affine},
     {{"displacement_m", nullptr}, displacement_schema, read_displacement},
     {{"rotation_deg", nullptr}, rotation_schema, read_rotation},
+    {{"field", nullptr}, field_schema, read_field},
     {{"traction_Pa", nullptr}, traction_schema, read_traction},
+    {{"pressure_Pa", nullptr}, pressure_schema, read_pressure},
     {{"force_N", "at_m"}, point_force_schema, read_point_force},
     {{"force_N", nullptr}, patch_force_schema, read_patch_force},
     {{"gravity_m_s2", nullptr}, gravity_schema, read_gravity},
+    {{"body_force_of", nullptr}, body_force_schema, read_body_force},
 };
 
 const LoadKind& kind_of(const TomlTable& table) {
   for (const LoadKind& kind : load_kinds)
     if (table.find(kind.marks[0]) && (!kind.marks[1] || table.find(kind.marks[1]))) return kind;
   refuse(table.value(), "says where but not what",
-         "displacement_m, displacement_gradient, rotation_deg, traction_Pa, force_N, gravity_m_s2");
+         "displacement_m, displacement_gradient, rotation_deg, field, traction_Pa, pressure_Pa, force_N, gravity_m_s2, "
+         "body_force_of");
 }
 
 std::vector<std::string> read_patches(const TomlValue& value) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
+#include "problem/exact_field.h"
 #include "support/tolerances.h"
 
 namespace springproof {
@@ -69,21 +70,32 @@ TEST(Constraints, LinearRotationIsTheLimitOfSmallAngles) {
 
 TEST(Constraints, ForcesPrescribeNoDisplacement) {
   const Load loads[] = {Traction{"x_max", Vec3(1, 0, 0)}, PatchForce{"x_max", Vec3(1, 0, 0)},
-                        Gravity{Vec3(0, 0, -9)}, PointForce{X, Vec3(1, 0, 0)}};
+                        Pressure{"x_max", 1},             Gravity{Vec3(0, 0, -9)},
+                        PointForce{X, Vec3(1, 0, 0)},     FieldBodyForce{"solenoidal"}};
   for (const Load& load : loads) {
     EXPECT_FALSE(prescribes_displacement(load));
     for (const auto& component : prescribed_displacement(load, X, Kinematics::linear))
       EXPECT_FALSE(component);
   }
   for (const Load& load :
-       {Load(PrescribedDisplacement{"a", {}}), Load(PrescribedAffine{"a"}), Load(PrescribedRotation{"a"})})
+       {Load(PrescribedDisplacement{"a", {}}), Load(PrescribedAffine{"a"}), Load(PrescribedRotation{"a"}),
+        Load(PrescribedField{"a", "solenoidal"})})
     EXPECT_TRUE(prescribes_displacement(load));
+}
+
+TEST(Constraints, AFieldScalesWithTheFactor) {
+  const Load load = PrescribedField{"x_max", "trigonometric"};
+  const Vec3 u = exact_displacement("trigonometric", X);
+  EXPECT_EQ(all(prescribed_displacement(load, X, Kinematics::linear)), u);
+  EXPECT_EQ(all(prescribed_displacement(load, X, Kinematics::finite, 0.25)), 0.25 * u);
 }
 
 TEST(Constraints, PatchOfALoad) {
   EXPECT_EQ(*patch_of(Traction{"x_max", Vec3::Zero()}), "x_max");
   EXPECT_EQ(*patch_of(PrescribedRotation{"ears"}), "ears");
+  EXPECT_EQ(*patch_of(Pressure{"hole", 1}), "hole");
   EXPECT_EQ(patch_of(Gravity{}), nullptr);
+  EXPECT_EQ(patch_of(FieldBodyForce{}), nullptr);
   EXPECT_EQ(patch_of(PointForce{}), nullptr);
 }
 
