@@ -40,7 +40,9 @@ constexpr Key section_schema[] = {{"point_m", Presence::required, "[x, y, z]"},
                                   {"normal", Presence::required, "[x, y, z]"}};
 constexpr Key probe_schema[] = {{"name", Presence::required, "a name"},
                                 {"at_m", Presence::required, "[x, y, z], a rest position"}};
-constexpr Key reference_schema[] = {{"cells", Presence::optional, ""}, {"grading", Presence::optional, ""}};
+constexpr Key reference_schema[] = {{"cells", Presence::optional, ""},
+                                    {"elements", Presence::optional, ""},
+                                    {"grading", Presence::optional, ""}};
 
 /// A modulus of the file and where it goes.
 struct ModulusKey {
@@ -144,9 +146,31 @@ ReferenceChoice read_reference(const TomlValue& value) {
   const TomlTable table(value, reference_schema);
   ReferenceChoice reference;
   if (const auto cells = table.find("cells")) reference.cells = as_cells(*cells);
+  if (const auto elements = table.find("elements")) {
+    reference.elements.clear();
+    for (const TomlValue& item : as_list(*elements, "a list of elements: q1, q2, p1, p2")) {
+      const std::string element = as_choice(item, element_names());
+      if (std::find(reference.elements.begin(), reference.elements.end(), element) != reference.elements.end())
+        refuse(item, fmt::format("'{}' is named twice", element), "each element once");
+      reference.elements.push_back(element);
+    }
+  }
   if (const auto grading = table.find("grading"))
     reference.grading = as_number(*grading, {"a number from 1 to 3", 1, 3, true, true});
   return reference;
+}
+
+/// A body force is known for small strains, and only the finite elements take it.
+void check_body_forces(const Experiment& experiment) {
+  for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
+    if (!std::holds_alternative<FieldBodyForce>(experiment.loads[i])) continue;
+    const char* allowed = experiment.model_kinematics() == Kinematics::finite ? "under kinematics = \"linear\""
+                          : experiment.models.empty()                       ? nullptr
+                                                                            : "with [compare] models = []";
+    if (allowed)
+      throw InputError(experiment.load_locations[i],
+                       fmt::format("load.body_force_of: cannot be applied here (allowed: {})", allowed));
+  }
 }
 
 Experiment read_document(const TomlTable& document, Experiment experiment) {
@@ -165,6 +189,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   experiment.probes = read_probes(document);
   if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference);
   read_compare(document, experiment);
+  check_body_forces(experiment);
   read_expectations(document, experiment);
   read_published(document, experiment);
   return experiment;
@@ -180,6 +205,8 @@ std::string located(const SourceLocation& where, const std::string& message) {
 
 InputError::InputError(const SourceLocation& where, const std::string& message)
     : std::runtime_error(located(where, message)) {}
+
+std::vector<std::string> element_names() { return {"q1", "q2", "p1", "p2"}; }
 
 std::string to_string(Source source) {
   switch (source) {

@@ -60,15 +60,21 @@ struct Section {
 /// How the finite element reference is computed.
 struct ReferenceChoice {
   Cells cells = {0, 0, 0};          ///< finest of three grids; {0,0,0} = chosen from the body's cells
+  std::vector<std::string> elements = {"q2"};   ///< each run on the three grids; the first is the reference
   double grading = 1.5;             ///< exponent that draws elements towards the faces of the block; 1 = uniform
 };
+
+/// Elements of the reference: hexahedra "q1", "q2", tetrahedra "p1", "p2".
+std::vector<std::string> element_names();
 
 enum class Source { analytic, extrapolated_fem, published, regression };
 std::string to_string(Source source);
 
 /// A value that must hold.  It becomes the verdict of the case.
 struct Expectation {
-  std::string model;                    ///< label of a model in [compare], or "fem" (the extrapolated reference)
+  std::string model;                    ///< label of a model in [compare], "fem" (the extrapolated reference), or
+                                        ///< "fem_<element>": the limit of that element of [reference]; beside models,
+                                        ///< "fem_q1" is the eight-node element on their own cells
   std::optional<double> poisson_ratio;  ///< empty: at every one
   std::optional<Cells> cells;           ///< empty: at every resolution
   std::string measure;                  ///< name of a measure, e.g. "volume_change", "force.z_max.magnitude"
@@ -76,6 +82,7 @@ struct Expectation {
   std::optional<double> value;          ///< empty: the extrapolated FEM value
   double within = 0;                    ///< tolerance, absolute, in the measure's unit
   bool relative = false;                ///< `within_relative`: tolerance is a fraction of |value|
+  std::optional<double> at_least;       ///< instead of value and tolerance: passes when computed >= at_least
   std::string where;                    ///< "Table 3"
   SourceLocation location;
 };
@@ -104,7 +111,8 @@ struct Experiment {
   std::vector<IsotropicMaterial> materials;   ///< in the file's order, each Poisson's ratio once
   std::vector<Load> loads;
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
-  std::vector<ModelChoice> models;
+  std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
+  std::string exact;      ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
   std::vector<std::string> measures;
   std::vector<Probe> probes;
   std::optional<Section> section;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "problem/exact_field.h"
 #include "problem/experiment_parts.h"
 #include "problem/measures.h"
 #include "problem/nearest_name.h"
@@ -10,10 +11,12 @@
 namespace springproof {
 namespace {
 
-constexpr Key compare_schema[] = {{"models", Presence::optional, ""}, {"measures", Presence::optional, ""}};
+constexpr Key compare_schema[] = {{"models", Presence::optional, ""},
+                                  {"measures", Presence::optional, ""},
+                                  {"exact", Presence::optional, ""}};
 
 constexpr Key expect_schema[] = {
-    {"model", Presence::required, "a model of [compare], or fem, fem_q1"},
+    {"model", Presence::required, "a model of [compare], or fem, fem_q1, ..."},
     {"poisson_ratio", Presence::optional, ""},
     {"cells", Presence::optional, ""},
     {"measure", Presence::required, "the name of a row"},
@@ -21,6 +24,7 @@ constexpr Key expect_schema[] = {
     {"value", Presence::optional, ""},
     {"within", Presence::optional, ""},
     {"within_relative", Presence::optional, ""},
+    {"at_least", Presence::optional, ""},
     {"where", Presence::optional, ""}};
 
 constexpr Key published_schema[] = {
@@ -32,7 +36,22 @@ constexpr Key published_schema[] = {
     {"where", Presence::required, "table or figure"},
     {"remark", Presence::optional, ""}};
 
-const std::vector<std::string> fem_names = {"fem", "fem_q1"};
+bool is_fem(const std::string& model) {
+  const auto elements = element_names();
+  return model == "fem" ||
+         (model.starts_with("fem_") && std::find(elements.begin(), elements.end(), model.substr(4)) != elements.end());
+}
+
+/// Finite element results that a case has.
+std::vector<std::string> fem_names(const Experiment& experiment) {
+  std::vector<std::string> names = {"fem"};
+  if (!experiment.models.empty()) names.push_back("fem_q1");
+  for (const std::string& element : experiment.reference.elements)
+    if (const std::string name = "fem_" + element; std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  return names;
+}
+
 const std::vector<std::string> default_measures = {"displacement_error", "volume_change", "reaction"};
 
 std::string label_of(const ModelChoice& choice) {
@@ -78,13 +97,19 @@ ModelChoice read_model(const TomlValue& value) {
   return choice;
 }
 
-std::vector<ModelChoice> read_models(const TomlValue& value) {
+/// An empty list is a case for the reference alone, which must then name its elements.
+std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& document) {
   std::vector<ModelChoice> models;
+  if (const auto* array = value.node->as_array(); array && array->empty()) {
+    const auto reference = document.find("reference");
+    if (reference && reference->node->as_table()->contains("elements")) return models;
+    refuse(value, "is an empty list", "model names, or none where [reference] has elements = [\"q2\", ...]");
+  }
   for (const TomlValue& item : as_list(value, "a list of model names and { model = \"...\" } tables")) {
     const ModelChoice choice = read_model(item);
     const bool taken =
         std::any_of(models.begin(), models.end(), [&](const auto& m) { return m.label == choice.label; });
-    if (taken || std::find(fem_names.begin(), fem_names.end(), choice.label) != fem_names.end())
+    if (taken || is_fem(choice.label))
       refuse(item, fmt::format("the label '{}' is taken", choice.label), "a label of its own for each model");
     models.push_back(choice);
   }
@@ -99,8 +124,10 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
       refuse(item, fmt::format("'{}' is named twice", measure), "each measure once");
     if (measure == "section_distance" && !experiment.section)
       refuse(item, "'section_distance' needs a plane", "with a [section] in the file");
-    if (measure == "probe" && experiment.probes.empty())
-      refuse(item, "'probe' needs points", "with at least one [[probe]] in the file");
+    if ((measure == "probe" || measure == "stress") && experiment.probes.empty())
+      refuse(item, fmt::format("'{}' needs points", measure), "with at least one [[probe]] in the file");
+    if (measure == "displacement_error_order" && experiment.exact.empty())
+      refuse(item, "'displacement_error_order' needs the solution", "with exact = \"...\" in [compare]");
     measures.push_back(measure);
   }
   return measures;
@@ -127,7 +154,7 @@ std::string read_row_name(const TomlValue& value, const Experiment& experiment) 
 std::string read_judged_model(const TomlValue& value, const Experiment& experiment) {
   std::vector<std::string> labels;
   for (const ModelChoice& m : experiment.models) labels.push_back(m.label);
-  labels.insert(labels.end(), fem_names.begin(), fem_names.end());
+  for (const std::string& name : fem_names(experiment)) labels.push_back(name);
   return as_choice(value, labels);
 }
 
@@ -135,8 +162,7 @@ std::string read_judged_model(const TomlValue& value, const Experiment& experime
 Cells read_row_cells(const TomlValue& value, const std::string& model, const Experiment& experiment) {
   const Cells cells = as_cells(value);
   const auto& known = experiment.body.cells;
-  const bool is_fem = std::find(fem_names.begin(), fem_names.end(), model) != fem_names.end();
-  if (is_fem || std::find(known.begin(), known.end(), cells) != known.end()) return cells;
+  if (is_fem(model) || std::find(known.begin(), known.end(), cells) != known.end()) return cells;
   std::vector<std::string> allowed;
   for (const Cells& c : known) allowed.push_back(fmt::format("[{}]", fmt::join(c, ", ")));
   refuse(value, fmt::format("[{}] is not in the case", fmt::join(cells, ", ")),
@@ -152,11 +178,17 @@ Source read_source(const TomlValue& value) {
   return sources[std::find(names.begin(), names.end(), name) - names.begin()];
 }
 
+void read_bound(const TomlTable& table, const TomlValue& bound, Expectation& expect) {
+  expect.at_least = as_number(bound);
+  for (const char* key : {"value", "within", "within_relative"})
+    if (const auto other = table.find(key)) refuse(*other, "stands beside at_least", "a value with a tolerance, or at_least");
+}
+
 void read_tolerance(const TomlTable& table, Expectation& expect) {
   const auto absolute = table.find("within"), relative = table.find("within_relative");
   if (absolute.has_value() == relative.has_value())
     refuse(table.value(), absolute ? "has two tolerances" : "has no tolerance",
-           "exactly one of within, within_relative");
+           "exactly one of within, within_relative, at_least");
   expect.relative = relative.has_value();
   expect.within = as_number(relative ? *relative : *absolute, not_negative);
   if (relative && expect.value == 0.0)
@@ -172,11 +204,18 @@ Expectation read_expectation(const TomlValue& value, const Experiment& experimen
   if (const auto cells = table.find("cells")) expect.cells = read_row_cells(*cells, expect.model, experiment);
   expect.measure = read_row_name(table.at("measure"), experiment);
   expect.source = read_source(table.at("source"));
-  if (const auto number = table.find("value")) expect.value = as_number(*number);
-  if (!expect.value && expect.source != Source::extrapolated_fem)
-    refuse({value.node, value.key + ".value", value.file}, "is missing",
-           "a finite number; only source = \"extrapolated FEM\" goes without");
-  read_tolerance(table, expect);
+  if (expect.measure.starts_with("stress.") && !is_fem(expect.model))
+    refuse(table.at("measure"), fmt::format("'{}' is not known of '{}'", expect.measure, expect.model),
+           "a stress of the finite element results alone");
+  if (const auto bound = table.find("at_least")) {
+    read_bound(table, *bound, expect);
+  } else {
+    if (const auto number = table.find("value")) expect.value = as_number(*number);
+    if (!expect.value && expect.source != Source::extrapolated_fem)
+      refuse({value.node, value.key + ".value", value.file}, "is missing",
+             "a finite number; only source = \"extrapolated FEM\" goes without");
+    read_tolerance(table, expect);
+  }
   if (const auto where = table.find("where")) expect.where = as_text(*where);
   return expect;
 }
@@ -189,7 +228,11 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   const auto value = document.find("compare");
   if (!value) return;
   const TomlTable table(*value, compare_schema);
-  if (const auto models = table.find("models")) experiment.models = read_models(*models);
+  if (const auto models = table.find("models")) experiment.models = read_models(*models, document);
+  if (const auto exact = table.find("exact")) {
+    experiment.exact = as_choice(*exact, exact_field_names());
+    if (!experiment.models.empty()) refuse(*exact, "stands beside models", "with models = []");
+  }
   if (const auto measures = table.find("measures"))
     experiment.measures = read_measures(*measures, experiment);
 }

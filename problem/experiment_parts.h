@@ -9,8 +9,8 @@ namespace springproof {
 /// One [[load]]: as many loads as `on` names patches.
 std::vector<Load> read_load(const TomlValue& value);
 
-/// [compare] and, held against it, [[expect]] and [[published]].  Body, materials, loads, probes and section
-/// of the experiment must have been read.
+/// [compare] and, held against it, [[expect]] and [[published]].  Body, materials, loads, probes, section and
+/// reference of the experiment must have been read.
 void read_compare(const TomlTable& document, Experiment& experiment);
 void read_expectations(const TomlTable& document, Experiment& experiment);
 void read_published(const TomlTable& document, Experiment& experiment);

@@ -90,6 +90,15 @@ void write_load(const PrescribedRotation& load, Writer& out) {
   out.line("about_m", row(load.point));
 }
 
+void write_load(const PrescribedField& load, Writer& out) {
+  out.text("field", load.field);
+}
+void write_load(const FieldBodyForce& load, Writer& out) {
+  out.text("body_force_of", load.field);
+}
+void write_load(const Pressure& load, Writer& out) {
+  out.line("pressure_Pa", number(load.pressure));
+}
 void write_load(const Traction& load, Writer& out) {
   out.line("traction_Pa", row(load.traction));
 }
@@ -116,13 +125,19 @@ std::string model_table(const ModelChoice& choice) {
   return table + " }";
 }
 
+std::string list_of(const std::vector<std::string>& names) {
+  std::vector<std::string> items;
+  for (const std::string& name : names) items.push_back(quoted(name));
+  return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
 void write_compare(const Experiment& experiment, Writer& out) {
-  std::vector<std::string> models, measures;
+  std::vector<std::string> models;
   for (const ModelChoice& choice : experiment.models) models.push_back(model_table(choice));
-  for (const std::string& measure : experiment.measures) measures.push_back(quoted(measure));
   out.heading("[compare]");
   out.line("models", fmt::format("[{}]", fmt::join(models, ", ")));
-  out.line("measures", fmt::format("[{}]", fmt::join(measures, ", ")));
+  out.line("measures", list_of(experiment.measures));
+  out.text("exact", experiment.exact);
 }
 
 void write_expectation(const Expectation& expect, Writer& out) {
@@ -133,7 +148,10 @@ void write_expectation(const Expectation& expect, Writer& out) {
   out.text("measure", expect.measure);
   out.text("source", to_string(expect.source));
   if (expect.value) out.line("value", number(*expect.value));
-  out.line(expect.relative ? "within_relative" : "within", number(expect.within));
+  if (expect.at_least)
+    out.line("at_least", number(*expect.at_least));
+  else
+    out.line(expect.relative ? "within_relative" : "within", number(expect.within));
   out.text("where", expect.where);
 }
 
@@ -175,6 +193,7 @@ std::string to_toml(const Experiment& experiment) {
   }
   out.heading("[reference]");
   if (experiment.reference.cells[0] > 0) out.line("cells", row(experiment.reference.cells));
+  out.line("elements", list_of(experiment.reference.elements));
   out.line("grading", number(experiment.reference.grading));
   for (const Expectation& expect : experiment.expectations) write_expectation(expect, out);
   for (const PublishedValue& printed : experiment.published) write_published(printed, out);

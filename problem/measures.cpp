@@ -26,6 +26,14 @@ std::vector<std::string> probe_rows(const Experiment& experiment) {
   return rows;
 }
 
+std::vector<std::string> stress_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const Probe& probe : experiment.probes)
+    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz"})
+      rows.push_back("stress." + probe.name + component);
+  return rows;
+}
+
 struct Measure {
   const char* name;
   std::vector<std::string> (*rows)(const Experiment&);  ///< nullptr: one row of the same name
@@ -34,7 +42,8 @@ struct Measure {
 constexpr Measure measures[] = {
     {"displacement_error", nullptr}, {"displacement_error_max", nullptr},    {"section_distance", nullptr},
     {"volume_change", nullptr},      {"volume_change_magnitude", nullptr},   {"volume_change_first_order", nullptr},
-    {"reaction", reaction_rows},     {"probe", probe_rows},
+    {"reaction", reaction_rows},     {"probe", probe_rows},                  {"stress", stress_rows},
+    {"displacement_error_order", nullptr},
 };
 
 }  // namespace

@@ -10,13 +10,14 @@ struct Experiment;
 
 /// Names allowed in [compare] measures: displacement_error, displacement_error_max, section_distance,
 /// volume_change, volume_change_magnitude (its absolute value, the papers' e), volume_change_first_order, reaction,
-/// probe.
+/// probe, stress (finite elements only), displacement_error_order (observed, between the two finest grids; where the exact
+/// solution is known).
 std::vector<std::string> measure_names();
 
 /// Names of the rows that a measure gives for an experiment, as [[expect]] and [[published]] write them. Most
 /// give one row of their own name; `reaction` gives force.<patch>.x|y|z|magnitude and
 /// torque.<patch>.x|y|z|magnitude for each patch with prescribed displacement; `probe` gives
-/// displacement.<name>.x|y|z|magnitude for each probe.
+/// displacement.<name>.x|y|z|magnitude for each probe, `stress` stress.<name>.xx|yy|zz|xy|yz|xz.
 std::vector<std::string> rows_of_measure(const std::string& measure, const Experiment& experiment);
 
 /// Patches on which a load prescribes displacement, in the file's order, each once.

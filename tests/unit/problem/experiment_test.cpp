@@ -38,7 +38,9 @@ TEST(Experiment, SmallestCaseHasTheDefaults) {
   EXPECT_EQ(e.models[0].label, "hybmss");
   EXPECT_EQ(e.measures, (std::vector<std::string>{"displacement_error", "volume_change", "reaction"}));
   EXPECT_EQ(e.reference.cells, (Cells{0, 0, 0}));
+  EXPECT_EQ(e.reference.elements, (std::vector<std::string>{"q2"}));
   EXPECT_EQ(e.reference.grading, 1.5);
+  EXPECT_EQ(e.exact, "");
   EXPECT_FALSE(e.section);
   EXPECT_TRUE(e.probes.empty() && e.expectations.empty() && e.published.empty());
 }
@@ -59,8 +61,8 @@ TEST(Experiment, EveryPartOfAFullCase) {
     EXPECT_EQ(e.materials[i].density, 1060);
   }
 
-  ASSERT_EQ(e.loads.size(), 9u);
-  ASSERT_EQ(e.load_locations.size(), 9u);
+  ASSERT_EQ(e.loads.size(), 10u);
+  ASSERT_EQ(e.load_locations.size(), 10u);
   for (int i = 0; i < 2; ++i) {
     const auto& clamp = std::get<PrescribedDisplacement>(e.loads[i]);
     EXPECT_EQ(clamp.on, i == 0 ? "x_min" : "y_min");
@@ -81,9 +83,11 @@ TEST(Experiment, EveryPartOfAFullCase) {
   EXPECT_EQ(rotation.point, Vec3(1, 0.2, 0.2));
   EXPECT_EQ(std::get<Traction>(e.loads[5]).traction, Vec3(10, 0, -1e-3));
   EXPECT_EQ(std::get<PatchForce>(e.loads[6]).force, Vec3(0, 0, -5));
-  EXPECT_EQ(std::get<Gravity>(e.loads[7]).acceleration, Vec3(0, 0, -9.81));
-  EXPECT_EQ(std::get<PointForce>(e.loads[8]).at, Vec3(2.4, 0.2, 0.4));
-  EXPECT_EQ(std::get<PointForce>(e.loads[8]).force, Vec3(0, 1, 0));
+  EXPECT_EQ(std::get<Pressure>(e.loads[7]).on, "y_max");
+  EXPECT_EQ(std::get<Pressure>(e.loads[7]).pressure, 2.5);
+  EXPECT_EQ(std::get<Gravity>(e.loads[8]).acceleration, Vec3(0, 0, -9.81));
+  EXPECT_EQ(std::get<PointForce>(e.loads[9]).at, Vec3(2.4, 0.2, 0.4));
+  EXPECT_EQ(std::get<PointForce>(e.loads[9]).force, Vec3(0, 1, 0));
 
   ASSERT_EQ(e.models.size(), 4u);
   EXPECT_EQ(e.models[0].label, "hybmss");
@@ -100,8 +104,10 @@ TEST(Experiment, EveryPartOfAFullCase) {
   EXPECT_EQ(e.section->normal, Vec3(0, -1, 0));
   EXPECT_EQ(e.reference.cells, (Cells{96, 16, 16}));
   EXPECT_EQ(e.reference.grading, 1.0);
+  EXPECT_EQ(e.reference.elements, (std::vector<std::string>{"p2", "q1", "q2"}));
 
-  ASSERT_EQ(e.expectations.size(), 3u);
+  ASSERT_EQ(e.expectations.size(), 4u);
+  EXPECT_EQ(e.expectations[3].model, "fem_p2");
   EXPECT_EQ(e.expectations[0].measure, "force.x_max.magnitude");
   EXPECT_EQ(e.expectations[0].source, Source::published);
   EXPECT_EQ(e.expectations[0].value, 0.0254);
@@ -120,8 +126,22 @@ TEST(Experiment, EveryPartOfAFullCase) {
   EXPECT_EQ(e.published[0].remark, "read from the figure");
 }
 
+TEST(Experiment, AVerificationCaseHasNoModelsButAnExactField) {
+  const Experiment e = parse(test::verification_case);
+  EXPECT_TRUE(e.models.empty());
+  EXPECT_EQ(e.exact, "trigonometric");
+  ASSERT_EQ(e.loads.size(), 7u);
+  EXPECT_EQ(std::get<PrescribedField>(e.loads[5]).on, "z_max");
+  EXPECT_EQ(std::get<PrescribedField>(e.loads[5]).field, "trigonometric");
+  EXPECT_EQ(std::get<FieldBodyForce>(e.loads[6]).field, "trigonometric");
+  ASSERT_EQ(e.expectations.size(), 1u);
+  EXPECT_EQ(e.expectations[0].at_least, 1.9);
+  EXPECT_FALSE(e.expectations[0].value);
+}
+
 TEST(Experiment, WhatIsWrittenReadsBackTheSame) {
-  for (const std::string& text : {std::string(small_case), std::string(full_case)}) {
+  for (const std::string& text :
+       {std::string(small_case), std::string(full_case), std::string(test::verification_case)}) {
     const Experiment first = parse(text), second = parse(to_toml(first));
     test::expect_same(first, second);
     EXPECT_EQ(to_toml(first), to_toml(second));
@@ -164,6 +184,9 @@ TEST(Measures, RowsOfEachMeasure) {
   EXPECT_EQ(rows_of_measure("probe", e),
             (std::vector<std::string>{"displacement.tip.x", "displacement.tip.y", "displacement.tip.z",
                                       "displacement.tip.magnitude"}));
+  EXPECT_EQ(rows_of_measure("stress", e),
+            (std::vector<std::string>{"stress.tip.xx", "stress.tip.yy", "stress.tip.zz", "stress.tip.xy",
+                                      "stress.tip.yz", "stress.tip.xz"}));
   EXPECT_EQ(supported_patches(e), (std::vector<std::string>{"x_min", "y_min", "z_min", "z_max", "x_max"}));
   const auto rows = rows_of_measure("reaction", e);
   EXPECT_EQ(rows.size(), 5u * 8);
@@ -173,15 +196,15 @@ TEST(Measures, RowsOfEachMeasure) {
 
 TEST(CheckPatches, NamesTheLoadThatIsWrong) {
   const Experiment e = parse(full_case);
-  EXPECT_NO_THROW(check_patches(e, {"x_min", "x_max", "y_min", "z_min", "z_max"}));
+  EXPECT_NO_THROW(check_patches(e, {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}));
   try {
-    check_patches(e, {"x_min", "x_max", "y_min", "z_minimum", "z_max"});
+    check_patches(e, {"x_min", "x_max", "y_min", "y_max", "z_minimum", "z_max"});
     FAIL() << "accepted";
   } catch (const InputError& error) {
     const std::string message = error.what();
     const std::string start = "golec_2019/beam.toml:" + std::to_string(e.load_locations[2].line) + ":";
     EXPECT_EQ(message.rfind(start, 0), 0u) << message;
-    EXPECT_NE(message.find("no patch 'z_min' (allowed: x_min, x_max, y_min, z_minimum, z_max)"),
+    EXPECT_NE(message.find("no patch 'z_min' (allowed: x_min, x_max, y_min, y_max, z_minimum, z_max)"),
               std::string::npos)
         << message;
   }
