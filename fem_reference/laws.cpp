@@ -7,10 +7,11 @@
 namespace springproof::fem {
 namespace {
 
-const std::array<std::pair<const char*, Law>, 4> names = {
+const std::array<std::pair<const char*, Law>, 5> names = {
     {{"hencky", Law::hencky},
      {"log_cauchy", Law::log_cauchy},
      {"neo_hooke", Law::neo_hooke},
+     {"neo_hooke_isochoric", Law::neo_hooke_isochoric},
      {"st_venant_kirchhoff", Law::st_venant_kirchhoff}}};
 
 Eigen::Matrix3d right_cauchy_green(const Matrix3& F) {
@@ -39,6 +40,18 @@ Principal from_kirchhoff(const Eigen::Vector3d& tau, const Eigen::Vector3d& slop
   return r;
 }
 
+// K = lambda + 2 mu/3: only lambda (J - 1) goes into the pressure, as in the other laws, so that at zero
+// pressure the tangent is that of a solid with nu = 0.
+Principal isochoric(double mu, double p, double J, const Eigen::Vector3d& c) {
+  const double third = c.mean(), scaled = mu / std::cbrt(J * J), rest = 2 * mu / 3;
+  const Eigen::Vector3d tau = (scaled * (c.array() - third) + (rest * (J - 1) + p) * J).matrix();
+  Principal r = from_kirchhoff(tau, Eigen::Vector3d::Constant(scaled), (rest * (2 * J - 1) + p) * J, J, c);
+  const Eigen::Vector3d inverse = c.cwiseInverse(), ones = Eigen::Vector3d::Ones();
+  r.d += scaled / 3 *
+         (third * inverse * inverse.transpose() - inverse * ones.transpose() - ones * inverse.transpose());
+  return r;
+}
+
 Principal principal(Law law, double mu, double p, const Eigen::Vector3d& c) {
   const double J = std::sqrt(c.prod());
   const Eigen::Array3d log_c = c.array().log();
@@ -47,6 +60,8 @@ Principal principal(Law law, double mu, double p, const Eigen::Vector3d& c) {
       return from_kirchhoff(mu * log_c + p * J, mu * c.cwiseInverse(), p * J, J, c);
     case Law::neo_hooke:
       return from_kirchhoff(mu * (c.array() - 1) + p * J, Eigen::Vector3d::Constant(mu), p * J, J, c);
+    case Law::neo_hooke_isochoric:
+      return isochoric(mu, p, J, c);
     case Law::log_cauchy: {
       Principal r = from_kirchhoff(J * (mu * log_c + p), J * mu * c.cwiseInverse(), 0, J, c);
       r.d += r.s * c.cwiseInverse().transpose() / 2;
@@ -73,6 +88,10 @@ Vector6 symmetric_product(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   v << a[0] * b[0], a[1] * b[1], a[2] * b[2], (a[0] * b[1] + a[1] * b[0]) / 2,
       (a[1] * b[2] + a[2] * b[1]) / 2, (a[0] * b[2] + a[2] * b[0]) / 2;
   return v;
+}
+
+bool is_linear_in_dilatation(Law law) {
+  return law == Law::st_venant_kirchhoff || law == Law::neo_hooke_isochoric;
 }
 
 Voigt to_voigt(const Vector6& v) {
@@ -105,7 +124,7 @@ double dilatation(Law law, const Matrix3& F) {
 }
 
 ValueAndSlope pressure(Law law, double lambda, double g) {
-  if (law == Law::st_venant_kirchhoff) return {lambda * g, lambda};
+  if (is_linear_in_dilatation(law)) return {lambda * g, lambda};
   const double J = 1 + g, log_J = std::log1p(g);
   if (law == Law::log_cauchy) return {lambda * log_J, lambda / J};
   return {lambda * log_J / J, lambda * (1 - log_J) / (J * J)};
@@ -113,7 +132,7 @@ ValueAndSlope pressure(Law law, double lambda, double g) {
 
 ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p) {
   const double ratio = p / lambda;
-  if (law == Law::st_venant_kirchhoff) return {ratio, 1 / lambda};
+  if (is_linear_in_dilatation(law)) return {ratio, 1 / lambda};
   double log_J = ratio;
   if (law != Law::log_cauchy) {
     // x exp(-x) = ratio, x < 1, by Newton's method on x - ratio exp(x)

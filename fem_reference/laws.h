@@ -13,11 +13,13 @@
 namespace springproof::fem {
 
 enum class Law {
-  hencky,              ///< Kirchhoff stress = 2 mu ln V + lambda ln J I; hyperelastic
-  log_cauchy,          ///< Cauchy stress = 2 mu ln V + lambda ln J I (as LS-Dyna's hypoelastic solid); not
-                       ///< hyperelastic
-  neo_hooke,           ///< W = mu/2 (tr C - 3 - 2 ln J) + lambda/2 ln^2 J
-  st_venant_kirchhoff  ///< S = 2 mu E + lambda tr E I, E = (C - I)/2
+  hencky,               ///< Kirchhoff stress = 2 mu ln V + lambda ln J I; hyperelastic
+  log_cauchy,           ///< Cauchy stress = 2 mu ln V + lambda ln J I (as LS-Dyna's hypoelastic solid); not
+                        ///< hyperelastic
+  neo_hooke,            ///< W = mu/2 (tr C - 3 - 2 ln J) + lambda/2 ln^2 J
+  neo_hooke_isochoric,  ///< W = mu/2 (J^(-2/3) tr C - 3) + K/2 (J - 1)^2, K = lambda + 2 mu/3, as Abaqus and
+                        ///< CalculiX
+  st_venant_kirchhoff   ///< S = 2 mu E + lambda tr E I, E = (C - I)/2
 };
 
 /// Nothing if there is no such law.
@@ -46,7 +48,8 @@ struct ValueAndSlope {
   double value, slope;
 };
 
-/// p(g) [Pa]: lambda ln J / J, lambda ln J (log_cauchy), lambda tr E (St. Venant-Kirchhoff).
+/// p(g) [Pa]: lambda ln J / J, lambda ln J (log_cauchy), lambda g (neo_hooke_isochoric, the rest of K being
+/// in S_shear; St. Venant-Kirchhoff).
 ValueAndSlope pressure(Law law, double lambda, double g);
 
 /// Its inverse g(p).  Where hencky and neo_hooke have none (lambda / e < p, J beyond e) the largest there is.

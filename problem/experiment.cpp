@@ -59,7 +59,7 @@ constexpr ModulusKey modulus_keys[] = {
     {"lame_lambda_Pa", &Moduli::lame_lambda, any_number}};
 
 const std::vector<std::string> kinematics_names = {"linear", "hencky", "log_cauchy", "neo_hooke",
-                                                   "st_venant_kirchhoff"};
+                                                   "neo_hooke_isochoric", "st_venant_kirchhoff"};
 
 Body read_body(const TomlValue& value) {
   const TomlTable table(value, body_schema);

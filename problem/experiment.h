@@ -106,7 +106,7 @@ struct Experiment {
   std::filesystem::path file;
   std::string cite;
   std::string what;
-  std::string kinematics = "linear";   ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke", "st_venant_kirchhoff"
+  std::string kinematics = "linear";   ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"
   Body body;
   std::vector<IsotropicMaterial> materials;   ///< in the file's order, each Poisson's ratio once
   std::vector<Load> loads;

@@ -5,11 +5,13 @@
 
 #include "support/fem_block.h"
 #include "support/tolerances.h"
+#include "support/uniaxial.h"
 
 namespace springproof {
 namespace {
 
-const std::vector<std::string> all_laws = {"hencky", "log_cauchy", "neo_hooke", "st_venant_kirchhoff"};
+const std::vector<std::string> all_laws = {"hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric",
+                                           "st_venant_kirchhoff"};
 const Vec3 size(2, 1, 1.5);
 const std::optional<double> is_free;
 
@@ -18,23 +20,6 @@ struct BarCase {
   int degree;
   double poisson_ratio;
 };
-
-// Lateral stretch of a free-standing bar of axial stretch `l`, and its axial force per rest area.
-std::pair<double, double> uniaxial(const std::string& law, const IsotropicMaterial& m, double l) {
-  const double E = m.youngs_modulus, nu = m.poisson_ratio, mu = shear_modulus(m), lambda = lame_lambda(m);
-  if (law == "st_venant_kirchhoff") {
-    const double strain = (l * l - 1) / 2;
-    return {std::sqrt(1 - 2 * nu * strain), l * E * strain};
-  }
-  if (law != "neo_hooke") {
-    const double t = std::pow(l, -nu), stress = E * std::log(l);
-    return {t, law == "hencky" ? stress / l : stress * t * t};
-  }
-  double t = std::pow(l, -nu);  // mu (t^2 - 1) + lambda ln(l t^2) = 0
-  for (int i = 0; i < 50; ++i)
-    t -= (mu * (t * t - 1) + lambda * std::log(l * t * t)) / (2 * mu * t + 2 * lambda / t);
-  return {t, (mu * (l * l - 1) + lambda * std::log(l * t * t)) / l};
-}
 
 class FemFiniteBar : public testing::TestWithParam<BarCase> {};
 
@@ -51,7 +36,7 @@ TEST_P(FemFiniteBar, FollowsTheClosedForm) {
     problem.points = size.transpose();
     const fem::Solution solution = fem::solve_grid(problem);
     ASSERT_TRUE(solution.ok) << solution.message;
-    const auto [lateral, stress] = uniaxial(law, problem.material, stretch);
+    const auto [lateral, stress] = test::uniaxial(law, problem.material, stretch);
     EXPECT_NEAR(1 + solution.displacement(0, 0) / size[0], lateral, 1e-9);
     EXPECT_NEAR(solution.reactions[3].force[2] / (size[0] * size[1]) / stress, 1, 1e-8);
     EXPECT_NEAR(solution.volume_change, stretch * lateral * lateral - 1, 1e-9);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "support/tolerances.h"
+#include "support/uniaxial.h"
 
 namespace springproof {
 namespace {
@@ -16,7 +17,8 @@ using fem::LawResponse;
 using Matrix = Eigen::Matrix3d;
 
 constexpr double mu = 3.0, lambda = 5.0;
-const std::vector<Law> all_laws = {Law::hencky, Law::log_cauchy, Law::neo_hooke, Law::st_venant_kirchhoff};
+const std::vector<Law> all_laws = {Law::hencky, Law::log_cauchy, Law::neo_hooke, Law::neo_hooke_isochoric,
+                                   Law::st_venant_kirchhoff};
 
 fem::Matrix3 plain(const Matrix& F) {
   fem::Matrix3 f;
@@ -128,15 +130,50 @@ TEST(FemLaws, AgreeWithClosedFormsInTriaxialStretch) {
   EXPECT_NEAR(cauchy(Law::log_cauchy, F)(0, 0), 2 * mu * std::log(l) + lambda * std::log(J), test::round_off);
   EXPECT_NEAR(cauchy(Law::neo_hooke, F)(0, 0), (mu * (l * l - 1) + lambda * std::log(J)) / J,
               test::round_off);
+  const double K = lambda + 2 * mu / 3, third = stretch.squaredNorm() / 3;
+  EXPECT_NEAR(cauchy(Law::neo_hooke_isochoric, F)(0, 0),
+              mu * std::pow(J, -5. / 3) * (l * l - third) + K * (J - 1), test::round_off);
   const double trace_E = (stretch.squaredNorm() - 3) / 2;
   EXPECT_NEAR(cauchy(Law::st_venant_kirchhoff, F)(0, 0), l * l * (mu * (l * l - 1) + lambda * trace_E) / J,
               test::round_off);
 }
 
+TEST(FemLaws, LeaveTheSidesOfABarFree) {
+  for (const char* name : {"hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"})
+    for (double nu : {-0.5, 0.0, 0.3, 0.499})
+      for (double l : {0.8, 1.2}) {
+        const IsotropicMaterial m{10, nu, 1};
+        const auto [t, stress] = test::uniaxial(name, m, l);
+        const Matrix F = Eigen::Vector3d(t, t, l).asDiagonal();
+        const Law law = *fem::law_named(name);
+        const double p = fem::pressure(law, lame_lambda(m), fem::dilatation(law, plain(F))).value;
+        const Matrix S = tensor(fem::respond(law, shear_modulus(m), p, plain(F)).S);
+        EXPECT_NEAR(l * S(2, 2), stress, 1e-10 * m.youngs_modulus) << name << " nu " << nu;
+        EXPECT_NEAR(S(0, 0), 0, 1e-10 * m.youngs_modulus) << name << " nu " << nu;
+      }
+}
+
+TEST(FemLaws, NeoHookeIsochoricIsTheSlopeOfItsEnergy) {
+  const double K = lambda + 2 * mu / 3, step = 1e-5;
+  const auto energy = [&](const Matrix& F) {
+    const double J = F.determinant();
+    return mu / 2 * (std::pow(J, -2. / 3) * F.squaredNorm() - 3) + K / 2 * (J - 1) * (J - 1);
+  };
+  for (const Matrix& F : some_gradients()) {
+    const Matrix P = F * tensor(at(Law::neo_hooke_isochoric, F).S);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        Matrix h = Matrix::Zero();
+        h(i, j) = step;
+        EXPECT_NEAR(P(i, j), (energy(F + h) - energy(F - h)) / (2 * step), test::finite_difference * mu);
+      }
+  }
+}
+
 TEST(FemLaws, AreFoundByName) {
   EXPECT_EQ(fem::law_named("neo_hooke"), Law::neo_hooke);
   EXPECT_FALSE(fem::law_named("linear"));
-  EXPECT_EQ(fem::law_names(), "hencky, log_cauchy, neo_hooke, st_venant_kirchhoff");
+  EXPECT_EQ(fem::law_names(), "hencky, log_cauchy, neo_hooke, neo_hooke_isochoric, st_venant_kirchhoff");
 }
 
 }  // namespace
