@@ -1,14 +1,13 @@
 #include "fem_reference/boundary_conditions.h"
 
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_tools.h>
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
 
 #include "fem_reference/sample.h"
+#include "problem/exact_field.h"
 #include "problem/experiment.h"
 
 namespace springproof::fem {
@@ -33,13 +32,20 @@ std::map<boundary_id, std::vector<int>> prescribing_loads(const Body3& body, con
   return by_id;
 }
 
+// FE_SimplexP says of every function that it may live on a face.
+bool lives_on_face(const dealii::FiniteElement<3>& fe, unsigned int i, unsigned int face) {
+  if (!fe.reference_cell().is_simplex()) return fe.has_support_on_face(i, face);
+  const dealii::Point<3> X = fe.unit_support_point(i);
+  const std::array<double, 4> away = {X[2], X[1], X[0], 1 - X[0] - X[1] - X[2]};
+  return std::abs(away[face]) < 1e-10;
+}
+
 // Calls visit(cell, load, i, component, X) for every prescribed shape function i of a cell, active or of a
 // level.
 template <typename Cells, typename Visit>
 void for_each_prescribed(const Cells& cells, const Body3& body, const std::vector<Load>& loads,
                          const Visit& visit) {
   const auto by_id = prescribing_loads(body, loads);
-  const dealii::MappingQ1<3> mapping;
   for (const auto& cell : cells)
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->face(f)->at_boundary()) continue;
@@ -47,9 +53,9 @@ void for_each_prescribed(const Cells& cells, const Body3& body, const std::vecto
       if (found == by_id.end()) continue;
       const auto& fe = cell->get_fe();
       for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i) {
-        if (!fe.has_support_on_face(i, f)) continue;
+        if (!lives_on_face(fe, i, f)) continue;
         const int component = fe.system_to_component_index(i).first;
-        const Vec3 X = vec(mapping.transform_unit_to_real_cell(cell, fe.unit_support_point(i)));
+        const Vec3 X = vec(body.mapping->transform_unit_to_real_cell(cell, fe.unit_support_point(i)));
         for (const int l : found->second)
           if (prescribed_displacement(loads[l], X, Kinematics::linear)[component])
             visit(cell, l, i, component, X);
@@ -57,15 +63,14 @@ void for_each_prescribed(const Cells& cells, const Body3& body, const std::vecto
     }
 }
 
-// Integrates f(X) against the shape functions of one cell or face.
-template <typename Values, typename Cell>
-void add_integral(const Values& values, const Cell& cell, const std::function<Vec3(const Vec3&)>& f,
-                  DofVector& load) {
+// Integrates force(q) against the shape functions of one cell or face.
+template <typename Values, typename Cell, typename Force>
+void add_integral(const Values& values, const Cell& cell, const Force& force, DofVector& load) {
   const auto& fe = cell->get_fe();
   std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
   cell->get_dof_indices(dofs);
   for (const unsigned int q : values.quadrature_point_indices()) {
-    const Vec3 weighted = values.JxW(q) * f(vec(values.quadrature_point(q)));
+    const Vec3 weighted = values.JxW(q) * force(q);
     for (unsigned int i = 0; i < dofs.size(); ++i)
       load[dofs[i]] += values.shape_value(i, q) * weighted[fe.system_to_component_index(i).first];
   }
@@ -75,10 +80,9 @@ void add_integral(const Values& values, const Cell& cell, const std::function<Ve
 template <typename Visit>
 void for_each_face(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
                    const Visit& visit) {
-  const dealii::MappingQ1<3> mapping;
   const auto& fe = dof_handler.get_fe();
   dealii::FEFaceValues<3> values(
-      mapping, fe, dealii::QGauss<2>(fe.degree + 1),
+      *body.mapping, fe, face_quadrature(body, fe.degree + 1),
       dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
   for (const auto& cell : dof_handler.active_cell_iterators())
     for (const unsigned int f : cell->face_indices())
@@ -106,28 +110,32 @@ PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Bod
   return geometry;
 }
 
+// `traction` is called with the outward normal.
 void add_traction(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
-                  const Vec3& traction, DofVector& load) {
+                  const std::function<Vec3(const Vec3&)>& traction, DofVector& load) {
   for_each_face(dof_handler, body, patch, [&](const auto& cell, const auto& values) {
-    add_integral(
-        values, cell, [&](const Vec3&) { return traction; }, load);
+    const auto at = [&](unsigned int q) {
+      const dealii::Tensor<1, 3> n = values.normal_vector(q);
+      return traction(Vec3(n[0], n[1], n[2]));
+    };
+    add_integral(values, cell, at, load);
   });
 }
 
-void add_body_force(const dealii::DoFHandler<3>& dof_handler, unsigned int quadrature_points,
+void add_body_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, unsigned int quadrature_points,
                     const std::function<Vec3(const Vec3&)>& f, DofVector& load) {
-  const dealii::MappingQ1<3> mapping;
   dealii::FEValues<3> values(
-      mapping, dof_handler.get_fe(), dealii::QGauss<3>(quadrature_points),
+      *body.mapping, dof_handler.get_fe(), cell_quadrature(body, quadrature_points),
       dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
   for (const auto& cell : dof_handler.active_cell_iterators()) {
     values.reinit(cell);
-    add_integral(values, cell, f, load);
+    add_integral(values, cell, [&](unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
   }
 }
 
-void add_point_force(const dealii::DoFHandler<3>& dof_handler, const PointForce& point, DofVector& load) {
-  const Location place = locate(dof_handler.get_triangulation(), point.at.transpose()).front();
+void add_point_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const PointForce& point,
+                     DofVector& load) {
+  const Location place = locate(body, point.at.transpose()).front();
   const auto& fe = dof_handler.get_fe();
   const auto dofs = dofs_at(place, dof_handler);
   for (unsigned int i = 0; i < dofs.size(); ++i)
@@ -229,18 +237,25 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
   const unsigned int points = dof_handler.get_fe().degree + 1;
   for (const Load& l : loads) {
     if (const auto* traction = std::get_if<Traction>(&l))
-      add_traction(dof_handler, body, traction->on, traction->traction, load);
-    if (const auto* total = std::get_if<PatchForce>(&l))
-      add_traction(dof_handler, body, total->on,
-                   total->force / patch_geometry(dof_handler, body, total->on).area, load);
+      add_traction(dof_handler, body, traction->on, [&](const Vec3&) { return traction->traction; }, load);
+    if (const auto* pressure = std::get_if<Pressure>(&l))
+      add_traction(dof_handler, body, pressure->on, [&](const Vec3& n) -> Vec3 { return -pressure->pressure * n; }, load);
+    if (const auto* total = std::get_if<PatchForce>(&l)) {
+      const Vec3 traction = total->force / patch_geometry(dof_handler, body, total->on).area;
+      add_traction(dof_handler, body, total->on, [&](const Vec3&) { return traction; }, load);
+    }
     if (const auto* gravity = std::get_if<Gravity>(&l)) {
       const Vec3 weight = material.density * gravity->acceleration;
       add_body_force(
-          dof_handler, points, [&](const Vec3&) { return weight; }, load);
+          dof_handler, body, points, [&](const Vec3&) { return weight; }, load);
     }
-    if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, *point, load);
+    if (const auto* field = std::get_if<FieldBodyForce>(&l))
+      add_body_force(
+          dof_handler, body, std::min(points + 2, 4u),
+          [&](const Vec3& X) { return exact_body_force(field->field, X, material); }, load);
+    if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, body, *point, load);
   }
-  if (body_force) add_body_force(dof_handler, points + 2, body_force, load);
+  if (body_force) add_body_force(dof_handler, body, std::min(points + 2, 4u), body_force, load);
   return load;
 }
 

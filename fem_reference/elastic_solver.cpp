@@ -1,4 +1,4 @@
-// Matrix-free solver of the linear-elastic system.  This file is compiled once per vector width.
+// Matrix-free solver of the elastic system.  This file is compiled once per vector width.
 //
 // Debian's deal.II is built without vectorisation; defining the width here, after config.h, makes the wide
 // VectorizedArray types exist in this file while the library's default stays one lane.  What the library
@@ -9,7 +9,6 @@
 #define DEAL_II_VECTORIZATION_WIDTH_IN_BITS SPRINGPROOF_VECTOR_BITS
 #endif
 #include <deal.II/base/vectorization.h>
-#include <deal.II/lac/solver_cg.h>
 #include <deal.II/matrix_free/fe_evaluation.h>
 #if SPRINGPROOF_VECTOR_BITS > 0
 #define FE_EVAL_FACTORY_DEGREE_MAX 2
@@ -24,7 +23,8 @@
 #endif
 
 #include "fem_reference/elastic_system.h"
-#include "fem_reference/krylov.h"
+#include "fem_reference/finite_operator.h"
+#include "fem_reference/linear.h"
 #include "fem_reference/mixed_operator.h"
 #include "fem_reference/newton.h"
 #include "fem_reference/stiffness.h"
@@ -46,97 +46,92 @@ DEAL_II_NAMESPACE_CLOSE
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 namespace {
 
-template <int degree>
-ElasticAnswer solve_displacement_form(const ElasticSystem& system, const DofVector& load, DofVector& u) {
-  const bool mean = system.form == Form::mean_dilatation;
-  const Stiffness<degree, double> K(system.dof_handler, dealii::numbers::invalid_unsigned_int,
-                                    system.constrained, {system.mu, system.lambda, mean});
-  const VCycle<degree> multigrid(system, {float(system.mu), float(system.lambda), mean});
+constexpr unsigned int active_cells = dealii::numbers::invalid_unsigned_int;
 
-  ElasticAnswer answer;
-  answer.method = "CG, matrix-free multigrid";
-  Vector<double> x = K.vector(), r = K.vector(), du = K.vector();
-  x = u;
-  answer.internal_force.reinit(r);
-  double start = 0;
-  for (int repeat = 0; repeat < 4; ++repeat) {
-    K.apply(answer.internal_force, x);
-    r = load;
-    r -= answer.internal_force;
-    K.clear_constrained(r);
-    const double norm = r.l2_norm();
-    if (repeat == 0) start = norm;
-    answer.residual = start > 0 ? norm / start : 0;
-    answer.converged = answer.residual <= system.tolerance;
-    if (answer.converged || repeat == 3) break;
-    dealii::SolverControl control(1000, 0.5 * system.tolerance * start);
-    dealii::SolverCG<Vector<double>> cg(control);
-    du = 0;
-    try {
-      cg.solve(K, du, r, multigrid);
-    } catch (const dealii::SolverControl::NoConvergence&) {
-    }
-    answer.iterations += control.last_step();
-    x += du;
-  }
-  u = x;
-  return answer;
+// The stiffness that multigrid works on: that of the displacement form, or the shear alone.
+Coefficients<float> smoothed(const ElasticSystem& system) {
+  if (system.form == Form::mixed) return {float(system.mu), 0, false};
+  return {float(system.mu), float(system.lambda), system.form == Form::mean_dilatation};
 }
 
 template <int degree>
-ElasticAnswer solve_mixed_form(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
-  const Stiffness<degree, double> shear(system.dof_handler, dealii::numbers::invalid_unsigned_int,
-                                        system.constrained, {system.mu, 0, false});
-  const VCycle<degree> multigrid(system, {float(system.mu), 0, false});
-  const MixedOperator<degree> K(shear, system.lambda);
-  const auto precondition = [&](MixedVector& z, const MixedVector& r) {
-    multigrid.vmult(z.u, r.u);
-    K.precondition_pressure(z.p, r.p);
-  };
-
-  ElasticAnswer answer;
-  answer.method = "MINRES, matrix-free multigrid";
-  MixedVector x = K.vector(), r = K.vector(), f = K.vector(), z = K.vector(), dx = K.vector();
-  x.u = displacement;
-  double start = 0, start_force = 0;
-  for (int repeat = 0; repeat < 6; ++repeat) {
-    K.apply(f, x);
-    r.u = load;
-    r.u -= f.u;
-    shear.clear_constrained(r.u);
-    r.p = f.p;
-    r.p *= -1;
-    precondition(z, r);
-    const double norm = std::sqrt(z.dot(r)), norm_force = r.u.l2_norm();
-    if (repeat == 0) start = norm, start_force = norm_force;
-    answer.residual = start > 0 ? std::max(norm / start, start_force > 0 ? norm_force / start_force : 0) : 0;
-    answer.converged = answer.residual <= system.tolerance;
-    if (answer.converged || repeat == 5) break;
-    dx.sadd(0, 0, r);
-    const auto outcome = minres([&](MixedVector& y, const MixedVector& v) { K.vmult(y, v); }, precondition, r,
-                                0.3 * system.tolerance / answer.residual, 2000, dx);
-    answer.iterations += outcome.iterations;
-    x.add(1, dx);
+class LinearOperator {
+ public:
+  explicit LinearOperator(const ElasticSystem& system)
+      : mixed_(system.form == Form::mixed),
+        stiffness_(*system.body.mapping, system.dof_handler, active_cells, system.constrained,
+                   {system.mu, mixed_ ? 0 : system.lambda, system.form == Form::mean_dilatation}),
+        multigrid_(system, smoothed(system)) {
+    if (mixed_) with_pressure_.emplace(stiffness_, system.lambda);
   }
-  displacement = x.u;
-  answer.internal_force = f.u;
-  return answer;
+
+  MixedVector vector() const {
+    if (mixed_) return with_pressure_->vector();
+    return {stiffness_.vector(), {}};
+  }
+  void apply(MixedVector& f, const MixedVector& x) const {
+    mixed_ ? with_pressure_->apply(f, x) : stiffness_.apply(f.u, x.u);
+  }
+  void vmult(MixedVector& y, const MixedVector& x) const {
+    mixed_ ? with_pressure_->vmult(y, x) : stiffness_.vmult(y.u, x.u);
+  }
+  void precondition(MixedVector& z, const MixedVector& r) const {
+    multigrid_.vmult(z.u, r.u);
+    if (mixed_) with_pressure_->precondition_pressure(z.p, r.p);
+  }
+  void clear_constrained(Vector<double>& f) const { stiffness_.clear_constrained(f); }
+  CellPressures pressures(const MixedVector& x) const { return with_pressure_->pressures(x); }
+
+ private:
+  bool mixed_;
+  Stiffness<degree, double> stiffness_;
+  std::optional<MixedOperator<degree>> with_pressure_;
+  VCycle<degree> multigrid_;
+};
+
+template <int degree>
+class TangentOperator : public FiniteOperator<degree> {
+ public:
+  TangentOperator(const Stiffness<degree, double>& base, const ElasticSystem& system, Law law)
+      : FiniteOperator<degree>(base, law, system.form, system.lambda), multigrid_(system, smoothed(system)) {}
+
+  void prepare(const MixedVector& x) { multigrid_.deform(x.u); }
+  void precondition(MixedVector& z, const MixedVector& r) const {
+    multigrid_.vmult(z.u, r.u);
+    this->precondition_pressure(z.p, r.p);
+  }
+
+ private:
+  VCycle<degree> multigrid_;
+};
+
+template <int degree>
+ElasticAnswer small_strain(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
+  return solve_linear(LinearOperator<degree>(system), system, load, displacement);
+}
+
+template <int degree>
+FiniteAnswer finite_strain(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                          DofVector& displacement) {
+  const Stiffness<degree, double> base(*system.body.mapping, system.dof_handler, active_cells, system.constrained,
+                                       {system.mu, 0, false});
+  TangentOperator<degree> K(base, system, problem.law);
+  return Newton<TangentOperator<degree>>(K, system, problem, load).solve(displacement);
 }
 
 }  // namespace
 
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
-  if (system.form == Form::mixed)
-    return system.degree == 1 ? solve_mixed_form<1>(system, load, displacement)
-                              : solve_mixed_form<2>(system, load, displacement);
-  return system.degree == 1 ? solve_displacement_form<1>(system, load, displacement)
-                            : solve_displacement_form<2>(system, load, displacement);
+  ElasticAnswer answer = system.degree == 1 ? small_strain<1>(system, load, displacement)
+                                            : small_strain<2>(system, load, displacement);
+  answer.method = system.form == Form::mixed ? "MINRES, matrix-free multigrid" : "CG, matrix-free multigrid";
+  return answer;
 }
 
 FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
                    DofVector& displacement) {
-  FiniteAnswer answer = system.degree == 1 ? Newton<1>(system, problem, load).solve(displacement)
-                                           : Newton<2>(system, problem, load).solve(displacement);
+  FiniteAnswer answer = system.degree == 1 ? finite_strain<1>(system, problem, load, displacement)
+                                           : finite_strain<2>(system, problem, load, displacement);
   answer.method = "Newton, GMRES, matrix-free multigrid";
   return answer;
 }

@@ -1,4 +1,4 @@
-// The linear-elastic problem on one grid as the solver sees it.
+// The elastic problem on one grid as the solvers see it.
 #pragma once
 
 #include <deal.II/base/index_set.h>
@@ -9,28 +9,28 @@
 #include <string>
 #include <vector>
 
+#include "fem_reference/element.h"
 #include "fem_reference/laws.h"
+#include "fem_reference/triangulate.h"
 
 namespace springproof::fem {
 
 using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
-/// Stress = mu (grad u + grad u^T) + lambda div u I, with div u taken
-enum class Form {
-  pointwise,        ///< as it is
-  mean_dilatation,  ///< as its mean over each cell (B-bar)
-  mixed  ///< projected on one constant (Q1) or four linear functions (Q2) per cell, as an unknown pressure
-};
+/// The pressure in each active cell as a + b.xi, xi in the reference cell: (a, b_1, b_2, b_3) [Pa].
+using CellPressures = std::vector<std::array<double, 4>>;
 
 struct ElasticSystem {
-  const dealii::DoFHandler<3>& dof_handler;         ///< with level degrees of freedom
+  const Body3& body;
+  const dealii::DoFHandler<3>& dof_handler;         ///< with level degrees of freedom, if solved without a matrix
   std::vector<unsigned int> constrained;            ///< degrees of freedom with prescribed value
-  std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level
+  std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level; empty: solved with a matrix
   int degree;
   Form form;
   double mu, lambda;  ///< [Pa]
   double tolerance;   ///< relative residual
   bool wide_vectors;  ///< where the processor has them
+  bool plain_gamg = false;  ///< with matrices: no level of linear elements, as a baseline
 };
 
 struct ElasticAnswer {
@@ -38,6 +38,7 @@ struct ElasticAnswer {
   int iterations = 0;
   double residual = 0;  ///< |free part of load - internal force| / that of the start
   bool converged = false;
+  CellPressures pressure;   ///< of the mixed form, else empty
   double load_reached = 1;  ///< fraction of the load that internal_force balances
   std::string method;
 };

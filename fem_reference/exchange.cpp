@@ -25,11 +25,11 @@ Vec3 to_vec(const json& j) {
 }
 
 json grid(const Discretisation& g) {
-  return {{"cells", g.cells}, {"degree", g.degree}, {"grading", g.grading}};
+  return {{"cells", g.cells}, {"element", g.element}, {"grading", g.grading}};
 }
 
 Discretisation to_grid(const json& j) {
-  return {j.at("cells"), j.at("degree"), j.at("grading")};
+  return {j.at("cells"), j.at("element"), j.at("grading")};
 }
 
 json solution(const Solution& s) {
@@ -42,6 +42,7 @@ json solution(const Solution& s) {
           {"form", s.form},
           {"law", s.law},
           {"displacement", rows(s.displacement)},
+          {"stress", std::vector<double>(s.stress.data(), s.stress.data() + s.stress.size())},
           {"reactions", reactions},
           {"volume_change", s.volume_change},
           {"volume_change_first_order", s.volume_change_first_order},
@@ -61,6 +62,8 @@ Solution to_solution(const json& j) {
   s.form = j.at("form");
   s.law = j.at("law");
   s.displacement = to_rows(j.at("displacement"));
+  const auto stress = j.at("stress").get<std::vector<double>>();
+  s.stress = Eigen::Map<const Stresses>(stress.data(), stress.size() / 6, 6);
   for (const json& r : j.at("reactions"))
     s.reactions.push_back({r.at("patch"), to_vec(r.at("force")), to_vec(r.at("torque"))});
   s.volume_change = j.at("volume_change");
@@ -86,6 +89,7 @@ json to_json(const Request& request) {
           {"density", request.material.density},
           {"grids", grids},
           {"points", rows(request.points)},
+          {"stress_points", rows(request.stress_points)},
           {"tolerance", request.tolerance}};
 }
 
@@ -95,6 +99,7 @@ Request request_from_json(const json& j) {
   request.material = {j.at("youngs_modulus"), j.at("poisson_ratio"), j.at("density")};
   for (const json& g : j.at("grids")) request.grids.push_back(to_grid(g));
   request.points = to_rows(j.at("points"));
+  request.stress_points = to_rows(j.at("stress_points"));
   request.tolerance = j.at("tolerance");
   return request;
 }

@@ -57,6 +57,10 @@ class FiniteOperator {
     base_.clear_constrained(y.u);
   }
 
+  void clear_constrained(Vector<double>& f) const { base_.clear_constrained(f); }
+
+  CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(base_.cells(), x.p); }
+
   void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {
     if (form_ == Form::mixed) pressure_.divide_by_mass(1 / (1 / lambda_ + 0.5 / mu_), x, y);
   }

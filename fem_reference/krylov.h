@@ -1,5 +1,5 @@
-// Minimal residual methods in the norm of a symmetric, positive definite preconditioner P: |r|^2 = r . P^-1
-// r.  That norm makes forces and volumes comparable in a mixed system.
+// Krylov methods.  The minimal residual methods work in the norm of a symmetric, positive definite preconditioner P:
+// |r|^2 = r . P^-1 r.  That norm makes forces and volumes comparable in a mixed system.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +13,35 @@ struct KrylovOutcome {
   int iterations = 0;
   double reduction = 1;  ///< of the residual in the norm of the preconditioner
 };
+
+/// For symmetric, positive definite matrices.  Adds to x, which starts at zero, until the residual has shrunk by
+/// `reduction` in the Euclidean norm.
+template <typename Vector, typename Multiply, typename Precondition>
+KrylovOutcome conjugate_gradients(const Multiply& multiply, const Precondition& precondition, const Vector& b,
+                                  double reduction, int max_iterations, Vector& x) {
+  KrylovOutcome outcome;
+  Vector r = b, z = b, Ap = b;
+  const double start = std::sqrt(r.dot(r));
+  if (start == 0) return outcome;
+  precondition(z, r);
+  Vector p = z;
+  double rz = r.dot(z);
+  while (outcome.iterations < max_iterations && outcome.reduction > reduction) {
+    ++outcome.iterations;
+    multiply(Ap, p);
+    const double curvature = p.dot(Ap);
+    if (!(curvature > 0)) break;  // not positive definite, or solved to rounding
+    const double alpha = rz / curvature;
+    x.add(alpha, p);
+    r.add(-alpha, Ap);
+    outcome.reduction = std::sqrt(r.dot(r)) / start;
+    if (outcome.reduction <= reduction) break;
+    precondition(z, r);
+    const double rz_old = std::exchange(rz, r.dot(z));
+    p.sadd(rz / rz_old, 1, z);
+  }
+  return outcome;
+}
 
 /// For symmetric matrices.  Adds to x, which starts at zero, until the residual has shrunk by `reduction`.
 /// `precondition(z, r)` is symmetric and positive definite.  Elman, Silvester, Wathen (2014), algorithm 4.1.

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "fem_reference/element.h"
 #include "fem_reference/exchange.h"
 #include "fem_reference/solve_grid.h"
 #include "meshes/gmsh_io.h"
@@ -23,25 +24,38 @@ int halve(Cells& cells) {
   return times;
 }
 
+// Blocks become few cells, refined: multigrid needs that.  Other bodies are meshed as they are wanted, hexahedra with
+// second-order edges, so that a curved surface stays curved.
+void mesh_into(GridProblem& problem, const Request& request, const Discretisation& grid) {
+  const Body& body = request.experiment.body;
+  const std::filesystem::path geo = find_geo(body, request.experiment.file);
+  const Element element = element_named(grid.element);
+  problem.degree = element.degree;
+  if (element.tetrahedra) {
+    problem.coarse = mesh_geo(geo, body.size, grid.cells, {.tetrahedra = true});
+    return;
+  }
+  Cells coarse = grid.cells;
+  problem.refinements = halve(coarse);
+  problem.coarse = mesh_geo(geo, body.size, coarse);
+  if (problem.coarse.grid) {
+    problem.place = graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(),
+                           grid.grading);
+    return;
+  }
+  problem.refinements = 0;
+  problem.coarse = mesh_geo(geo, body.size, grid.cells, {.second_order = true});
+}
+
 Solution solve_one(const Request& request, const Discretisation& grid) {
   const Experiment& experiment = request.experiment;
   GridProblem problem;
-  const std::filesystem::path geo = find_geo(experiment.body, experiment.file);
-  Cells coarse = grid.cells;
-  problem.refinements = halve(coarse);
-  problem.coarse = mesh_geo(geo, experiment.body.size, coarse);
-  if (problem.refinements > 0 && !problem.coarse.grid) {
-    // A curved surface would keep the facets of the coarse mesh.
-    problem.refinements = 0;
-    problem.coarse = mesh_geo(geo, experiment.body.size, grid.cells);
-  }
-  problem.place = graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(),
-                         grid.grading);
-  problem.degree = grid.degree;
+  mesh_into(problem, request, grid);
   problem.law = experiment.kinematics;
   problem.material = request.material;
   problem.loads = experiment.loads;
   problem.points = request.points;
+  problem.stress_points = request.stress_points;
   problem.tolerance = request.tolerance;
   Solution solution = solve_grid(problem);
   solution.grid = grid;
@@ -90,6 +104,10 @@ void print(const Request& request, const Solution& s) {
   for (Eigen::Index p = 0; p < s.displacement.rows(); ++p)
     fmt::print("  {:<21} {:.9g} {:.9g} {:.9g} m\n", request.experiment.probes[p].name, s.displacement(p, 0),
                s.displacement(p, 1), s.displacement(p, 2));
+  for (Eigen::Index p = 0; p < s.stress.rows(); ++p)
+    fmt::print("  {:<21} xx {:.9g} yy {:.9g} zz {:.9g} xy {:.9g} yz {:.9g} xz {:.9g} Pa\n",
+               request.experiment.probes[p].name, s.stress(p, 0), s.stress(p, 1), s.stress(p, 2), s.stress(p, 3),
+               s.stress(p, 4), s.stress(p, 5));
 }
 
 struct Options {
@@ -111,6 +129,7 @@ bool solve_case(const Options& options) {
   request.points.resize(request.experiment.probes.size(), 3);
   for (std::size_t p = 0; p < request.experiment.probes.size(); ++p)
     request.points.row(p) = request.experiment.probes[p].at;
+  request.stress_points = request.points;
   bool ok = true;
   std::vector<IsotropicMaterial> materials = request.experiment.materials;
   if (!std::isnan(options.poisson_ratio)) {
@@ -130,17 +149,17 @@ bool solve_case(const Options& options) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Solves an experiment with finite elements (deal.II): Q1 with mean dilatation or Q2 hexahedra, "
-      "matrix-free\n"
-      "multigrid.  Prints reactions, volume change and what the solver did.");
+      "Solves an experiment with finite elements (deal.II).  Blocks of hexahedra: matrix-free multigrid; curved\n"
+      "bodies and tetrahedra: algebraic multigrid.  Prints reactions, volume change, displacement and stress at the\n"
+      "probes, and what the solver did.");
   Options options;
   app.add_option("case", options.case_file, "experiment, a .toml file");
   app.add_option("--poisson-ratio", options.poisson_ratio, "solve for this one instead of those in the file");
   app.add_option("--cells", options.cells, "hexahedra along each side")
       ->expected(3)
       ->check(CLI::PositiveNumber);
-  app.add_option("--degree", options.grid.degree, "1 or 2")
-      ->check(CLI::IsMember({1, 2}))
+  app.add_option("--element", options.grid.element, "q1, q2 (hexahedra), p1, p2 (tetrahedra)")
+      ->check(CLI::IsMember({"q1", "q2", "p1", "p2"}))
       ->capture_default_str();
   app.add_option("--grading", options.grid.grading,
                  "1 = uniform, more draws cells towards the faces of the block")

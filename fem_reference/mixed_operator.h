@@ -1,26 +1,11 @@
 // Displacement and pressure.  Part of elastic_solver.cpp, as stiffness.h.
 #pragma once
 
+#include "fem_reference/elastic_system.h"
+#include "fem_reference/mixed_vector.h"
 #include "fem_reference/stiffness.h"
-#include "fem_reference/v_cycle.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
-
-struct MixedVector {
-  Vector<double> u;  ///< displacement, or force
-  Vector<double> p;  ///< coefficients per cell batch, function and lane
-
-  void add(double factor, const MixedVector& other) {
-    u.add(factor, other.u);
-    p.add(factor, other.p);
-  }
-  /// this = this * s + other * t
-  void sadd(double s, double t, const MixedVector& other) {
-    u.sadd(s, t, other.u);
-    p.sadd(s, t, other.p);
-  }
-  double dot(const MixedVector& other) const { return u * other.u + p * other.p; }
-};
 
 /// Pressures of a cell: a constant (Q1), or a constant and the three coordinates of the reference cell (Q2).
 template <int degree>
@@ -71,6 +56,22 @@ struct PressureSpace {
       y.local_element(i) = scale * inverse_mass.local_element(i) * x.local_element(i);
   }
 
+  /// As affine functions of the reference cell's coordinates.
+  CellPressures per_cell(const Cells& cells, const Vector<double>& p) const {
+    CellPressures all(cells.n_cell_batches() == 0 ? 0 : cells.get_dof_handler().get_triangulation().n_active_cells());
+    for (unsigned int batch = 0; batch < cells.n_cell_batches(); ++batch)
+      for (unsigned int lane = 0; lane < cells.n_active_entries_per_cell_batch(batch); ++lane) {
+        std::array<double, 4>& c = all[cells.get_cell_iterator(batch, lane)->active_cell_index()];
+        const auto coefficient = [&](int f) { return p.local_element((batch * functions + f) * Lane::size() + lane); };
+        c[0] = coefficient(0);
+        for (int f = 1; f < functions; ++f) {
+          c[0] -= coefficient(f);
+          c[f] = 2 * coefficient(f);
+        }
+      }
+    return all;
+  }
+
   std::array<std::array<double, Cell::static_n_q_points>, functions> basis;
   Vector<double> inverse_mass;  ///< of the diagonal; zero in lanes without a cell
 };
@@ -115,6 +116,8 @@ class MixedOperator {
         };
     shear_.cells().cell_loop(add, y.u, x.u, true);
   }
+
+  CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(shear_.cells(), x.p); }
 
   /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1.
   void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {

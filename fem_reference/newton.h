@@ -1,27 +1,28 @@
-// Newton's method with load steps.  Part of elastic_solver.cpp, as stiffness.h.
+// Newton's method with load steps, whatever multiplies by the tangent.  Part of each solver, as mixed_vector.h.
 #pragma once
 
 #include <deal.II/grid/grid_tools.h>
 
 #include "fem_reference/elastic_system.h"
-#include "fem_reference/finite_operator.h"
 #include "fem_reference/krylov.h"
-#include "fem_reference/v_cycle.h"
+#include "fem_reference/mixed_vector.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
-template <int degree>
+// Operator: as for solve_linear, and
+//   linearise(f, x)            residual at x on all degrees of freedom, and the tangent used from then on; returns the
+//                              smallest det F, and f and the tangent are of no use unless it is positive
+//   prepare(x)                 makes the preconditioner fit the state x
+//   precondition_pressure(y, x)  its pressure part
+template <typename Operator>
 class Newton {
  public:
-  Newton(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load)
-      : system_(system),
+  Newton(Operator& K, const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load)
+      : K_(K),
+        system_(system),
         problem_(problem),
         load_(load),
-        base_(system.dof_handler, dealii::numbers::invalid_unsigned_int, system.constrained,
-              {system.mu, 0, false}),
-        multigrid_(system, coarse_coefficients(system)),
-        K_(base_, problem.law, system.form, system.lambda),
-        x_(K_.vector()),
+        x_(K.vector()),
         r_(x_),
         f_(x_),
         dx_(x_),
@@ -52,15 +53,11 @@ class Newton {
     answer.residual = residual(answer.load_reached);
     answer.internal_force = f_.u;
     displacement = x_.u;
+    if (system_.form == Form::mixed) answer.pressure = K_.pressures(x_);
     return answer;
   }
 
  private:
-  static Coefficients<float> coarse_coefficients(const ElasticSystem& system) {
-    if (system.form == Form::mixed) return {float(system.mu), 0, false};
-    return {float(system.mu), float(system.lambda), system.form == Form::mean_dilatation};
-  }
-
   // r_ = load - internal force where free, and minus the pressure's residual; f_ is that of x_.  Returns its
   // size relative to the forces at work.
   double residual(double factor) {
@@ -68,7 +65,7 @@ class Newton {
     r_.sadd(-1, 0, r_);
     r_.u.add(factor, load_);
     const double at_work = std::max(r_.u.l2_norm(), factor * load_.l2_norm());
-    base_.clear_constrained(r_.u);
+    K_.clear_constrained(r_.u);
     return r_.u.l2_norm() / std::max(at_work, round_off_ / system_.tolerance);
   }
 
@@ -82,7 +79,7 @@ class Newton {
     for (const unsigned int i : system_.constrained)
       given.u.local_element(i) = z_.u.local_element(i) - dx_.u.local_element(i);
     K_.apply(f_, given);
-    base_.clear_constrained(f_.u);
+    K_.clear_constrained(f_.u);
     r_.add(-1, f_);
     const double tolerance = to < 1 ? std::max(system_.tolerance, 1e-4) : system_.tolerance;
     const bool moved = given.u.linfty_norm() > 0;
@@ -102,12 +99,9 @@ class Newton {
 
   // dx_ with K dx_ = r_, roughly.  A system that resists has lost its stability: false.
   bool correct(double eta, FiniteAnswer& answer) {
-    multigrid_.deform(x_.u);
+    K_.prepare(x_);
     dx_.sadd(0, 0, dx_);
-    const auto precondition = [&](MixedVector& z, const MixedVector& r) {
-      multigrid_.vmult(z.u, r.u);
-      K_.precondition_pressure(z.p, r.p);
-    };
+    const auto precondition = [&](MixedVector& z, const MixedVector& r) { K_.precondition(z, r); };
     const auto multiply = [&](MixedVector& y, const MixedVector& v) { K_.vmult(y, v); };
     const KrylovOutcome outcome = gmres(multiply, precondition, r_, eta, 120, dx_);
     answer.iterations += outcome.iterations;
@@ -137,16 +131,14 @@ class Newton {
   // Size of the forces that rounding alone makes of a strain of one.
   static double round_off(const ElasticSystem& system) {
     const auto& triangulation = system.dof_handler.get_triangulation();
-    const double length = dealii::GridTools::minimal_cell_diameter(triangulation);
+    const double length = dealii::GridTools::minimal_cell_diameter(triangulation, *system.body.mapping);
     return 1e-14 * system.mu * length * length * std::sqrt(double(system.dof_handler.n_dofs()));
   }
 
+  Operator& K_;
   const ElasticSystem& system_;
   const FiniteProblem& problem_;
   const DofVector& load_;
-  Stiffness<degree, double> base_;
-  VCycle<degree> multigrid_;
-  FiniteOperator<degree> K_;
   MixedVector x_, r_, f_, dx_, z_;
   double round_off_;
 };

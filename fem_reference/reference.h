@@ -14,17 +14,21 @@ namespace springproof::fem {
 
 /// One discretisation of the body.
 struct Discretisation {
-  Cells cells;           ///< hexahedra along each side of the block
-  int degree = 2;        ///< 1 (Q1, mean dilatation B-bar) or 2 (Q2)
-  double grading = 1.0;  ///< draws cells towards the faces of the block (fem::graded), exponent; 1 = uniform
+  Cells cells;                 ///< nx, ny, nz of the .geo: cells along each side of a block
+  std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra): problem/experiment.h
+  double grading = 1.0;  ///< draws the cells of a block towards its faces (fem::graded), exponent; 1 = uniform
 };
+
+/// xx yy zz xy yz xz [Pa], one row per point.
+using Stresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 struct Request {
   Experiment experiment;       ///< geometry, loads, kinematics or law
   IsotropicMaterial material;  ///< the one to solve for
   std::vector<Discretisation> grids;
   NodalVectors points;      ///< rest positions at which the displacement is wanted, n x 3 [m]
-  double tolerance = 1e-9;  ///< relative residual of the linear solves
+  NodalVectors stress_points = NodalVectors(0, 3);  ///< rest positions at which the stress is wanted, m x 3 [m]
+  double tolerance = 1e-9;                          ///< relative residual of the linear solves
 };
 
 /// The answer on one grid.
@@ -32,9 +36,10 @@ struct Solution {
   Discretisation grid;
   bool ok = false;
   std::string message;  ///< why not, with the load reached
-  std::string form;     ///< "Q2 displacement, matrix-free multigrid CG", "Q2-P1disc mixed", "Q1 B-bar", ...
+  std::string form;     ///< "Q2 displacement, CG, matrix-free multigrid", "P2-P1 mixed, MINRES, AMG", ...
   std::string law;      ///< "linear", "hencky", ...
   NodalVectors displacement;  ///< at Request::points [m]
+  Stresses stress;            ///< Cauchy stress at Request::stress_points
   std::vector<PatchReaction> reactions;
   double volume_change = 0;              ///< exact, by the element's own quadrature [1]
   double volume_change_first_order = 0;  ///< integral of div u / V [1]

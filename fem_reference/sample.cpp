@@ -1,19 +1,21 @@
 #include "fem_reference/sample.h"
 
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/grid_tools_cache.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
 
 #include "problem/experiment.h"
 
 namespace springproof::fem {
 namespace {
 
-double distance_outside_unit_cell(const dealii::Point<3>& unit) {
+double distance_outside_unit_cell(const dealii::Point<3>& unit, bool tetrahedron) {
+  if (tetrahedron) return std::max({0.0, -unit[0], -unit[1], -unit[2], unit[0] + unit[1] + unit[2] - 1});
   return unit.distance(dealii::GeometryInfo<3>::project_to_unit_cell(unit));
 }
 
@@ -28,7 +30,7 @@ Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii
   for (const auto& cell : cache.get_vertex_to_cell_map()[vertex]) {
     try {
       const dealii::Point<3> unit = mapping.transform_real_to_unit_cell(cell, X);
-      const double outside = distance_outside_unit_cell(unit);
+      const double outside = distance_outside_unit_cell(unit, cell->reference_cell().is_simplex());
       if (outside > least) continue;
       least = outside;
       best = {cell, unit};
@@ -51,17 +53,16 @@ std::vector<dealii::types::global_dof_index> dofs_at(const Location& place,
   return dofs;
 }
 
-std::vector<Location> locate(const dealii::Triangulation<3>& triangulation, const NodalVectors& points) {
+std::vector<Location> locate(const Body3& body, const NodalVectors& points) {
   std::vector<Location> places(points.rows());
   if (places.empty()) return places;
-  const dealii::MappingQ1<3> mapping;
-  const dealii::GridTools::Cache<3> cache(triangulation, mapping);
+  const dealii::GridTools::Cache<3> cache(body.triangulation, *body.mapping);
   std::vector<dealii::Point<3>> X;
   for (const auto& p : points.rowwise()) X.emplace_back(p[0], p[1], p[2]);
   const auto [cells, units, indices, missing] = dealii::GridTools::compute_point_locations_try_all(cache, X);
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t k = 0; k < indices[c].size(); ++k) places[indices[c][k]] = {cells[c], units[c][k]};
-  for (const unsigned int i : missing) places[i] = locate_near(triangulation, cache, X[i]);
+  for (const unsigned int i : missing) places[i] = locate_near(body.triangulation, cache, X[i]);
   return places;
 }
 
@@ -80,10 +81,106 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
   return u;
 }
 
-VolumeMeasure measure_volume(const dealii::DoFHandler<3>& dof_handler, const DofVector& displacement) {
-  const dealii::MappingQ1<3> mapping;
+namespace {
+
+// What the cells need to know of their pressure, at one point.
+double pressure_at(const ElasticSystem& system, std::optional<Law> law, const CellPressures& pressures,
+                   const Location& place, double dilatation) {
+  if (!pressures.empty()) {
+    const auto& c = pressures[place.cell->active_cell_index()];
+    return c[0] + c[1] * place.unit[0] + c[2] * place.unit[1] + c[3] * place.unit[2];
+  }
+  return law ? pressure(*law, system.lambda, dilatation).value : system.lambda * dilatation;
+}
+
+// Gradients of the displacement at one point of a cell, and at its middle.
+std::array<dealii::Tensor<2, 3>, 2> gradients_at(const Location& place, const ElasticSystem& system,
+                                                 const DofVector& displacement) {
+  const std::vector<dealii::Point<3>> points = {place.unit, place.cell->reference_cell().barycenter<3>()};
+  dealii::FEValues<3> values(*system.body.mapping, system.dof_handler.get_fe(), dealii::Quadrature<3>(points),
+                             dealii::update_gradients);
+  const dealii::DoFHandler<3>::active_cell_iterator cell(&system.body.triangulation, place.cell->level(),
+                                                         place.cell->index(), &system.dof_handler);
+  values.reinit(cell);
+  std::vector<dealii::Tensor<2, 3>> gradients(2);
+  values[dealii::FEValuesExtractors::Vector(0)].get_function_gradients(displacement, gradients);
+  return {gradients[0], gradients[1]};
+}
+
+// Every cell that holds the point, `first` among them.
+std::vector<Location> cells_around(const dealii::GridTools::Cache<3>& cache, const Location& first, const Vec3& X) {
+  std::set<dealii::Triangulation<3>::active_cell_iterator> neighbours;
+  for (const unsigned int v : first.cell->vertex_indices())
+    for (const auto& cell : cache.get_vertex_to_cell_map()[first.cell->vertex_index(v)]) neighbours.insert(cell);
+  std::vector<Location> all = {first};
+  for (const auto& cell : neighbours) {
+    if (cell == first.cell) continue;
+    try {
+      const dealii::Point<3> unit =
+          cache.get_mapping().transform_real_to_unit_cell(cell, dealii::Point<3>(X[0], X[1], X[2]));
+      if (distance_outside_unit_cell(unit, cell->reference_cell().is_simplex()) < 1e-6) all.push_back({cell, unit});
+    } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
+    }
+  }
+  return all;
+}
+
+Eigen::Matrix3d linear_stress(const dealii::Tensor<2, 3>& h, double mu, double p) {
+  Eigen::Matrix3d stress;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) stress(i, j) = mu * (h[i][j] + h[j][i]) + (i == j ? p : 0);
+  return stress;
+}
+
+// F S F^T / det F
+Eigen::Matrix3d cauchy_stress(Law law, const Matrix3& F, double mu, double p) {
+  const Voigt S = respond(law, mu, p, F).S;
+  Eigen::Matrix3d second, deformation;
+  second << S[0], S[3], S[5], S[3], S[1], S[4], S[5], S[4], S[2];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) deformation(i, j) = F[i][j];
+  return deformation * second * deformation.transpose() / determinant(F);
+}
+
+Eigen::Matrix3d stress_in_cell(const Location& place, const ElasticSystem& system, std::optional<Law> law,
+                               const ElasticAnswer& answer, const DofVector& displacement) {
+  const auto [at_point, at_middle] = gradients_at(place, system, displacement);
+  const dealii::Tensor<2, 3>& dilating = system.form == Form::mean_dilatation ? at_middle : at_point;
+  if (!law) {
+    const double p = pressure_at(system, law, answer.pressure, place, dealii::trace(dilating));
+    return linear_stress(at_point, system.mu, p);
+  }
+  const auto deformation = [](const dealii::Tensor<2, 3>& h) {
+    Matrix3 F;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) F[i][j] = h[i][j] + (i == j);
+    return F;
+  };
+  const double p = pressure_at(system, law, answer.pressure, place, dilatation(*law, deformation(dilating)));
+  return cauchy_stress(*law, deformation(at_point), system.mu, p);
+}
+
+}  // namespace
+
+Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std::optional<Law> law,
+                   const ElasticAnswer& answer, const DofVector& displacement) {
+  Stresses stresses = Stresses::Zero(points.rows(), 6);
+  const std::vector<Location> places = locate(system.body, points);
+  const dealii::GridTools::Cache<3> cache(system.body.triangulation, *system.body.mapping);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const std::vector<Location> cells = cells_around(cache, places[k], points.row(k));
+    Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+    for (const Location& place : cells)
+      mean += stress_in_cell(place, system, law, answer, displacement) / double(cells.size());
+    stresses.row(k) << mean(0, 0), mean(1, 1), mean(2, 2), mean(0, 1), mean(1, 2), mean(0, 2);
+  }
+  return stresses;
+}
+
+VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                             const DofVector& displacement) {
   const auto& fe = dof_handler.get_fe();
-  dealii::FEValues<3> values(mapping, fe, dealii::QGauss<3>(fe.degree + 1),
+  dealii::FEValues<3> values(*body.mapping, fe, cell_quadrature(body, fe.degree + 1),
                              dealii::update_gradients | dealii::update_JxW_values);
   const dealii::FEValuesExtractors::Vector vector(0);
   std::vector<dealii::Tensor<2, 3>> gradients(values.n_quadrature_points);

@@ -1,9 +1,12 @@
-// Numbers taken from a solution: displacement at points, volume.
+// Numbers taken from a solution: displacement and stress at points, volume.
 #pragma once
 
 #include <deal.II/dofs/dof_handler.h>
 
+#include <optional>
+
 #include "fem_reference/elastic_system.h"
+#include "fem_reference/reference.h"
 #include "problem/vector.h"
 
 namespace springproof::fem {
@@ -19,11 +22,15 @@ std::vector<dealii::types::global_dof_index> dofs_at(const Location& place,
                                                      const dealii::DoFHandler<3>& dof_handler);
 
 /// @throws InputError naming the first point that is further outside the body than half the cell next to it.
-std::vector<Location> locate(const dealii::Triangulation<3>& triangulation, const NodalVectors& points);
+std::vector<Location> locate(const Body3& body, const NodalVectors& points);
 
 /// n x 3 [m].
 NodalVectors displacement_at(const std::vector<Location>& places, const dealii::DoFHandler<3>& dof_handler,
                              const DofVector& displacement);
+
+/// Cauchy stress at rest positions, the mean of the cells that meet there; without a law, of small strain.
+Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std::optional<Law> law,
+                   const ElasticAnswer& answer, const DofVector& displacement);
 
 struct VolumeMeasure {
   double change = 0;              ///< integral of det(I + grad u) - 1, over V
@@ -31,6 +38,7 @@ struct VolumeMeasure {
   double min_jacobian = 1;        ///< min det(I + grad u) at quadrature points
 };
 
-VolumeMeasure measure_volume(const dealii::DoFHandler<3>& dof_handler, const DofVector& displacement);
+VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                             const DofVector& displacement);
 
 }  // namespace springproof::fem

@@ -2,8 +2,6 @@
 
 #include <deal.II/base/multithread_info.h>
 #include <deal.II/base/revision.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_system.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -16,6 +14,7 @@
 
 namespace springproof::fem {
 
+// The solvers: without a matrix per vector width (elastic_solver.cpp), and with matrices (assembled_operator.cpp).
 namespace one_lane {
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
 FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
@@ -27,6 +26,12 @@ FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, co
                    DofVector& displacement);
 }  // namespace avx2
 
+namespace assembled {
+ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
+FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                   DofVector& displacement);
+}  // namespace assembled
+
 #ifdef SPRINGPROOF_HAVE_AVX2
 static bool processor_has_avx2() {
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
@@ -34,6 +39,7 @@ static bool processor_has_avx2() {
 #endif
 
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
+  if (system.level_constrained.empty()) return assembled::solve(system, load, displacement);
 #ifdef SPRINGPROOF_HAVE_AVX2
   if (system.wide_vectors && processor_has_avx2()) return avx2::solve(system, load, displacement);
 #endif
@@ -42,6 +48,7 @@ ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, 
 
 FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
                           DofVector& displacement) {
+  if (system.level_constrained.empty()) return assembled::solve(system, problem, load, displacement);
 #ifdef SPRINGPROOF_HAVE_AVX2
   if (system.wide_vectors && processor_has_avx2()) return avx2::solve(system, problem, load, displacement);
 #endif
@@ -60,19 +67,16 @@ double peak_memory_MiB() {
   return usage.ru_maxrss / 1024.0;
 }
 
-// Where the solid is nearly incompressible the pressure becomes an unknown, so that the solver does not
-// depend on Poisson's ratio.  For Q1 that is the same discretisation as the mean dilatation, which conjugate
-// gradients manage for longer; Q2 changes from full integration to a linear pressure per cell.
-Form form_for(const GridProblem& problem) {
-  const double nu = problem.material.poisson_ratio;
-  const double limit = problem.degree == 2 ? 0.4 : problem.law == "linear" ? 0.4995 : 0.45;
-  if (nu > limit) return Form::mixed;
-  return problem.degree == 1 ? Form::mean_dilatation : Form::pointwise;
+// Multigrid without a matrix needs cells that come from refining few; algebraic multigrid takes the rest.
+constexpr unsigned int largest_coarse_grid = 1000;  // cells
+
+bool matrix_free(const GridProblem& problem, const Body3& body) {
+  return !problem.assembled && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
+         body.triangulation.n_cells(0) <= largest_coarse_grid;
 }
 
 std::string element_name(const ElasticSystem& system) {
-  if (system.degree == 1) return system.form == Form::mixed ? "Q1 B-bar as Q1-P0" : "Q1 B-bar";
-  return system.form == Form::mixed ? "Q2-P1disc mixed" : "Q2 displacement";
+  return describe({system.body.has_tetrahedra(), system.degree}, system.form);
 }
 
 // What a grid and its loads become, whatever the law.
@@ -80,17 +84,20 @@ struct Discrete {
   Discrete(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler)
       : held(prescribed(dof_handler, body, problem.loads)),
         load(load_vector(dof_handler, body, problem.loads, problem.material, problem.body_force)),
-        system{dof_handler,
+        system{body,
+               dof_handler,
                {},
-               prescribed_on_levels(dof_handler, body, problem.loads),
+               {},
                problem.degree,
-               form_for(problem),
+               form_for({body.has_tetrahedra(), problem.degree}, problem.material.poisson_ratio,
+                        problem.law == "linear"),
                shear_modulus(problem.material),
                lame_lambda(problem.material),
                problem.tolerance,
                problem.wide_vectors} {
     check_held(held);
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
+    if (dof_handler.has_level_dofs()) system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
   }
 
   std::vector<Prescribed> held;
@@ -148,7 +155,7 @@ ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discre
 void solve_into(Solution& solution, const GridProblem& problem, const Body3& body,
                 const dealii::DoFHandler<3>& dof_handler) {
   const Discrete discrete(problem, body, dof_handler);
-  const std::vector<Location> places = locate(body.triangulation, problem.points);
+  const std::vector<Location> places = locate(body, problem.points);
   DofVector u(dof_handler.n_dofs());
   const bool linear = problem.law == "linear";
   const ElasticAnswer answer =
@@ -161,7 +168,8 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
   solution.reactions =
       reactions(dof_handler, body, problem.loads, discrete.held, imbalance, linear ? nullptr : &u);
   solution.displacement = displacement_at(places, dof_handler, u);
-  const VolumeMeasure volume = measure_volume(dof_handler, u);
+  solution.stress = stress_at(problem.stress_points, discrete.system, law_named(problem.law), answer, u);
+  const VolumeMeasure volume = measure_volume(body, dof_handler, u);
   solution.volume_change = volume.change;
   solution.volume_change_first_order = volume.change_first_order;
   solution.min_jacobian = volume.min_jacobian;
@@ -177,10 +185,9 @@ Solution solve_grid(const GridProblem& problem) {
     throw InputError(fmt::format("elements of degree {}: only 1 and 2 are there", problem.degree));
   const auto body = triangulate(problem.coarse, problem.refinements, problem.place);
   check_patches(*body, problem.loads);
-  const dealii::FESystem<3> fe(dealii::FE_Q<3>(problem.degree), 3);
   dealii::DoFHandler<3> dof_handler(body->triangulation);
-  dof_handler.distribute_dofs(fe);
-  dof_handler.distribute_mg_dofs();
+  dof_handler.distribute_dofs(*displacement_element(*body, problem.degree));
+  if (matrix_free(problem, *body)) dof_handler.distribute_mg_dofs();
 
   Solution solution;
   solution.law = problem.law;

@@ -9,7 +9,7 @@
 namespace springproof::fem {
 
 struct GridProblem {
-  Mesh coarse;                             ///< hexahedra with named patches
+  Mesh coarse;                             ///< cells of one kind, with named patches
   int refinements = 0;                     ///< each cell is cut into 8 this many times
   std::function<Vec3(const Vec3&)> place;  ///< moves the vertices of the finest mesh; empty: they stay
   int degree = 2;                          ///< 1 or 2
@@ -18,7 +18,9 @@ struct GridProblem {
   std::vector<Load> loads;
   std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none
   NodalVectors points;       ///< rest positions at which the displacement is wanted, n x 3 [m]
+  NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress
   double tolerance = 1e-9;   ///< relative residual
+  bool assembled = false;    ///< with matrices, even where multigrid without them is possible
   bool wide_vectors = true;  ///< use the wide vectors of the processor, where it has them
 };
 

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/mapping_q1.h>
+#include <deal.II/fe/mapping.h>
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/matrix_free/fe_evaluation.h>
 #include <deal.II/matrix_free/matrix_free.h>
 
 #include <utility>
 #include <vector>
+
+#include "fem_reference/mixed_vector.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
@@ -19,8 +20,6 @@ constexpr std::size_t lane_count = SPRINGPROOF_VECTOR_BITS > 0 ? SPRINGPROOF_VEC
                                                                : 1;
 template <typename Number>
 using Lanes = dealii::VectorizedArray<Number, lane_count<Number>>;
-template <typename Number>
-using Vector = dealii::LinearAlgebra::distributed::Vector<Number>;
 
 constexpr auto gradients = dealii::EvaluationFlags::gradients;
 
@@ -39,7 +38,7 @@ class Stiffness : public dealii::Subscriptor {
   using Cells = dealii::MatrixFree<3, Number, Lanes<Number>>;
   using Range = std::pair<unsigned int, unsigned int>;
 
-  Stiffness(const dealii::DoFHandler<3>& dof_handler, unsigned int level,
+  Stiffness(const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler, unsigned int level,
             std::vector<unsigned int> constrained, const Coefficients<Number>& coefficients)
       : constrained_(std::move(constrained)), coefficients_(coefficients), saved_(constrained_.size()) {
     typename Cells::AdditionalData data;
@@ -51,7 +50,7 @@ class Stiffness : public dealii::Subscriptor {
       none.close();
       return none;
     }();
-    cells_.reinit(dealii::MappingQ1<3>(), dof_handler, unconstrained, dealii::QGauss<1>(degree + 1), data);
+    cells_.reinit(mapping, dof_handler, unconstrained, dealii::QGauss<1>(degree + 1), data);
     rows_ = level == dealii::numbers::invalid_unsigned_int ? dof_handler.n_dofs() : dof_handler.n_dofs(level);
   }
 

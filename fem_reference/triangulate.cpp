@@ -1,15 +1,23 @@
 #include "fem_reference/triangulate.h"
 
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/mapping_fe.h>
+#include <deal.II/fe/mapping_q.h>
+#include <deal.II/fe/mapping_q_cache.h>
 #include <deal.II/grid/grid_tools.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 
+#include "meshes/volume.h"
 #include "problem/experiment.h"
 
 namespace springproof::fem {
 namespace {
 
-using Corners = std::array<unsigned int, 4>;
+using Corners = std::array<int, 4>;
 
 Corners sorted(Corners corners) {
   std::sort(corners.begin(), corners.end());
@@ -21,16 +29,14 @@ void mark_patches(const Mesh& mesh, Body3& body) {
   std::map<Corners, std::set<std::string>> patches_of_facet;
   for (const Patch& patch : mesh.patches) {
     body.patches[patch.name];
-    for (const auto& f : patch.facets)
-      patches_of_facet[sorted({unsigned(f[0]), unsigned(f[1]), unsigned(f[2]), unsigned(f[3])})].insert(
-          patch.name);
+    for (const auto& facet : patch.facets) patches_of_facet[sorted(facet)].insert(patch.name);
   }
   std::map<std::set<std::string>, dealii::types::boundary_id> ids = {{{}, 0}};
   for (const auto& face : body.triangulation.active_face_iterators()) {
     if (!face->at_boundary()) continue;
-    const Corners corners =
-        sorted({face->vertex_index(0), face->vertex_index(1), face->vertex_index(2), face->vertex_index(3)});
-    const auto found = patches_of_facet.find(corners);
+    Corners corners = {-1, -1, -1, -1};
+    for (const unsigned int v : face->vertex_indices()) corners[v] = int(face->vertex_index(v));
+    const auto found = patches_of_facet.find(sorted(corners));
     const std::set<std::string> names =
         found == patches_of_facet.end() ? std::set<std::string>{} : found->second;
     const auto id = ids.emplace(names, ids.size()).first->second;
@@ -39,18 +45,10 @@ void mark_patches(const Mesh& mesh, Body3& body) {
   }
 }
 
-}  // namespace
-
-std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements,
-                                   const std::function<Vec3(const Vec3&)>& place) {
-  if (!coarse.tetrahedra.empty()) throw InputError("the finite element reference takes hexahedra only");
-  auto body = std::make_unique<Body3>();
-
-  std::vector<dealii::Point<3>> vertices;
-  for (const auto& X : coarse.nodes.rowwise()) vertices.emplace_back(X[0], X[1], X[2]);
-  std::vector<dealii::CellData<3>> cells;
+std::vector<dealii::CellData<3>> hexahedra(const Mesh& mesh, std::vector<dealii::Point<3>>& vertices) {
   constexpr std::array<int, 8> gmsh_corner = {0, 1, 3, 2, 4, 5, 7, 6};  // deal.II counts corners x fastest
-  for (const Hexahedron& hexahedron : coarse.hexahedra) {
+  std::vector<dealii::CellData<3>> cells;
+  for (const Hexahedron& hexahedron : mesh.hexahedra) {
     dealii::CellData<3> cell;
     for (int v = 0; v < 8; ++v) cell.vertices[v] = hexahedron[gmsh_corner[v]];
     cells.push_back(cell);
@@ -58,18 +56,94 @@ std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements,
   if (dealii::GridTools::invert_cells_with_negative_measure(vertices, cells) > 0)
     throw InputError("the mesh has inverted cells");
   dealii::GridTools::consistently_order_cells(cells);
-  body->triangulation.create_triangulation(vertices, cells, dealii::SubCellData());
+  return cells;
+}
 
+std::vector<dealii::CellData<3>> tetrahedra(const Mesh& mesh) {
+  std::vector<dealii::CellData<3>> cells;
+  for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
+    Eigen::Matrix<double, 4, 3> x;
+    for (int v = 0; v < 4; ++v) x.row(v) = mesh.nodes.row(tetrahedron[v]);
+    if (!(tetrahedron_volume(x) > 0)) throw InputError("the mesh has inverted cells");
+    dealii::CellData<3> cell(4);
+    for (int v = 0; v < 4; ++v) cell.vertices[v] = tetrahedron[v];
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+// The second-order points of each cell, in deal.II's order.  deal.II may have turned the cell: a point is known by the
+// corners it lies between.
+std::unique_ptr<dealii::Mapping<3>> curved_mapping(const Mesh& mesh, const dealii::Triangulation<3>& triangulation) {
+  const std::vector<dealii::Point<3>> units = dealii::FE_Q<3>(2).get_unit_support_points();
+  const auto points_of = [&](const dealii::Triangulation<3>::cell_iterator& cell) {
+    const Hexahedron& corners = mesh.hexahedra[cell->index()];
+    std::vector<dealii::Point<3>> points;
+    for (const dealii::Point<3>& unit : units) {
+      Vec3 place = Vec3::Zero();  // in the mesh's frame of the cell
+      for (unsigned int v = 0; v < 8; ++v) {
+        const auto corner = std::find(corners.begin(), corners.end(), int(cell->vertex_index(v)));
+        const auto& at = hexahedron_corners[corner - corners.begin()];
+        place += dealii::GeometryInfo<3>::d_linear_shape_function(unit, v) * Vec3(at[0], at[1], at[2]);
+      }
+      const auto index = std::lround(2 * place[0]) + 3 * std::lround(2 * place[1]) + 9 * std::lround(2 * place[2]);
+      const Vec3 X = mesh.curved.row(27 * cell->index() + index);
+      points.emplace_back(X[0], X[1], X[2]);
+    }
+    return points;
+  };
+  auto mapping = std::make_unique<dealii::MappingQCache<3>>(2);
+  mapping->initialize(triangulation, points_of);
+  return mapping;
+}
+
+void refine(Body3& body, int refinements, const std::function<Vec3(const Vec3&)>& place) {
+  body.triangulation.refine_global(refinements);
+  if (!place) return;
+  const auto move = [&](const dealii::Point<3>& X) {
+    const Vec3 x = place(Vec3(X[0], X[1], X[2]));
+    return dealii::Point<3>(x[0], x[1], x[2]);
+  };
+  dealii::GridTools::transform(move, body.triangulation);
+}
+
+}  // namespace
+
+std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements,
+                                   const std::function<Vec3(const Vec3&)>& place) {
+  if (coarse.hexahedra.empty() == coarse.tetrahedra.empty())
+    throw InputError(fmt::format("a mesh of {} hexahedra and {} tetrahedra (allowed: one kind, at least one cell)",
+                                 coarse.hexahedra.size(), coarse.tetrahedra.size()));
+  auto body = std::make_unique<Body3>();
+  std::vector<dealii::Point<3>> vertices;
+  for (const auto& X : coarse.nodes.rowwise()) vertices.emplace_back(X[0], X[1], X[2]);
+  const auto cells = coarse.tetrahedra.empty() ? hexahedra(coarse, vertices) : tetrahedra(coarse);
+  body->triangulation.create_triangulation(vertices, cells, dealii::SubCellData());
   mark_patches(coarse, *body);
-  body->triangulation.refine_global(refinements);
-  if (place) {
-    const auto move = [&](const dealii::Point<3>& X) {
-      const Vec3 x = place(Vec3(X[0], X[1], X[2]));
-      return dealii::Point<3>(x[0], x[1], x[2]);
-    };
-    dealii::GridTools::transform(move, body->triangulation);
+  if (!coarse.tetrahedra.empty()) {
+    body->mapping = std::make_unique<dealii::MappingFE<3>>(dealii::FE_SimplexP<3>(1));
+  } else if (coarse.curved.size() > 0) {
+    body->mapping = curved_mapping(coarse, body->triangulation);
+  } else {
+    refine(*body, refinements, place);
+    body->mapping = std::make_unique<dealii::MappingQ<3>>(1);
   }
   return body;
+}
+
+std::unique_ptr<dealii::FESystem<3>> displacement_element(const Body3& body, int degree) {
+  if (body.has_tetrahedra()) return std::make_unique<dealii::FESystem<3>>(dealii::FE_SimplexP<3>(degree), 3);
+  return std::make_unique<dealii::FESystem<3>>(dealii::FE_Q<3>(degree), 3);
+}
+
+dealii::Quadrature<3> cell_quadrature(const Body3& body, unsigned int n) {
+  if (body.has_tetrahedra()) return dealii::QGaussSimplex<3>(n);
+  return dealii::QGauss<3>(n);
+}
+
+dealii::Quadrature<2> face_quadrature(const Body3& body, unsigned int n) {
+  if (body.has_tetrahedra()) return dealii::QGaussSimplex<2>(n);
+  return dealii::QGauss<2>(n);
 }
 
 }  // namespace springproof::fem

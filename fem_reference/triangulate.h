@@ -1,6 +1,9 @@
-// Mesh -> deal.II triangulation with a multigrid hierarchy.  Hexahedra only.
+// Mesh -> deal.II triangulation: hexahedra, with a multigrid hierarchy where the cells are boxes, or tetrahedra.
 #pragma once
 
+#include <deal.II/base/quadrature.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping.h>
 #include <deal.II/grid/tria.h>
 
 #include <functional>
@@ -15,14 +18,24 @@ namespace springproof::fem {
 
 struct Body3 {
   dealii::Triangulation<3> triangulation{dealii::Triangulation<3>::limit_level_difference_at_vertices};
+  std::unique_ptr<dealii::Mapping<3>> mapping;  ///< straight edges, or those of Mesh::curved
   std::map<std::string, std::set<dealii::types::boundary_id>>
       patches;  ///< a facet may belong to several patches
+
+  bool has_tetrahedra() const { return triangulation.get_reference_cells().front().is_simplex(); }
 };
 
 /// Refines `coarse` `refinements` times; then every vertex X [m] of the finest mesh is moved to place(X), if
-/// given.
-/// @throws InputError if the mesh has cells that are not hexahedra, or inverted ones.
+/// given.  Curved meshes and tetrahedra are not refined.
+/// @throws InputError if the mesh has inverted cells, no cells, or both kinds.
 std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements,
                                    const std::function<Vec3(const Vec3&)>& place);
+
+/// Three components of Lagrange elements of degree 1 or 2.
+std::unique_ptr<dealii::FESystem<3>> displacement_element(const Body3& body, int degree);
+
+/// Exact for polynomials of degree 2 n - 1 (hexahedra: in each coordinate); n up to 4.
+dealii::Quadrature<3> cell_quadrature(const Body3& body, unsigned int n);
+dealii::Quadrature<2> face_quadrature(const Body3& body, unsigned int n);
 
 }  // namespace springproof::fem

@@ -34,7 +34,7 @@ class VCycle {
     for (unsigned int l = 0; l < n_levels; ++l) {
       std::vector<unsigned int> constrained;
       for (const auto i : system.level_constrained[l]) constrained.push_back(i);
-      levels_.push_back(std::make_unique<Level>(dof_handler_, l, std::move(constrained), coefficients));
+      levels_.push_back(std::make_unique<Level>(*system.body.mapping, dof_handler_, l, std::move(constrained), coefficients));
       smoothers_.push_back(std::make_unique<Smoother>());
       smoothers_.back()->initialize(*levels_.back(), smoother_data(l));
       x_[l] = b_[l] = t_[l] = levels_.back()->vector();

@@ -48,6 +48,8 @@ struct Mesh {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Patch> patches;
   std::optional<Grid> grid;              ///< set when every cell is a box of one lattice
+  NodalVectors curved;                   ///< second-order hexahedra: 27 points of each cell [m], x fastest in the frame of
+                                         ///< its corners; empty: edges are straight
 };
 
 /// @throws std::invalid_argument naming the patches there are, if there is none of that name.

@@ -1,0 +1,458 @@
+#include "fem_reference/assembled_operator.h"
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_dgp.h>
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+
+#include <limits>
+#include <set>
+
+#include "fem_reference/cell_equations.h"
+#include "fem_reference/linear.h"
+#include "fem_reference/newton.h"
+
+namespace springproof::fem::assembled {
+namespace {
+
+std::unique_ptr<dealii::FiniteElement<3>> scalar_element(bool tetrahedra, int degree) {
+  if (tetrahedra) return std::make_unique<dealii::FE_SimplexP<3>>(degree);
+  return std::make_unique<dealii::FE_Q<3>>(degree);
+}
+
+std::unique_ptr<dealii::FiniteElement<3>> pressure_element(bool tetrahedra, int degree) {
+  if (tetrahedra) return std::make_unique<dealii::FE_SimplexP<3>>(1);
+  if (degree == 2) return std::make_unique<dealii::FE_DGP<3>>(1);
+  return std::make_unique<dealii::FE_DGQ<3>>(0);
+}
+
+struct DofSets {
+  explicit DofSets(const dealii::DoFHandler<3>& dof_handler) : owned(dof_handler.locally_owned_dofs()) {
+    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+  }
+  dealii::IndexSet owned, relevant;
+};
+
+DofVector zero(const DofSets& dofs, MPI_Comm comm) {
+  return DofVector(dofs.owned, dofs.relevant, comm);
+}
+
+std::unique_ptr<SparseMatrix> empty_matrix(const dealii::DoFHandler<3>& rows, const dealii::DoFHandler<3>& columns,
+                                           MPI_Comm comm) {
+  const DofSets row_dofs(rows), column_dofs(columns);
+  dealii::DynamicSparsityPattern pattern(rows.n_dofs(), columns.n_dofs(), row_dofs.relevant);
+  std::vector<dealii::types::global_dof_index> r(rows.get_fe().n_dofs_per_cell()),
+      c(columns.get_fe().n_dofs_per_cell());
+  for (const auto& cell : rows.active_cell_iterators()) {
+    if (cell->is_artificial()) continue;
+    const dealii::DoFHandler<3>::active_cell_iterator other(&columns.get_triangulation(), cell->level(), cell->index(),
+                                                            &columns);
+    cell->get_dof_indices(r);
+    other->get_dof_indices(c);
+    std::sort(c.begin(), c.end());
+    for (const auto row : r)
+      if (row_dofs.owned.is_element(row)) pattern.add_entries(row, c.begin(), c.end(), true);
+  }
+  return std::make_unique<SparseMatrix>(row_dofs.owned, column_dofs.owned, pattern, comm);
+}
+
+}  // namespace
+
+// What does not change with the state.
+struct AssembledOperator::Spaces {
+  Spaces(const ElasticSystem& system, std::optional<Law> wanted_law, const dealii::DoFHandler<3>& displacement,
+         const std::vector<unsigned int>& constrained)
+      : law{wanted_law, system.form, system.mu, system.lambda},
+        comm(system.body.triangulation.get_communicator()),
+        u(displacement),
+        p(system.body.triangulation),
+        scalar(scalar_element(system.body.has_tetrahedra(), u.get_fe().degree)),
+        quadrature(cell_quadrature(system.body, u.get_fe().degree + 1)),
+        values(*system.body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values),
+        u_dofs(u),
+        u_indices(u.get_fe().n_dofs_per_cell()),
+        is_constrained(u.n_dofs()) {
+    for (const unsigned int i : constrained) is_constrained[i] = true;
+    for (unsigned int i = 0; i < u_indices.size(); ++i) {
+      const auto [component, node] = u.get_fe().system_to_component_index(i);
+      place.push_back(3 * int(node) + int(component));
+    }
+    if (law.form != Form::mixed || &u != &system.dof_handler) return;
+    const auto fe = pressure_element(system.body.has_tetrahedra(), system.degree);
+    p.distribute_dofs(*fe);
+    p_dofs.emplace(p);
+    p_indices.resize(fe->n_dofs_per_cell());
+    shape.pressures.resize(quadrature.size(), fe->n_dofs_per_cell());
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+      for (unsigned int f = 0; f < fe->n_dofs_per_cell(); ++f)
+        shape.pressures(q, f) = fe->shape_value(f, quadrature.point(q));
+  }
+
+  bool mixed() const { return p_dofs.has_value(); }
+
+  // Visits the cells of this process with shape, u_indices and p_indices set.
+  template <typename Visit>
+  void for_each_cell(const Visit& visit) {
+    std::vector<dealii::types::global_dof_index> dofs(u_indices.size()), pressure_dofs(p_indices.size());
+    for (const auto& cell : u.active_cell_iterators()) {
+      if (!cell->is_locally_owned()) continue;
+      cell->get_dof_indices(dofs);
+      for (std::size_t i = 0; i < dofs.size(); ++i) u_indices[place[i]] = PetscInt(dofs[i]);
+      if (mixed()) {
+        const dealii::DoFHandler<3>::active_cell_iterator same(&p.get_triangulation(), cell->level(), cell->index(), &p);
+        same->get_dof_indices(pressure_dofs);
+        std::copy(pressure_dofs.begin(), pressure_dofs.end(), p_indices.begin());
+      }
+      const dealii::Triangulation<3>::cell_iterator here = cell;
+      values.reinit(here);
+      const int n = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
+      shape.gradients.resize(3 * points, n);
+      shape.weights.resize(points);
+      for (int q = 0; q < points; ++q) {
+        shape.weights[q] = values.JxW(q);
+        for (int a = 0; a < n; ++a)
+          for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
+      }
+      visit();
+    }
+  }
+
+  Eigen::MatrixXd displacement(const DofVector& x) const {
+    Eigen::MatrixXd at_nodes(scalar->n_dofs_per_cell(), 3);
+    for (std::size_t i = 0; i < u_indices.size(); ++i) at_nodes(i / 3, i % 3) = x(u_indices[i]);
+    return at_nodes;
+  }
+
+  CellVector read(const MixedVector& x) const {
+    CellVector c{displacement(x.u), Eigen::VectorXd(p_indices.size())};
+    for (std::size_t f = 0; f < p_indices.size(); ++f) c.p[f] = x.p(p_indices[f]);
+    return c;
+  }
+
+  void add(const CellVector& c, MixedVector& f) const {
+    for (std::size_t i = 0; i < u_indices.size(); ++i) f.u(u_indices[i]) += c.u(i / 3, i % 3);
+    for (std::size_t k = 0; k < p_indices.size(); ++k) f.p(p_indices[k]) += c.p[k];
+  }
+
+  MixedVector vector() const {
+    return {zero(u_dofs, comm), mixed() ? zero(*p_dofs, comm) : DofVector()};
+  }
+
+  // Of the body at rest (nullptr) or deformed.
+  void assemble_stiffness(const DofVector* deformed_by, SparseMatrix& matrix) {
+    matrix.clear();
+    DofVector x;
+    if (deformed_by) {
+      x = zero(u_dofs, comm);
+      x = *deformed_by;
+      x.update_ghost_values();
+    }
+    for_each_cell([&] {
+      Eigen::MatrixXd at_nodes;
+      if (deformed_by) at_nodes = displacement(x);
+      add_free(cell_stiffness(law, shape, deformed_by ? &at_nodes : nullptr), matrix);
+    });
+    matrix.finish();
+  }
+
+  // Element matrices without what is constrained; of the rows themselves the diagonal stays.
+  void add_free(CellMatrix K, SparseMatrix& matrix) const {
+    for (std::size_t i = 0; i < u_indices.size(); ++i) {
+      if (!is_constrained[u_indices[i]]) continue;
+      const double diagonal = K(i, i);
+      K.row(i).setZero();
+      K.col(i).setZero();
+      K(i, i) = diagonal;
+    }
+    matrix.add(u_indices, u_indices, K.data());
+  }
+  // One row per pressure.
+  void add_coupling(CellMatrix B, SparseMatrix& matrix) const {
+    for (std::size_t i = 0; i < u_indices.size(); ++i)
+      if (is_constrained[u_indices[i]]) B.col(i).setZero();
+    matrix.add(p_indices, u_indices, B.data());
+  }
+
+  CellLaw law;
+  MPI_Comm comm;
+  const dealii::DoFHandler<3>& u;
+  dealii::DoFHandler<3> p;
+  std::unique_ptr<dealii::FiniteElement<3>> scalar;
+  dealii::Quadrature<3> quadrature;
+  dealii::FEValues<3> values;
+  DofSets u_dofs;
+  std::optional<DofSets> p_dofs;
+  std::vector<PetscInt> u_indices, p_indices;  // of the cell being visited; 3 a + i for component i of node a
+  std::vector<int> place;                      // deal.II's local number -> 3 a + i
+  std::vector<bool> is_constrained;
+  CellShape shape;
+};
+
+// Linear elements on the same cells.
+struct AssembledOperator::CoarseSpaces {
+  CoarseSpaces(const ElasticSystem& system, Spaces& fine)
+      : dof_handler(distributed(system)), spaces(system, std::nullopt, *dof_handler, shared_constraints(fine)) {
+    matrix = empty_matrix(*dof_handler, *dof_handler, fine.comm);
+    interpolation = empty_matrix(fine.u, *dof_handler, fine.comm);
+    for_each_pair(fine, [&](const auto& fine_dofs, const auto& coarse_dofs) {
+      const auto &fe = fine.u.get_fe(), &linear = dof_handler->get_fe();
+      const std::vector<PetscInt> columns(coarse_dofs.begin(), coarse_dofs.end());
+      for (unsigned int i = 0; i < fine_dofs.size(); ++i) {
+        if (!fine.u_dofs.owned.is_element(fine_dofs[i])) continue;
+        std::vector<double> row(columns.size(), 0.0);
+        if (!fine.is_constrained[fine_dofs[i]])
+          for (unsigned int j = 0; j < columns.size(); ++j)
+            if (linear.system_to_component_index(j).first == fe.system_to_component_index(i).first &&
+                !spaces.is_constrained[columns[j]])
+              row[j] = linear.shape_value(j, fe.unit_support_point(i));
+        interpolation->insert({PetscInt(fine_dofs[i])}, columns, row.data());
+      }
+    });
+    interpolation->finish();
+  }
+
+  static std::unique_ptr<dealii::DoFHandler<3>> distributed(const ElasticSystem& system) {
+    auto handler = std::make_unique<dealii::DoFHandler<3>>(system.body.triangulation);
+    handler->distribute_dofs(*displacement_element(system.body, 1));
+    return handler;
+  }
+
+  // Visits the cells of this process with the degrees of freedom of both elements.
+  template <typename Visit>
+  void for_each_pair(const Spaces& fine, const Visit& visit) const {
+    std::vector<dealii::types::global_dof_index> f(fine.u.get_fe().n_dofs_per_cell()),
+        c(dof_handler->get_fe().n_dofs_per_cell());
+    for (const auto& cell : fine.u.active_cell_iterators()) {
+      if (!cell->is_locally_owned()) continue;
+      const dealii::DoFHandler<3>::active_cell_iterator same(&dof_handler->get_triangulation(), cell->level(),
+                                                             cell->index(), dof_handler.get());
+      cell->get_dof_indices(f);
+      same->get_dof_indices(c);
+      visit(f, c);
+    }
+  }
+
+  // Corners are the first degrees of freedom of a cell in both elements.
+  std::vector<unsigned int> shared_constraints(const Spaces& fine) const {
+    std::set<unsigned int> held;
+    for_each_pair(fine, [&](const auto& fine_dofs, const auto& coarse_dofs) {
+      for (std::size_t i = 0; i < coarse_dofs.size(); ++i)
+        if (fine.is_constrained[fine_dofs[i]]) held.insert(coarse_dofs[i]);
+    });
+    return {held.begin(), held.end()};
+  }
+
+  // The values at the corners.
+  DofVector restricted(const Spaces& fine, const DofVector& x) const {
+    DofVector from = zero(fine.u_dofs, fine.comm), to = zero(spaces.u_dofs, fine.comm);
+    from = x;
+    from.update_ghost_values();
+    for_each_pair(fine, [&](const auto& fine_dofs, const auto& coarse_dofs) {
+      for (std::size_t i = 0; i < coarse_dofs.size(); ++i)
+        if (spaces.u_dofs.owned.is_element(coarse_dofs[i])) to(coarse_dofs[i]) = from(fine_dofs[i]);
+    });
+    return to;
+  }
+
+  std::unique_ptr<dealii::DoFHandler<3>> dof_handler;
+  Spaces spaces;
+  std::unique_ptr<SparseMatrix> matrix, interpolation;
+};
+
+// The tangent.  Couplings have one row per pressure; `force` is that of the pressures' forces.
+struct AssembledOperator::Matrices {
+  explicit Matrices(const Spaces& s) {
+    if (s.law.law) uu = empty_matrix(s.u, s.u, s.comm);  // else the smoothed one is the tangent
+    if (!s.mixed()) return;
+    dilatation = empty_matrix(s.p, s.u, s.comm);
+    force = empty_matrix(s.p, s.u, s.comm);
+    pp = empty_matrix(s.p, s.p, s.comm);
+  }
+  std::vector<SparseMatrix*> all() const {
+    std::vector<SparseMatrix*> there;
+    for (const auto* m : {&uu, &dilatation, &force, &pp})
+      if (*m) there.push_back(m->get());
+    return there;
+  }
+  std::unique_ptr<SparseMatrix> uu, dilatation, force, pp;
+};
+
+AssembledOperator::AssembledOperator(const ElasticSystem& system, std::optional<Law> law)
+    : system_(system),
+      law_(law),
+      spaces_(std::make_unique<Spaces>(system, law, system.dof_handler, system.constrained)) {
+  if (system.degree == 2 && !system.plain_gamg) coarse_ = std::make_unique<CoarseSpaces>(system, *spaces_);
+  assemble_stiffness(nullptr);
+  state_ = vector();
+  if (spaces_->mixed()) {
+    MixedVector mass = vector();
+    spaces_->for_each_cell([&] {
+      const CellShape& shape = spaces_->shape;
+      const Eigen::VectorXd m = shape.pressures.cwiseAbs2().transpose() * shape.weights;
+      for (std::size_t f = 0; f < spaces_->p_indices.size(); ++f) mass.p(spaces_->p_indices[f]) += m[f];
+    });
+    mass.p.compress(dealii::VectorOperation::add);
+    for (double& m : mass.p) m = 1 / m;
+    inverse_mass_ = mass.p;
+  }
+  if (law_ || spaces_->mixed()) {
+    matrices_ = std::make_unique<Matrices>(*spaces_);
+    MixedVector f = vector();
+    linearise(f, state_);
+  }
+}
+
+AssembledOperator::~AssembledOperator() = default;
+
+void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
+  multigrid_.reset();
+  if (!smoothed_) smoothed_ = empty_matrix(spaces_->u, spaces_->u, spaces_->comm);
+  spaces_->assemble_stiffness(deformed_by, *smoothed_);
+  const dealii::Mapping<3>& mapping = *system_.body.mapping;
+  if (!coarse_) {
+    multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping, spaces_->u);
+    return;
+  }
+  DofVector at_corners;
+  if (deformed_by) at_corners = coarse_->restricted(*spaces_, *deformed_by);
+  coarse_->spaces.assemble_stiffness(deformed_by ? &at_corners : nullptr, *coarse_->matrix);
+  multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping,
+                                           LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler});
+}
+
+MixedVector AssembledOperator::vector() const {
+  return spaces_->vector();
+}
+
+double AssembledOperator::linearise(MixedVector& f, const MixedVector& x) {
+  state_ = x;
+  state_.u.update_ghost_values();
+  if (spaces_->mixed()) state_.p.update_ghost_values();
+  f.sadd(0, 0, f);
+  for (SparseMatrix* m : matrices_->all()) m->clear();
+  double smallest = std::numeric_limits<double>::infinity();
+  CellTangent tangent;
+  spaces_->for_each_cell([&] {
+    const CellVector r = cell_residual(spaces_->law, spaces_->shape, spaces_->read(state_), smallest, &tangent);
+    if (!(smallest > 0)) return;
+    spaces_->add(r, f);
+    if (law_) spaces_->add_free(tangent.uu, *matrices_->uu);
+    if (!spaces_->mixed()) return;
+    spaces_->add_coupling(tangent.pu, *matrices_->dilatation);
+    spaces_->add_coupling(tangent.up.transpose(), *matrices_->force);
+    matrices_->pp->add(spaces_->p_indices, spaces_->p_indices, tangent.pp.data());
+  });
+  f.u.compress(dealii::VectorOperation::add);
+  if (spaces_->mixed()) f.p.compress(dealii::VectorOperation::add);
+  for (SparseMatrix* m : matrices_->all()) m->finish();
+  return dealii::Utilities::MPI::min(smallest, spaces_->comm);
+}
+
+// Only cells that x moves are looked at: Newton asks this of boundary values, the linear solver of everything.
+void AssembledOperator::apply(MixedVector& f, const MixedVector& x) const {
+  MixedVector from = x;
+  from.u.update_ghost_values();
+  if (spaces_->mixed()) from.p.update_ghost_values();
+  f.sadd(0, 0, f);
+  double smallest = 1;
+  CellTangent tangent;
+  spaces_->for_each_cell([&] {
+    const CellVector d = spaces_->read(from);
+    if (d.u.isZero(0) && d.p.isZero(0)) return;
+    if (!law_) return spaces_->add(cell_residual(spaces_->law, spaces_->shape, d, smallest, nullptr), f);
+    cell_residual(spaces_->law, spaces_->shape, spaces_->read(state_), smallest, &tangent);
+    const CellMatrix rows = d.u;
+    const Eigen::Map<const Eigen::VectorXd> du(rows.data(), rows.size());
+    CellMatrix fu = CellMatrix(d.u.rows(), 3);
+    Eigen::Map<Eigen::VectorXd>(fu.data(), fu.size()) = tangent.uu * du;
+    CellVector y{fu, d.p};
+    if (spaces_->mixed()) {
+      Eigen::Map<Eigen::VectorXd>(fu.data(), fu.size()) += tangent.up * d.p;
+      y = {fu, tangent.pu * du + tangent.pp * d.p};
+    }
+    spaces_->add(y, f);
+  });
+  f.u.compress(dealii::VectorOperation::add);
+  if (spaces_->mixed()) f.p.compress(dealii::VectorOperation::add);
+}
+
+void AssembledOperator::vmult(MixedVector& y, const MixedVector& x) const {
+  // The constrained rows and columns of every matrix hold nothing but a diagonal.
+  (law_ ? matrices_->uu : smoothed_)->multiply(y.u, x.u);
+  if (spaces_->mixed()) {
+    matrices_->force->multiply_transposed_and_add(y.u, x.p);
+    matrices_->pp->multiply(y.p, x.p);
+    DofVector more = y.p;
+    matrices_->dilatation->multiply(more, x.u);
+    y.p += more;
+  }
+  clear_constrained(y.u);
+}
+
+void AssembledOperator::precondition(MixedVector& z, const MixedVector& r) const {
+  multigrid_->vmult(z.u, r.u);
+  ++cycles_;
+  clear_constrained(z.u);
+  if (spaces_->mixed()) precondition_pressure(z.p, r.p);
+}
+
+void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) const {
+  if (!spaces_->mixed()) return;
+  y = x;
+  y.scale(inverse_mass_);
+  y *= 1 / (1 / system_.lambda + 0.5 / system_.mu);
+}
+
+void AssembledOperator::prepare(const MixedVector& x) {
+  const int cycles = std::exchange(cycles_, 0);
+  if (cycles_when_new_ == 0) cycles_when_new_ = cycles;
+  if (cycles <= 2 * cycles_when_new_ + 10) return;
+  assemble_stiffness(&x.u);
+  cycles_when_new_ = 0;
+}
+
+void AssembledOperator::clear_constrained(DofVector& f) const {
+  for (const unsigned int i : system_.constrained)
+    if (spaces_->u_dofs.owned.is_element(i)) f(i) = 0;
+}
+
+CellPressures AssembledOperator::pressures(const MixedVector& x) const {
+  MixedVector from = x;
+  from.p.update_ghost_values();
+  const dealii::FiniteElement<3>& fe = spaces_->p.get_fe();
+  const std::vector<dealii::Point<3>> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  CellPressures all(system_.body.triangulation.n_active_cells());
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
+  for (const auto& cell : spaces_->p.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    cell->get_dof_indices(dofs);
+    std::array<double, 4>& c = all[cell->active_cell_index()];
+    for (int k = 0; k < 4; ++k) {
+      for (unsigned int f = 0; f < dofs.size(); ++f) c[k] += from.p(dofs[f]) * fe.shape_value(f, corners[k]);
+      if (k > 0) c[k] -= c[0];
+    }
+  }
+  return all;
+}
+
+ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
+  start_petsc();
+  ElasticAnswer answer =
+      solve_linear(AssembledOperator(system, std::nullopt), system, load, displacement);
+  answer.method = system.form == Form::mixed ? "MINRES, algebraic multigrid" : "CG, algebraic multigrid";
+  return answer;
+}
+
+FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                   DofVector& displacement) {
+  start_petsc();
+  AssembledOperator K(system, problem.law);
+  FiniteAnswer answer = Newton<AssembledOperator>(K, system, problem, load).solve(displacement);
+  answer.method = "Newton, GMRES, algebraic multigrid";
+  return answer;
+}
+
+}  // namespace springproof::fem::assembled

@@ -1,0 +1,50 @@
+// One cell's share of residual and tangent, total Lagrangian, one path for every law.
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+
+#include "fem_reference/element.h"
+#include "fem_reference/laws.h"
+
+namespace springproof::fem {
+
+/// Shape functions of a cell at its quadrature points.
+struct CellShape {
+  Eigen::MatrixXd gradients;  ///< 3 q + i, a: dN_a/dX_i at point q [1/m]
+  Eigen::VectorXd weights;    ///< quadrature weight times volume [m^3]
+  Eigen::MatrixXd pressures;  ///< q, f: pressure function f; no columns: no pressure
+
+  int nodes() const { return int(gradients.cols()); }
+  int points() const { return int(weights.size()); }
+};
+
+/// Unknowns, or forces, of a cell.
+struct CellVector {
+  Eigen::MatrixXd u;  ///< nodes x 3
+  Eigen::VectorXd p;
+};
+
+/// Row-major, unknown 3 a + i is component i of node a.
+using CellMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct CellTangent {
+  CellMatrix uu, up, pu, pp;
+};
+
+struct CellLaw {
+  std::optional<Law> law;  ///< none: small strain
+  Form form;
+  double mu, lambda;  ///< [Pa]
+};
+
+/// Adds to `smallest` = min det F over the points; the residual is of no use unless that is positive.  `tangent` may be
+/// null.
+CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellVector& x, double& smallest,
+                         CellTangent* tangent);
+
+/// The stiffness of small strain with gradients taken in the body deformed by u (nullptr: at rest), per rest volume:
+/// what multigrid is made of.  The mixed form leaves lambda out.
+CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd* u);
+
+}  // namespace springproof::fem

@@ -1,0 +1,56 @@
+// Linear statics, whatever multiplies by the stiffness.  Part of each solver, as mixed_vector.h.
+#pragma once
+
+#include "fem_reference/elastic_system.h"
+#include "fem_reference/krylov.h"
+#include "fem_reference/mixed_vector.h"
+
+namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
+
+// What an operator offers, for linear and for finite strain:
+//   vector()               zero displacement and pressure
+//   apply(f, x)            the stiffness (the tangent) times x on all degrees of freedom
+//   vmult(y, x)            the same; constrained degrees of freedom do not move, and what they feel is dropped
+//   precondition(z, r)     symmetric, positive definite
+//   clear_constrained(f)   zero where displacement is prescribed
+//   pressures(x)           CellPressures
+template <typename Operator>
+ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const DofVector& load,
+                           DofVector& displacement) {
+  const bool mixed = system.form == Form::mixed;
+  const auto precondition = [&](MixedVector& z, const MixedVector& r) { K.precondition(z, r); };
+  const auto multiply = [&](MixedVector& y, const MixedVector& v) { K.vmult(y, v); };
+  ElasticAnswer answer;
+  MixedVector x = K.vector(), r = x, f = x, z = x, dx = x;
+  x.u = displacement;
+  double start = 0, start_force = 0;
+  for (int repeat = 0; repeat < 6; ++repeat) {
+    K.apply(f, x);
+    r = f;
+    r.sadd(-1, 0, r);
+    r.u += load;
+    K.clear_constrained(r.u);
+    const double norm_force = r.u.l2_norm();
+    double norm = norm_force;
+    if (mixed) {
+      precondition(z, r);
+      norm = std::sqrt(z.dot(r));
+    }
+    if (repeat == 0) start = norm, start_force = norm_force;
+    answer.residual = start > 0 ? std::max(norm / start, start_force > 0 ? norm_force / start_force : 0) : 0;
+    answer.converged = answer.residual <= system.tolerance;
+    if (answer.converged || repeat == 5) break;
+    dx.sadd(0, 0, dx);
+    const double reduction = 0.3 * system.tolerance / answer.residual;
+    const KrylovOutcome outcome = mixed ? minres(multiply, precondition, r, reduction, 2000, dx)
+                                        : conjugate_gradients(multiply, precondition, r, reduction, 2000, dx);
+    answer.iterations += outcome.iterations;
+    x.add(1, dx);
+  }
+  displacement = x.u;
+  answer.internal_force = f.u;
+  if (mixed) answer.pressure = K.pressures(x);
+  return answer;
+}
+
+}  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

@@ -1,0 +1,27 @@
+// Displacement and pressure, the unknowns of every form.  Compiled into each solver's namespace, as krylov's users.
+#pragma once
+
+#include <deal.II/lac/la_parallel_vector.h>
+
+namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
+
+template <typename Number>
+using Vector = dealii::LinearAlgebra::distributed::Vector<Number>;
+
+struct MixedVector {
+  Vector<double> u;  ///< displacement, or force
+  Vector<double> p;  ///< coefficients of the pressure, or of the dilatation it wants; empty without pressure
+
+  void add(double factor, const MixedVector& other) {
+    u.add(factor, other.u);
+    p.add(factor, other.p);
+  }
+  /// this = this * s + other * t
+  void sadd(double s, double t, const MixedVector& other) {
+    u.sadd(s, t, other.u);
+    p.sadd(s, t, other.p);
+  }
+  double dot(const MixedVector& other) const { return u * other.u + p * other.p; }
+};
+
+}  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

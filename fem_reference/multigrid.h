@@ -1,0 +1,67 @@
+// Multigrid of PETSc for elasticity, and PETSc matrices that multiply deal.II's vectors.
+#pragma once
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
+#include <petscksp.h>
+
+#include <vector>
+
+#include "fem_reference/elastic_system.h"
+
+namespace springproof::fem {
+
+/// A sparse matrix that grows by element matrices, over the processes of `comm`.
+class SparseMatrix {
+ public:
+  /// `pattern` holds the rows of this process.
+  SparseMatrix(const dealii::IndexSet& rows, const dealii::IndexSet& columns,
+               const dealii::DynamicSparsityPattern& pattern, MPI_Comm comm);
+  ~SparseMatrix();
+  SparseMatrix(const SparseMatrix&) = delete;
+  SparseMatrix& operator=(const SparseMatrix&) = delete;
+
+  void clear();
+  /// `values` row by row.
+  void add(const std::vector<PetscInt>& rows, const std::vector<PetscInt>& columns, const double* values);
+  void insert(const std::vector<PetscInt>& rows, const std::vector<PetscInt>& columns, const double* values);
+  void finish();  ///< after the last add() or insert()
+
+  void multiply(DofVector& y, const DofVector& x) const;                ///< y = A x
+  void multiply_transposed_and_add(DofVector& y, const DofVector& x) const;  ///< y += A^T x
+
+  Mat petsc() const { return matrix_; }
+
+ private:
+  Mat matrix_ = nullptr;
+};
+
+/// Stiffness of linear elements on the same cells.
+struct LinearLevel {
+  const SparseMatrix& matrix;
+  const SparseMatrix& interpolation;  ///< from the linear to the quadratic elements
+  const dealii::DoFHandler<3>& dof_handler;
+};
+
+/// One V-cycle: GAMG, smoothed aggregation that knows the rigid motions; of quadratic elements after a level of linear
+/// ones, which makes the set-up several times cheaper.  Symmetric, positive definite if the matrices are.
+class Multigrid {
+ public:
+  /// Rows as the degrees of freedom of the handler, three per node; the matrices must outlive the preconditioner.
+  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler);
+  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear);
+  ~Multigrid();
+  Multigrid(const Multigrid&) = delete;
+  Multigrid& operator=(const Multigrid&) = delete;
+
+  void vmult(DofVector& y, const DofVector& x) const;
+
+ private:
+  PC preconditioner_ = nullptr;
+};
+
+/// Starts MPI and PETSc, once, if the program has not; ends them with the program.
+void start_petsc();
+
+}  // namespace springproof::fem
