@@ -39,4 +39,4 @@ Physical Surface("x_max") = {22};
 Physical Surface("y_max") = {23};
 Physical Surface("x_min") = {24};
 
-Include "structured.geo";
+Include "structured.inc";

@@ -43,4 +43,4 @@ Physical Surface("outer") = {22};
 Physical Surface("tip") = {23};
 Physical Surface("inner") = {24};
 
-Include "structured.geo";
+Include "structured.inc";

@@ -50,4 +50,4 @@ Physical Surface("outer") = {22};
 Physical Surface("x_min") = {23};
 Physical Surface("inner") = {24};
 
-Include "structured.geo";
+Include "structured.inc";

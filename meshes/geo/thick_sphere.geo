@@ -63,4 +63,4 @@ Physical Surface("z_min") = {41, 42};
 Physical Surface("x_min") = {43, 44};
 Physical Surface("y_min") = {45, 46};
 
-Include "structured.geo";
+Include "structured.inc";

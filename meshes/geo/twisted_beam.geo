@@ -40,4 +40,4 @@ Physical Surface("root") = {5};
 Physical Surface("tip") = {6};
 Physical Surface("sides") = {1 : 4};
 
-Include "structured.geo";
+Include "structured.inc";
