@@ -59,7 +59,10 @@ bool is_distance(const std::string& measure) {
 
 bool wanted(const std::string& measure, const std::vector<std::string>& measures) {
   const std::string kind = head(measure);
-  const std::string group = kind == "force" || kind == "torque" ? "reaction" : kind == "displacement" ? "probe" : measure;
+  const std::string group = kind == "force" || kind == "torque" ? "reaction"
+                            : kind == "displacement"            ? "probe"
+                            : kind == "stress"                  ? "stress"
+                                                                : measure;
   return std::find(measures.begin(), measures.end(), group) != measures.end();
 }
 

@@ -250,7 +250,7 @@ TEST_F(ReportInBrowser, ShowsTheVerificationOfTheReference) {
   const std::string page = dom.substr(end);
   EXPECT_NE(page.find("≥ 2.9"), std::string::npos);
   const std::string cases = dom.substr(dom.find("<section id=\"cases\">"), dom.find("<section id=\"poisson\">") - dom.find("<section id=\"cases\">"));
-  EXPECT_EQ(cases.find("plate"), std::string::npos) << "a case without models is no row of the models' table";
+  EXPECT_EQ(cases.find("case-verification-plate"), std::string::npos) << "a case without models is no row of the models' table";
 }
 
 TEST_F(ReportInBrowser, VerificationAloneIsAReport) {
