@@ -31,9 +31,13 @@ For k In {0 : 2}
     Line(40 + n + i) = {n + 1 + i, n + 11 + i};
     Transfinite Curve{40 + n + i} = nz / 3 + 1;
   EndFor
-  For i In {1 : 4}
-    Curve Loop(40 + n + i) = {n + i, 41 + n + i % 4, -(n + 10 + i), -(40 + n + i)};
-    Surface(40 + n + i) = {40 + n + i};
+  // Opposite sides start at opposite corners: so tetrahedra fit their triangles.
+  Curve Loop(n + 41) = {n + 1, n + 42, -(n + 11), -(n + 41)};
+  Curve Loop(n + 42) = {n + 2, n + 43, -(n + 12), -(n + 42)};
+  Curve Loop(n + 43) = {n + 44, -(n + 13), -(n + 43), n + 3};
+  Curve Loop(n + 44) = {n + 41, -(n + 14), -(n + 44), n + 4};
+  For i In {41 : 44}
+    Surface(n + i) = {n + i};
   EndFor
   Surface Loop(k + 1) = {n + 1, n + 11, 40 + n + 1, 40 + n + 2, 40 + n + 3, 40 + n + 4};
   Volume(k + 1) = {k + 1};
