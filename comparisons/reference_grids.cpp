@@ -86,7 +86,8 @@ bool complete(const ElementGrids& e) {
 
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
   const Experiment& experiment = prepared.experiment;
-  fem::Request request{experiment, material, {}, sample_points(prepared), probe_points(experiment), 1e-8};
+  const bool stresses = wanted("stress", experiment.measures);
+  fem::Request request{experiment, material, {}, sample_points(prepared), stresses ? probe_points(experiment) : NodalVectors(0, 3), 1e-8};
   for (const std::string& element : experiment.reference.elements)
     for (int divisor : {4, 2, 1})
       request.grids.push_back({divided(prepared.reference_cells, divisor), element, experiment.reference.grading});

@@ -25,7 +25,7 @@ struct ReferenceGrids {
   std::string failure;                 ///< why there is no answer
 };
 
-/// Displacements are asked for at the nodes of every lattice and at the probes, stresses at the probes.
+/// Displacements are asked for at the nodes of every lattice and at the probes, stresses at the probes if the case measures them.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
 /// The part of Solution::displacement that belongs to the nodes of one lattice.
