@@ -7,8 +7,7 @@
 
 #include "comparisons/measures.h"
 #include "comparisons/picture.h"
-#include "comparisons/reference_value.h"
-#include "fem_reference/reference.h"
+#include "comparisons/reference_grids.h"
 #include "meshes/gmsh_io.h"
 #include "meshes/locate.h"
 #include "msm/solve/equilibrium.h"
@@ -46,7 +45,7 @@ struct PartRun {
   const std::filesystem::path& vtu_folder;
   Part part;
 
-  std::vector<fem::Solution> grids;                 ///< the three reference grids, coarse to fine
+  std::vector<ElementGrids> grids;                  ///< of every element; empty: none to be had
   std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: none to be had
 
   const Experiment& experiment() const { return prepared.experiment; }
@@ -58,109 +57,54 @@ NodalVectors points_of(const std::vector<Probe>& probes) {
   return points;
 }
 
-/// All points at which the reference is wanted: the nodes of every lattice, then the probes.
-NodalVectors sample_points(const PreparedCase& prepared) {
-  const NodalVectors probes = points_of(prepared.experiment.probes);
-  Eigen::Index count = probes.rows();
-  for (const auto& mesh : prepared.meshes) count += mesh->nodes.rows();
-  NodalVectors points(count, 3);
-  Eigen::Index at = 0;
-  for (const auto& mesh : prepared.meshes) {
-    points.middleRows(at, mesh->nodes.rows()) = mesh->nodes;
-    at += mesh->nodes.rows();
-  }
-  points.bottomRows(probes.rows()) = probes;
-  return points;
-}
-
-NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples) {
-  Eigen::Index at = 0;
-  for (std::size_t i = 0; i < lattice; ++i) at += prepared.meshes[i]->nodes.rows();
-  return samples.middleRows(at, prepared.meshes[lattice]->nodes.rows());
-}
-
-Field sampled_field(const PartRun& run, std::size_t lattice, const fem::Solution& s) {
-  return {run.prepared.meshes[lattice], at_lattice(run.prepared, lattice, s.displacement), s.reactions, s.volume_change,
-          s.volume_change_first_order};
-}
-
-std::map<std::string, double> measures_of(const PartRun& run, const fem::Solution& s) {
-  const auto probes = static_cast<Eigen::Index>(run.experiment().probes.size());
-  return scalar_measures(sampled_field(run, 0, s), run.experiment().probes, s.displacement.bottomRows(probes));
-}
-
-/// False for the force or torque on a patch that shares held nodes with another: no reference can be given.
-bool comparable(const PreparedCase& prepared, const std::string& measure) {
-  if (!measure.starts_with("force.") && !measure.starts_with("torque.")) return true;
-  const auto from = measure.find('.') + 1;
-  return !prepared.sharing.contains(measure.substr(from, measure.rfind('.') - from));
-}
-
-/// Round-off of a measure: the solver's tolerance times the largest force (times the body's size for torques, over it
-/// for forces that balance torques), or times the strain.
-double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size, double largest_displacement) {
-  constexpr double relative = 1e-7;
-  if (measure.starts_with("displacement.")) return relative * largest_displacement;
-  if (measure.starts_with("volume_change")) return relative * largest_displacement / body_size;
-  double force = 0;
-  for (const auto& [name, value] : values) {
-    if (name.starts_with("force.")) force = std::max(force, std::abs(value));
-    if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body_size);
-  }
-  return relative * force * (measure.starts_with("torque.") ? body_size : 1);
-}
-
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
   return {model,   "fem", run.material.poisson_ratio, s.grid.cells, s.law.empty() ? run.experiment().kinematics : s.law,
           s.ok,    s.message, s.form,                 s.iterations, s.residual,
           s.seconds, s.degrees_of_freedom, s.memory_MiB};
 }
 
-/// Runs the reference grids, and eight-node elements on the lattices' own cells; fills run.reference.
+/// Runs the finite elements; fills run.grids and gives the peers of the models.
 std::vector<fem::Solution> run_fem(PartRun& run) {
-  const Cells fine = run.prepared.reference_cells;
-  fem::Request request{run.experiment(), run.material, {}, sample_points(run.prepared), 1e-8};
-  for (int divisor : {4, 2, 1})
-    request.grids.push_back({{fine[0] / divisor, fine[1] / divisor, fine[2] / divisor}, 2, run.experiment().reference.grading});
-  for (const Cells& cells : run.experiment().body.cells) request.grids.push_back({cells, 1, 1.0});
-  std::vector<fem::Solution> solutions;
-  try {
-    solutions = fem::solve(request);
-  } catch (const std::runtime_error& e) {
-    run.part.runs.push_back({"fem_q2", "fem", run.material.poisson_ratio, fine, run.experiment().kinematics, false, e.what(), "", 0, 0, 0, 0, 0});
-    return {};
-  }
-  run.grids.assign(solutions.begin(), solutions.begin() + 3);
-  for (const fem::Solution& s : run.grids) run.part.runs.push_back(fem_run(run, s, "fem_q2"));
-  return {solutions.begin() + 3, solutions.end()};
+  ReferenceGrids answer = solve_grids(run.prepared, run.material);
+  if (answer.elements.empty())
+    run.part.runs.push_back({"fem_" + run.experiment().reference.elements.front(), "fem", run.material.poisson_ratio,
+                             run.prepared.reference_cells, run.experiment().kinematics, false, answer.failure, "", 0, 0, 0, 0, 0});
+  for (const ElementGrids& e : answer.elements)
+    for (const fem::Solution& s : e.grids) run.part.runs.push_back(fem_run(run, s, "fem_" + e.element));
+  run.grids = std::move(answer.elements);
+  return std::move(answer.peers);
 }
 
+void record_elements(PartRun& run) {
+  for (const ElementGrids& e : run.grids) {
+    if (!complete(e)) continue;
+    const std::vector<ReferenceRecord> records = records_of(run.prepared, run.material, e);
+    run.part.references.insert(run.part.references.end(), records.begin(), records.end());
+  }
+  if (run.experiment().models.empty()) run.part.rows = rows_of(run.prepared, run.part.references);
+}
+
+/// The first element's fields as the reference of the lattices; with an exact field, that field.
 void build_reference(PartRun& run) {
   run.reference.assign(run.prepared.meshes.size(), {});
-  if (run.grids.size() != 3 || !std::all_of(run.grids.begin(), run.grids.end(), [](const auto& s) { return s.ok; })) return;
-  std::vector<std::map<std::string, double>> values;
-  for (const fem::Solution& s : run.grids) values.push_back(measures_of(run, s));
-  std::map<std::string, ReferenceValue> scalars;
-  const double largest_displacement = run.grids[2].displacement.rowwise().norm().maxCoeff();
-  for (const auto& [measure, fine] : values[2]) {
-    const std::vector<double> sequence = {values[0].at(measure), values[1].at(measure), fine};
-    const ReferenceValue v = scalars[measure] = extrapolate(sequence, noise_of(measure, values[2], run.experiment().body.size.norm(), largest_displacement));
-    if (!wanted(measure, run.experiment().measures) || !comparable(run.prepared, measure)) continue;
-    run.part.references.push_back({run.material.poisson_ratio, measure, unit_of(measure), {}, sequence, v.observed_order, v.value, v.uncertainty, v.note});
-  }
+  if (run.grids.empty() || !complete(run.grids.front())) return;
+  const ElementGrids& first = run.grids.front();
+  const std::map<std::string, ReferenceValue> scalars = limits_of(run.prepared, first);
   for (std::size_t i = 0; i < run.prepared.meshes.size(); ++i) {
     const Mesh& mesh = *run.prepared.meshes[i];
     std::vector<NodalVectors> fields;
-    for (const fem::Solution& s : run.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
+    for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
     run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh)), scalars};
-    if (i > 0) continue;
+    if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
-    std::vector<double> distance;
-    for (const NodalVectors& u : fields) distance.push_back(displacement_error(u, f.displacement, nodal_volumes(mesh)));
-    run.part.references.push_back({run.material.poisson_ratio, "displacement_error", "1", {}, distance, f.observed_order, 0, f.uncertainty, f.note});
+    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, f.note,
+                           first.element};
+    for (std::size_t g = 0; g < 3; ++g) {
+      record.cells.push_back(first.grids[g].grid.cells);
+      record.values.push_back(displacement_error(fields[g], f.displacement, nodal_volumes(mesh)));
+    }
+    run.part.references.push_back(record);
   }
-  for (ReferenceRecord& r : run.part.references)
-    for (const fem::Solution& s : run.grids) r.cells.push_back(s.grid.cells);
 }
 
 /// Distances from the reference field [their units].
@@ -243,20 +187,28 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   save(run, lattice, label, field);
 }
 
+/// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.
+std::vector<Load> lattice_loads(const Experiment& experiment) {
+  std::vector<Load> loads;
+  for (const Load& load : experiment.loads)
+    if (!std::holds_alternative<FieldBodyForce>(load)) loads.push_back(load);
+  return loads;
+}
+
 }  // namespace
 
 PreparedCase prepare(const Experiment& experiment) {
   PreparedCase prepared{experiment, {}, {}, reference_cells(experiment), {}, {}};
   for (int n : prepared.reference_cells)
-    if (n % 4 != 0)
-      throw InputError(fmt::format("{}: reference.cells: {} is not divisible by 4 (the grid is halved twice)", experiment.file.string(), n));
+    if (n % 4 != 0 && n != 1)
+      throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", experiment.file.string(), n));
   for (const Cells& c : experiment.body.cells)
     if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
       throw InputError(experiment.body.where, fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
                                                           c[0], c[1], c[2], total, largest_lattice));
   for (const Expectation& e : experiment.expectations) {
-    if (e.value) continue;
-    if (e.model == "fem")
+    if (e.value || e.at_least) continue;
+    if (reference_element(experiment, e.model))
       throw InputError(e.location, "value: an expectation of the reference itself needs one");
     if (e.relative && is_distance(e.measure))
       throw InputError(e.location, fmt::format("within_relative: {} is expected to be 0; give an absolute `within`", e.measure));
@@ -271,7 +223,7 @@ PreparedCase prepare(const Experiment& experiment) {
       for (const Patch& p : mesh.patches) patches.push_back(p.name);
       check_patches(experiment, patches);
       prepared.sharing = patches_sharing_supports(experiment.loads, mesh, experiment.model_kinematics());
-      require_supported(transfer(experiment.loads, mesh, 1000, experiment.model_kinematics()), mesh);
+      require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh);
       for (const ModelParameters& p : prepared.models) build_model(p, mesh, experiment.materials.front());
       const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
       if (experiment.section) section_distance(mesh, *experiment.section, u, u);
@@ -288,10 +240,11 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
   PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}};
   if (!vtu_folder.empty()) std::filesystem::create_directories(vtu_folder);
   const std::vector<fem::Solution> peers = run_fem(run);
+  record_elements(run);
   build_reference(run);
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
     if (run.reference[lattice]) {
-      Field field = sampled_field(run, lattice, run.grids.back());
+      Field field = sampled_field(prepared, lattice, run.grids.front().grids.back());
       field.displacement = run.reference[lattice]->field.displacement;
       save(run, lattice, "fem", field);
     }
@@ -299,8 +252,8 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
       const fem::Solution& s = peers[lattice];
       run.part.runs.push_back(fem_run(run, s, "fem_q1"));
       if (s.ok) {
-        add_rows(run, lattice, "fem_q1", run.part.runs.back().kinematics, at_lattice(prepared, lattice, s.displacement), measures_of(run, s));
-        save(run, lattice, "fem_q1", sampled_field(run, lattice, s));
+        add_rows(run, lattice, "fem_q1", run.part.runs.back().kinematics, at_lattice(prepared, lattice, s.displacement), measures_of(prepared, s));
+        save(run, lattice, "fem_q1", sampled_field(prepared, lattice, s));
       }
     }
     for (std::size_t m = 0; m < prepared.models.size(); ++m) run_model(run, lattice, m);

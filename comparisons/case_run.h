@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct Part {
 /// Runs everything for experiment.materials[material]; writes one VTU per run into `vtu_folder` (empty: none).
 /// A solver that finds no result leaves a Run with ok = false and no rows.
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder);
+
+/// The element of [reference] whose limit a name in [[expect]] stands for: "fem" the first, "fem_p1" linear tetrahedra;
+/// nothing for a model, or for fem_q1 beside models, which is run on their own cells.
+std::optional<std::string> reference_element(const Experiment& experiment, const std::string& model);
 
 /// Judges the expectations and sets published values beside ours, once all parts are in result.rows.
 void judge(CaseResult& result);

@@ -19,15 +19,18 @@ const Row* find_row(const CaseResult& result, const std::string& model, double n
   return nullptr;
 }
 
-const ReferenceRecord* find_reference(const CaseResult& result, double nu, const std::string& measure) {
+const ReferenceRecord* find_reference(const CaseResult& result, const std::string& element, double nu,
+                                      const std::string& measure) {
   for (const ReferenceRecord& r : result.references)
-    if (same(r.poisson_ratio, nu) && r.measure == measure) return &r;
+    if (r.element == element && same(r.poisson_ratio, nu) && r.measure == measure) return &r;
   return nullptr;
 }
 
 void decide(const Expectation& e, bool any_reference, Check& check) {
   const bool by_fem = e.source == Source::extrapolated_fem;
-  if (!check.computed)
+  if (check.computed && e.at_least)
+    check.verdict = *check.computed >= *e.at_least ? Verdict::pass : Verdict::fail;
+  else if (!check.computed)
     check.verdict = is_distance(e.measure) && !any_reference ? Verdict::no_reference : Verdict::no_result;
   else if (by_fem && !check.reference_uncertainty)
     check.verdict = Verdict::no_reference;
@@ -43,10 +46,10 @@ void decide(const Expectation& e, bool any_reference, Check& check) {
 }
 
 Check judge_one(const CaseResult& result, const Expectation& e, double nu, const Cells& cells) {
-  Check check{e.model, nu, cells, e.measure, unit_of(e.measure), to_string(e.source), e.value.value_or(0), {}, 0, {},
-              Verdict::no_result, e.where};
-  if (e.model == "fem") {  // the extrapolated reference itself
-    if (const ReferenceRecord* r = find_reference(result, nu, e.measure)) {
+  Check check{e.model, nu, cells, e.measure, unit_of(e.measure), to_string(e.source), e.at_least ? *e.at_least : e.value.value_or(0), {}, 0,
+              {}, Verdict::no_result, e.where, e.at_least.has_value()};
+  if (const auto element = reference_element(result.experiment, e.model)) {
+    if (const ReferenceRecord* r = find_reference(result, *element, nu, e.measure)) {
       check.computed = r->value;
       check.reference_uncertainty = r->uncertainty;
     }
@@ -66,21 +69,30 @@ Check judge_one(const CaseResult& result, const Expectation& e, double nu, const
 
 }  // namespace
 
+std::optional<std::string> reference_element(const Experiment& experiment, const std::string& model) {
+  const std::vector<std::string>& elements = experiment.reference.elements;
+  if (model == "fem") return elements.front();
+  if (model == "fem_q1" && !experiment.models.empty()) return {};  // the peer on the models' own cells
+  for (const std::string& element : elements)
+    if (model == "fem_" + element) return element;
+  return {};
+}
+
 void judge(CaseResult& result) {
   const Experiment& experiment = result.experiment;
   for (const Expectation& e : experiment.expectations)
     for (const IsotropicMaterial& material : experiment.materials) {
       if (e.poisson_ratio && !same(*e.poisson_ratio, material.poisson_ratio)) continue;
       const std::vector<Cells> everywhere =
-          e.model == "fem" ? std::vector<Cells>{experiment.body.cells.front()} : e.cells ? std::vector<Cells>{*e.cells} : experiment.body.cells;
+          reference_element(experiment, e.model) ? std::vector<Cells>{experiment.body.cells.front()} : e.cells ? std::vector<Cells>{*e.cells} : experiment.body.cells;
       for (const Cells& cells : everywhere) result.checks.push_back(judge_one(result, e, material.poisson_ratio, cells));
     }
   for (const PublishedValue& p : experiment.published) {
     PublishedRow row{p.model, p.poisson_ratio, p.measure, unit_of(p.measure), p.value, {}, p.where, p.remark};
     const Row* ours = find_row(result, p.model, p.poisson_ratio, p.cells.value_or(experiment.body.cells.front()), p.measure);
     if (ours) row.computed = ours->value;
-    if (const ReferenceRecord* r = find_reference(result, p.poisson_ratio, p.measure); p.model == "fem" && r)
-      row.computed = r->value;
+    if (const auto element = reference_element(experiment, p.model))
+      if (const ReferenceRecord* r = find_reference(result, *element, p.poisson_ratio, p.measure)) row.computed = r->value;
     result.published.push_back(row);
   }
 }

@@ -11,6 +11,8 @@
 namespace springproof {
 namespace {
 
+constexpr const char* stress_components[6] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+
 void add_vector(const std::string& name, const Vec3& v, std::map<std::string, double>& out) {
   for (int d = 0; d < 3; ++d) out[name + '.' + "xyz"[d]] = v[d];
   out[name + ".magnitude"] = v.norm();
@@ -34,11 +36,20 @@ std::map<std::string, double> scalar_measures(const Field& field, const std::vec
   return out;
 }
 
+std::map<std::string, double> stress_measures(const std::vector<Probe>& probes, const ProbeStresses& stress) {
+  std::map<std::string, double> out;
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    for (int c = 0; c < 6; ++c)
+      out["stress." + probes[i].name + "." + stress_components[c]] = stress(static_cast<Eigen::Index>(i), c);
+  return out;
+}
+
 std::string unit_of(const std::string& measure) {
   const std::string kind = head(measure);
   if (kind == "force") return "N";
   if (kind == "torque") return "N m";
   if (kind == "displacement" || kind == "section_distance") return "m";
+  if (kind == "stress") return "Pa";
   return "1";
 }
 
@@ -48,7 +59,10 @@ bool is_distance(const std::string& measure) {
 
 bool wanted(const std::string& measure, const std::vector<std::string>& measures) {
   const std::string kind = head(measure);
-  const std::string group = kind == "force" || kind == "torque" ? "reaction" : kind == "displacement" ? "probe" : measure;
+  const std::string group = kind == "force" || kind == "torque" ? "reaction"
+                            : kind == "displacement"            ? "probe"
+                            : kind == "stress"                  ? "stress"
+                                                                : measure;
   return std::find(measures.begin(), measures.end(), group) != measures.end();
 }
 

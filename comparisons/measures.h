@@ -16,7 +16,13 @@ namespace springproof {
 std::map<std::string, double> scalar_measures(const Field& field, const std::vector<Probe>& probes,
                                               const NodalVectors& probe_displacement);
 
-/// "m", "N", "N m" or "1".
+/// xx yy zz xy yz xz [Pa], one row per probe.
+using ProbeStresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
+/// stress.<probe>.<xx|yy|zz|xy|yz|xz>.
+std::map<std::string, double> stress_measures(const std::vector<Probe>& probes, const ProbeStresses& stress);
+
+/// "m", "Pa", "N", "N m" or "1".
 std::string unit_of(const std::string& measure);
 
 /// True if the measure is a distance from the reference, whose best value is 0.

@@ -172,7 +172,8 @@ Json json_of(const ReferenceRecord& r) {
           {"observed_order", number(r.observed_order)},
           {"value", number(r.value)},
           {"uncertainty", number(r.uncertainty)},
-          {"note", r.note}};
+          {"note", r.note},
+          {"element", r.element}};
 }
 
 Json json_of(const Check& c) {
@@ -187,7 +188,8 @@ Json json_of(const Check& c) {
           {"within", number(c.within)},
           {"reference_uncertainty", number(c.reference_uncertainty)},
           {"verdict", to_string(c.verdict)},
-          {"where", c.where}};
+          {"where", c.where},
+          {"at_least", c.at_least}};
 }
 
 Json json_of(const PublishedRow& p) {
@@ -225,7 +227,9 @@ Json json_of(const Experiment& e) {
           {"measures", e.measures},
           {"probes", list(e.probes)},
           {"section", e.section ? json_of(*e.section) : Json(nullptr)},
-          {"reference", {{"cells", e.reference.cells}, {"grading", e.reference.grading}}},
+          {"reference",
+           {{"cells", e.reference.cells}, {"elements", e.reference.elements}, {"grading", e.reference.grading}}},
+          {"exact", e.exact},
           {"text", e.text}};
 }
 

@@ -55,6 +55,7 @@ struct ReferenceRecord {
   double value = 0;                ///< extrapolated (or the finest where it cannot be)
   double uncertainty = 0;
   std::string note;                ///< "Richardson", "not monotone: spread of the three grids", ...
+  std::string element = "q2";      ///< of [reference] elements
 };
 
 enum class Verdict { pass, fail, reference_too_coarse, no_reference, no_result };
@@ -74,6 +75,7 @@ struct Check {
   std::optional<double> reference_uncertainty;
   Verdict verdict = Verdict::no_result;
   std::string where;
+  bool at_least = false;           ///< holds when computed >= expected; no tolerance
 };
 
 /// One [[published]] value beside ours.

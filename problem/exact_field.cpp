@@ -78,10 +78,10 @@ ExactField with_derivatives(const char* name, const VectorField& u) {
 
 const std::vector<ExactField>& fields() {
   static const VectorField waves = {{{{0.010, {1, 1, 1}, {0.4, 0.9, 0.2}}},
-                                     {{-0.007, {1, 2, 1}, {1.1, 0.5, 0.7}}},
-                                     {{0.005, {2, 1, 1}, {0.3, 1.3, 0.6}}}}};
-  static const VectorField potential = {{{{0.002, {1, 1, 2}, {0.8, 0.3, 0.5}}},
-                                         {{-0.003, {1, 2, 1}, {0.2, 0.6, 1.2}}},
+                                     {{-0.007, {1, 1, 1}, {1.1, 0.5, 0.7}}},
+                                     {{0.005, {1, 1, 1}, {0.3, 1.3, 0.6}}}}};
+  static const VectorField potential = {{{{0.002, {1, 1, 1}, {0.8, 0.3, 0.5}}},
+                                         {{-0.003, {1, 1, 1}, {0.2, 0.6, 1.2}}},
                                          {{0.004, {1, 1, 1}, {0.5, 1.0, 0.4}}}}};
   static const std::vector<ExactField> all = {with_derivatives("trigonometric", waves),
                                               with_derivatives("solenoidal", curl(potential))};

@@ -95,8 +95,8 @@ function percent(x) {
 
 const signed = (x, text) => (x > 0 ? '+' : '') + text;
 
-const isDistance = measure => /^displacement_error|_distance$/.test(measure);
-const inPercent = (measure, unit) => unit === '1' && /^displacement|^volume/.test(measure);
+const isDistance = measure => /^displacement_error(_max)?$|_distance$/.test(measure);
+const inPercent = (measure, unit) => unit === '1' && /^displacement|^volume/.test(measure) && !measure.endsWith('_order');
 
 /// The unit a set of values is shown in: percent, a fitting length unit, or the unit itself.
 function displayUnit(measure, unit, values) {
@@ -144,6 +144,7 @@ const bySize = (a, b) => cellCount(a) - cellCount(b);
 const measureNames = {
   displacement_error: 'displacement error',
   displacement_error_max: 'largest displacement error',
+  displacement_error_order: 'observed order of the displacement error',
   volume_change: 'volume change',
   volume_change_magnitude: 'size of the volume change',
   volume_change_first_order: 'volume change, first order',
@@ -171,7 +172,9 @@ const distinct = items => [...new Map(items.map(item => [String(item), item])).v
 
 // ---- cases
 
-const cases = (results.cases || []).map(prepareCase);
+const allCases = (results.cases || []).map(prepareCase);
+const cases = allCases.filter(result => !result.verifies);
+const verifications = allCases.filter(result => result.verifies);   // the reference alone, without models
 const models = orderModels();
 
 /// A table {columns, values} as objects.
@@ -186,6 +189,7 @@ function prepareCase(data) {
     name: experiment.name || '?',
     id: 'case-' + [experiment.folder, experiment.name].filter(Boolean).join('-').replace(/[^\w-]/g, '_'),
     linear: experiment.kinematics === 'linear',
+    verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
     checks: data.checks || [], published: data.published || [],
   };

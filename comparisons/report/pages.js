@@ -83,7 +83,7 @@ function caseRow(result, {leading, others}) {
 }
 
 function casesSection(section) {
-  if (cases.length === 0) return section.append(notice('No case was run.'));
+  if (cases.length === 0) return section.append(notice('No model was compared.'));
   const split = splitModels();
   const head = ['Case', 'Expectations', 'Kinematics, time', right('Reference'),
                 ...split.leading.map(model => right(modelName(model))), ...(split.others.length > 0 ? ['Other models'] : [])];
@@ -150,14 +150,15 @@ function referenceTable(measure, records) {
   const write = column(measure, unit, records.flatMap(record => [...record.values, record.value]));
   const columns = Math.max(...records.map(record => record.values.length));
   const grids = Array.from({length: columns}, (_, i) => distinct(records.map(record => cellsText(record.cells[i]))));
-  const line = record => tr(nuText(record.poisson_ratio),
+  const elements = distinct(records.map(record => record.element));
+  const line = record => tr(elements.length > 1 ? el('td', {}, elementNames[record.element] || record.element) : [], nuText(record.poisson_ratio),
     grids.map((names, i) => el('td', {class: 'number'}, write.text(record.values[i]),
                                names.length > 1 ? el('small', {}, cellsText(record.cells[i])) : '')),
     el('td', {class: 'number'}, isNumber(record.observed_order) ? minus(record.observed_order.toFixed(2)) : 'none'),
     el('td', {class: 'number'}, el('b', {}, write.text(record.value))),
     el('td', {class: 'number'}, '± ' + write.short(record.uncertainty)), record.note);
   return [el('h5', {}, withUnit(measureText(measure), write.unit)),
-    table('reference', ['ν', ...grids.map((names, i) => right(names.length > 1 ? `grid ${i + 1}` : names[0] || `grid ${i + 1}`)),
+    table('reference', [...(elements.length > 1 ? ['element'] : []), 'ν', ...grids.map((names, i) => right(names.length > 1 ? `grid ${i + 1}` : names[0] || `grid ${i + 1}`)),
                         right('observed order'), right('value'), right('uncertainty'), 'how'], records.map(line))];
 }
 
@@ -229,7 +230,8 @@ function resultsPart(result) {
 
 // ---- expectations, published values, runs
 
-function expectedText({measure, unit, expected, within}) {
+function expectedText({measure, unit, expected, within, at_least}) {
+  if (at_least) return `≥ ${quantity(expected, measure, unit)}`;
   const tolerance = quantity(within, measure, unit, 2);
   return isDistance(measure) && expected === 0 ? `≤ ${tolerance}` : `${quantity(expected, measure, unit)} ± ${tolerance}`;
 }
@@ -303,7 +305,8 @@ function casePage(result, jumps) {
        verdictChip(caseVerdict(result))), body);
   const fill = () => {
     if (body.childElementCount > 0) return;
-    body.append(...[el('p', {class: 'jumps'}, links), problemPart(result), referencePart(result), resultsPart(result),
+    body.append(...[el('p', {class: 'jumps'}, links), problemPart(result), referencePart(result),
+      result.verifies ? [] : resultsPart(result),
       checksPart(result), publishedPart(result), runsPart(result)].flat(Infinity).filter(Boolean));
     if (result.experiment.text)
       body.append(el('details', {class: 'fold'}, el('summary', {}, 'The case file'), el('pre', {}, result.experiment.text)));
@@ -314,6 +317,6 @@ function casePage(result, jumps) {
 }
 
 function pagesSection(section, jumps) {
-  if (cases.length === 0) return section.append(notice('No case was run.'));
-  section.append(...cases.map(result => casePage(result, jumps)));
+  if (allCases.length === 0) return section.append(notice('No case was run.'));
+  section.append(...allCases.map(result => casePage(result, jumps)));
 }

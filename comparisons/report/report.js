@@ -12,7 +12,7 @@ function build(id, make) {
   }
 }
 
-const needsCases = make => section => cases.length > 0 ? make(section) : section.append(notice('No case was run.'));
+const needsCases = make => section => cases.length > 0 ? make(section) : section.append(notice('No model was compared.'));
 
 function jumpTo(id, part) {
   return caseId => {
@@ -75,12 +75,14 @@ function start() {
   Chart.defaults.font.family = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
   Chart.defaults.font.size = 13;
   build('cases', casesSection);
+  const compared = id => cases.some(result => result.id === id);
   const poisson = build('poisson', needsCases(poissonSection));
   const convergence = build('convergence', needsCases(convergenceSection));
-  const shapes = build('shapes', needsCases(shapesSection));
+  const shapes = build('shapes', shapesSection);
+  build('verification', verificationSection);
   build('pages', section => pagesSection(section, [
-    {text: 'Error against ν', go: jumpTo('poisson', poisson), has: () => true},
-    {text: 'Convergence', go: jumpTo('convergence', convergence), has: () => true},
+    {text: 'Error against ν', go: jumpTo('poisson', poisson), has: compared},
+    {text: 'Convergence', go: jumpTo('convergence', convergence), has: compared},
     {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
   ]));
   build('about', aboutSection);

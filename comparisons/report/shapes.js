@@ -297,7 +297,7 @@ function colorBar() {
 }
 
 function shapesSection(section) {
-  const withPictures = cases.filter(c => picturesOf(c).pictures.length > 0);
+  const withPictures = allCases.filter(c => picturesOf(c).pictures.length > 0);
   if (withPictures.length === 0) return section.append(notice('No pictures were written in this run.'));
   const viewer = new Viewer(), bar = colorBar();
   const caseChoice = select('Case', withPictures.map(c => [c.id, c.name]), update);

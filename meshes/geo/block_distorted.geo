@@ -81,4 +81,4 @@ Physical Surface("y_max") = {y_max[]};
 Physical Surface("z_min") = {z_min[]};
 Physical Surface("z_max") = {z_max[]};
 
-Include "structured.geo";
+Include "structured.inc";

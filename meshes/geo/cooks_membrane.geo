@@ -21,9 +21,13 @@ EndFor
 For i In {1 : 4}
   Line(20 + i) = {i, 10 + i};
 EndFor
-For i In {1 : 4}
-  Curve Loop(20 + i) = {i, 21 + i % 4, -(10 + i), -(20 + i)};
-  Surface(20 + i) = {20 + i};
+// Opposite sides start at opposite corners: so tetrahedra fit their triangles.
+Curve Loop(21) = {1, 22, -11, -21};
+Curve Loop(22) = {2, 23, -12, -22};
+Curve Loop(23) = {24, -13, -23, 3};
+Curve Loop(24) = {21, -14, -24, 4};
+For i In {21 : 24}
+  Surface(i) = {i};
 EndFor
 Surface Loop(1) = {1, 11, 21, 22, 23, 24};
 Volume(1) = {1};
@@ -39,4 +43,4 @@ Physical Surface("x_max") = {22};
 Physical Surface("y_max") = {23};
 Physical Surface("x_min") = {24};
 
-Include "structured.geo";
+Include "structured.inc";

@@ -25,9 +25,13 @@ EndFor
 For i In {1 : 4}
   Line(20 + i) = {1 + i, 11 + i};
 EndFor
-For i In {1 : 4}
-  Curve Loop(20 + i) = {i, 21 + i % 4, -(10 + i), -(20 + i)};
-  Surface(20 + i) = {20 + i};
+// Opposite sides start at opposite corners: so tetrahedra fit their triangles.
+Curve Loop(21) = {1, 22, -11, -21};
+Curve Loop(22) = {2, 23, -12, -22};
+Curve Loop(23) = {24, -13, -23, 3};
+Curve Loop(24) = {21, -14, -24, 4};
+For i In {21 : 24}
+  Surface(i) = {i};
 EndFor
 Surface Loop(1) = {1, 11, 21, 22, 23, 24};
 Volume(1) = {1};
@@ -43,4 +47,4 @@ Physical Surface("outer") = {22};
 Physical Surface("tip") = {23};
 Physical Surface("inner") = {24};
 
-Include "structured.geo";
+Include "structured.inc";

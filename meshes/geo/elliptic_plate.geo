@@ -1,17 +1,16 @@
 // A quarter of a thick plate between two ellipses: outer half axes size_x, size_y, inner size_x * 2 / 3.25 and
-// size_y / 2.75, thickness size_z.  nx cells from the inner to the outer ellipse, ny around, nz (a multiple of 4)
-// through the thickness.  The outer edge has three patches: edge_low, edge_middle (the middle half), edge_high.
+// size_y / 2.75, thickness size_z.  nx cells from the inner to the outer ellipse, ny around, nz (a multiple of 3)
+// through the thickness.  The outer edge has three patches of equal height: edge_low, edge_middle, edge_high.
 DefineConstant[
   size_x = 3.25, size_y = 2.75, size_z = 0.6,  // [m]
-  nx = 8, ny = 8, nz = 4,
+  nx = 8, ny = 8, nz = 3,
   tetrahedra = 0
 ];
 
-// Levels 0, 1/4, 3/4, 1 of the thickness, 10 numbers each.
-level[] = {0, 0.25, 0.75, 1};
+// Levels 0, 1/3, 2/3, 1 of the thickness, 10 numbers each.
 For k In {0 : 3}
   n = 10 * k;
-  z = level[k] * size_z;
+  z = k / 3 * size_z;
   Point(n + 1) = {0, 0, z};
   Point(n + 2) = {size_x * 2 / 3.25, 0, z};
   Point(n + 3) = {size_x, 0, z};
@@ -30,11 +29,15 @@ For k In {0 : 2}
   n = 10 * k;
   For i In {1 : 4}
     Line(40 + n + i) = {n + 1 + i, n + 11 + i};
-    Transfinite Curve{40 + n + i} = (k == 1 ? nz / 2 : nz / 4) + 1;
+    Transfinite Curve{40 + n + i} = nz / 3 + 1;
   EndFor
-  For i In {1 : 4}
-    Curve Loop(40 + n + i) = {n + i, 41 + n + i % 4, -(n + 10 + i), -(40 + n + i)};
-    Surface(40 + n + i) = {40 + n + i};
+  // Opposite sides start at opposite corners: so tetrahedra fit their triangles.
+  Curve Loop(n + 41) = {n + 1, n + 42, -(n + 11), -(n + 41)};
+  Curve Loop(n + 42) = {n + 2, n + 43, -(n + 12), -(n + 42)};
+  Curve Loop(n + 43) = {n + 44, -(n + 13), -(n + 43), n + 3};
+  Curve Loop(n + 44) = {n + 41, -(n + 14), -(n + 44), n + 4};
+  For i In {41 : 44}
+    Surface(n + i) = {n + i};
   EndFor
   Surface Loop(k + 1) = {n + 1, n + 11, 40 + n + 1, 40 + n + 2, 40 + n + 3, 40 + n + 4};
   Volume(k + 1) = {k + 1};
@@ -49,4 +52,4 @@ Physical Surface("edge_high") = {62};
 Physical Surface("x_min") = {43, 53, 63};
 Physical Surface("hole") = {44, 54, 64};
 
-Include "structured.geo";
+Include "structured.inc";

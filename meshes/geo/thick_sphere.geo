@@ -19,19 +19,20 @@ For s In {0 : 1}
   Point(n + 5) = {0, h, h};
   Point(n + 6) = {h, 0, h};
   Point(n + 7) = {d, d, d};
-  // Arcs: from each axis to the two halves beside it, from the halves to the middle.
+  // Arcs: from each axis to the two halves beside it, from the halves to the middle.  All run away from the axes, so
+  // that tetrahedra fit the triangles of the walls between the blocks.
   Circle(n + 1) = {n + 1, 1, n + 4};
-  Circle(n + 2) = {n + 4, 1, n + 2};
+  Circle(n + 2) = {n + 2, 1, n + 4};
   Circle(n + 3) = {n + 2, 1, n + 5};
-  Circle(n + 4) = {n + 5, 1, n + 3};
+  Circle(n + 4) = {n + 3, 1, n + 5};
   Circle(n + 5) = {n + 3, 1, n + 6};
-  Circle(n + 6) = {n + 6, 1, n + 1};
+  Circle(n + 6) = {n + 1, 1, n + 6};
   Circle(n + 7) = {n + 4, 1, n + 7};
   Circle(n + 8) = {n + 5, 1, n + 7};
   Circle(n + 9) = {n + 6, 1, n + 7};
-  Curve Loop(n + 1) = {n + 1, n + 7, -(n + 9), n + 6};
-  Curve Loop(n + 2) = {n + 3, n + 8, -(n + 7), n + 2};
-  Curve Loop(n + 3) = {n + 5, n + 9, -(n + 8), n + 4};
+  Curve Loop(n + 1) = {n + 1, n + 7, -(n + 9), -(n + 6)};
+  Curve Loop(n + 2) = {n + 3, n + 8, -(n + 7), -(n + 2)};
+  Curve Loop(n + 3) = {n + 5, n + 9, -(n + 8), -(n + 4)};
   Surface(n + 1) = {n + 1} In Sphere {1};
   Surface(n + 2) = {n + 2} In Sphere {1};
   Surface(n + 3) = {n + 3} In Sphere {1};
@@ -41,8 +42,8 @@ For i In {1 : 7}
 EndFor
 
 // Walls over the arcs, numbered as these.
-start[] = {1, 4, 2, 5, 3, 6, 4, 5, 6};
-end[] = {4, 2, 5, 3, 6, 1, 7, 7, 7};
+start[] = {1, 2, 2, 3, 3, 1, 4, 5, 6};
+end[] = {4, 4, 5, 5, 6, 6, 7, 7, 7};
 For i In {1 : 9}
   Curve Loop(40 + i) = {10 + i, 30 + end[i - 1], -(20 + i), -(30 + start[i - 1])};
   Surface(40 + i) = {40 + i};
@@ -63,4 +64,4 @@ Physical Surface("z_min") = {41, 42};
 Physical Surface("x_min") = {43, 44};
 Physical Surface("y_min") = {45, 46};
 
-Include "structured.geo";
+Include "structured.inc";

@@ -21,8 +21,12 @@ For c In {1 : 4}
   Line(10 + c) = {100 * c, 100 * next};
   Line(20 + c) = {100 * c + points, 100 * next + points};
 EndFor
+// Opposite sides run the same way: so tetrahedra fit their triangles.
+Curve Loop(1) = {1, 21, -2, -11};
+Curve Loop(2) = {2, 22, -3, -12};
+Curve Loop(3) = {4, -23, -3, 13};
+Curve Loop(4) = {1, -24, -4, 14};
 For c In {1 : 4}
-  Curve Loop(c) = {c, 20 + c, -(1 + c % 4), -(10 + c)};
   Surface(c) = {c};
 EndFor
 Curve Loop(5) = {11 : 14};
@@ -40,4 +44,4 @@ Physical Surface("root") = {5};
 Physical Surface("tip") = {6};
 Physical Surface("sides") = {1 : 4};
 
-Include "structured.geo";
+Include "structured.inc";

@@ -64,7 +64,7 @@ Verdict verdict(CaseResult result, const Expectation& e) {
 }
 
 TEST(Judge, DecidesByToleranceAndByTheReferencesUncertainty) {
-  Expectation e{"hybmss", {}, {}, "volume_change", Source::extrapolated_fem, {}, 0.01, false, "", {}};
+  Expectation e{"hybmss", {}, {}, "volume_change", Source::extrapolated_fem, {}, 0.01, false, {}, "", {}};
   EXPECT_EQ(verdict(one_row(0.105, 0.1, 0.001), e), Verdict::pass);
   EXPECT_EQ(verdict(one_row(0.111, 0.1, 0.001), e), Verdict::fail);
   EXPECT_EQ(verdict(one_row(0.105, 0.1, 0.0026), e), Verdict::reference_too_coarse);
@@ -84,13 +84,58 @@ TEST(Judge, DecidesByToleranceAndByTheReferencesUncertainty) {
   EXPECT_EQ(verdict(without, e), Verdict::no_result);
 }
 
+/// The reference alone, with the limits of two elements.
+CaseResult two_elements() {
+  CaseResult result;
+  result.experiment.body.cells = {{4, 4, 4}};
+  result.experiment.materials = {{1e4, 0.25, 1000}};
+  result.experiment.reference.elements = {"q2", "p1"};
+  for (const auto& [element, limit] : {std::pair("q2", 1.0), std::pair("p1", 0.8)})
+    result.references.push_back({0.25, "displacement.tip.z", "m", {}, {}, 2.0, limit, 1e-4, "", element});
+  return result;
+}
+
+TEST(Judge, TakesTheLimitOfTheElementThatIsNamed) {
+  Expectation e{"fem", {}, {}, "displacement.tip.z", Source::analytic, 1.0, 0.01, false, {}, "", {}};
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::pass);
+  e.model = "fem_q2";
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::pass);
+  e.model = "fem_p1";
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::fail);
+  e.model = "fem_p2";
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::no_result);
+}
+
+TEST(Judge, BesideModelsFemQ1IsTheirPeer) {
+  Experiment e;
+  e.reference.elements = {"q1", "p2"};
+  EXPECT_EQ(reference_element(e, "fem"), "q1");
+  EXPECT_EQ(reference_element(e, "fem_q1"), "q1");
+  EXPECT_EQ(reference_element(e, "fem_p2"), "p2");
+  EXPECT_FALSE(reference_element(e, "hybmss"));
+  e.models.push_back({"hybmss", {}, "hybmss", {}});
+  EXPECT_EQ(reference_element(e, "fem"), "q1");
+  EXPECT_FALSE(reference_element(e, "fem_q1"));
+}
+
+TEST(Judge, ALowerBoundHasNoTolerance) {
+  Expectation e{"fem", {}, {}, "displacement.tip.z", Source::analytic, {}, 0, false, 1.0, "", {}};
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::pass);
+  e.at_least = 1.0001;
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::fail);
+  e.at_least = 0.9;
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::pass);
+  e.measure = "displacement.tip.x";
+  EXPECT_EQ(verdict(two_elements(), e), Verdict::no_result);
+}
+
 TEST(PartFile, ComesBackWholeOrNotAtAll) {
   const auto file = std::filesystem::temp_directory_path() / "springproof_part_test.cbor";
   Part part;
   part.runs = {{"hybmss", "msm", 0.25, {1, 2, 3}, "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99, 12.5}};
   part.rows = one_row(0.1, 0.2, 0.003).rows;
   part.rows.push_back({"case", "linear", "fem", 0.25, {4, 4, 4}, "volume_change", 0.1, "1", {}, {}, {}});
-  part.references = {{0.25, "volume_change", "1", {{1, 1, 1}}, {0.1, 0.2}, {}, 0.2, 0.1, "note"}};
+  part.references = {{0.25, "volume_change", "1", {{1, 1, 1}}, {0.1, 0.2}, {}, 0.2, 0.1, "note", "p1"}};
   part.pictures = {{"fem", 0.25, {4, 4, 4}, {0, 1, 2}, {3, 4, 5}, {}, {0, 0, 0, 0}}};
   save_part(file, "stamp", part);
   const std::optional<Part> back = load_part(file, "stamp");
@@ -100,6 +145,7 @@ TEST(PartFile, ComesBackWholeOrNotAtAll) {
   EXPECT_EQ(back->rows.at(0).reference, 0.2);
   EXPECT_FALSE(back->rows.at(1).reference);
   EXPECT_FALSE(back->references.at(0).observed_order);
+  EXPECT_EQ(back->references.at(0).element, "p1");
   EXPECT_EQ(back->pictures.at(0).displacement, (std::vector<float>{3, 4, 5}));
   EXPECT_FALSE(load_part(file, "other stamp"));
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);

@@ -21,6 +21,7 @@ struct Point {
 CaseResult with_errors(const std::string& name, const std::string& model, const std::vector<Point>& points) {
   CaseResult c;
   c.experiment.name = name;
+  c.experiment.models = {{model, {}, model, {}}};
   for (const Point& p : points) {
     const Cells cells = {p.cells, p.cells, p.cells};
     c.runs.push_back({model, "msm", p.nu, cells, "linear", true, "", "", 1, 0, 0, 0});
@@ -47,6 +48,16 @@ TEST(Headline, TakesTheWorstOfAllCasesAtTheFinestCells) {
             "Of the spring models hybmss comes closest: its displacements stay within 0.82 % of finite "
             "elements for ν "
             "from 0 to 0.4, in 2 linear cases.");
+}
+
+TEST(Headline, ACaseWithoutModelsIsJudgedByItsExpectationsAlone) {
+  CaseResult c = with_errors("plate", "fem_p1", {{0, 10, 0.5}});
+  c.experiment.models.clear();
+  c.checks.push_back({"fem_p1", 0, {10, 10, 10}, "displacement_error_order", "1", "analytic", 1.9, 1.2, 0, 0.0, Verdict::fail, "", true});
+  const Headline h = headline_of({c});
+  EXPECT_TRUE(h.models.empty());
+  ASSERT_EQ(h.failed_checks.size(), 1u);
+  EXPECT_NE(h.failed_checks[0].find("computed 1.2, expected at least 1.9"), std::string::npos) << h.failed_checks[0];
 }
 
 TEST(Headline, SaysWhereATighterBoundHolds) {

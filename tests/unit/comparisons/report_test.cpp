@@ -208,7 +208,56 @@ TEST_F(ReportInBrowser, HostileTextIsOnlyText) {
 TEST_F(ReportInBrowser, NothingRunIsSaidSo) {
   const std::string dom = open({});
   expect_no_complaint(dom);
-  EXPECT_GE(count(dom, "No case was run."), 4u);
+  EXPECT_GE(count(dom, "No model was compared."), 3u);
+  EXPECT_NE(dom.find("No verification case was run."), std::string::npos);
+}
+
+/// A benchmark with two elements, and an order.
+CaseResult verification_case() {
+  CaseResult c;
+  c.experiment.name = "plate";
+  c.experiment.folder = "verification";
+  c.experiment.exact = "trigonometric";
+  c.experiment.body.geo = "block.geo";
+  c.experiment.body.size = {1, 1, 1};
+  c.experiment.body.cells = {{1, 1, 1}};
+  c.experiment.materials = {{1e4, 0.25, 1000}};
+  c.experiment.reference.elements = {"q2", "p1"};
+  c.experiment.measures = {"stress", "displacement_error"};
+  const std::vector<Cells> grids = {{4, 4, 4}, {8, 8, 8}, {16, 16, 16}};
+  for (const char* element : {"q2", "p1"}) {
+    c.references.push_back({0.25, "stress.D.yy", "Pa", grids, {-5e6, -5.3e6, -5.37e6}, 2.1, -5.39e6, 1e4, "Richardson", element});
+    c.references.push_back({0.25, "displacement_error", "1", grids, {0.08, 0.01, 0.00125}, 3.0, 0.00125, 0, "", element});
+    c.rows.push_back({"plate", "linear", std::string("fem_") + element, 0.25, grids[2], "stress.D.yy", -5.37e6, "Pa", -5.38e6, {}, 1e4});
+  }
+  c.checks.push_back({"fem", 0.25, {1, 1, 1}, "stress.D.yy", "Pa", "published", -5.38e6, -5.39e6, 5.38e4, 1e4, Verdict::pass, "LE10"});
+  c.checks.push_back({"fem_q2", 0.25, {1, 1, 1}, "displacement_error_order", "1", "analytic", 2.9, 3.0, 0, 0.0, Verdict::pass, "theory", true});
+  c.pictures.push_back(sample_picture("fem", 0.25));
+  return c;
+}
+
+TEST_F(ReportInBrowser, ShowsTheVerificationOfTheReference) {
+  const std::string dom = open({sample_case(), verification_case()}, "#case-verification-plate");
+  expect_no_complaint(dom);
+  const auto start = dom.find("<section id=\"verification\">"), end = dom.find("<section id=\"pages\">");
+  const std::string section = dom.substr(start, end - start);
+  EXPECT_NE(section.find("stress at D, yy [Pa]"), std::string::npos);
+  EXPECT_NE(section.find("+0.19 %"), std::string::npos) << "limit against target";
+  EXPECT_NE(section.find("published, LE10"), std::string::npos);
+  EXPECT_EQ(count(section, "P1 tetrahedra"), 1u) << "its order, which nothing is expected of";
+  EXPECT_NE(section.find("shown, not judged"), std::string::npos);
+  EXPECT_NE(section.find("<b>3.00</b>"), std::string::npos);
+  const std::string page = dom.substr(end);
+  EXPECT_NE(page.find("≥ 2.9"), std::string::npos);
+  const std::string cases = dom.substr(dom.find("<section id=\"cases\">"), dom.find("<section id=\"poisson\">") - dom.find("<section id=\"cases\">"));
+  EXPECT_EQ(cases.find("case-verification-plate"), std::string::npos) << "a case without models is no row of the models' table";
+}
+
+TEST_F(ReportInBrowser, VerificationAloneIsAReport) {
+  const std::string dom = open({verification_case()}, "#case-verification-plate");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("Orders of convergence"), std::string::npos);
+  EXPECT_EQ(count(dom, "class=\"panel\""), 1u) << "the body";
 }
 
 TEST_F(ReportInBrowser, CaseWithoutResultsIsShown) {

@@ -1,0 +1,189 @@
+#include "comparisons/reference_grids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "comparisons/measures.h"
+#include "problem/exact_field.h"
+
+namespace springproof {
+namespace {
+
+NodalVectors probe_points(const Experiment& e) {
+  NodalVectors points(static_cast<Eigen::Index>(e.probes.size()), 3);
+  for (std::size_t i = 0; i < e.probes.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = e.probes[i].at.transpose();
+  return points;
+}
+
+/// All points at which the displacement is wanted: the nodes of every lattice, then the probes.
+NodalVectors sample_points(const PreparedCase& prepared) {
+  const NodalVectors probes = probe_points(prepared.experiment);
+  Eigen::Index count = probes.rows();
+  for (const auto& mesh : prepared.meshes) count += mesh->nodes.rows();
+  NodalVectors points(count, 3);
+  Eigen::Index at = 0;
+  for (const auto& mesh : prepared.meshes) {
+    points.middleRows(at, mesh->nodes.rows()) = mesh->nodes;
+    at += mesh->nodes.rows();
+  }
+  points.bottomRows(probes.rows()) = probes;
+  return points;
+}
+
+/// A direction of one cell (plane strain) stays so.
+Cells divided(const Cells& cells, int divisor) {
+  Cells coarse;
+  for (int d = 0; d < 3; ++d) coarse[d] = std::max(1, cells[d] / divisor);
+  return coarse;
+}
+
+/// Round-off of a measure: the solver's tolerance times the largest force (times the body's size for torques, over it
+/// for forces that balance torques), times the largest stress, or times the strain.
+double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
+                double largest_displacement) {
+  constexpr double relative = 1e-7;
+  if (measure.starts_with("displacement.")) return relative * largest_displacement;
+  if (measure.starts_with("volume_change")) return relative * largest_displacement / body_size;
+  const bool is_stress = measure.starts_with("stress.");
+  double force = 0, stress = 0;
+  for (const auto& [name, value] : values) {
+    if (name.starts_with("force.")) force = std::max(force, std::abs(value));
+    if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body_size);
+    if (name.starts_with("stress.")) stress = std::max(stress, std::abs(value));
+  }
+  return relative * (is_stress ? stress : force * (measure.starts_with("torque.") ? body_size : 1));
+}
+
+std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double nu, const ElementGrids& e) {
+  const NodalVectors truth = exact_at_nodes(prepared);
+  const Eigen::VectorXd weights = nodal_volumes(*prepared.meshes.front());
+  std::vector<double> errors;
+  for (const fem::Solution& s : e.grids)
+    errors.push_back(displacement_error(at_lattice(prepared, 0, s.displacement), truth, weights));
+  const double coarse = std::log2(errors[0] / errors[1]), fine = std::log2(errors[1] / errors[2]);
+  const std::string note = "against the exact field '" + prepared.experiment.exact + "', finest grid";
+  return {{nu, "displacement_error", "1", {}, errors, fine, errors[2], 0, note, e.element},
+          {nu, "displacement_error_order", "1", {}, {std::numeric_limits<double>::quiet_NaN(), coarse, fine}, {}, fine, 0,
+           "of the two finest grids", e.element}};
+}
+
+/// The value that the case file expects of a measure of an element, or nothing.
+std::optional<double> target(const Experiment& experiment, const ReferenceRecord& r) {
+  if (r.measure == "displacement_error") return 0;
+  for (const Expectation& e : experiment.expectations)
+    if (e.value && e.measure == r.measure && reference_element(experiment, e.model) == r.element &&
+        (!e.poisson_ratio || std::abs(*e.poisson_ratio - r.poisson_ratio) < 1e-9))
+      return e.value;
+  return {};
+}
+
+}  // namespace
+
+bool complete(const ElementGrids& e) {
+  return e.grids.size() == 3 && std::all_of(e.grids.begin(), e.grids.end(), [](const auto& s) { return s.ok; });
+}
+
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
+  const Experiment& experiment = prepared.experiment;
+  const bool stresses = wanted("stress", experiment.measures);
+  fem::Request request{experiment, material, {}, sample_points(prepared), stresses ? probe_points(experiment) : NodalVectors(0, 3), 1e-8};
+  for (const std::string& element : experiment.reference.elements)
+    for (int divisor : {4, 2, 1})
+      request.grids.push_back({divided(prepared.reference_cells, divisor), element, experiment.reference.grading});
+  if (!experiment.models.empty())
+    for (const Cells& cells : experiment.body.cells) request.grids.push_back({cells, "q1", 1.0});
+  try {
+    const std::vector<fem::Solution> solutions = fem::solve(request);
+    ReferenceGrids out;
+    auto at = solutions.begin();
+    for (const std::string& element : experiment.reference.elements) {
+      out.elements.push_back({element, {at, at + 3}});
+      at += 3;
+    }
+    out.peers.assign(at, solutions.end());
+    return out;
+  } catch (const std::runtime_error& e) {
+    return {{}, {}, e.what()};
+  }
+}
+
+NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples) {
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < lattice; ++i) at += prepared.meshes[i]->nodes.rows();
+  return samples.middleRows(at, prepared.meshes[lattice]->nodes.rows());
+}
+
+Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem::Solution& s) {
+  return {prepared.meshes[lattice], at_lattice(prepared, lattice, s.displacement), s.reactions, s.volume_change,
+          s.volume_change_first_order};
+}
+
+std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s) {
+  const std::vector<Probe>& probes = prepared.experiment.probes;
+  auto values = scalar_measures(sampled_field(prepared, 0, s), probes,
+                                s.displacement.bottomRows(static_cast<Eigen::Index>(probes.size())));
+  if (s.stress.rows() == static_cast<Eigen::Index>(probes.size())) values.merge(stress_measures(probes, s.stress));
+  return values;
+}
+
+bool comparable(const PreparedCase& prepared, const std::string& measure) {
+  if (!measure.starts_with("force.") && !measure.starts_with("torque.")) return true;
+  const auto from = measure.find('.') + 1;
+  return !prepared.sharing.contains(measure.substr(from, measure.rfind('.') - from));
+}
+
+NodalVectors exact_at_nodes(const PreparedCase& prepared) {
+  if (prepared.experiment.exact.empty()) return NodalVectors(0, 3);
+  NodalVectors u = prepared.meshes.front()->nodes;
+  for (Eigen::Index n = 0; n < u.rows(); ++n)
+    u.row(n) = exact_displacement(prepared.experiment.exact, Vec3(u.row(n).transpose())).transpose();
+  return u;
+}
+
+std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
+  std::vector<std::map<std::string, double>> values;
+  for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
+  const double largest_displacement = e.grids[2].displacement.rowwise().norm().maxCoeff();
+  std::map<std::string, ReferenceValue> limits;
+  for (const auto& [measure, fine] : values[2])
+    limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
+                                  noise_of(measure, values[2], prepared.experiment.body.size.norm(), largest_displacement));
+  return limits;
+}
+
+std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                        const ElementGrids& e) {
+  const Experiment& experiment = prepared.experiment;
+  const double nu = material.poisson_ratio;
+  std::vector<ReferenceRecord> records;
+  for (const auto& [measure, limit] : limits_of(prepared, e)) {
+    if (!wanted(measure, experiment.measures) || !comparable(prepared, measure)) continue;
+    std::vector<double> sequence;
+    for (const fem::Solution& s : e.grids) sequence.push_back(measures_of(prepared, s).at(measure));
+    records.push_back({nu, measure, unit_of(measure), {}, sequence, limit.observed_order, limit.value, limit.uncertainty,
+                       limit.note, e.element});
+  }
+  if (!experiment.exact.empty())
+    for (const ReferenceRecord& r : exact_records(prepared, nu, e))
+      if (wanted(r.measure, experiment.measures)) records.push_back(r);
+  for (ReferenceRecord& r : records)
+    for (const fem::Solution& s : e.grids) r.cells.push_back(s.grid.cells);
+  return records;
+}
+
+std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<ReferenceRecord>& records) {
+  const Experiment& experiment = prepared.experiment;
+  std::vector<Row> rows;
+  for (const ReferenceRecord& r : records)
+    for (std::size_t i = 0; i < r.values.size(); ++i) {
+      if (!std::isfinite(r.values[i])) continue;
+      Row row{experiment.name, experiment.kinematics, "fem_" + r.element, r.poisson_ratio, r.cells[i], r.measure, r.values[i],
+              r.unit, target(experiment, r), {}, {}};
+      if (row.reference) row.error = row.value - *row.reference;
+      rows.push_back(row);
+    }
+  return rows;
+}
+
+}  // namespace springproof

@@ -1,0 +1,55 @@
+// The finite element reference on its grids: what is asked for, and what three grids of one element say.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "comparisons/case_run.h"
+#include "comparisons/reference_value.h"
+#include "fem_reference/reference.h"
+
+namespace springproof {
+
+/// One element of [reference] on three grids, coarse to fine.
+struct ElementGrids {
+  std::string element;
+  std::vector<fem::Solution> grids;
+};
+
+/// True if all three grids have a result.
+bool complete(const ElementGrids& e);
+
+struct ReferenceGrids {
+  std::vector<ElementGrids> elements;  ///< in the order of [reference] elements; empty: the program gave no answer
+  std::vector<fem::Solution> peers;    ///< eight-node elements on the models' own cells, if there are models
+  std::string failure;                 ///< why there is no answer
+};
+
+/// Displacements are asked for at the nodes of every lattice and at the probes, stresses at the probes if the case measures them.
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
+
+/// The part of Solution::displacement that belongs to the nodes of one lattice.
+NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples);
+
+Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem::Solution& s);
+
+/// Every scalar measure of one solution, stresses among them.
+std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);
+
+/// False for the force or torque on a patch that shares held nodes with another: no reference can be given.
+bool comparable(const PreparedCase& prepared, const std::string& measure);
+
+/// The exact field of the case at the nodes of its first lattice; empty if there is none.
+NodalVectors exact_at_nodes(const PreparedCase& prepared);
+
+/// Limit and uncertainty of every scalar measure.
+std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);
+
+/// What the report shows of one element: the measures wanted, on each grid, with their limits; with an exact field also
+/// displacement_error and its observed order.
+std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const IsotropicMaterial& material, const ElementGrids& e);
+
+/// The records of a case without models as rows of results.csv, one per grid, beside the values expected.
+std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<ReferenceRecord>& records);
+
+}  // namespace springproof

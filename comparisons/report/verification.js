@@ -1,0 +1,87 @@
+'use strict';
+// The reference alone: benchmarks with known answers, and observed orders against exact fields.
+
+/// The element that a name in [[expect]] stands for.
+function elementOf(result, model) {
+  return model === 'fem' ? (result.experiment.reference?.elements || [])[0] : model.replace(/^fem_/, '');
+}
+
+function recordOf(result, check) {
+  const element = elementOf(result, check.model);
+  return result.references.find(r => r.element === element && r.measure === check.measure &&
+    r.poisson_ratio === check.poisson_ratio) || null;
+}
+
+const elementNames = {q1: 'Q1 hexahedra', q2: 'Q2 hexahedra', p1: 'P1 tetrahedra', p2: 'P2 tetrahedra'};
+const orderText = order => isNumber(order) ? minus(order.toFixed(2)) : 'none';
+const caseLink = result => el('a', {href: '#' + result.id}, el('b', {}, result.name));
+
+// ---- benchmarks
+
+function benchmarkRow(result, check, first) {
+  const record = recordOf(result, check), {measure, unit} = check;
+  const shown = displayUnit(measure, unit, [check.expected, check.computed]);
+  const text = (x, digits = 5) => number(isNumber(x) ? shown.factor * x : x, digits);
+  const off = isNumber(check.computed) && check.expected !== 0 ? 100 * (check.computed / check.expected - 1) : null;
+  const within = check.expected !== 0 ? percent(100 * check.within / Math.abs(check.expected)) : text(check.within, 2);
+  return el('tr', {class: first ? 'group' : ''},
+    el('td', {}, first ? caseLink(result) : ''),
+    el('td', {class: 'measure'}, withUnit(measureText(measure), shown.unit)),
+    el('td', {}, nuText(check.poisson_ratio)), el('td', {}, elementNames[elementOf(result, check.model)] || check.model),
+    [0, 1, 2].map(i => el('td', {class: 'number'}, record ? text(record.values[i]) : '–',
+                          record ? el('small', {}, cellsText(record.cells[i])) : '')),
+    el('td', {class: 'number'}, record ? orderText(record.observed_order) : '–'),
+    el('td', {class: 'number'}, el('b', {}, text(check.computed)),
+       record ? el('small', {}, '± ' + text(record.uncertainty, 2)) : ''),
+    el('td', {class: 'number'}, text(check.expected), el('small', {}, [check.source, check.where].filter(Boolean).join(', '))),
+    el('td', {class: 'number'}, off === null ? '–' : signed(off, percent(off))),
+    el('td', {class: 'number'}, within), el('td', {}, verdictChip(check.verdict)));
+}
+
+function benchmarkPart() {
+  const rows = verifications.flatMap(result => result.checks.filter(check => !check.at_least)
+    .map((check, i) => benchmarkRow(result, check, i === 0)));
+  if (rows.length === 0) return [];
+  return [el('h3', {}, 'Benchmarks'),
+    el('p', {class: 'note'}, 'Published or exact values beside the finite element limit: values on three grids, the observed ' +
+       'order, the extrapolated limit with its uncertainty.'),
+    table('benchmarks', ['case', 'quantity', 'ν', 'element', right('coarse'), right('medium'), right('fine'), right('order'),
+      right('limit'), right('target'), right('difference'), right('tolerance'), 'verdict'], rows)];
+}
+
+// ---- orders
+
+const theory = element => 1 + Number(element[1]);   // L2 norm of the displacement, degree + 1
+
+function orderRow(result, record) {
+  const check = result.checks.find(c => c.at_least && c.measure === 'displacement_error_order' &&
+    c.poisson_ratio === record.poisson_ratio && elementOf(result, c.model) === record.element);
+  const coarse = Math.log2(record.values[0] / record.values[1]);
+  return tr(elementNames[record.element] || record.element, caseLink(result), result.experiment.body?.geo || '',
+    nuText(record.poisson_ratio),
+    record.values.map((error, i) => el('td', {class: 'number'}, number(error, 3), el('small', {}, cellsText(record.cells[i])))),
+    el('td', {class: 'number'}, orderText(coarse)),
+    el('td', {class: 'number'}, el('b', {}, orderText(record.observed_order))),
+    el('td', {class: 'number'}, String(theory(record.element))),
+    check ? verdictChip(check.verdict) : el('small', {}, 'shown, not judged'));
+}
+
+function orderPart() {
+  const records = verifications.filter(result => result.experiment.exact).flatMap(result =>
+    result.references.filter(r => r.measure === 'displacement_error').map(record => ({result, record})));
+  if (records.length === 0) return [];
+  const place = ({record}) => Object.keys(elementNames).indexOf(record.element);
+  records.sort((a, b) => place(a) - place(b) || a.result.name.localeCompare(b.result.name) ||
+    a.record.poisson_ratio - b.record.poisson_ratio);
+  return [el('h3', {}, 'Orders of convergence'),
+    el('p', {class: 'note'}, 'Manufactured solutions: |u − u_exact| / |u_exact| in the L2 norm on three grids, each of half the ' +
+       'cell size of the one before; the order is that of the two finest.'),
+    table('orders', ['element', 'case', 'body', 'ν', right('coarse'), right('medium'), right('fine'), right('order, coarse'),
+      right('order'), right('theory'), 'verdict'], records.map(({result, record}) => orderRow(result, record)))];
+}
+
+function verificationSection(section) {
+  if (verifications.length === 0) return section.append(notice('No verification case was run.'));
+  section.append(el('p', {class: 'lead'}, 'Can the reference itself be trusted? Finite elements alone, against answers that ' +
+    'are known.'), ...[benchmarkPart(), orderPart()].flat(Infinity));
+}

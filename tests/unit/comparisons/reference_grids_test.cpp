@@ -1,0 +1,112 @@
+// Three grids of one element: limits, errors against an exact field, observed orders.
+#include "comparisons/reference_grids.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "problem/exact_field.h"
+
+namespace springproof {
+namespace {
+
+PreparedCase prepared_block(const std::string& exact) {
+  PreparedCase prepared;
+  Experiment& e = prepared.experiment;
+  e.name = "plate";
+  e.body.size = Vec3::Ones();
+  e.body.cells = {{3, 3, 3}};
+  e.materials = {{1e4, 0.25, 1000}};
+  e.exact = exact;
+  e.measures = {"displacement_error", "displacement_error_order", "probe", "stress"};
+  e.probes = {{"D", {1, 1, 1}}};
+  prepared.meshes = {std::make_shared<Mesh>(block_mesh({1, 1, 1}, {3, 3, 3}))};
+  prepared.reference_cells = {16, 16, 16};
+  return prepared;
+}
+
+/// The trigonometric field with an error of h^order, and a stress that tends to -1 Pa.
+ElementGrids grids_of_order(const PreparedCase& prepared, double order) {
+  ElementGrids e{"p1", {}};
+  const NodalVectors& nodes = prepared.meshes.front()->nodes;
+  for (int n : {4, 8, 16}) {
+    fem::Solution s;
+    s.ok = true;
+    s.grid.cells = {n, n, n};
+    s.grid.element = "p1";
+    s.displacement = NodalVectors(nodes.rows() + 1, 3);
+    const double h = std::pow(1.0 / n, order);
+    for (Eigen::Index i = 0; i <= nodes.rows(); ++i) {
+      const Vec3 X = i < nodes.rows() ? Vec3(nodes.row(i)) : Vec3(1, 1, 1);
+      s.displacement.row(i) = (exact_displacement("trigonometric", X) + h * Vec3(1, 2, 3)).transpose();
+    }
+    s.stress = fem::Stresses::Zero(1, 6);
+    s.stress(0, 1) = -1 + h;
+    e.grids.push_back(s);
+  }
+  return e;
+}
+
+const ReferenceRecord& find(const std::vector<ReferenceRecord>& records, const std::string& measure) {
+  for (const ReferenceRecord& r : records)
+    if (r.measure == measure) return r;
+  throw std::out_of_range(measure);
+}
+
+TEST(ReferenceGrids, OrderAgainstTheExactField) {
+  const PreparedCase prepared = prepared_block("trigonometric");
+  for (const double order : {1.0, 2.0, 3.0}) {
+    const auto records = records_of(prepared, prepared.experiment.materials[0], grids_of_order(prepared, order));
+    const ReferenceRecord& error = find(records, "displacement_error");
+    EXPECT_EQ(error.element, "p1");
+    ASSERT_EQ(error.values.size(), 3u);
+    ASSERT_EQ(error.cells.size(), 3u);
+    EXPECT_NEAR(error.observed_order.value(), order, 1e-9);
+    EXPECT_EQ(error.value, error.values[2]);
+    EXPECT_NEAR(find(records, "displacement_error_order").value, order, 1e-9);
+  }
+}
+
+TEST(ReferenceGrids, StressesOfTheProbesHaveLimits) {
+  const PreparedCase prepared = prepared_block("");
+  const auto records = records_of(prepared, prepared.experiment.materials[0], grids_of_order(prepared, 2));
+  const ReferenceRecord& stress = find(records, "stress.D.yy");
+  EXPECT_EQ(stress.unit, "Pa");
+  EXPECT_NEAR(stress.value, -1, 1e-12);
+  EXPECT_THROW(find(records, "displacement_error_order"), std::out_of_range);
+}
+
+TEST(ReferenceGrids, RowsStandBesideWhatIsExpectedOfTheElement) {
+  PreparedCase prepared = prepared_block("trigonometric");
+  prepared.experiment.models.clear();
+  prepared.experiment.reference.elements = {"p1"};
+  prepared.experiment.expectations = {{"fem", 0.25, {}, "stress.D.yy", Source::analytic, -1.0, 0.1, false, {}, "", {}}};
+  const auto rows = rows_of(prepared, records_of(prepared, prepared.experiment.materials[0], grids_of_order(prepared, 2)));
+  int stresses = 0;
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.model, "fem_p1");
+    EXPECT_TRUE(std::isfinite(row.value)) << row.measure;
+    if (row.measure == "stress.D.xx") {
+      EXPECT_FALSE(row.reference);
+    }
+    if (row.measure == "displacement_error") {
+      EXPECT_EQ(row.error, row.value);
+    }
+    if (row.measure != "stress.D.yy") continue;
+    ++stresses;
+    EXPECT_EQ(row.reference, -1.0);
+    EXPECT_NEAR(row.error.value(), std::pow(1.0 / row.cells[0], 2), 1e-12);
+  }
+  EXPECT_EQ(stresses, 3);
+}
+
+TEST(ReferenceGrids, OneFailedGridLeavesNoReference) {
+  const PreparedCase prepared = prepared_block("");
+  ElementGrids e = grids_of_order(prepared, 2);
+  EXPECT_TRUE(complete(e));
+  e.grids[1].ok = false;
+  EXPECT_FALSE(complete(e));
+}
+
+}  // namespace
+}  // namespace springproof
