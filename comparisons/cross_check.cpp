@@ -34,7 +34,7 @@ void on_interrupt(int) {
 /// One case at one Poisson's ratio, while both programs answer it.
 struct Question {
   const PreparedCase& prepared;
-  const IsotropicMaterial& material;
+  IsotropicMaterial material;
   std::array<Cells, 3> cells;  ///< CalculiX' grids, coarse to fine
   std::vector<Mesh> meshes;    ///< the same
   double time_limit;
@@ -61,14 +61,20 @@ std::array<Cells, 3> three_grids(const Cells& fine) {
   return grids;
 }
 
-/// Near-cubic elements, counts divisible by four.
-Cells finest_cells(const Experiment& e, const Cells& given) {
+bool is_reduced(const IsotropicMaterial& material) {
+  return material.poisson_ratio > calculix::largest_ratio_full_integration;
+}
+
+/// Near-cubic elements, counts divisible by four; by eight at least with reduced integration, as a single
+/// element across a body has modes without strain at its eight points.
+Cells finest_cells(const Experiment& e, const IsotropicMaterial& material, const Cells& given) {
   Cells cells = given;
   if (given[0] == 0) {
     const double elements = e.model_kinematics() == Kinematics::linear ? linear_elements : finite_elements;
     const double edge = std::cbrt(e.body.size.prod() / elements);
+    const int fewest = is_reduced(material) ? 2 : 1;
     for (int d = 0; d < 3; ++d)
-      cells[d] = 4 * std::max(1, static_cast<int>(std::lround(e.body.size[d] / edge / 4)));
+      cells[d] = 4 * std::max(fewest, static_cast<int>(std::lround(e.body.size[d] / edge / 4)));
   }
   for (const int n : cells)
     if (n < 4 || n % 4 != 0)
@@ -135,6 +141,7 @@ Opinion opinion(const PreparedCase& prepared, const Mesh& coarse, const std::vec
                                         noise_of(measure, noise));
   out.field = extrapolate({answers[0].displacement, answers[1].displacement, answers[2].displacement},
                           nodal_volumes(coarse));
+  out.field.nodal_uncertainty.array() += std::sqrt(3.0) * noise.displacement;
   return out;
 }
 
@@ -183,8 +190,10 @@ std::optional<Opinion> ask_fem(const Question& q) {
   NodalVectors points(nodes.rows() + probes.rows(), 3);
   points << nodes, probes;
   fem::Request request{q.experiment(), q.material, {}, points, 1e-8};
-  for (const Cells& cells : three_grids(q.prepared.reference_cells))
-    request.grids.push_back({cells, 2, q.experiment().reference.grading});
+  for (const Cells& cells : three_grids(q.prepared.reference_cells)) {
+    request.grids.emplace_back().cells = cells;  // Q2
+    request.grids.back().grading = q.experiment().reference.grading;
+  }
   std::vector<Answer> answers;
   std::vector<fem::Solution> solutions;
   try {
@@ -244,7 +253,7 @@ void print_table(const std::vector<SecondOpinion>& rows) {
 void print_title(const Question& q) {
   const auto& e = q.experiment();
   const Cells& c = q.cells[2];
-  const bool reduced = q.material.poisson_ratio > calculix::largest_ratio_full_integration;
+  const bool reduced = is_reduced(q.material);
   fmt::print("\n{}: nu = {:g}, {}\n", e.name, q.material.poisson_ratio, e.kinematics);
   fmt::print("CalculiX {}: {} up to {} x {} x {}, {}\n", calculix::version(), reduced ? "C3D20R" : "C3D20",
              c[0], c[1], c[2],
@@ -254,6 +263,18 @@ void print_title(const Question& q) {
   if (!q.prepared.sharing.empty())
     fmt::print("left out, as held edges in common make them a convention: forces on {}\n",
                fmt::join(q.prepared.sharing, ", "));
+}
+
+Question question(const PreparedCase& prepared, const IsotropicMaterial& material,
+                  const CrossCheckOptions& options) {
+  const Experiment& e = prepared.experiment;
+  Question q{
+      prepared, material, three_grids(finest_cells(e, material, options.cells)), {}, options.time_limit};
+  for (const Cells& cells : q.cells) {
+    q.meshes.push_back(mesh_geo(prepared.geo, e.body.size, cells));
+    if (q.meshes.back().grid) grade(e.reference.grading, q.meshes.back());
+  }
+  return q;
 }
 
 /// The rows that differ, or that nobody answered: at least one then.
@@ -310,18 +331,14 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
   const PreparedCase prepared = prepare(experiment);
   std::vector<IsotropicMaterial> materials = experiment.materials;
   if (options.poisson_ratio) materials = {material_of(experiment, options.poisson_ratio)};
-  const std::array<Cells, 3> cells = three_grids(finest_cells(experiment, options.cells));
+  std::vector<Question> questions;
+  for (const IsotropicMaterial& m : materials) questions.push_back(question(prepared, m, options));
   if (!programs_are_there()) return no_program;
-  std::vector<Mesh> meshes;
-  for (const Cells& c : cells) {
-    meshes.push_back(mesh_geo(prepared.geo, experiment.body.size, c));
-    grade(experiment.reference.grading, meshes.back());
-  }
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   int differing = 0;
-  for (const IsotropicMaterial& m : materials) {
-    differing += check_material({prepared, m, cells, meshes, options.time_limit});
+  for (const Question& q : questions) {
+    differing += check_material(q);
     if (interrupted) return cross_check_interrupted;
   }
   if (differing == 0)
