@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "problem/exact_field.h"
 #include "problem/measures.h"
 
 namespace springproof::calculix {
@@ -74,12 +75,18 @@ std::vector<HeldComponent> held_components(const Experiment& experiment, const Q
   return held;
 }
 
-/// Tractions, patch and point forces as concentrated loads.
-NodalVectors concentrated(const Experiment& experiment, const Mesh& linear, const QuadraticMesh& mesh) {
+/// Everything but gravity as concentrated loads.
+NodalVectors concentrated(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& linear,
+                          const QuadraticMesh& mesh) {
   NodalVectors forces = NodalVectors::Zero(mesh.nodes.rows(), 3);
   for (const Load& load : experiment.loads) {
     if (const auto* t = std::get_if<Traction>(&load))
       forces += nodal_areas(mesh, patch_of(mesh, t->on)) * t->traction.transpose();
+    if (const auto* p = std::get_if<Pressure>(&load))
+      forces += p->pressure * nodal_area_vectors(mesh, patch_of(mesh, p->on));
+    if (const auto* b = std::get_if<FieldBodyForce>(&load))
+      forces +=
+          nodal_body_forces(mesh, [&](const Vec3& X) { return exact_body_force(b->field, X, material); });
     if (const auto* f = std::get_if<PatchForce>(&load)) {
       const Eigen::VectorXd areas = nodal_areas(mesh, patch_of(mesh, f->on));
       forces += areas / areas.sum() * f->force.transpose();
@@ -216,8 +223,7 @@ void write_supports(const Deck& deck, double factor, std::ostream& out) {
 
 void write_loads(const Deck& deck, double factor, std::ostream& out) {
   if (!deck.forces.isZero(0))
-    fmt::print(out,
-               "** Tractions, patch and point forces as nodal forces: node, component, force [N]\n*CLOAD\n");
+    fmt::print(out, "** Distributed and point forces as nodal forces: node, component, force [N]\n*CLOAD\n");
   for (Eigen::Index n = 0; n < deck.forces.rows(); ++n)
     for (int c = 0; c < 3; ++c)
       if (deck.forces(n, c) != 0)
@@ -275,7 +281,7 @@ Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, 
   const bool locks = material.poisson_ratio > largest_ratio_full_integration;
   deck.element = mesh.hexahedra.empty() ? "C3D10" : locks ? "C3D20R" : "C3D20";
   deck.held = held_components(experiment, deck.mesh);
-  deck.forces = concentrated(experiment, mesh, deck.mesh);
+  deck.forces = concentrated(experiment, material, mesh, deck.mesh);
   for (const Load& load : experiment.loads)
     if (const auto* g = std::get_if<Gravity>(&load)) deck.gravity += g->acceleration;
   return deck;

@@ -24,7 +24,7 @@ struct Deck {
   QuadraticMesh mesh;
   std::string element;              ///< "C3D20", "C3D20R" or "C3D10"
   std::vector<HeldComponent> held;  ///< by node, then component
-  NodalVectors forces;              ///< concentrated loads [N]: tractions, patch and point forces
+  NodalVectors forces;              ///< concentrated loads [N]: all but gravity
   Vec3 gravity = Vec3::Zero();      ///< sum of all [m/s^2]
   int steps = 1;                    ///< a large rotation is led along its arc
 };

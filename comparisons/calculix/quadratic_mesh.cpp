@@ -106,8 +106,9 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> gathered(const std::vector<int>& elemen
   return rows;
 }
 
-/// Adds the integral of the shape functions over one side.
-void add_side(const QuadraticMesh& mesh, const Side& side, Eigen::VectorXd& areas) {
+/// Calls visit(element, basis, area vector into the body) at the points of one side.
+template <class Visit>
+void for_each_point(const QuadraticMesh& mesh, const Side& side, const Visit& visit) {
   const std::vector<int>& element = mesh.elements[side.element];
   const auto X = gathered(element, mesh.nodes);
   const bool brick = element.size() == 20;
@@ -121,10 +122,21 @@ void add_side(const QuadraticMesh& mesh, const Side& side, Eigen::VectorXd& area
       const double second = brick ? v : v * (1 - u), squeeze = brick ? 1 : 1 - u;
       const Basis at = basis(element.size(), origin + u * along + second * across);
       const Eigen::Matrix3d dX = X.transpose() * at.gradient;
-      const double area = (dX * along).cross(dX * across).norm();
-      for (std::size_t i = 0; i < element.size(); ++i)
-        areas[element[i]] += a * b * squeeze * area * at.value[i];
+      visit(element, at, Vec3(a * b * squeeze * (dX * along).cross(dX * across)));
     }
+}
+
+/// Calls visit(element, basis, rest position, volume) at the points of the body.
+template <class Visit>
+void for_each_point(const QuadraticMesh& mesh, const Visit& visit) {
+  for (const std::vector<int>& element : mesh.elements) {
+    const auto X = gathered(element, mesh.nodes);
+    for (const auto& [xi, weight] : volume_points(element.size())) {
+      const Basis at = basis(element.size(), xi);
+      const Eigen::Matrix3d dX = X.transpose() * at.gradient;
+      visit(element, at, Vec3(X.transpose() * at.value), weight * dX.determinant());
+    }
+  }
 }
 
 class MiddleNodes {
@@ -226,21 +238,39 @@ QuadraticMesh quadratic(const Mesh& mesh) {
 
 Eigen::VectorXd nodal_areas(const QuadraticMesh& mesh, const QuadraticPatch& patch) {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(mesh.nodes.rows());
-  for (const Side& side : patch.sides) add_side(mesh, side, areas);
+  for (const Side& side : patch.sides)
+    for_each_point(mesh, side, [&](const auto& element, const Basis& at, const Vec3& area) {
+      for (std::size_t i = 0; i < element.size(); ++i) areas[element[i]] += area.norm() * at.value[i];
+    });
   return areas;
+}
+
+NodalVectors nodal_area_vectors(const QuadraticMesh& mesh, const QuadraticPatch& patch) {
+  NodalVectors areas = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  for (const Side& side : patch.sides)
+    for_each_point(mesh, side, [&](const auto& element, const Basis& at, const Vec3& area) {
+      for (std::size_t i = 0; i < element.size(); ++i)
+        areas.row(element[i]) += at.value[i] * area.transpose();
+    });
+  return areas;
+}
+
+NodalVectors nodal_body_forces(const QuadraticMesh& mesh,
+                               const std::function<Vec3(const Vec3&)>& body_force) {
+  NodalVectors forces = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  for_each_point(mesh, [&](const auto& element, const Basis& at, const Vec3& X, double volume) {
+    const Vec3 force = volume * body_force(X);
+    for (std::size_t i = 0; i < element.size(); ++i)
+      forces.row(element[i]) += at.value[i] * force.transpose();
+  });
+  return forces;
 }
 
 Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh) {
   Eigen::VectorXd volumes = Eigen::VectorXd::Zero(mesh.nodes.rows());
-  for (const std::vector<int>& element : mesh.elements) {
-    const auto X = gathered(element, mesh.nodes);
-    for (const auto& [xi, weight] : volume_points(element.size())) {
-      const Basis at = basis(element.size(), xi);
-      const Eigen::Matrix3d dX = X.transpose() * at.gradient;
-      for (std::size_t i = 0; i < element.size(); ++i)
-        volumes[element[i]] += weight * dX.determinant() * at.value[i];
-    }
-  }
+  for_each_point(mesh, [&](const auto& element, const Basis& at, const Vec3&, double volume) {
+    for (std::size_t i = 0; i < element.size(); ++i) volumes[element[i]] += volume * at.value[i];
+  });
   return volumes;
 }
 

@@ -2,6 +2,7 @@
 // shape functions and what follows from those.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "meshes/mesh.h"
@@ -39,8 +40,14 @@ Basis basis(std::size_t nodes, const Vec3& xi);
 /// Integral of each node's shape function over a patch at rest [m^2]: consistent loads of a uniform traction.
 Eigen::VectorXd nodal_areas(const QuadraticMesh& mesh, const QuadraticPatch& patch);
 
+/// The same of the area vector, pointing into the body: consistent loads of a unit pressure at rest.
+NodalVectors nodal_area_vectors(const QuadraticMesh& mesh, const QuadraticPatch& patch);
+
 /// The same over the body [m^3].
 Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh);
+
+/// Consistent loads [N] of a body force given at rest positions [N/m^3].
+NodalVectors nodal_body_forces(const QuadraticMesh& mesh, const std::function<Vec3(const Vec3&)>& body_force);
 
 /// What each node counts for at a rest position inside a hexahedron: node and shape function.
 /// `linear` is the mesh that `mesh` was made of.

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -182,6 +181,25 @@ TEST(CalculixDeck, LoadsSumToTheirTotals) {
   EXPECT_LE((torque - Vec3(1.9, 0.3, 0.7).cross(Vec3(4, 5, 6))).norm(), 1e-10);
 }
 
+TEST(CalculixDeck, PressurePushesInwards) {
+  Experiment e = bar();
+  for (const auto& [name, inwards] :
+       {std::pair("x_min", Vec3(1.5, 0, 0)), std::pair("x_max", Vec3(-1.5, 0, 0)),
+        std::pair("y_max", Vec3(0, -3, 0)), std::pair("z_max", Vec3(0, 0, -2))}) {
+    e.loads.resize(1);
+    e.loads.push_back(Pressure{name, 10});
+    EXPECT_LE((wrench(deck_of(e)).first - 10 * inwards).norm(), 1e-10) << name;
+  }
+}
+
+TEST(CalculixDeck, BodyForcesAreConsistent) {
+  const calculix::QuadraticMesh mesh = calculix::quadratic(block_mesh(size, cells));
+  const NodalVectors forces =
+      calculix::nodal_body_forces(mesh, [](const Vec3& X) { return Vec3(1, X[0], 0); });
+  EXPECT_LE((forces.colwise().sum().transpose() - Vec3(3, 3, 0)).norm(), test::round_off * 10);
+  EXPECT_LE((forces.col(0) - calculix::nodal_volumes(mesh)).norm(), test::round_off);
+}
+
 TEST(CalculixDeck, GravityIsTheBodysWeight) {
   Experiment e = bar();
   e.loads.push_back(Gravity{Vec3(0, 3, -4)});
@@ -247,6 +265,10 @@ TEST(CalculixDeck, KnowsTetrahedra) {
   EXPECT_NEAR(areas.sum(), 3, test::round_off);
   for (const int corner : {0, 2, 3}) EXPECT_NEAR(areas[corner], 0, test::round_off);  // the middles carry all
   EXPECT_EQ(quadratic.patches[0].nodes.size(), 6u);
+  EXPECT_LE((calculix::nodal_area_vectors(quadratic, quadratic.patches[1]).colwise().sum() +
+             Eigen::RowVector3d(3, 1.5, 1))
+                .norm(),
+            test::round_off);
   for (int n = 0; n < 10; ++n) {
     const Vec3 xi = quadratic.nodes.row(n).transpose().cwiseQuotient(Vec3(1, 2, 3));
     const Eigen::VectorXd shape = calculix::basis(10, xi).value;
