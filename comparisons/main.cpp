@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
+#include "comparisons/calculix_command.h"
 #include "comparisons/material_command.h"
 #include "comparisons/suite.h"
 #include "fem_reference/reference.h"
@@ -62,6 +63,15 @@ int main(int argc, char** argv) try {
       "material", "Any two moduli in: spring constants, kappa, safe time step, validity range, and the moduli measured back");
   material.add_options(*material_command);
 
+  ExportCommand export_case;
+  CLI::App* export_command = app.add_subcommand("export", "A case as an input deck for another program");
+  export_case.add_options(*export_command);
+
+  CrossCheckCommand second_opinion;
+  CLI::App* cross_check_command = app.add_subcommand(
+      "cross-check", "The same case by CalculiX and by our FEM reference, with both uncertainties");
+  second_opinion.add_options(*cross_check_command);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -69,6 +79,8 @@ int main(int argc, char** argv) try {
   }
   if (*compare_command) return compare(find_cases(names), options);
   if (*list_command) return list();
+  if (*export_command) return export_case.run();
+  if (*cross_check_command) return second_opinion.run();
   return material.run();
 } catch (const springproof::InputError& e) {
   fmt::print(stderr, "error: {}\n", e.what());

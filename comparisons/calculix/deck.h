@@ -1,0 +1,54 @@
+// A case as an input deck for CalculiX (ccx) or Abaqus.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "comparisons/calculix/quadratic_mesh.h"
+#include "problem/experiment.h"
+
+namespace springproof::calculix {
+
+/// A displacement component that is prescribed; where two loads prescribe it, the one named first counts.
+struct HeldComponent {
+  int node;
+  int component;  ///< 0, 1, 2
+  int load;       ///< number in Experiment::loads
+};
+
+struct Deck {
+  Experiment experiment;
+  IsotropicMaterial material;
+  Mesh linear;  ///< the mesh with corner nodes only
+  QuadraticMesh mesh;
+  std::string element;              ///< "C3D20", "C3D20R" or "C3D10"
+  std::vector<HeldComponent> held;  ///< by node, then component
+  NodalVectors forces;              ///< concentrated loads [N]: all but gravity
+  Vec3 gravity = Vec3::Zero();      ///< sum of all [m/s^2]
+  int steps = 1;                    ///< a large rotation is led along its arc
+};
+
+/// The largest Poisson's ratio that is given fully integrated elements; above, eight-point ones, which do not
+/// lock.
+inline constexpr double largest_ratio_full_integration = 0.4;
+
+/// Kinematics that CalculiX has too: "linear, neo_hooke_isochoric, st_venant_kirchhoff".
+std::string kinematics_with_counterpart();
+
+/// @throws InputError if the case's law has no counterpart, naming those that have.
+void require_counterpart(const Experiment& experiment);
+
+/// @throws InputError as require_counterpart; for an unknown patch, a point force outside the body, two
+/// patches of the
+///   same name once written as a set.
+Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh);
+
+/// Writes the deck, SI units.  Nodes and elements count from 1.  Printed into the .dat file at the end of the
+/// last step: U of ALL_NODES, RF of HELD_NODES, their totals per patch.
+void write(const Deck& deck, std::ostream& out);
+
+/// External nodal loads at the full load, gravity included [N]: what RF holds besides the support forces.
+NodalVectors external_loads(const Deck& deck);
+
+}  // namespace springproof::calculix

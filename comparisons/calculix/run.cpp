@@ -1,0 +1,243 @@
+#include "comparisons/calculix/run.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+namespace springproof::calculix {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<pid_t> child_under_way = 0;
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "springproof-ccx-XXXXXX").string();
+    if (!mkdtemp(name.data()))
+      throw std::runtime_error(fmt::format("cannot make {}: {}", name, std::strerror(errno)));
+    path = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  fs::path path;
+};
+
+struct Outcome {
+  int status = 0;
+  bool in_time = true;
+  double seconds = 0;
+};
+
+pid_t start(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& folder) {
+  std::vector<char*> argv = {const_cast<char*>(file.c_str())};
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child < 0)
+    throw std::runtime_error(fmt::format("cannot start {}: {}", file.string(), std::strerror(errno)));
+  if (child > 0) return child;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (chdir(folder.c_str()) != 0) _exit(127);
+  const int log = open("log", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  execv(file.c_str(), argv.data());
+  _exit(127);
+}
+
+Outcome run_in(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& folder,
+               double time_limit) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  const pid_t child = start(file, arguments, folder);
+  child_under_way = child;
+  Outcome outcome;
+  rusage used{};
+  pid_t ended;
+  while ((ended = wait4(child, &outcome.status, WNOHANG, &used)) == 0) {
+    if (outcome.in_time && std::chrono::duration<double>(Clock::now() - begin).count() > time_limit) {
+      outcome.in_time = false;
+      kill(child, SIGKILL);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  child_under_way = 0;
+  if (ended < 0) throw std::runtime_error(fmt::format("lost {}: {}", file.string(), std::strerror(errno)));
+  outcome.seconds = double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                    1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  return outcome;
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The first line with *ERROR and the one after it.
+std::string error_in(const std::string& log) {
+  const auto at = log.find("*ERROR");
+  if (at == std::string::npos) return {};
+  auto end = log.find('\n', at);
+  if (end != std::string::npos) end = log.find('\n', end + 1);
+  std::istringstream words(log.substr(at, end == std::string::npos ? end : end - at));
+  std::string text;
+  for (std::string word; words >> word;) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// Fortran leaves out the E of an exponent of three digits.
+double number(std::string text) {
+  const auto sign = text.find_first_of("+-", 1);
+  if (sign != std::string::npos && text[sign - 1] != 'E') text.insert(sign, "E");
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || text.empty())
+    throw std::runtime_error(fmt::format("ccx printed '{}' for a number", text));
+  return value;
+}
+
+void fill_solution(const Deck& deck, const Printed& printed, Solution& solution) {
+  const Experiment& e = deck.experiment;
+  const NodalVectors support = printed.force - external_loads(deck);
+  const bool finite = e.model_kinematics() == Kinematics::finite;
+  const NodalVectors arms = finite ? NodalVectors(deck.mesh.nodes + printed.displacement) : deck.mesh.nodes;
+  solution.displacement = printed.displacement;
+  Field& field = solution.field;
+  field.mesh = std::make_shared<Mesh>(deck.linear);
+  field.displacement = printed.displacement.topRows(deck.linear.nodes.rows());
+  for (const HeldComponent& h : deck.held) {
+    const std::string& name = *patch_of(e.loads[h.load]);
+    auto at = std::find_if(field.reactions.begin(), field.reactions.end(),
+                           [&](const auto& r) { return r.patch == name; });
+    if (at == field.reactions.end()) at = field.reactions.insert(at, {name, Vec3::Zero(), Vec3::Zero()});
+    const Vec3 force = support(h.node, h.component) * Vec3::Unit(h.component);
+    const Vec3 arm = arms.row(h.node).transpose() - centroid(deck.linear, patch(deck.linear, name));
+    at->force += force;
+    at->torque += arm.cross(force);
+    solution.floor.force += print_rounding * std::abs(printed.force(h.node, h.component));
+    solution.floor.torque += print_rounding * std::abs(printed.force(h.node, h.component)) * arm.norm();
+  }
+  const VolumeChange change = volume_change(deck.mesh, printed.displacement);
+  field.volume_change = change.exact;
+  field.volume_change_first_order = change.first_order;
+  solution.floor.displacement = print_rounding * printed.displacement.cwiseAbs().maxCoeff();
+  double surface = 0;
+  for (const QuadraticPatch& p : deck.mesh.patches) surface += nodal_areas(deck.mesh, p).sum();
+  solution.floor.volume = solution.floor.displacement * surface / nodal_volumes(deck.mesh).sum();
+  solution.ok = true;
+}
+
+}  // namespace
+
+fs::path program() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder.empty() ? "." : folder) / "ccx";
+    std::error_code ignored;
+    if (fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0) return fs::absolute(file);
+  }
+  return {};
+}
+
+std::string version() {
+  const fs::path file = program();
+  if (file.empty()) return {};
+  const TemporaryFolder folder;
+  run_in(file, {"-v"}, folder.path, 10);
+  const std::string text = read_text(folder.path / "log");
+  const auto at = text.find("Version ");
+  return at == std::string::npos ? "of an unknown version"
+                                 : text.substr(at + 8, text.find_first_of(" \n", at + 8) - at - 8);
+}
+
+Printed read_dat(std::istream& in, Eigen::Index nodes) {
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  Printed printed{NodalVectors::Constant(nodes, 3, missing), NodalVectors::Zero(nodes, 3), 0};
+  NodalVectors* into = nullptr;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::vector<std::string> word;
+    for (std::string w; words >> w;) word.push_back(w);
+    if (line.find(" for set ") != std::string::npos) {
+      into = nullptr;
+      if (word[0] == "displacements" && line.find(" ALL_NODES ") != std::string::npos) {
+        into = &printed.displacement;
+        printed.time = number(word.back());
+      } else if (word[0] == "forces" && line.find(" HELD_NODES ") != std::string::npos) {
+        into = &printed.force;
+      }
+      continue;
+    }
+    if (!into || word.size() != 4) continue;
+    const long node = std::stol(word[0]) - 1;
+    if (node < 0 || node >= nodes) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
+    for (int c = 0; c < 3; ++c) (*into)(node, c) = number(word[1 + c]);
+  }
+  if (!printed.displacement.allFinite())
+    throw std::runtime_error("ccx printed no displacement for some nodes");
+  return printed;
+}
+
+Solution solve(const Deck& deck, double time_limit) {
+  const fs::path file = program();
+  if (file.empty()) throw std::runtime_error("ccx is not on PATH");
+  const TemporaryFolder folder;
+  std::ofstream out(folder.path / "case.inp");
+  write(deck, out);
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("cannot write into {}", folder.path.string()));
+  const Outcome outcome = run_in(file, {"-i", "case"}, folder.path, time_limit);
+  Solution solution;
+  solution.seconds = outcome.seconds;
+  const std::string log = read_text(folder.path / "log"), error = error_in(log);
+  if (!outcome.in_time)
+    solution.message = fmt::format("ccx took longer than {:g} s and was ended", time_limit);
+  else if (WIFSIGNALED(outcome.status))
+    solution.message = fmt::format("ccx was killed by signal {}", WTERMSIG(outcome.status));
+  else if (!error.empty())
+    solution.message = "ccx: " + error;
+  else if (log.find("using the iterative solver") != std::string::npos)
+    solution.message = "this ccx uses an iterative solver, which stops too early";
+  if (!solution.message.empty()) return solution;
+  std::ifstream dat(folder.path / "case.dat");
+  try {
+    const Printed printed = read_dat(dat, deck.mesh.nodes.rows());
+    if (printed.time < deck.steps * (1 - 1e-6))
+      solution.message = fmt::format("ccx stopped at {:.4g} % of the load", 100 * printed.time / deck.steps);
+    else
+      fill_solution(deck, printed, solution);
+  } catch (const std::runtime_error& e) {
+    solution.message = e.what();
+  }
+  return solution;
+}
+
+void interrupt() {
+  if (const pid_t child = child_under_way; child > 0) kill(child, SIGKILL);
+}
+
+}  // namespace springproof::calculix
