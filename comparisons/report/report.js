@@ -78,6 +78,7 @@ function start() {
   const poisson = build('poisson', needsCases(poissonSection));
   const convergence = build('convergence', needsCases(convergenceSection));
   const shapes = build('shapes', needsCases(shapesSection));
+  build('fem-column', femColumnSection);
   build('pages', section => pagesSection(section, [
     {text: 'Error against ν', go: jumpTo('poisson', poisson), has: () => true},
     {text: 'Convergence', go: jumpTo('convergence', convergence), has: () => true},
