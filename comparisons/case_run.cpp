@@ -113,7 +113,10 @@ std::map<std::string, double> distances(const PartRun& run, std::size_t lattice,
   const NodalVectors& v = run.reference[lattice]->field.displacement;
   std::map<std::string, double> out = {{"displacement_error", displacement_error(u, v, nodal_volumes(mesh))},
                                        {"displacement_error_max", displacement_error_max(u, v)}};
-  if (run.experiment().section) out["section_distance"] = section_distance(mesh, *run.experiment().section, u, v);
+  if (run.experiment().section) {
+    out["section_distance"] = section_distance(mesh, *run.experiment().section, u, v);
+    out["section_axis_distance"] = section_axis_distance(mesh, *run.experiment().section, u, v);
+  }
   return out;
 }
 

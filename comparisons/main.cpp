@@ -26,6 +26,7 @@ int list() {
   for (const char* line : {"displacement_error          relative L2 difference to FEM over the nodes",
                            "displacement_error_max      largest difference over the largest displacement",
                            "section_distance            mean distance to FEM on the plane [section] [m]",
+                           "section_axis_distance       the same per coordinate in the plane, (|dx| + |dy|)/2 [m]",
                            "volume_change               (V' - V)/V of the displaced body",
                            "volume_change_magnitude     its absolute value, the papers' e",
                            "volume_change_first_order   integral of div u over V",

@@ -20,6 +20,19 @@ void add_vector(const std::string& name, const Vec3& v, std::map<std::string, do
 
 std::string head(const std::string& measure) { return measure.substr(0, measure.find('.')); }
 
+std::vector<int> nodes_on(const Section& section, const Mesh& mesh) {
+  const Vec3 normal = section.normal.normalized();
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  std::vector<int> nodes;
+  for (int n = 0; n < mesh.nodes.rows(); ++n)
+    if (std::abs(normal.dot(mesh.nodes.row(n).transpose() - section.point)) <= 1e-6 * size) nodes.push_back(n);
+  if (nodes.empty())
+    throw InputError(fmt::format("section: the plane through ({:.6g}, {:.6g}, {:.6g}) m holds no node of the lattice; "
+                                 "put it on a layer of nodes",
+                                 section.point[0], section.point[1], section.point[2]));
+  return nodes;
+}
+
 }  // namespace
 
 std::map<std::string, double> scalar_measures(const Field& field, const std::vector<Probe>& probes,
@@ -48,13 +61,13 @@ std::string unit_of(const std::string& measure) {
   const std::string kind = head(measure);
   if (kind == "force") return "N";
   if (kind == "torque") return "N m";
-  if (kind == "displacement" || kind == "section_distance") return "m";
+  if (kind == "displacement" || kind.starts_with("section_")) return "m";
   if (kind == "stress") return "Pa";
   return "1";
 }
 
 bool is_distance(const std::string& measure) {
-  return measure == "displacement_error" || measure == "displacement_error_max" || measure == "section_distance";
+  return measure == "displacement_error" || measure == "displacement_error_max" || measure.starts_with("section_");
 }
 
 bool wanted(const std::string& measure, const std::vector<std::string>& measures) {
@@ -76,20 +89,21 @@ double displacement_error_max(const NodalVectors& u, const NodalVectors& v) {
 }
 
 double section_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v) {
-  const Vec3 normal = section.normal.normalized();
-  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
   double sum = 0;
-  int count = 0;
-  for (int n = 0; n < mesh.nodes.rows(); ++n) {
-    if (std::abs(normal.dot(mesh.nodes.row(n).transpose() - section.point)) > 1e-6 * size) continue;
-    sum += (u.row(n) - v.row(n)).norm();
-    ++count;
+  const std::vector<int> nodes = nodes_on(section, mesh);
+  for (int n : nodes) sum += (u.row(n) - v.row(n)).norm();
+  return sum / static_cast<double>(nodes.size());
+}
+
+double section_axis_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v) {
+  const Vec3 normal = section.normal.normalized();
+  double sum = 0;
+  const std::vector<int> nodes = nodes_on(section, mesh);
+  for (int n : nodes) {
+    const Vec3 w = (u.row(n) - v.row(n)).transpose();
+    sum += (w - normal.dot(w) * normal).lpNorm<1>() / 2;
   }
-  if (count == 0)
-    throw InputError(fmt::format("section: the plane through ({:.6g}, {:.6g}, {:.6g}) m holds no node of the lattice; "
-                                 "put it on a layer of nodes",
-                                 section.point[0], section.point[1], section.point[2]));
-  return sum / count;
+  return sum / static_cast<double>(nodes.size());
 }
 
 NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points) {

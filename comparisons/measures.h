@@ -36,9 +36,14 @@ double displacement_error(const NodalVectors& u, const NodalVectors& v, const Ei
 /// max |u - v| / max |v| [1].
 double displacement_error_max(const NodalVectors& u, const NodalVectors& v);
 
-/// Mean |u - v| over the nodes of a plane [m]; Golec et al. (2019), sec. 6.2.
+/// Mean |u - v| over the nodes of a plane [m].
 /// @throws InputError if the plane holds no node of the mesh.
 double section_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v);
+
+/// Mean of (|dx| + |dy|) / 2, d the part of u - v in the plane (here z = const), over its nodes [m]: the difference per
+/// coordinate, which is what Golec et al. (2019), sec. 6.2, print.
+/// @throws InputError if the plane holds no node of the mesh.
+double section_axis_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v);
 
 /// Displacement of a hexahedral mesh at rest points, by trilinear interpolation, m x 3.
 /// @throws InputError naming the point that lies outside.

@@ -31,6 +31,7 @@ set(report_assets
     report_js=${report_dir}/report/shapes.js
     report_js=${report_dir}/report/pages.js
     report_js=${report_dir}/report/verification.js
+    report_js=${report_dir}/report/fem_column.js
     report_js=${report_dir}/report/report.js
     chart_js=${SPRINGPROOF_CHART_JS}
     three_js=${SPRINGPROOF_THREE_JS}

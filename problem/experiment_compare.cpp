@@ -122,8 +122,8 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
     const std::string measure = as_choice(item, measure_names());
     if (std::find(measures.begin(), measures.end(), measure) != measures.end())
       refuse(item, fmt::format("'{}' is named twice", measure), "each measure once");
-    if (measure == "section_distance" && !experiment.section)
-      refuse(item, "'section_distance' needs a plane", "with a [section] in the file");
+    if (measure.starts_with("section_") && !experiment.section)
+      refuse(item, fmt::format("'{}' needs a plane", measure), "with a [section] in the file");
     if ((measure == "probe" || measure == "stress") && experiment.probes.empty())
       refuse(item, fmt::format("'{}' needs points", measure), "with at least one [[probe]] in the file");
     if (measure == "displacement_error_order" && experiment.exact.empty())

@@ -41,6 +41,7 @@ struct Measure {
 
 constexpr Measure measures[] = {
     {"displacement_error", nullptr}, {"displacement_error_max", nullptr},    {"section_distance", nullptr},
+    {"section_axis_distance", nullptr},
     {"volume_change", nullptr},      {"volume_change_magnitude", nullptr},   {"volume_change_first_order", nullptr},
     {"reaction", reaction_rows},     {"probe", probe_rows},                  {"stress", stress_rows},
     {"displacement_error_order", nullptr},

@@ -9,9 +9,9 @@ namespace springproof {
 struct Experiment;
 
 /// Names allowed in [compare] measures: displacement_error, displacement_error_max, section_distance,
-/// volume_change, volume_change_magnitude (its absolute value, the papers' e), volume_change_first_order, reaction,
-/// probe, stress (finite elements only), displacement_error_order (observed, between the two finest grids; where the exact
-/// solution is known).
+/// section_axis_distance, volume_change, volume_change_magnitude (its absolute value, the papers' e),
+/// volume_change_first_order, reaction, probe, stress (finite elements only), displacement_error_order (observed, between
+/// the two finest grids; where the exact solution is known).
 std::vector<std::string> measure_names();
 
 /// Names of the rows that a measure gives for an experiment, as [[expect]] and [[published]] write them. Most

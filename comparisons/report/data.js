@@ -149,6 +149,7 @@ const measureNames = {
   volume_change_magnitude: 'size of the volume change',
   volume_change_first_order: 'volume change, first order',
   section_distance: 'mean distance on the section',
+  section_axis_distance: 'mean distance per coordinate on the section',
 };
 
 const measureMeanings = {
@@ -158,6 +159,7 @@ const measureMeanings = {
   volume_change_magnitude: '|V′ − V| / V, as the paper prints it; errors in percentage points',
   volume_change_first_order: 'integral of div u over V; errors in percentage points',
   section_distance: 'mean |u − u_fem| over the nodes of the section',
+  section_axis_distance: 'mean |u − u_fem| per coordinate in the section, (|Δx| + |Δy|)/2',
 };
 
 function measureText(measure) {

@@ -78,8 +78,9 @@ function start() {
   const compared = id => cases.some(result => result.id === id);
   const poisson = build('poisson', needsCases(poissonSection));
   const convergence = build('convergence', needsCases(convergenceSection));
-  const shapes = build('shapes', shapesSection);
+  const shapes = build('shapes', needsCases(shapesSection));
   build('verification', verificationSection);
+  build('fem-column', femColumnSection);
   build('pages', section => pagesSection(section, [
     {text: 'Error against ν', go: jumpTo('poisson', poisson), has: compared},
     {text: 'Convergence', go: jumpTo('convergence', convergence), has: compared},

@@ -23,6 +23,9 @@ TEST(Measures, DistancesAreWhatTheySay) {
   u(13, 1) = 0.4;
   EXPECT_NEAR(displacement_error_max(u, v), std::hypot(0.1, 0.4) / 0.5, 1e-14);
   EXPECT_THROW(section_distance(mesh, {{0, 0, 0.3}, {0, 0, 1}}, u, v), InputError);
+  u.col(1).setConstant(-0.3);
+  u.col(2).setConstant(7);
+  EXPECT_NEAR(section_axis_distance(mesh, {{0.5, 0.5, 0.5}, {0, 0, 2}}, u, v), (0.1 + 0.3) / 2, 1e-14);
 }
 
 TEST(Measures, InterpolationIsExactForTrilinearFields) {
