@@ -189,7 +189,7 @@ std::optional<Opinion> ask_fem(const Question& q) {
   const NodalVectors probes = points_of(q.experiment().probes);
   NodalVectors points(nodes.rows() + probes.rows(), 3);
   points << nodes, probes;
-  fem::Request request{q.experiment(), q.material, {}, points, 1e-8};
+  fem::Request request{q.experiment(), q.material, {}, points, NodalVectors(0, 3), 1e-8};
   for (const Cells& cells : three_grids(q.prepared.reference_cells)) {
     request.grids.emplace_back().cells = cells;  // Q2
     request.grids.back().grading = q.experiment().reference.grading;
