@@ -13,6 +13,7 @@ function recordOf(result, check) {
 }
 
 const elementNames = {q1: 'Q1 hexahedra', q2: 'Q2 hexahedra', p1: 'P1 tetrahedra', p2: 'P2 tetrahedra'};
+const elementCell = element => el('td', {title: elementNames[element]}, String(element).toUpperCase());
 const orderText = order => isNumber(order) ? minus(order.toFixed(2)) : 'none';
 const caseLink = result => el('a', {href: '#' + result.id}, el('b', {}, result.name));
 
@@ -27,15 +28,16 @@ function benchmarkRow(result, check, first) {
   return el('tr', {class: first ? 'group' : ''},
     el('td', {}, first ? caseLink(result) : ''),
     el('td', {class: 'measure'}, withUnit(measureText(measure), shown.unit)),
-    el('td', {}, nuText(check.poisson_ratio)), el('td', {}, elementNames[elementOf(result, check.model)] || check.model),
+    el('td', {}, nuText(check.poisson_ratio)), elementCell(elementOf(result, check.model)),
     [0, 1, 2].map(i => el('td', {class: 'number'}, record ? text(record.values[i]) : '–',
                           record ? el('small', {}, cellsText(record.cells[i])) : '')),
     el('td', {class: 'number'}, record ? orderText(record.observed_order) : '–'),
     el('td', {class: 'number'}, el('b', {}, text(check.computed)),
        record ? el('small', {}, '± ' + text(record.uncertainty, 2)) : ''),
-    el('td', {class: 'number'}, text(check.expected), el('small', {}, [check.source, check.where].filter(Boolean).join(', '))),
+    el('td', {class: 'number'}, text(check.expected)),
     el('td', {class: 'number'}, off === null ? '–' : signed(off, percent(off))),
-    el('td', {class: 'number'}, within), el('td', {}, verdictChip(check.verdict)));
+    el('td', {class: 'number'}, within), el('td', {}, verdictChip(check.verdict)),
+    el('td', {class: 'measure'}, [check.source, check.where].filter(Boolean).join(', ')));
 }
 
 function benchmarkPart() {
@@ -46,7 +48,7 @@ function benchmarkPart() {
     el('p', {class: 'note'}, 'Published or exact values beside the finite element limit: values on three grids, the observed ' +
        'order, the extrapolated limit with its uncertainty.'),
     table('benchmarks', ['case', 'quantity', 'ν', 'element', right('coarse'), right('medium'), right('fine'), right('order'),
-      right('limit'), right('target'), right('difference'), right('tolerance'), 'verdict'], rows)];
+      right('limit'), right('target'), right('difference'), right('tolerance'), 'verdict', 'source'], rows)];
 }
 
 // ---- orders
@@ -57,8 +59,7 @@ function orderRow(result, record) {
   const check = result.checks.find(c => c.at_least && c.measure === 'displacement_error_order' &&
     c.poisson_ratio === record.poisson_ratio && elementOf(result, c.model) === record.element);
   const coarse = Math.log2(record.values[0] / record.values[1]);
-  return tr(elementNames[record.element] || record.element, caseLink(result), result.experiment.body?.geo || '',
-    nuText(record.poisson_ratio),
+  return tr(elementCell(record.element), caseLink(result), nuText(record.poisson_ratio),
     record.values.map((error, i) => el('td', {class: 'number'}, number(error, 3), el('small', {}, cellsText(record.cells[i])))),
     el('td', {class: 'number'}, orderText(coarse)),
     el('td', {class: 'number'}, el('b', {}, orderText(record.observed_order))),
@@ -76,7 +77,7 @@ function orderPart() {
   return [el('h3', {}, 'Orders of convergence'),
     el('p', {class: 'note'}, 'Manufactured solutions: |u − u_exact| / |u_exact| in the L2 norm on three grids, each of half the ' +
        'cell size of the one before; the order is that of the two finest.'),
-    table('orders', ['element', 'case', 'body', 'ν', right('coarse'), right('medium'), right('fine'), right('order, coarse'),
+    table('orders', ['element', 'case', 'ν', right('coarse'), right('medium'), right('fine'), right('order, coarse'),
       right('order'), right('theory'), 'verdict'], records.map(({result, record}) => orderRow(result, record)))];
 }
 
