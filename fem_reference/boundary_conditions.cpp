@@ -83,7 +83,8 @@ void for_each_face(const dealii::DoFHandler<3>& dof_handler, const Body3& body, 
   const auto& fe = dof_handler.get_fe();
   dealii::FEFaceValues<3> values(
       *body.mapping, fe, face_quadrature(body, fe.degree + 1),
-      dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
+      dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points |
+          dealii::update_normal_vectors);
   for (const auto& cell : dof_handler.active_cell_iterators())
     for (const unsigned int f : cell->face_indices())
       if (cell->face(f)->at_boundary() && on_patch(body, patch, cell->face(f)->boundary_id())) {

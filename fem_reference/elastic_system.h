@@ -36,7 +36,7 @@ struct ElasticSystem {
 struct ElasticAnswer {
   DofVector internal_force;  ///< on every degree of freedom, the constrained ones too [N]
   int iterations = 0;
-  double residual = 0;  ///< |free part of load - internal force| / that of the start
+  double residual = 0;  ///< |free part of load - internal force| / forces at work (at the start, or reactions)
   bool converged = false;
   CellPressures pressure;   ///< of the mixed form, else empty
   double load_reached = 1;  ///< fraction of the load that internal_force balances

@@ -28,7 +28,8 @@ std::vector<Location> locate(const Body3& body, const NodalVectors& points);
 NodalVectors displacement_at(const std::vector<Location>& places, const dealii::DoFHandler<3>& dof_handler,
                              const DofVector& displacement);
 
-/// Cauchy stress at rest positions, the mean of the cells that meet there; without a law, of small strain.
+/// Cauchy stress at rest positions, extrapolated from the points where each cell knows it best, the mean of the cells
+/// that meet there; without a law, of small strain.
 Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std::optional<Law> law,
                    const ElasticAnswer& answer, const DofVector& displacement);
 
