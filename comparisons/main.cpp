@@ -73,6 +73,23 @@ int main(int argc, char** argv) try {
       "cross-check", "The same case by CalculiX and by our FEM reference, with both uncertainties");
   second_opinion.add_options(*cross_check_command);
 
+  std::string bench_of;
+  std::vector<std::string> bench_arguments = {"--bench"};
+  CLI::App* bench_command = app.add_subcommand("bench", "Measure the solvers: ratios of runs on this machine");
+  bench_command->add_option("WHAT", bench_of, "fem: the reference against assembled PETSc CG + GAMG")
+      ->required()
+      ->check(CLI::IsMember({"fem"}));
+  const auto pass_on = [&](const std::string& option, const std::string& value) {
+    bench_arguments.insert(bench_arguments.end(), {option, value});
+  };
+  bench_command->add_option_function<int>("--cells", [&](int n) { pass_on("--bench-cells", std::to_string(n)); },
+                                          "cells along the side of the cube, a multiple of 8 (default 24)")
+      ->check(CLI::Range(8, 96));
+  bench_command->add_option_function<std::string>("--json", [&](const std::string& f) { pass_on("--json", f); },
+                                                  "write the figures to this file too");
+  bench_command->add_flag_callback("--no-baseline", [&] { bench_arguments.push_back("--no-baseline"); },
+                                   "leave the assembled baseline out (some 3 GB at 24 cells)");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -80,6 +97,7 @@ int main(int argc, char** argv) try {
   }
   if (*compare_command) return compare(find_cases(names), options);
   if (*list_command) return list();
+  if (*bench_command) return fem::run_program(bench_arguments);
   if (*export_command) return export_case.run();
   if (*cross_check_command) return second_opinion.run();
   return material.run();

@@ -30,7 +30,7 @@ struct ElasticSystem {
   double mu, lambda;  ///< [Pa]
   double tolerance;   ///< relative residual
   bool wide_vectors;  ///< where the processor has them
-  bool plain_gamg = false;  ///< with matrices: no level of linear elements, as a baseline
+  bool plain_gamg;    ///< with matrices: no level of linear elements
 };
 
 struct ElasticAnswer {

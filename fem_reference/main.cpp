@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "fem_reference/bench.h"
 #include "fem_reference/element.h"
 #include "fem_reference/exchange.h"
 #include "fem_reference/solve_grid.h"
@@ -47,9 +48,10 @@ void mesh_into(GridProblem& problem, const Request& request, const Discretisatio
   problem.coarse = mesh_geo(geo, body.size, grid.cells, {.second_order = true});
 }
 
-Solution solve_one(const Request& request, const Discretisation& grid) {
+Solution solve_one(const Request& request, const Discretisation& grid, Method method) {
   const Experiment& experiment = request.experiment;
   GridProblem problem;
+  problem.method = method;
   mesh_into(problem, request, grid);
   problem.law = experiment.kinematics;
   problem.material = request.material;
@@ -62,11 +64,11 @@ Solution solve_one(const Request& request, const Discretisation& grid) {
   return solution;
 }
 
-std::vector<Solution> solve_all(const Request& request) {
+std::vector<Solution> solve_all(const Request& request, Method method = Method::automatic) {
   std::vector<Solution> solutions;
   for (const Discretisation& grid : request.grids) {
     try {
-      solutions.push_back(solve_one(request, grid));
+      solutions.push_back(solve_one(request, grid, method));
     } catch (const InputError&) {
       throw;
     } catch (const std::exception& e) {
@@ -116,6 +118,7 @@ struct Options {
   double poisson_ratio = std::numeric_limits<double>::quiet_NaN();
   Discretisation grid;
   double tolerance = 1e-9;
+  Method method = Method::automatic;
 };
 
 bool solve_case(const Options& options) {
@@ -139,7 +142,7 @@ bool solve_case(const Options& options) {
   for (const IsotropicMaterial& material : materials) {
     request.material = material;
     fmt::print("{}, Poisson's ratio {}: ", request.experiment.name, material.poisson_ratio);
-    for (const Solution& s : solve_all(request)) {
+    for (const Solution& s : solve_all(request, options.method)) {
       print(request, s);
       ok = ok && s.ok;
     }
@@ -168,18 +171,37 @@ int run(int argc, char** argv) {
   app.add_option("--tolerance", options.tolerance, "relative residual")
       ->check(CLI::Range(1e-14, 1e-1))
       ->capture_default_str();
+  const std::map<std::string, Method> methods = {
+      {"automatic", Method::automatic}, {"assembled", Method::assembled}, {"gamg", Method::assembled_gamg}};
+  app.add_option("--solver", options.method,
+                 "automatic: without a matrix where the cells can be refined, else assembled;\n"
+                 "assembled: matrices, a level of linear elements above algebraic multigrid;\n"
+                 "gamg: matrices, algebraic multigrid alone")
+      ->transform(CLI::CheckedTransformer(methods));
   app.add_option("--request", options.request, "a request file instead of a case (used by springproof)");
   app.add_option("--answer", options.answer, "where to write the answer to --request");
+  BenchOptions bench_options;
+  bool benchmark = false;
+  app.add_flag("--bench", benchmark, "measure the solvers against each other instead of solving a case");
+  app.add_option("--bench-cells", bench_options.cells, "cells along the side of the benchmark's cube, a multiple of 8")
+      ->check(CLI::Range(8, 96))
+      ->capture_default_str();
+  app.add_flag("!--no-baseline", bench_options.baseline, "leave the assembled baseline out (some 3 GB at 24 cells)");
+  app.add_option("--json", bench_options.json_file, "write the benchmark as JSON too");
   app.set_version_flag("--version", [] { return library_versions(); });
   try {
     app.parse(argc, argv);
-    if (options.request.empty() == options.case_file.empty() ||
-        options.request.empty() != options.answer.empty())
+    if (!benchmark && (options.request.empty() == options.case_file.empty() ||
+                       options.request.empty() != options.answer.empty()))
       throw CLI::RequiredError("a case, or --request with --answer,");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   try {
+    if (benchmark) {
+      bench(bench_options);
+      return 0;
+    }
     if (!options.request.empty()) {
       answer_request(options.request, options.answer);
       return 0;

@@ -81,8 +81,8 @@ class ChildSlot {
   std::atomic<pid_t>* slot_ = nullptr;
 };
 
-// The wait status of the program run with standard output and error written to files.
-int run_program(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& output,
+// The wait status of the program run with standard output and error written to files, if named.
+int wait_status_of(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& output,
                 const fs::path& errors) {
   std::vector<char*> argv = {const_cast<char*>(file.c_str())};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
@@ -92,10 +92,11 @@ int run_program(const fs::path& file, const std::vector<std::string>& arguments,
     throw std::runtime_error(fmt::format("cannot start {}: {}", file.string(), std::strerror(errno)));
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer of a caller that is gone
-    const int out = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    const int err = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    dup2(out, STDOUT_FILENO);
-    dup2(err, STDERR_FILENO);
+    const auto redirect = [](const fs::path& to, int stream) {
+      if (!to.empty()) dup2(open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), stream);
+    };
+    redirect(output, STDOUT_FILENO);
+    redirect(errors, STDERR_FILENO);
     execv(file.c_str(), argv.data());
     _exit(127);
   }
@@ -106,6 +107,15 @@ int run_program(const fs::path& file, const std::vector<std::string>& arguments,
   return status;
 }
 
+fs::path program_or_throw() {
+  const fs::path file = program();
+  if (file.empty())
+    throw std::runtime_error(
+        "the program springproof-fem is neither beside this one nor named by "
+        "SPRINGPROOF_FEM_PROGRAM");
+  return file;
+}
+
 std::string trimmed(std::string text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   return text;
@@ -114,15 +124,11 @@ std::string trimmed(std::string text) {
 }  // namespace
 
 std::vector<Solution> solve(const Request& request) {
-  const fs::path file = program();
-  if (file.empty())
-    throw std::runtime_error(
-        "the program springproof-fem is neither beside this one nor named by "
-        "SPRINGPROOF_FEM_PROGRAM");
+  const fs::path file = program_or_throw();
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.json", answer = folder.path / "answer.cbor";
   std::ofstream(question) << to_json(request);
-  const int status = run_program(file, {"--request", question.string(), "--answer", answer.string()},
+  const int status = wait_status_of(file, {"--request", question.string(), "--answer", answer.string()},
                                  folder.path / "output", folder.path / "errors");
   const std::string last_words = trimmed(read_file(folder.path / "errors"));
   if (WIFEXITED(status) && WEXITSTATUS(status) == exit_status_input_error) throw InputError(last_words);
@@ -134,6 +140,13 @@ std::vector<Solution> solve(const Request& request) {
         fmt::format("springproof-fem failed with status {}: {}", WEXITSTATUS(status), last_words));
   std::ifstream in(answer, std::ios::binary);
   return solutions_from_json(nlohmann::json::from_cbor(in));
+}
+
+int run_program(const std::vector<std::string>& arguments) {
+  const int status = wait_status_of(program_or_throw(), arguments, {}, {});
+  if (WIFSIGNALED(status))
+    throw std::runtime_error(fmt::format("springproof-fem was killed by signal {}", WTERMSIG(status)));
+  return WEXITSTATUS(status);
 }
 
 void interrupt() {
@@ -149,7 +162,7 @@ std::string version() {
   const fs::path file = program();
   if (file.empty()) return {};
   const TemporaryFolder folder;
-  const int status = run_program(file, {"--version"}, folder.path / "output", folder.path / "errors");
+  const int status = wait_status_of(file, {"--version"}, folder.path / "output", folder.path / "errors");
   return status == 0 ? trimmed(read_file(folder.path / "output")) : std::string();
 }
 

@@ -56,6 +56,10 @@ struct Solution {
 /// @throws std::runtime_error if the program cannot be run or is killed (with its last words).
 std::vector<Solution> solve(const Request& request);
 
+/// Runs the program with these arguments, its output on ours, and returns its exit status.
+/// @throws std::runtime_error if it is not there or is killed.
+int run_program(const std::vector<std::string>& arguments);
+
 /// Ends every solve() under way, which then throws; may be called in a signal handler.
 void interrupt();
 

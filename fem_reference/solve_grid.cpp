@@ -71,7 +71,7 @@ double peak_memory_MiB() {
 constexpr unsigned int largest_coarse_grid = 1000;  // cells
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
-  return !problem.assembled && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
+  return problem.method == Method::automatic && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
          body.triangulation.n_cells(0) <= largest_coarse_grid;
 }
 
@@ -94,7 +94,8 @@ struct Discrete {
                shear_modulus(problem.material),
                lame_lambda(problem.material),
                problem.tolerance,
-               problem.wide_vectors} {
+               problem.wide_vectors,
+               problem.method == Method::assembled_gamg} {
     check_held(held);
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
     if (dof_handler.has_level_dofs()) system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);

@@ -8,6 +8,12 @@
 
 namespace springproof::fem {
 
+enum class Method {
+  automatic,    ///< without a matrix where the cells have a hierarchy, else assembled
+  assembled,    ///< matrices; for quadratic elements a level of linear ones above algebraic multigrid
+  assembled_gamg  ///< matrices, algebraic multigrid alone: the usual way, and the baseline of the benchmarks
+};
+
 struct GridProblem {
   Mesh coarse;                             ///< cells of one kind, with named patches
   int refinements = 0;                     ///< each cell is cut into 8 this many times
@@ -20,7 +26,7 @@ struct GridProblem {
   NodalVectors points;       ///< rest positions at which the displacement is wanted, n x 3 [m]
   NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress
   double tolerance = 1e-9;   ///< relative residual
-  bool assembled = false;    ///< with matrices, even where multigrid without them is possible
+  Method method = Method::automatic;
   bool wide_vectors = true;  ///< use the wide vectors of the processor, where it has them
 };
 

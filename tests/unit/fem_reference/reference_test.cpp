@@ -38,7 +38,7 @@ fem::Request request(const std::string& patch = "z_max") {
   fem::Request request;
   request.experiment = parse_experiment(squeezed_cube(patch), "cube.toml");
   request.material = request.experiment.materials.front();
-  request.grids = {{{4, 4, 4}, 2, 1.0}, {{6, 6, 6}, 1, 1.5}};
+  request.grids = {{{4, 4, 4}, "q2", 1.0}, {{6, 6, 6}, "q1", 1.5}};
   request.points = Eigen::RowVector3d(1, 2, 3);
   return request;
 }

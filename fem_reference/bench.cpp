@@ -1,0 +1,151 @@
+#include "fem_reference/bench.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fem_reference/solve_grid.h"
+
+namespace springproof::fem {
+namespace {
+
+struct BenchRow {
+  std::string name;
+  int cells;
+  double poisson_ratio;
+  std::string element;
+  Method method;
+  bool finite = false;
+  // measured
+  bool ok = false;
+  long unknowns = 0;
+  int iterations = 0;
+  double seconds = 0, memory_MiB = 0, force = 0;
+  std::string form;
+};
+
+// A cube between clamped plates, compressed by 5 %: singular at the edges, as the experiments are.
+GridProblem compressed_cube(const BenchRow& row) {
+  GridProblem problem;
+  int coarse = row.cells;
+  const bool hierarchy = row.element[0] == 'q' && row.method == Method::automatic;
+  for (; hierarchy && coarse % 2 == 0 && coarse > 2; coarse /= 2) ++problem.refinements;
+  problem.coarse = block_mesh(Vec3::Constant(5), {coarse, coarse, coarse});
+  problem.degree = row.element[1] - '0';
+  problem.method = row.method;
+  problem.law = row.finite ? "hencky" : "linear";
+  problem.material = {1e4, row.poisson_ratio, 1000};
+  problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"z_max", {0.0, 0.0, -0.25}}};
+  problem.points = NodalVectors(0, 3);
+  problem.tolerance = 1e-8;
+  return problem;
+}
+
+// Each run in a process of its own, so that its memory is its own.
+void measure(BenchRow& row) {
+  fmt::print(stderr, "{}, {}^3 cells, nu = {} ...\n", row.name, row.cells, row.poisson_ratio);
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    nlohmann::json answer;
+    try {
+      const Solution s = solve_grid(compressed_cube(row));
+      answer = {{"ok", s.ok},           {"unknowns", s.degrees_of_freedom}, {"iterations", s.iterations},
+                {"seconds", s.seconds}, {"memory_MiB", s.memory_MiB},       {"form", s.form},
+                {"force", s.reactions.empty() ? 0.0 : s.reactions[0].force[2]}};
+    } catch (const std::exception& e) {
+      answer = {{"ok", false}, {"form", e.what()}};
+    }
+    const std::string text = answer.dump();
+    const auto written = write(ends[1], text.data(), text.size());
+    _exit(written == ssize_t(text.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string text;
+  char buffer[4096];
+  for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, n);
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  const nlohmann::json answer = nlohmann::json::parse(text, nullptr, false);
+  if (answer.is_discarded()) {
+    row.form = "ended early (out of memory?)";
+    return;
+  }
+  row.ok = answer.at("ok");
+  row.form = answer.at("form");
+  row.unknowns = answer.value("unknowns", 0L);
+  row.iterations = answer.value("iterations", 0);
+  row.seconds = answer.value("seconds", 0.0);
+  row.memory_MiB = answer.value("memory_MiB", 0.0);
+  row.force = answer.value("force", 0.0);
+}
+
+std::string seconds_per(const BenchRow& row, double per) {
+  return fmt::format("{:.2f}", row.unknowns > 0 ? row.seconds / double(row.unknowns) * per : 0.0);
+}
+
+nlohmann::json to_json(const BenchRow& row) {
+  return {{"name", row.name},
+          {"cells", row.cells},
+          {"poisson_ratio", row.poisson_ratio},
+          {"ok", row.ok},
+          {"form", row.form},
+          {"unknowns", row.unknowns},
+          {"iterations", row.iterations},
+          {"cpu_seconds", row.seconds},
+          {"memory_MiB", row.memory_MiB},
+          {"force_N", row.force}};
+}
+
+}  // namespace
+
+void bench(const BenchOptions& options) {
+  const int n = options.cells;
+  std::vector<BenchRow> rows = {{"Q2, a half of the cells", n / 2, 0.25, "q2", Method::automatic},
+                                {"Q2", n, 0.25, "q2", Method::automatic},
+                                {"Q2, 5/3 of the cells", n * 5 / 3 / 8 * 8, 0.25, "q2", Method::automatic},
+                                {"Q2, near 1/2", n, 0.4999, "q2", Method::automatic},
+                                {"Q2, finite strain", n / 2, 0.25, "q2", Method::automatic, true},
+                                {"Q2 assembled, p-multigrid", n, 0.25, "q2", Method::assembled}};
+  if (options.baseline) rows.push_back({"Q2 assembled, PETSc CG + GAMG", n, 0.25, "q2", Method::assembled_gamg});
+  for (BenchRow& row : rows) measure(row);
+
+  fmt::print("{}\n\n{:<30} {:>6} {:>7} {:>10} {:>5} {:>8} {:>10} {:>8} {:>12}\n", library_versions(), "run", "cells",
+             "nu", "unknowns", "iter.", "CPU s", "us/unknown", "MiB", "force [N]");
+  for (const BenchRow& row : rows)
+    fmt::print("{:<30} {:>4}^3 {:>7} {:>10} {:>5} {:>8.2f} {:>10} {:>8.0f} {:>12.4f}{}\n", row.name, row.cells,
+               row.poisson_ratio, row.unknowns, row.iterations, row.seconds, seconds_per(row, 1e6), row.memory_MiB,
+               row.force, row.ok ? "" : "  FAILED: " + row.form);
+
+  nlohmann::json ratios;
+  const auto ratio = [&](const std::string& what, double value, const std::string& wanted) {
+    fmt::print("{:<62} {:>7.2f}   {}\n", what, value, wanted);
+    ratios[what] = value;
+  };
+  fmt::print("\n");
+  const BenchRow &half = rows[0], &full = rows[1], &large = rows[2], &stiff = rows[3], &assembled = rows[5];
+  const double cost = full.seconds / double(full.unknowns);
+  ratio("cost per unknown, smallest over middle", half.seconds / double(half.unknowns) / cost, "flat: 1");
+  ratio("cost per unknown, largest over middle", large.seconds / double(large.unknowns) / cost, "flat: 1");
+  ratio("nu = 0.4999 over nu = 0.25", stiff.seconds / full.seconds, "at most 5");
+  ratio("assembled p-multigrid over matrix-free, time", assembled.seconds / full.seconds, "");
+  if (options.baseline) {
+    const BenchRow& baseline = rows[6];
+    ratio("assembled PETSc CG + GAMG over matrix-free, time", baseline.seconds / full.seconds, "at least 15");
+    ratio("matrix-free over assembled PETSc CG + GAMG, memory", full.memory_MiB / baseline.memory_MiB, "at most 0.25");
+    ratio("assembled PETSc CG + GAMG over assembled p-multigrid, time", baseline.seconds / assembled.seconds, "");
+  }
+  if (options.json_file.empty()) return;
+  nlohmann::json all = {{"library", library_versions()}, {"ratios", ratios}};
+  for (const BenchRow& row : rows) all["rows"].push_back(to_json(row));
+  std::ofstream out(options.json_file);
+  out << all.dump(2) << "\n";
+  if (!out.flush()) throw std::runtime_error("cannot write " + options.json_file);
+}
+
+}  // namespace springproof::fem
