@@ -145,10 +145,12 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
   const double largest_displacement = e.grids[2].displacement.rowwise().norm().maxCoeff();
+  const Experiment& experiment = prepared.experiment;
   std::map<std::string, ReferenceValue> limits;
   for (const auto& [measure, fine] : values[2])
     limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
-                                  noise_of(measure, values[2], prepared.experiment.body.size.norm(), largest_displacement));
+                                  noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
+                                  trusted_order(measure, e.element, experiment.reference.smooth));
   return limits;
 }
 

@@ -7,20 +7,20 @@
 namespace springproof {
 namespace {
 
-constexpr double lowest_order = 0.5, highest_order = 2, suspicious_order = 2.5;
+constexpr double lowest_order = 0.5;
 
 /// What f3 - f2 is multiplied by for the step to the limit, and for the uncertainty.
 struct Factors {
   double limit, uncertainty;
 };
 
-Factors factors(double order) {
-  const double limit = 1 / (std::pow(2.0, std::min(order, highest_order)) - 1);
-  return {limit, safety_factor * (order > suspicious_order ? 1 : limit)};
+Factors factors(double order, const TrustedOrder& trusted) {
+  const double limit = 1 / (std::pow(2.0, std::min(order, trusted.highest)) - 1);
+  return {limit, safety_factor * (order > trusted.suspicious ? 1 : limit)};
 }
 
-const char* note(double order) {
-  return order > suspicious_order ? "Richardson; order too high to be trusted, full last difference" : "Richardson, GCI";
+const char* note(double order, const TrustedOrder& trusted) {
+  return order > trusted.suspicious ? "Richardson; order too high to be trusted, full last difference" : "Richardson, GCI";
 }
 
 }  // namespace
@@ -29,7 +29,15 @@ double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) {
   return std::sqrt((u.rowwise().squaredNorm().array() * weights.array()).sum() / weights.sum());
 }
 
-ReferenceValue extrapolate(const std::vector<double>& values, double noise) {
+TrustedOrder trusted_order(const std::string& measure, const std::string& element, bool smooth) {
+  if (!smooth) return {};
+  const double degree = element.back() - '0', suspicious = 2 * degree + 0.5;
+  if (measure.starts_with("displacement.")) return {degree + 1, suspicious};
+  if (measure.starts_with("stress.")) return {degree, suspicious};
+  return {};
+}
+
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted) {
   if (values.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const double f1 = values[values.size() - 3], f2 = values[values.size() - 2], f3 = values.back();
   const double coarse = f2 - f1, fine = f3 - f2;
@@ -39,8 +47,8 @@ ReferenceValue extrapolate(const std::vector<double>& values, double noise) {
     const double spread = std::max({f1, f2, f3}) - std::min({f1, f2, f3});
     return {f3, safety_factor * spread + noise, {}, "not converging monotonically: finest grid, spread of the three"};
   }
-  const Factors by = factors(order);
-  return {f3 + by.limit * fine, by.uncertainty * std::abs(fine) + noise, order, note(order)};
+  const Factors by = factors(order, trusted);
+  return {f3 + by.limit * fine, by.uncertainty * std::abs(fine) + noise, order, note(order, trusted)};
 }
 
 ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights) {
@@ -55,8 +63,8 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   if (std::max(coarse, fine) <= noise) return result(0, 0, {}, "equal on all grids to solver accuracy");
   const double order = std::log2(coarse / fine);
   if (order < lowest_order) return result(0, safety_factor * std::max(coarse, fine) / fine, {}, "not converging: finest grid, largest difference");
-  const Factors by = factors(order);
-  return result(by.limit, by.uncertainty, order, note(order));
+  const Factors by = factors(order, {});
+  return result(by.limit, by.uncertainty, order, note(order, {}));
 }
 
 }  // namespace springproof

@@ -19,12 +19,22 @@ struct ReferenceValue {
 
 inline constexpr double safety_factor = 1.25;   ///< Fs for three grids (Roache)
 
+/// What is believed of the order that a sequence shows.  By default that of a body with clamped edges, which keep the
+/// true order low whatever a sequence shows.
+struct TrustedOrder {
+  double highest = 2;       ///< a higher one is taken as this
+  double suspicious = 2.5;  ///< beyond it two grids are likely to agree by accident
+};
+
+/// Orders of a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution displacements converge with
+/// degree + 1 and stresses with degree, at nodes with up to 2 degree; all else as with clamped edges.
+TrustedOrder trusted_order(const std::string& measure, const std::string& element, bool smooth);
+
 /// Limit of a quantity computed on grids of cell sizes h, h/2, h/4 (coarse to fine; the last three of more).
 /// Monotone with an order p of 1/2 or more: Richardson extrapolation, uncertainty Fs |f3 - f2| / (2^p - 1), p taken as
-/// at most 2, since clamped edges keep the true order there whatever a sequence shows; where it shows more than 2.5,
-/// accidental cancellation is likely and the uncertainty is Fs |f3 - f2|.
+/// at most `trusted.highest`; where it shows more than `trusted.suspicious` the uncertainty is Fs |f3 - f2|.
 /// Otherwise the finest value, uncertainty Fs times the spread.  `noise`: round-off of the values.
-ReferenceValue extrapolate(const std::vector<double>& values, double noise);
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted = {});
 
 /// The same for a displacement field sampled at the same points on three grids: order and uncertainty from weighted L2
 /// norms of the differences; `uncertainty` is relative to the limit's norm.

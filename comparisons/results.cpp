@@ -228,7 +228,10 @@ Json json_of(const Experiment& e) {
           {"probes", list(e.probes)},
           {"section", e.section ? json_of(*e.section) : Json(nullptr)},
           {"reference",
-           {{"cells", e.reference.cells}, {"elements", e.reference.elements}, {"grading", e.reference.grading}}},
+           {{"cells", e.reference.cells},
+            {"elements", e.reference.elements},
+            {"grading", e.reference.grading},
+            {"smooth", e.reference.smooth}}},
           {"exact", e.exact},
           {"text", e.text}};
 }

@@ -42,7 +42,8 @@ constexpr Key probe_schema[] = {{"name", Presence::required, "a name"},
                                 {"at_m", Presence::required, "[x, y, z], a rest position"}};
 constexpr Key reference_schema[] = {{"cells", Presence::optional, ""},
                                     {"elements", Presence::optional, ""},
-                                    {"grading", Presence::optional, ""}};
+                                    {"grading", Presence::optional, ""},
+                                    {"smooth", Presence::optional, ""}};
 
 /// A modulus of the file and where it goes.
 struct ModulusKey {
@@ -157,6 +158,7 @@ ReferenceChoice read_reference(const TomlValue& value) {
   }
   if (const auto grading = table.find("grading"))
     reference.grading = as_number(*grading, {"a number from 1 to 3", 1, 3, true, true});
+  if (const auto smooth = table.find("smooth")) reference.smooth = as_flag(*smooth);
   return reference;
 }
 

@@ -195,6 +195,7 @@ std::string to_toml(const Experiment& experiment) {
   if (experiment.reference.cells[0] > 0) out.line("cells", row(experiment.reference.cells));
   out.line("elements", list_of(experiment.reference.elements));
   out.line("grading", number(experiment.reference.grading));
+  if (experiment.reference.smooth) out.line("smooth", "true");
   for (const Expectation& expect : experiment.expectations) write_expectation(expect, out);
   for (const PublishedValue& printed : experiment.published) write_published(printed, out);
   return out.take();

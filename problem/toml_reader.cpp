@@ -76,6 +76,12 @@ std::string as_text(const TomlValue& value) {
   return text->get();
 }
 
+bool as_flag(const TomlValue& value) {
+  const auto* flag = value.node->as_boolean();
+  if (!flag) wrong_type(value, "true or false");
+  return flag->get();
+}
+
 std::string as_choice(const TomlValue& value, const std::vector<std::string>& names) {
   const std::string allowed = fmt::format("{}", fmt::join(names, ", "));
   if (!value.node->is_string()) wrong_type(value, allowed);

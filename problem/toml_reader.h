@@ -55,6 +55,7 @@ struct Key {
 SourceLocation location_of(const TomlValue& value);
 
 double as_number(const TomlValue& value, const Range& range = any_number);
+bool as_flag(const TomlValue& value);
 std::string as_text(const TomlValue& value);  ///< not empty
 std::string as_choice(const TomlValue& value, const std::vector<std::string>& names);
 std::vector<TomlValue> as_list(const TomlValue& value, const std::string& words);  ///< not empty

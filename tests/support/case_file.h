@@ -93,6 +93,7 @@ at_m = [2.4, 0.2, 0.2]
 cells = [96, 16, 16]
 elements = ["p2", "q1", "q2"]
 grading = 1
+smooth = true
 
 [[expect]]
 model = "hybmss A=1 paper_e_form"
@@ -246,6 +247,7 @@ inline void expect_same(const Experiment& a, const Experiment& b) {
   EXPECT_EQ(a.reference.cells, b.reference.cells);
   EXPECT_EQ(a.reference.elements, b.reference.elements);
   EXPECT_EQ(a.reference.grading, b.reference.grading);
+  EXPECT_EQ(a.reference.smooth, b.reference.smooth);
   ASSERT_EQ(a.expectations.size(), b.expectations.size());
   for (std::size_t i = 0; i < a.expectations.size(); ++i) {
     const Expectation &p = a.expectations[i], &q = b.expectations[i];

@@ -76,6 +76,17 @@ TEST(ReferenceGrids, StressesOfTheProbesHaveLimits) {
   EXPECT_THROW(find(records, "displacement_error_order"), std::out_of_range);
 }
 
+TEST(ReferenceGrids, SmoothnessIsTheCasesWord) {
+  PreparedCase prepared = prepared_block("");
+  const auto uncertainty = [&](const std::string& measure) {
+    return find(records_of(prepared, prepared.experiment.materials[0], grids_of_order(prepared, 2)), measure).uncertainty;
+  };
+  const double u = uncertainty("displacement.D.x"), stress = uncertainty("stress.D.yy");
+  prepared.experiment.reference.smooth = true;
+  EXPECT_NEAR(uncertainty("displacement.D.x"), u, 1e-9 * u);  // P1: order 2 either way
+  EXPECT_NEAR(uncertainty("stress.D.yy"), 3 * stress, 1e-4 * stress);  // but order 1 for stresses
+}
+
 TEST(ReferenceGrids, RowsStandBesideWhatIsExpectedOfTheElement) {
   PreparedCase prepared = prepared_block("trigonometric");
   prepared.experiment.models.clear();

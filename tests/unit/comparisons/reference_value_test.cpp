@@ -34,6 +34,30 @@ TEST(ReferenceValue, DoesNotTrustHighOrders) {
   EXPECT_NEAR(extrapolate(sequence(1, 0.1, 2.3), 0).uncertainty, 1.25 * fine / 3, 1e-12);
 }
 
+TEST(ReferenceValue, TrustsTheElementsOrderInASmoothSolution) {
+  const auto fine = [](double order) { return 0.1 * (std::pow(2, -order) - std::pow(4, -order)); };
+  const auto uncertainty = [](double order, const std::string& measure, const std::string& element) {
+    return extrapolate(sequence(1, 0.1, order), 0, trusted_order(measure, element, true)).uncertainty;
+  };
+  const std::string u = "displacement.tip.x", stress = "stress.tip.xx";
+  EXPECT_NEAR(uncertainty(3, u, "q2"), 1.25 * 0.1 / 64, 1e-12);
+  EXPECT_NEAR(uncertainty(4, u, "q2"), 1.25 * fine(4) / 7, 1e-12);       // at nodes: not believed, yet not suspicious
+  EXPECT_NEAR(uncertainty(4.6, u, "q2"), 1.25 * fine(4.6), 1e-12);
+  EXPECT_NEAR(uncertainty(3, stress, "p2"), 1.25 * fine(3) / 3, 1e-12);
+  EXPECT_NEAR(uncertainty(2, u, "p1"), 1.25 * 0.1 / 16, 1e-12);
+  EXPECT_NEAR(uncertainty(2, stress, "q1"), 1.25 * fine(2), 1e-12);
+  EXPECT_NEAR(uncertainty(2.6, u, "q1"), 1.25 * fine(2.6), 1e-12);
+  EXPECT_NEAR(uncertainty(3, "volume_change", "q2"), 1.25 * fine(3), 1e-12);
+}
+
+TEST(ReferenceValue, SmoothnessMustBeStated) {
+  for (const char* measure : {"displacement.tip.x", "stress.tip.xx", "volume_change"}) {
+    const TrustedOrder trusted = trusted_order(measure, "q2", false);
+    EXPECT_EQ(trusted.highest, 2);
+    EXPECT_EQ(trusted.suspicious, 2.5);
+  }
+}
+
 TEST(ReferenceValue, SlowConvergenceIsNotExtrapolated) {
   const ReferenceValue v = extrapolate(sequence(1, 0.1, 0.2), 0);
   EXPECT_FALSE(v.observed_order);

@@ -270,6 +270,7 @@ const Mistake mistakes[] = {
      "grading = 1",
      "grading = 0.9",
      {"reference.grading: is 0.9 (allowed: a number from 1 to 3)"}},
+    {"SmoothIsNoFlag", full_case, "smooth = true", "smooth = 1", {"reference.smooth: is ", "true or false"}},
     {"GradingIsLarge", full_case, "grading = 1", "grading = 3.1", {"reference.grading: is 3.1"}},
     {"ElementIsUnknown",
      full_case,

@@ -40,6 +40,7 @@ TEST(Experiment, SmallestCaseHasTheDefaults) {
   EXPECT_EQ(e.reference.cells, (Cells{0, 0, 0}));
   EXPECT_EQ(e.reference.elements, (std::vector<std::string>{"q2"}));
   EXPECT_EQ(e.reference.grading, 1.5);
+  EXPECT_FALSE(e.reference.smooth);
   EXPECT_EQ(e.exact, "");
   EXPECT_FALSE(e.section);
   EXPECT_TRUE(e.probes.empty() && e.expectations.empty() && e.published.empty());
@@ -104,6 +105,7 @@ TEST(Experiment, EveryPartOfAFullCase) {
   EXPECT_EQ(e.section->normal, Vec3(0, -1, 0));
   EXPECT_EQ(e.reference.cells, (Cells{96, 16, 16}));
   EXPECT_EQ(e.reference.grading, 1.0);
+  EXPECT_TRUE(e.reference.smooth);
   EXPECT_EQ(e.reference.elements, (std::vector<std::string>{"p2", "q1", "q2"}));
 
   ASSERT_EQ(e.expectations.size(), 4u);
