@@ -14,6 +14,7 @@
 #include "fem_reference/cell_equations.h"
 #include "fem_reference/linear.h"
 #include "fem_reference/newton.h"
+#include "fem_reference/processes.h"
 
 namespace springproof::fem::assembled {
 namespace {
@@ -439,7 +440,7 @@ CellPressures AssembledOperator::pressures(const MixedVector& x) const {
 }
 
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
-  start_petsc();
+  start_mpi();
   ElasticAnswer answer =
       solve_linear(AssembledOperator(system, std::nullopt), system, load, displacement);
   answer.method = system.form == Form::mixed ? "MINRES, algebraic multigrid" : "CG, algebraic multigrid";
@@ -448,7 +449,7 @@ ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVecto
 
 FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
                    DofVector& displacement) {
-  start_petsc();
+  start_mpi();
   AssembledOperator K(system, problem.law);
   FiniteAnswer answer = Newton<AssembledOperator>(K, system, problem, load).solve(displacement);
   answer.method = "Newton, GMRES, algebraic multigrid";

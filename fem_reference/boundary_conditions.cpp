@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
 #include "problem/exact_field.h"
 #include "problem/experiment.h"
@@ -40,13 +41,21 @@ bool lives_on_face(const dealii::FiniteElement<3>& fe, unsigned int i, unsigned 
   return std::abs(away[face]) < 1e-10;
 }
 
+bool is_known(const dealii::DoFHandler<3>::active_cell_iterator& cell) {
+  return !cell->is_artificial();
+}
+bool is_known(const dealii::DoFHandler<3>::level_cell_iterator& cell) {
+  return !cell->is_artificial_on_level();
+}
+
 // Calls visit(cell, load, i, component, X) for every prescribed shape function i of a cell, active or of a
 // level.
 template <typename Cells, typename Visit>
 void for_each_prescribed(const Cells& cells, const Body3& body, const std::vector<Load>& loads,
                          const Visit& visit) {
   const auto by_id = prescribing_loads(body, loads);
-  for (const auto& cell : cells)
+  for (const auto& cell : cells) {
+    if (!is_known(cell)) continue;
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->face(f)->at_boundary()) continue;
       const auto found = by_id.find(cell->face(f)->boundary_id());
@@ -61,6 +70,7 @@ void for_each_prescribed(const Cells& cells, const Body3& body, const std::vecto
             visit(cell, l, i, component, X);
       }
     }
+  }
 }
 
 // Integrates force(q) against the shape functions of one cell or face.
@@ -76,7 +86,7 @@ void add_integral(const Values& values, const Cell& cell, const Force& force, Do
   }
 }
 
-// Calls visit(cell, face_values) on every face of a patch.
+// Calls visit(cell, face_values) on every face of a patch that belongs to this process.
 template <typename Visit>
 void for_each_face(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
                    const Visit& visit) {
@@ -85,12 +95,14 @@ void for_each_face(const dealii::DoFHandler<3>& dof_handler, const Body3& body, 
       *body.mapping, fe, face_quadrature(body, fe.degree + 1),
       dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points |
           dealii::update_normal_vectors);
-  for (const auto& cell : dof_handler.active_cell_iterators())
+  for (const auto& cell : dof_handler.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
     for (const unsigned int f : cell->face_indices())
       if (cell->face(f)->at_boundary() && on_patch(body, patch, cell->face(f)->boundary_id())) {
         values.reinit(cell, f);
         visit(cell, values);
       }
+  }
 }
 
 struct PatchGeometry {
@@ -107,6 +119,9 @@ PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Bod
       geometry.centroid += values.JxW(q) * vec(values.quadrature_point(q));
     }
   });
+  const MPI_Comm comm = dof_handler.get_communicator();
+  geometry.area = dealii::Utilities::MPI::sum(geometry.area, comm);
+  sum_over_processes(geometry.centroid, comm);
   if (geometry.area > 0) geometry.centroid /= geometry.area;
   return geometry;
 }
@@ -129,6 +144,7 @@ void add_body_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
       *body.mapping, dof_handler.get_fe(), cell_quadrature(body, quadrature_points),
       dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
   for (const auto& cell : dof_handler.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
     values.reinit(cell);
     add_integral(values, cell, [&](unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
   }
@@ -137,6 +153,7 @@ void add_body_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
 void add_point_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const PointForce& point,
                      DofVector& load) {
   const Location place = locate(body, point.at.transpose()).front();
+  if (!place.answers) return;
   const auto& fe = dof_handler.get_fe();
   const auto dofs = dofs_at(place, dof_handler);
   for (unsigned int i = 0; i < dofs.size(); ++i)
@@ -162,24 +179,24 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
                                    const std::vector<Load>& loads) {
   std::map<unsigned int, Prescribed> by_dof;
   std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
-  const double size = dealii::GridTools::diameter(body.triangulation);
+  const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
+  const double size = low.distance(high);
   const auto value = [&](const Prescribed& p) {
     return *prescribed_displacement(loads[p.load], p.X, Kinematics::linear)[p.component];
   };
-  for_each_prescribed(dof_handler.active_cell_iterators(), body, loads,
-                      [&](const auto& cell, int l, unsigned int i, int component, const Vec3& X) {
-                        cell->get_dof_indices(dofs);
-                        const Prescribed p{unsigned(dofs[i]), component, l, X};
-                        const auto [at, is_new] = by_dof.try_emplace(p.dof, p);
-                        Prescribed& first = at->second;
-                        if (std::abs(value(p) - value(first)) > 1e-9 * size)
-                          throw InputError(fmt::format(
-                              "patches \"{}\" and \"{}\" prescribe different {}-displacements, {:.6g} m "
-                              "and {:.6g} m, at ({:.6g}, {:.6g}, {:.6g})",
-                              *patch_of(loads[first.load]), *patch_of(loads[l]), "xyz"[component],
-                              value(first), value(p), X[0], X[1], X[2]));
-                        first.load = std::min(first.load, l);
-                      });
+  const auto add = [&](const auto& cell, int l, unsigned int i, int component, const Vec3& X) {
+    cell->get_dof_indices(dofs);
+    const Prescribed p{unsigned(dofs[i]), component, l, X};
+    const auto [at, is_new] = by_dof.try_emplace(p.dof, p);
+    Prescribed& first = at->second;
+    if (std::abs(value(p) - value(first)) > 1e-9 * size)
+      throw InputError(fmt::format("patches \"{}\" and \"{}\" prescribe different {}-displacements, {:.6g} m "
+                                   "and {:.6g} m, at ({:.6g}, {:.6g}, {:.6g})",
+                                   *patch_of(loads[first.load]), *patch_of(loads[l]), "xyz"[component], value(first),
+                                   value(p), X[0], X[1], X[2]));
+    first.load = std::min(first.load, l);
+  };
+  together([&] { for_each_prescribed(dof_handler.active_cell_iterators(), body, loads, add); });
   std::vector<Prescribed> all;
   for (const auto& [dof, p] : by_dof) all.push_back(p);
   return all;
@@ -189,13 +206,14 @@ std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& 
                                                    const Body3& body, const std::vector<Load>& loads) {
   std::vector<dealii::IndexSet> sets;
   std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
-  for (unsigned int level = 0; level < dof_handler.get_triangulation().n_levels(); ++level) {
+  for (unsigned int level = 0; level < dof_handler.get_triangulation().n_global_levels(); ++level) {
     std::set<dealii::types::global_dof_index> found;
-    for_each_prescribed(dof_handler.mg_cell_iterators_on_level(level), body, loads,
-                        [&](const auto& cell, int, unsigned int i, int, const Vec3&) {
-                          cell->get_mg_dof_indices(dofs);
-                          found.insert(dofs[i]);
-                        });
+    const auto add = [&](const auto& cell, int, unsigned int i, int, const Vec3&) {
+      cell->get_mg_dof_indices(dofs);
+      found.insert(dofs[i]);
+    };
+    if (level < dof_handler.get_triangulation().n_levels())
+      for_each_prescribed(dof_handler.mg_cell_iterators_on_level(level), body, loads, add);
     dealii::IndexSet set(dof_handler.n_dofs(level));
     set.add_indices(found.begin(), found.end());
     set.compress();
@@ -204,13 +222,18 @@ std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& 
   return sets;
 }
 
-void check_held(const std::vector<Prescribed>& prescribed) {
+void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm) {
   const char* help = "prescribe displacement on more patches or components";
-  if (prescribed.empty()) throw InputError(fmt::format("the body is not held anywhere: {}", help));
-  Vec3 low = prescribed.front().X, high = low;
+  const auto count = dealii::Utilities::MPI::sum(double(prescribed.size()), comm);
+  if (count == 0) throw InputError(fmt::format("the body is not held anywhere: {}", help));
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Prescribed& p : prescribed) {
     low = low.cwiseMin(p.X);
     high = high.cwiseMax(p.X);
+  }
+  for (int c = 0; c < 3; ++c) {
+    low[c] = dealii::Utilities::MPI::min(low[c], comm);
+    high[c] = dealii::Utilities::MPI::max(high[c], comm);
   }
   const Vec3 middle = (low + high) / 2;
   const double length = std::max((high - low).norm() / 2, 1e-300);
@@ -220,8 +243,9 @@ void check_held(const std::vector<Prescribed>& prescribed) {
     Eigen::Matrix<double, 6, 1> row = Eigen::Matrix<double, 6, 1>::Zero();
     row[p.component] = 1;
     for (int k = 0; k < 3; ++k) row[3 + k] = Vec3::Unit(k).cross((p.X - middle) / length)[p.component];
-    gram += row * row.transpose() / double(prescribed.size());
+    gram += row * row.transpose() / count;
   }
+  sum_over_processes(gram, comm);
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(gram);
   if (eigen.eigenvalues()[0] > 1e-10) return;
   const auto free = eigen.eigenvectors().col(0);
@@ -234,7 +258,7 @@ void check_held(const std::vector<Prescribed>& prescribed) {
 DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                       const std::vector<Load>& loads, const IsotropicMaterial& material,
                       const std::function<Vec3(const Vec3&)>& body_force) {
-  DofVector load(dof_handler.n_dofs());
+  DofVector load = zero_vector(dof_handler);
   const unsigned int points = dof_handler.get_fe().degree + 1;
   for (const Load& l : loads) {
     if (const auto* traction = std::get_if<Traction>(&l))
@@ -257,6 +281,7 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
     if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, body, *point, load);
   }
   if (body_force) add_body_force(dof_handler, body, std::min(points + 2, 4u), body_force, load);
+  load.compress(dealii::VectorOperation::add);
   return load;
 }
 
@@ -285,6 +310,10 @@ std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, c
     if (arm)
       for (int c = 0; c < 3; ++c) x[c] += (*arm)[p.dof - p.component + c];
     all[r].torque += (x - centroids[r]).cross(force);
+  }
+  for (PatchReaction& r : all) {
+    sum_over_processes(r.force, dof_handler.get_communicator());
+    sum_over_processes(r.torque, dof_handler.get_communicator());
   }
   return all;
 }

@@ -25,17 +25,18 @@ struct Prescribed {
 /// @throws InputError naming the load's patch and those there are.
 void check_patches(const Body3& body, const std::vector<Load>& loads);
 
-/// Ascending in dof.
+/// On the cells of this process and around them; ascending in dof.
 /// @throws InputError if two loads prescribe different values.
 std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                                    const std::vector<Load>& loads);
 
-/// Prescribed degrees of freedom of every multigrid level.
+/// The same on every multigrid level.
 std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& dof_handler,
                                                    const Body3& body, const std::vector<Load>& loads);
 
+/// `prescribed` is what this process owns, as for reactions().
 /// @throws InputError with the motion that is left if the body can move or turn as a whole.
-void check_held(const std::vector<Prescribed>& prescribed);
+void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm);
 
 /// Traction, patch forces, gravity, point forces and a body force [N] on every degree of freedom.
 DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <deal.II/base/index_set.h>
+#include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <functional>
@@ -17,13 +19,29 @@ namespace springproof::fem {
 
 using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
-/// The pressure in each active cell as a + b.xi, xi in the reference cell: (a, b_1, b_2, b_3) [Pa].
+/// Zero on every degree of freedom, with room for those of other processes on the cells of this one and around them.
+inline DofVector zero_vector(const dealii::DoFHandler<3>& dof_handler) {
+  dealii::IndexSet relevant;
+  dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+  return DofVector(dof_handler.locally_owned_dofs(), relevant, dof_handler.get_communicator());
+}
+
+/// Of an Eigen matrix, entry by entry, on every process.
+template <typename Matrix>
+void sum_over_processes(Matrix& m, MPI_Comm comm) {
+  const dealii::ArrayView<double> values(m.data(), m.size());
+  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(values), comm, values);
+}
+
+/// The pressure in each active cell as a + b.xi, xi in the reference cell: (a, b_1, b_2, b_3) [Pa];
+/// zero in the cells of other processes.
 using CellPressures = std::vector<std::array<double, 4>>;
 
 struct ElasticSystem {
   const Body3& body;
   const dealii::DoFHandler<3>& dof_handler;         ///< with level degrees of freedom, if solved without a matrix
-  std::vector<unsigned int> constrained;            ///< degrees of freedom with prescribed value
+  std::vector<unsigned int> constrained;            ///< degrees of freedom with prescribed value, on the cells of this process
+                                                    ///  and around them
   std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level; empty: solved with a matrix
   int degree;
   Form form;

@@ -43,7 +43,7 @@ class FiniteOperator {
     double smallest = std::numeric_limits<double>::infinity();
     loop(f, x,
          [&](Cell& u, unsigned int batch, const Coefficients& p) { return evaluate(u, batch, p, smallest); });
-    return smallest;
+    return dealii::Utilities::MPI::min(smallest, base_.cells().get_dof_handler().get_communicator());
   }
 
   /// Tangent times x, on all degrees of freedom.

@@ -8,6 +8,7 @@
 #include "fem_reference/bench.h"
 #include "fem_reference/element.h"
 #include "fem_reference/exchange.h"
+#include "fem_reference/processes.h"
 #include "fem_reference/solve_grid.h"
 #include "meshes/gmsh_io.h"
 
@@ -72,6 +73,7 @@ std::vector<Solution> solve_all(const Request& request, Method method = Method::
     } catch (const InputError&) {
       throw;
     } catch (const std::exception& e) {
+      if (!all_failed()) throw;
       Solution failed;
       failed.grid = grid;
       failed.law = request.experiment.kinematics;
@@ -85,12 +87,15 @@ std::vector<Solution> solve_all(const Request& request, Method method = Method::
 void answer_request(const std::string& request_file, const std::string& answer_file) {
   std::ifstream in(request_file);
   const std::vector<Solution> solutions = solve_all(request_from_json(nlohmann::json::parse(in)));
-  std::ofstream out(answer_file, std::ios::binary);
-  nlohmann::json::to_cbor(to_json(solutions), out);
-  if (!out.flush()) throw std::runtime_error("cannot write " + answer_file);
+  together([&] {
+    if (process_rank() > 0) return;
+    std::ofstream out(answer_file, std::ios::binary);
+    nlohmann::json::to_cbor(to_json(solutions), out);
+    if (!out.flush()) throw std::runtime_error("cannot write " + answer_file);
+  });
 }
 
-void print(const Request& request, const Solution& s) {
+void print(const Request& request, const Solution& s, int digits) {
   const auto& [nx, ny, nz] = s.grid.cells;
   fmt::print("{} x {} x {} cells, grading {}, {} degrees of freedom\n", nx, ny, nz, s.grid.grading,
              s.degrees_of_freedom);
@@ -98,18 +103,19 @@ void print(const Request& request, const Solution& s) {
   if (!s.ok) fmt::print("  FAILED                {}\n", s.message);
   fmt::print("  solver                {} iterations, relative residual {:.1e}, {:.2f} CPU s, {:.0f} MiB\n",
              s.iterations, s.residual, s.seconds, s.memory_MiB);
-  fmt::print("  volume change         {:.9g} (first order {:.9g}), smallest det F {:.6g}\n", s.volume_change,
-             s.volume_change_first_order, s.min_jacobian);
+  const auto number = [&](double x) { return fmt::format("{:.{}g}", x, digits); };
+  const auto vector = [&](const auto& v) { return fmt::format("{} {} {}", number(v[0]), number(v[1]), number(v[2])); };
+  fmt::print("  volume change         {} (first order {}), smallest det F {:.6g}\n", number(s.volume_change),
+             number(s.volume_change_first_order), s.min_jacobian);
   for (const PatchReaction& r : s.reactions)
-    fmt::print("  reaction on {:<9} force [N] {:.9g} {:.9g} {:.9g}   torque [N m] {:.9g} {:.9g} {:.9g}\n",
-               r.patch, r.force[0], r.force[1], r.force[2], r.torque[0], r.torque[1], r.torque[2]);
+    fmt::print("  reaction on {:<9} force [N] {}   torque [N m] {}\n", r.patch, vector(r.force), vector(r.torque));
   for (Eigen::Index p = 0; p < s.displacement.rows(); ++p)
-    fmt::print("  {:<21} {:.9g} {:.9g} {:.9g} m\n", request.experiment.probes[p].name, s.displacement(p, 0),
-               s.displacement(p, 1), s.displacement(p, 2));
-  for (Eigen::Index p = 0; p < s.stress.rows(); ++p)
-    fmt::print("  {:<21} xx {:.9g} yy {:.9g} zz {:.9g} xy {:.9g} yz {:.9g} xz {:.9g} Pa\n",
-               request.experiment.probes[p].name, s.stress(p, 0), s.stress(p, 1), s.stress(p, 2), s.stress(p, 3),
-               s.stress(p, 4), s.stress(p, 5));
+    fmt::print("  {:<21} {} m\n", request.experiment.probes[p].name, vector(s.displacement.row(p)));
+  for (Eigen::Index p = 0; p < s.stress.rows(); ++p) {
+    const auto stress = s.stress.row(p);
+    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", request.experiment.probes[p].name, number(stress[0]),
+               number(stress[1]), number(stress[2]), number(stress[3]), number(stress[4]), number(stress[5]));
+  }
 }
 
 struct Options {
@@ -119,6 +125,7 @@ struct Options {
   Discretisation grid;
   double tolerance = 1e-9;
   Method method = Method::automatic;
+  int digits = 9;
 };
 
 bool solve_case(const Options& options) {
@@ -143,14 +150,30 @@ bool solve_case(const Options& options) {
     request.material = material;
     fmt::print("{}, Poisson's ratio {}: ", request.experiment.name, material.poisson_ratio);
     for (const Solution& s : solve_all(request, options.method)) {
-      print(request, s);
+      print(request, s, options.digits);
       ok = ok && s.ok;
     }
   }
   return ok;
 }
 
+// One process speaks for all; of an error that the others do not share, the one that has it.
+int fail(const std::exception& e, int exit_status) {
+  const bool everywhere = all_failed();
+  if (!everywhere || process_rank() == 0) fmt::print(stderr, "{}\n", e.what());
+  if (!everywhere) end_all(exit_status);
+  return exit_status;
+}
+
+// The others solve along and keep silent.
+void start_processes() {
+  if (process_count() == 1) return;
+  start_mpi();
+  if (process_rank() > 0 && !std::freopen("/dev/null", "w", stdout)) end_all(1);
+}
+
 int run(int argc, char** argv) {
+  start_processes();
   CLI::App app(
       "Solves an experiment with finite elements (deal.II).  Blocks of hexahedra: matrix-free multigrid; curved\n"
       "bodies and tetrahedra: algebraic multigrid.  Prints reactions, volume change, displacement and stress at the\n"
@@ -178,6 +201,9 @@ int run(int argc, char** argv) {
                  "assembled: matrices, a level of linear elements above algebraic multigrid;\n"
                  "gamg: matrices, algebraic multigrid alone")
       ->transform(CLI::CheckedTransformer(methods));
+  app.add_option("--digits", options.digits, "significant digits to print")
+      ->check(CLI::Range(3, 17))
+      ->capture_default_str();
   app.add_option("--request", options.request, "a request file instead of a case (used by springproof)");
   app.add_option("--answer", options.answer, "where to write the answer to --request");
   BenchOptions bench_options;
@@ -195,7 +221,8 @@ int run(int argc, char** argv) {
                        options.request.empty() != options.answer.empty()))
       throw CLI::RequiredError("a case, or --request with --answer,");
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+    const int status = process_rank() == 0 ? app.exit(e) : e.get_exit_code();
+    return status == 0 ? 0 : 2;
   }
   try {
     if (benchmark) {
@@ -208,11 +235,9 @@ int run(int argc, char** argv) {
     }
     return solve_case(options) ? 0 : 1;
   } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 2;
+    return fail(e, 2);
   } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
+    return fail(e, 1);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/mixed_vector.h"
+#include "fem_reference/processes.h"
 #include "fem_reference/stiffness.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
@@ -21,7 +22,11 @@ struct PressureSpace {
     for (unsigned int q = 0; q < quadrature.size(); ++q)
       for (int f = 0; f < functions; ++f) basis[f][q] = f == 0 ? 1 : 2 * quadrature.point(q)[f - 1] - 1;
 
-    inverse_mass.reinit(cells.n_cell_batches() * functions * Lane::size());
+    const unsigned int size = cells.n_cell_batches() * functions * Lane::size();
+    if (process_count() == 1)
+      inverse_mass.reinit(size);
+    else  // one range of numbers after the other
+      inverse_mass.reinit(size, 0, cells.get_dof_handler().get_communicator());
     Cell u(cells);
     for (unsigned int batch = 0; batch < cells.n_cell_batches(); ++batch) {
       u.reinit(batch);

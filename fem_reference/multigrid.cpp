@@ -1,6 +1,5 @@
 #include "fem_reference/multigrid.h"
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <fmt/format.h>
@@ -152,17 +151,6 @@ Multigrid::~Multigrid() {
 
 void Multigrid::vmult(DofVector& y, const DofVector& x) const {
   check(PCApply(preconditioner_, Wrapped(x), Wrapped(y)));
-}
-
-void start_petsc() {
-  int started = 0;
-  MPI_Initialized(&started);
-  if (started) return;
-  static int argc = 1;
-  static char name[] = "springproof-fem";
-  static char* arguments[] = {name, nullptr};
-  static char** argv = arguments;
-  static const dealii::Utilities::MPI::MPI_InitFinalize session(argc, argv, 1);
 }
 
 }  // namespace springproof::fem

@@ -61,7 +61,4 @@ class Multigrid {
   PC preconditioner_ = nullptr;
 };
 
-/// Starts MPI and PETSc, once, if the program has not; ends them with the program.
-void start_petsc();
-
 }  // namespace springproof::fem

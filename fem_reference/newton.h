@@ -77,7 +77,7 @@ class Newton {
     problem_.prescribe(to, z_.u);
     MixedVector given = K_.vector();
     for (const unsigned int i : system_.constrained)
-      given.u.local_element(i) = z_.u.local_element(i) - dx_.u.local_element(i);
+      if (given.u.in_local_range(i)) given.u(i) = z_.u(i) - dx_.u(i);
     K_.apply(f_, given);
     K_.clear_constrained(f_.u);
     r_.add(-1, f_);
@@ -131,7 +131,9 @@ class Newton {
   // Size of the forces that rounding alone makes of a strain of one.
   static double round_off(const ElasticSystem& system) {
     const auto& triangulation = system.dof_handler.get_triangulation();
-    const double length = dealii::GridTools::minimal_cell_diameter(triangulation, *system.body.mapping);
+    const double length =
+        dealii::Utilities::MPI::min(dealii::GridTools::minimal_cell_diameter(triangulation, *system.body.mapping),
+                                    triangulation.get_communicator());
     return 1e-14 * system.mu * length * length * std::sqrt(double(system.dof_handler.n_dofs()));
   }
 

@@ -47,8 +47,8 @@ struct Solution {
   long degrees_of_freedom = 0;
   int iterations = 0;     ///< of the linear solver, all steps together
   double residual = 0;    ///< relative, of the final state
-  double seconds = 0;     ///< CPU time of this grid
-  double memory_MiB = 0;  ///< peak resident set of the process so far
+  double seconds = 0;     ///< CPU time of this grid, of all processes
+  double memory_MiB = 0;  ///< peak resident set so far, of the largest process
 };
 
 /// Solves on every grid, in order.  A grid that fails has ok = false; it does not throw.

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <set>
 
+#include "fem_reference/processes.h"
 #include "problem/experiment.h"
 
 namespace springproof::fem {
@@ -19,6 +20,10 @@ namespace {
 double distance_outside_unit_cell(const dealii::Point<3>& unit, bool tetrahedron) {
   if (tetrahedron) return std::max({0.0, -unit[0], -unit[1], -unit[2], unit[0] + unit[1] + unit[2] - 1});
   return unit.distance(dealii::GeometryInfo<3>::project_to_unit_cell(unit));
+}
+
+[[noreturn]] void throw_outside(const dealii::Point<3>& X) {
+  throw InputError(fmt::format("the point ({}, {}, {}) is outside the body", X[0], X[1], X[2]));
 }
 
 // For a point just outside the facetted body: the cell at the nearest vertex that it is least outside of.
@@ -30,6 +35,7 @@ Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii
   double least = 0.5;
   bool found = false;
   for (const auto& cell : cache.get_vertex_to_cell_map()[vertex]) {
+    if (cell->is_artificial()) continue;
     try {
       const dealii::Point<3> unit = mapping.transform_real_to_unit_cell(cell, X);
       const double outside = distance_outside_unit_cell(unit, cell->reference_cell().is_simplex());
@@ -40,7 +46,7 @@ Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii
     } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
     }
   }
-  if (!found) throw InputError(fmt::format("the point ({}, {}, {}) is outside the body", X[0], X[1], X[2]));
+  if (!found) throw_outside(X);
   return best;
 }
 
@@ -55,12 +61,71 @@ std::vector<dealii::types::global_dof_index> dofs_at(const Location& place,
   return dofs;
 }
 
+namespace {
+
+constexpr double within = 1e-6;  // of a cell's size: a point this far outside counts as inside
+
+// The cells of this process that hold the point, up to `within`.
+std::vector<Location> owned_cells_at(const dealii::GridTools::Cache<3>& cache, const dealii::Point<3>& X) {
+  std::vector<Location> all;
+  const auto& boxes = cache.get_locally_owned_cell_bounding_boxes_rtree();
+  for (const auto& [box, cell] : boxes) {
+    if (!box.point_inside(X, 0.1)) continue;  // a curved cell may leave the box of its nodes
+    try {
+      const dealii::Point<3> unit = cache.get_mapping().transform_real_to_unit_cell(cell, X);
+      if (distance_outside_unit_cell(unit, cell->reference_cell().is_simplex()) < within) all.push_back({cell, unit});
+    } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
+    }
+  }
+  return all;
+}
+
+// What this process knows of a point: a cell of its own, and how far outside that it is; else infinity.
+std::pair<Location, double> own_location(const Body3& body, const dealii::GridTools::Cache<3>& cache,
+                                         const dealii::Point<3>& X) {
+  const std::vector<Location> inside = owned_cells_at(cache, X);
+  if (!inside.empty()) return {inside.front(), 0};
+  const std::pair<Location, double> none = {{}, std::numeric_limits<double>::infinity()};
+  try {
+    const Location near = locate_near(body.triangulation, cache, X);
+    if (!near.cell->is_locally_owned()) return none;
+    return {near, std::max(within, distance_outside_unit_cell(near.unit, near.cell->reference_cell().is_simplex()))};
+  } catch (const InputError&) {
+    return none;
+  }
+}
+
+std::vector<Location> locate_among_processes(const Body3& body, const dealii::GridTools::Cache<3>& cache,
+                                             const std::vector<dealii::Point<3>>& points) {
+  struct Candidate {
+    double distance;
+    int rank;
+  };
+  std::vector<Location> places;
+  std::vector<Candidate> own, first(points.size());
+  for (const dealii::Point<3>& X : points) {
+    const auto [place, distance] = own_location(body, cache, X);
+    places.push_back(place);
+    own.push_back({distance, process_rank()});
+  }
+  MPI_Allreduce(own.data(), first.data(), int(own.size()), MPI_DOUBLE_INT, MPI_MINLOC, MPI_COMM_WORLD);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (std::isinf(first[k].distance)) throw_outside(points[k]);
+    places[k].answers = first[k].rank == process_rank();
+    if (own[k].distance > 0 && !places[k].answers) places[k].cell = Location().cell;
+  }
+  return places;
+}
+
+}  // namespace
+
 std::vector<Location> locate(const Body3& body, const NodalVectors& points) {
   std::vector<Location> places(points.rows());
   if (places.empty()) return places;
   const dealii::GridTools::Cache<3> cache(body.triangulation, *body.mapping);
   std::vector<dealii::Point<3>> X;
   for (const auto& p : points.rowwise()) X.emplace_back(p[0], p[1], p[2]);
+  if (process_count() > 1) return locate_among_processes(body, cache, X);
   const auto [cells, units, indices, missing] = dealii::GridTools::compute_point_locations_try_all(cache, X);
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t k = 0; k < indices[c].size(); ++k) places[indices[c][k]] = {cells[c], units[c][k]};
@@ -73,6 +138,7 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
   const auto& scalar = dof_handler.get_fe().base_element(0);
   NodalVectors u = NodalVectors::Zero(places.size(), 3);
   for (std::size_t k = 0; k < places.size(); ++k) {
+    if (!places[k].answers) continue;
     const auto dofs = dofs_at(places[k], dof_handler);
     for (unsigned int a = 0; a < scalar.n_dofs_per_cell(); ++a) {
       const double N = scalar.shape_value(a, places[k].unit);
@@ -80,6 +146,7 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
         u(k, c) += N * displacement[dofs[dof_handler.get_fe().component_to_system_index(c, a)]];
     }
   }
+  sum_over_processes(u, dof_handler.get_communicator());
   return u;
 }
 
@@ -95,18 +162,18 @@ double pressure_at(const ElasticSystem& system, std::optional<Law> law, const Ce
   return law ? pressure(*law, system.lambda, dilatation).value : system.lambda * dilatation;
 }
 
-// Every cell that holds the point, `first` among them.
+// Every cell of this process that holds the point, `first` among them.
 std::vector<Location> cells_around(const dealii::GridTools::Cache<3>& cache, const Location& first, const Vec3& X) {
   std::set<dealii::Triangulation<3>::active_cell_iterator> neighbours;
   for (const unsigned int v : first.cell->vertex_indices())
     for (const auto& cell : cache.get_vertex_to_cell_map()[first.cell->vertex_index(v)]) neighbours.insert(cell);
   std::vector<Location> all = {first};
   for (const auto& cell : neighbours) {
-    if (cell == first.cell) continue;
+    if (cell == first.cell || !cell->is_locally_owned()) continue;
     try {
       const dealii::Point<3> unit =
           cache.get_mapping().transform_real_to_unit_cell(cell, dealii::Point<3>(X[0], X[1], X[2]));
-      if (distance_outside_unit_cell(unit, cell->reference_cell().is_simplex()) < 1e-6) all.push_back({cell, unit});
+      if (distance_outside_unit_cell(unit, cell->reference_cell().is_simplex()) < within) all.push_back({cell, unit});
     } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
     }
   }
@@ -197,13 +264,18 @@ Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std:
   Stresses stresses = Stresses::Zero(points.rows(), 6);
   const std::vector<Location> places = locate(system.body, points);
   const dealii::GridTools::Cache<3> cache(system.body.triangulation, *system.body.mapping);
+  Eigen::VectorXd cells_at = Eigen::VectorXd::Zero(points.rows());
   for (std::size_t k = 0; k < places.size(); ++k) {
+    if (!places[k].is_here()) continue;
     const std::vector<Location> cells = cells_around(cache, places[k], points.row(k));
-    Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
-    for (const Location& place : cells)
-      mean += stress_in_cell(place, system, law, answer, displacement) / double(cells.size());
-    stresses.row(k) << mean(0, 0), mean(1, 1), mean(2, 2), mean(0, 1), mean(1, 2), mean(0, 2);
+    cells_at[k] = double(cells.size());
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (const Location& place : cells) sum += stress_in_cell(place, system, law, answer, displacement);
+    stresses.row(k) << sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(1, 2), sum(0, 2);
   }
+  sum_over_processes(cells_at, system.dof_handler.get_communicator());
+  sum_over_processes(stresses, system.dof_handler.get_communicator());
+  stresses.array().colwise() /= cells_at.array();
   return stresses;
 }
 
@@ -217,6 +289,7 @@ VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof
   VolumeMeasure measure;
   double volume = 0;
   for (const auto& cell : dof_handler.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
     values.reinit(cell);
     values[vector].get_function_gradients(displacement, gradients);
     for (const unsigned int q : values.quadrature_point_indices()) {
@@ -231,6 +304,11 @@ VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof
       measure.min_jacobian = std::min(measure.min_jacobian, 1 + det_minus_1);
     }
   }
+  const MPI_Comm comm = dof_handler.get_communicator();
+  volume = dealii::Utilities::MPI::sum(volume, comm);
+  measure.change = dealii::Utilities::MPI::sum(measure.change, comm);
+  measure.change_first_order = dealii::Utilities::MPI::sum(measure.change_first_order, comm);
+  measure.min_jacobian = dealii::Utilities::MPI::min(measure.min_jacobian, comm);
   measure.change /= volume;
   measure.change_first_order /= volume;
   return measure;

@@ -11,10 +11,13 @@
 
 namespace springproof::fem {
 
-/// A rest position inside a cell.
+/// A rest position inside a cell.  Of several processes some have a cell that holds the point, and one of them answers.
 struct Location {
   dealii::Triangulation<3>::active_cell_iterator cell;
   dealii::Point<3> unit;
+  bool answers = true;
+
+  bool is_here() const { return cell.state() == dealii::IteratorState::valid; }
 };
 
 /// The degrees of freedom of the cell at a place.
@@ -24,7 +27,7 @@ std::vector<dealii::types::global_dof_index> dofs_at(const Location& place,
 /// @throws InputError naming the first point that is further outside the body than half the cell next to it.
 std::vector<Location> locate(const Body3& body, const NodalVectors& points);
 
-/// n x 3 [m].
+/// n x 3 [m].  The displacement holds the values of other processes on the cells around (as do those below).
 NodalVectors displacement_at(const std::vector<Location>& places, const dealii::DoFHandler<3>& dof_handler,
                              const DofVector& displacement);
 

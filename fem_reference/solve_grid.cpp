@@ -96,12 +96,15 @@ struct Discrete {
                problem.tolerance,
                problem.wide_vectors,
                problem.method == Method::assembled_gamg} {
-    check_held(held);
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
+    const dealii::IndexSet& owned = dof_handler.locally_owned_dofs();
+    held.erase(std::remove_if(held.begin(), held.end(), [&](const auto& p) { return !owned.is_element(p.dof); }),
+               held.end());
+    check_held(held, dof_handler.get_communicator());
     if (dof_handler.has_level_dofs()) system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
   }
 
-  std::vector<Prescribed> held;
+  std::vector<Prescribed> held;  // and owned
   DofVector load;
   ElasticSystem system;
 };
@@ -157,10 +160,11 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
                 const dealii::DoFHandler<3>& dof_handler) {
   const Discrete discrete(problem, body, dof_handler);
   const std::vector<Location> places = locate(body, problem.points);
-  DofVector u(dof_handler.n_dofs());
+  DofVector u = zero_vector(dof_handler);
   const bool linear = problem.law == "linear";
   const ElasticAnswer answer =
       linear ? solve_linear(problem, discrete, u, solution) : solve_nonlinear(problem, discrete, u, solution);
+  u.update_ghost_values();
   solution.ok = answer.converged;
   solution.iterations = answer.iterations;
   solution.residual = answer.residual;
@@ -194,8 +198,9 @@ Solution solve_grid(const GridProblem& problem) {
   solution.law = problem.law;
   solution.degrees_of_freedom = dof_handler.n_dofs();
   solve_into(solution, problem, *body, dof_handler);
-  solution.seconds = cpu_seconds() - start;
-  solution.memory_MiB = peak_memory_MiB();
+  const MPI_Comm comm = body->triangulation.get_communicator();
+  solution.seconds = dealii::Utilities::MPI::sum(cpu_seconds() - start, comm);
+  solution.memory_MiB = dealii::Utilities::MPI::max(peak_memory_MiB(), comm);
   return solution;
 }
 

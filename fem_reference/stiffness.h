@@ -39,8 +39,8 @@ class Stiffness : public dealii::Subscriptor {
   using Range = std::pair<unsigned int, unsigned int>;
 
   Stiffness(const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler, unsigned int level,
-            std::vector<unsigned int> constrained, const Coefficients<Number>& coefficients)
-      : constrained_(std::move(constrained)), coefficients_(coefficients), saved_(constrained_.size()) {
+            const std::vector<unsigned int>& constrained, const Coefficients<Number>& coefficients)
+      : coefficients_(coefficients) {
     typename Cells::AdditionalData data;
     data.tasks_parallel_scheme = Cells::AdditionalData::none;
     data.mapping_update_flags = dealii::update_gradients | dealii::update_JxW_values;
@@ -51,12 +51,16 @@ class Stiffness : public dealii::Subscriptor {
       return none;
     }();
     cells_.reinit(mapping, dof_handler, unconstrained, dealii::QGauss<1>(degree + 1), data);
-    rows_ = level == dealii::numbers::invalid_unsigned_int ? dof_handler.n_dofs() : dof_handler.n_dofs(level);
+    const bool active = level == dealii::numbers::invalid_unsigned_int;
+    rows_ = active ? dof_handler.n_dofs() : dof_handler.n_dofs(level);
+    const dealii::IndexSet& owned = active ? dof_handler.locally_owned_dofs() : dof_handler.locally_owned_mg_dofs(level);
+    for (const unsigned int i : constrained)
+      if (owned.is_element(i)) constrained_.push_back(owned.index_within_set(i));
+    saved_.resize(constrained_.size());
   }
 
   const Cells& cells() const { return cells_; }
   const Coefficients<Number>& coefficients() const { return coefficients_; }
-  const std::vector<unsigned int>& constrained() const { return constrained_; }
   unsigned int m() const { return rows_; }
   Number el(unsigned int, unsigned int) const {
     return Number(1);
@@ -127,6 +131,7 @@ class Stiffness : public dealii::Subscriptor {
   // position.  Cells that u turns inside out stay as they are at rest.
   void deform(const Vector<Number>& displacement) {
     to_rest_.resize(cells_.n_cell_batches() * Cell::static_n_q_points);
+    displacement.update_ghost_values();
     Cell u(cells_);
     for (unsigned int batch = 0; batch < cells_.n_cell_batches(); ++batch) {
       u.reinit(batch);
@@ -142,6 +147,7 @@ class Stiffness : public dealii::Subscriptor {
         to_rest_[batch * Cell::static_n_q_points + q] = dealii::invert(F);
       }
     }
+    displacement.zero_out_ghost_values();
   }
 
  private:
@@ -215,7 +221,7 @@ class Stiffness : public dealii::Subscriptor {
   Cells cells_;
   dealii::AlignedVector<dealii::Tensor<2, 3, Lanes<Number>>>
       to_rest_;  // inverse deformation gradient, or empty
-  std::vector<unsigned int> constrained_;
+  std::vector<unsigned int> constrained_;  // among the degrees of freedom that this process owns
   Coefficients<Number> coefficients_;
   mutable std::vector<Number> saved_;
   unsigned int rows_;

@@ -1,6 +1,8 @@
 #include "fem_reference/triangulate.h"
 
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/shared_tria.h>
+#include <deal.II/distributed/tria.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/mapping_fe.h>
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 
+#include "fem_reference/processes.h"
 #include "meshes/volume.h"
 #include "problem/experiment.h"
 
@@ -97,6 +100,17 @@ std::unique_ptr<dealii::Mapping<3>> curved_mapping(const Mesh& mesh, const deali
   return mapping;
 }
 
+// p4est deals out the cells of a refined block; it knows neither tetrahedra nor, here, second-order edges.
+std::unique_ptr<dealii::Triangulation<3>> no_cells(bool refined) {
+  constexpr auto smoothing = dealii::Triangulation<3>::limit_level_difference_at_vertices;
+  if (process_count() == 1) return std::make_unique<dealii::Triangulation<3>>(smoothing);
+  using Distributed = dealii::parallel::distributed::Triangulation<3>;
+  using Shared = dealii::parallel::shared::Triangulation<3>;
+  if (refined)
+    return std::make_unique<Distributed>(MPI_COMM_WORLD, smoothing, Distributed::construct_multigrid_hierarchy);
+  return std::make_unique<Shared>(MPI_COMM_WORLD, dealii::Triangulation<3>::none, true, Shared::partition_metis);
+}
+
 void refine(Body3& body, int refinements, const std::function<Vec3(const Vec3&)>& place) {
   body.triangulation.refine_global(refinements);
   if (!place) return;
@@ -114,7 +128,7 @@ std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements,
   if (coarse.hexahedra.empty() == coarse.tetrahedra.empty())
     throw InputError(fmt::format("a mesh of {} hexahedra and {} tetrahedra (allowed: one kind, at least one cell)",
                                  coarse.hexahedra.size(), coarse.tetrahedra.size()));
-  auto body = std::make_unique<Body3>();
+  auto body = std::make_unique<Body3>(no_cells(coarse.tetrahedra.empty() && coarse.curved.size() == 0));
   std::vector<dealii::Point<3>> vertices;
   for (const auto& X : coarse.nodes.rowwise()) vertices.emplace_back(X[0], X[1], X[2]);
   const auto cells = coarse.tetrahedra.empty() ? hexahedra(coarse, vertices) : tetrahedra(coarse);

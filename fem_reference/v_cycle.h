@@ -22,7 +22,7 @@ class VCycle {
 
   VCycle(const ElasticSystem& system, const Coefficients<float>& coefficients)
       : dof_handler_(system.dof_handler) {
-    const unsigned int n_levels = dof_handler_.get_triangulation().n_levels();
+    const unsigned int n_levels = dof_handler_.get_triangulation().n_global_levels();
     constrained_dofs_.initialize(dof_handler_);
     for (unsigned int l = 0; l < n_levels; ++l)
       constrained_dofs_.add_boundary_indices(dof_handler_, l, system.level_constrained[l]);

@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# Two processes find what one finds, to 1e-9.   mpi.sh SPRINGPROOF-FEM
+set -u
+program=$1
+command -v mpirun >/dev/null || { echo "no mpirun"; exit 77; }
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+
+# A block pressed on top, with a second patch that holds and loads of every kind.   case NAME KINEMATICS
+make_case() {
+  cat >"$work/$1.toml" <<TOML
+kinematics = "$2"
+[body]
+geo = "block.geo"
+size_m = [1, 1, 2]
+cells = [4, 4, 8]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.25
+density_kg_m3 = 1000
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+displacement_m = [0.05, 0.02, -0.2]
+[[load]]
+gravity_m_s2 = [0, 1, 0]
+[[probe]]
+name = "middle"
+at_m = [0.5, 0.5, 1]
+[[probe]]
+name = "corner"
+at_m = [1, 0, 0.75]
+[[probe]]
+name = "inside"
+at_m = [0.31, 0.77, 1.23]
+TOML
+}
+
+# The numbers of both answers, one by one: each within 1e-9 of the largest of its line (cpu seconds, memory and what the solver
+# did are not compared).
+compare() {
+  paste -d '|' <(grep -E "volume|reaction|middle|corner|inside" "$1") <(grep -E "volume|reaction|middle|corner|inside" "$2") |
+    awk -F '|' '
+      { n = split($1, a, /[ ,()]+/); m = split($2, b, /[ ,()]+/); largest = 0; lines++
+        if (n != m || n == 0) { print "other lines: " $0; bad = 1 }
+        for (i = 1; i <= n; i++) if (a[i] ~ /^-?[0-9]/) { x = a[i] < 0 ? -a[i] : a[i]; if (x > largest) largest = x }
+        for (i = 1; i <= n; i++) if (a[i] ~ /^-?[0-9]/) { d = a[i] - b[i]; if (d < 0) d = -d
+          if (d > 1e-9 * largest) { print a[i] " against " b[i] " in: " $1; bad = 1 } } }
+      END { if (lines < 9) { print lines " lines"; bad = 1 } exit bad }'
+}
+
+check() {
+  local name=$1
+  shift
+  "$program" "$work/$name.toml" --tolerance 1e-12 --digits 14 "$@" >"$work/one" 2>&1 || { echo "FAILED: one process, $name $*"; cat "$work/one"; failed=1; return; }
+  mpirun -np 2 "$program" "$work/$name.toml" --tolerance 1e-12 --digits 14 "$@" >"$work/two" 2>&1 || { echo "FAILED: two processes, $name $*"; cat "$work/two"; failed=1; return; }
+  compare "$work/one" "$work/two" || { echo "FAILED: $name $*"; failed=1; return; }
+  echo "same: $name $*"
+}
+
+make_case block linear
+make_case hencky hencky
+check block --cells 8 8 16
+check block --cells 8 8 16 --poisson-ratio 0.499
+check block --cells 6 6 8 --grading 1.5 --element q1
+check hencky --cells 4 4 8
+check hencky --cells 4 4 8 --poisson-ratio 0.499
+check block --cells 4 4 8 --element p2
+check block --cells 4 4 8 --element p2 --poisson-ratio 0.499
+check hencky --cells 3 3 4 --element p2
+
+# What one process alone can see is told to all: one message, exit status 2.
+refuse() {
+  mpirun -q -np 2 "$program" "$work/$1.toml" >"$work/out" 2>"$work/err"
+  local status=$?
+  [ $status -eq 2 ] && [ "$(grep -c "$2" "$work/err")" -eq 1 ] && { echo "refused: $1"; return; }
+  echo "FAILED: $1 ended with $status"
+  cat "$work/err"
+  failed=1
+}
+make_case outside linear
+sed -i 's/at_m = \[0.31, .*/at_m = [0.31, 0.77, 3]/' "$work/outside.toml"
+refuse outside "is outside the body"
+make_case conflict linear
+printf '[[load]]\non = "x_min"\ndisplacement_m = ["free", "free", 0]\n' >>"$work/conflict.toml"
+refuse conflict "prescribe different"
+make_case loose linear
+sed -i -e 's/displacement_m = \[0, 0, 0\]/displacement_m = ["free", "free", 0]/' -e 's/displacement_m = \[0.05, 0.02, -0.2\]/displacement_m = ["free", "free", -0.2]/' "$work/loose.toml"
+refuse loose "is not held"
+exit $failed
