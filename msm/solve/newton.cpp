@@ -136,7 +136,7 @@ struct Newton {
       const bool definite = factor(trial);
       if (relative <= options.tolerance) {
         if (!definite || !stable()) return Outcome::unstable;
-        if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}}, trial) <= 0)
+        if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}, {}}, trial) <= 0)
           return Outcome::inverted;
         x = trial;
         return Outcome::accepted;
