@@ -26,7 +26,8 @@ function benchmarkRow(result, check) {
   const off = isNumber(check.computed) && check.expected !== 0 ? 100 * (check.computed / check.expected - 1) : null;
   const within = check.expected !== 0 ? percent(100 * check.within / Math.abs(check.expected)) : text(check.within, 2);
   return el('tr', {},
-    el('td', {class: 'measure'}, withUnit(measureText(measure), shown.unit)),
+    el('td', {}, withUnit(measureText(measure), shown.unit),
+       el('small', {}, [check.source, check.where].filter(Boolean).join(', '))),
     el('td', {}, nuText(check.poisson_ratio)), elementCell(elementOf(result, check.model)),
     [0, 1, 2].map(i => el('td', {class: 'number'}, record ? text(record.values[i]) : '–',
                           record ? el('small', {}, cellsText(record.cells[i])) : '')),
@@ -35,14 +36,13 @@ function benchmarkRow(result, check) {
        record ? el('small', {}, '± ' + text(record.uncertainty, 2)) : ''),
     el('td', {class: 'number'}, text(check.expected)),
     el('td', {class: 'number'}, off === null ? '–' : signed(off, percent(off)), el('small', {}, 'of ± ' + within)),
-    el('td', {}, verdictChip(check.verdict)),
-    el('td', {}, [check.source, check.where].filter(Boolean).join(', ')));
+    el('td', {}, verdictChip(check.verdict)));
 }
 
 function benchmarkRows(result) {
   const checks = result.checks.filter(check => !check.at_least);
   if (checks.length === 0) return [];
-  return [el('tr', {class: 'group'}, el('td', {colspan: 12}, caseLink(result), el('small', {}, result.experiment.cite || ''))),
+  return [el('tr', {class: 'group'}, el('td', {colspan: 11}, caseLink(result), el('small', {}, result.experiment.cite || ''))),
     ...checks.map(check => benchmarkRow(result, check))];
 }
 
@@ -53,7 +53,7 @@ function benchmarkPart() {
     el('p', {class: 'note'}, 'Published or exact values beside the finite element limit: values on three grids, the observed ' +
        'order, the extrapolated limit with its uncertainty, and its distance from the target beside the tolerance.'),
     table('benchmarks', ['quantity', 'ν', 'element', right('coarse'), right('medium'), right('fine'), right('order'),
-      right('limit'), right('target'), right('difference'), 'verdict', 'source'], rows)];
+      right('limit'), right('target'), right('difference'), 'verdict'], rows)];
 }
 
 // ---- orders

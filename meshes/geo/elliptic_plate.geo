@@ -1,6 +1,7 @@
 // A quarter of a thick plate between two ellipses: outer half axes size_x, size_y, inner size_x * 2 / 3.25 and
 // size_y / 2.75, thickness size_z.  nx cells from the inner to the outer ellipse, ny around, nz (a multiple of 3)
-// through the thickness, four times smaller at the end of the inner ellipse on x than far from it.  The outer edge has three patches of equal height: edge_low, edge_middle, edge_high.
+// through the thickness; four times smaller where the inner ellipse meets the x axis than at the far ends of both lines.
+// The outer edge has three patches of equal height: edge_low, edge_middle, edge_high.
 DefineConstant[
   size_x = 3.25, size_y = 2.75, size_z = 0.6,  // [m]
   nx = 8, ny = 8, nz = 3,
