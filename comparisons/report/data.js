@@ -29,6 +29,12 @@ function table(className, head, rows) {
       el('tbody', {}, rows)));
 }
 
+/// Takes a section out of the page and of its contents.
+function leaveOut(section, hidden = true) {
+  section.hidden = hidden;
+  for (const link of document.querySelectorAll(`#contents a[href="#${section.id}"]`)) link.hidden = hidden;
+}
+
 function tr(...cells) {
   return el('tr', {}, cells.flat().map(cell => cell instanceof Node && /^T[DH]$/.test(cell.tagName) ? cell
     : el('td', {}, cell)));

@@ -54,8 +54,7 @@ function femColumnSection(section) {
   const rows = cases.flatMap(result => printedValues(result, item => item.model === 'fem_q1').map(item => columnRow(result, item)));
   const distances = cases.flatMap(result => printedValues(result, item => item.measure.startsWith('section_'))
     .map(item => distanceRow(result, item)));
-  section.hidden = rows.length + distances.length === 0;
-  for (const link of document.querySelectorAll('#contents a[href="#fem-column"]')) link.hidden = section.hidden;
+  leaveOut(section, rows.length + distances.length === 0);
   if (rows.length > 0) section.append(
     el('p', {class: 'lead'}, 'What the paper’s finite elements (LS-Dyna, hypoelastic) printed, ours on its mesh with eight-node bricks ' +
        '(B-bar), and ours converged with its uncertainty; below each its difference from the printed value. Converged values lie ' +

@@ -83,7 +83,6 @@ function caseRow(result, {leading, others}) {
 }
 
 function casesSection(section) {
-  if (cases.length === 0) return section.append(notice('No model was compared.'));
   const split = splitModels();
   const head = ['Case', 'Expectations', 'Kinematics, time', right('Reference'),
                 ...split.leading.map(model => right(modelName(model))), ...(split.others.length > 0 ? ['Other models'] : [])];

@@ -12,7 +12,12 @@ function build(id, make) {
   }
 }
 
-const needsCases = make => section => cases.length > 0 ? make(section) : section.append(notice('No model was compared.'));
+/// A section that this kind of run has nothing for is left out; a run of nothing says so.
+const needsCases = make => section => {
+  if (cases.length > 0) return make(section);
+  if (verifications.length > 0) return leaveOut(section);
+  return section.append(notice('No model was compared.'));
+};
 
 function jumpTo(id, part) {
   return caseId => {
@@ -74,11 +79,11 @@ function start() {
   decorateHead();
   Chart.defaults.font.family = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
   Chart.defaults.font.size = 13;
-  build('cases', casesSection);
+  build('cases', needsCases(casesSection));
   const compared = id => cases.some(result => result.id === id);
   const poisson = build('poisson', needsCases(poissonSection));
   const convergence = build('convergence', needsCases(convergenceSection));
-  const shapes = build('shapes', needsCases(shapesSection));
+  const shapes = build('shapes', shapesSection);
   build('verification', verificationSection);
   build('fem-column', femColumnSection);
   build('pages', section => pagesSection(section, [

@@ -1,6 +1,7 @@
 // A quarter of a thick plate between two ellipses: outer half axes size_x, size_y, inner size_x * 2 / 3.25 and
 // size_y / 2.75, thickness size_z.  nx cells from the inner to the outer ellipse, ny around, nz (a multiple of 3)
-// through the thickness.  The outer edge has three patches of equal height: edge_low, edge_middle, edge_high.
+// through the thickness; four times smaller where the inner ellipse meets the x axis than at the far ends of both lines.
+// The outer edge has three patches of equal height: edge_low, edge_middle, edge_high.
 DefineConstant[
   size_x = 3.25, size_y = 2.75, size_z = 0.6,  // [m]
   nx = 8, ny = 8, nz = 3,
@@ -22,8 +23,8 @@ For k In {0 : 3}
   Ellipse(n + 4) = {n + 5, n + 1, n + 2, n + 2};
   Curve Loop(n + 1) = {n + 1, n + 2, n + 3, n + 4};
   Plane Surface(n + 1) = {n + 1};
-  Transfinite Curve{n + 1, n + 3} = nx + 1;
-  Transfinite Curve{n + 2, n + 4} = ny + 1;
+  Transfinite Curve{n + 1, -(n + 3)} = nx + 1 Using Progression 4^(1 / nx);
+  Transfinite Curve{n + 2, -(n + 4)} = ny + 1 Using Progression 4^(1 / ny);
 EndFor
 For k In {0 : 2}
   n = 10 * k;

@@ -258,6 +258,9 @@ TEST_F(ReportInBrowser, VerificationAloneIsAReport) {
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("Orders of convergence"), std::string::npos);
   EXPECT_EQ(count(dom, "class=\"panel\""), 1u) << "the body";
+  for (const char* section : {"cases", "poisson", "convergence"})
+    EXPECT_NE(dom.find(std::string("<section id=\"") + section + "\" hidden"), std::string::npos) << section << " has nothing to say";
+  EXPECT_EQ(dom.find("<section id=\"shapes\" hidden"), std::string::npos);
 }
 
 TEST_F(ReportInBrowser, CaseWithoutResultsIsShown) {
