@@ -226,6 +226,7 @@ int run(int argc, char** argv) {
   }
   try {
     if (benchmark) {
+      if (process_count() > 1) throw InputError("--bench runs on one process");
       bench(bench_options);
       return 0;
     }

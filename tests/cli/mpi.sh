@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 failed=0
 
-# A block pressed on top, with a second patch that holds and loads of every kind.   case NAME KINEMATICS
+# A block held at both ends, under its weight.   make_case NAME KINEMATICS
 make_case() {
   cat >"$work/$1.toml" <<TOML
 kinematics = "$2"
@@ -40,8 +40,36 @@ at_m = [0.31, 0.77, 1.23]
 TOML
 }
 
-# The numbers of both answers, one by one: each within 1e-9 of the largest of its line (cpu seconds, memory and what the solver
-# did are not compared).
+# Curved hexahedra under a pressure.
+cat >"$work/cylinder.toml" <<TOML
+[body]
+geo = "thick_cylinder.geo"
+size_m = [9, 9, 1]
+cells = [12, 6, 1]
+[material]
+youngs_modulus_Pa = 1000
+poisson_ratio = 0.25
+[[load]]
+on = ["z_min", "z_max"]
+displacement_m = ["free", "free", 0]
+[[load]]
+on = "x_min"
+displacement_m = [0, "free", "free"]
+[[load]]
+on = "y_min"
+displacement_m = ["free", 0, "free"]
+[[load]]
+on = "inner"
+pressure_Pa = 1
+[[probe]]
+name = "middle"
+at_m = [6, 0, 0.5]
+[[probe]]
+name = "inside"
+at_m = [3, 3, 0.25]
+TOML
+
+# The numbers of both answers, one by one: each within 1e-9 of the largest of its line.
 compare() {
   paste -d '|' <(grep -E "volume|reaction|middle|corner|inside" "$1") <(grep -E "volume|reaction|middle|corner|inside" "$2") |
     awk -F '|' '
@@ -72,6 +100,8 @@ check hencky --cells 4 4 8 --poisson-ratio 0.499
 check block --cells 4 4 8 --element p2
 check block --cells 4 4 8 --element p2 --poisson-ratio 0.499
 check hencky --cells 3 3 4 --element p2
+check cylinder
+check cylinder --poisson-ratio 0.499
 
 # What one process alone can see is told to all: one message, exit status 2.
 refuse() {
