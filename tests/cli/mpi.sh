@@ -100,6 +100,7 @@ check hencky --cells 4 4 8 --poisson-ratio 0.499
 check block --cells 4 4 8 --element p2
 check block --cells 4 4 8 --element p2 --poisson-ratio 0.499
 check hencky --cells 3 3 4 --element p2
+check block --cells 4 4 8 --solver assembled
 check cylinder
 check cylinder --poisson-ratio 0.499
 
