@@ -343,6 +343,9 @@ Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKin
     const ElementType& type = kind.tetrahedra ? tetrahedron : kind.second_order ? hexahedron_27 : hexahedron;
     Mesh mesh = read_cells(geo, type, number_of);
     refuse_inverted_cells(geo, mesh);
+    if (const int parts = separate_parts(mesh); parts > 1)
+      refuse(geo, fmt::format("the mesh has {} parts that share no node (allowed: one body; join them with BooleanUnion or "
+                              "BooleanFragments, or Coherence)", parts));
     std::vector<int> new_number(mesh.nodes.rows());
     std::iota(new_number.begin(), new_number.end(), 0);
     use_grid(mesh, new_number);

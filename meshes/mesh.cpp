@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -162,6 +163,27 @@ Eigen::VectorXd nodal_volumes(const Mesh& mesh) {
     ++cell;
   }
   return shares;
+}
+
+int separate_parts(const Mesh& mesh) {
+  std::vector<int> parent(mesh.nodes.rows());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int n) {
+    while (parent[n] != n) n = parent[n] = parent[parent[n]];
+    return n;
+  };
+  std::vector<bool> used(parent.size());
+  const auto join = [&](const auto& cell) {
+    for (const int n : cell) {
+      used[n] = true;
+      parent[root(n)] = root(cell[0]);
+    }
+  };
+  for (const Hexahedron& cell : mesh.hexahedra) join(cell);
+  for (const Tetrahedron& cell : mesh.tetrahedra) join(cell);
+  int parts = 0;
+  for (std::size_t n = 0; n < parent.size(); ++n) parts += used[n] && parent[n] == int(n);
+  return parts;
 }
 
 std::optional<Grid> detect_grid(const Mesh& mesh) {

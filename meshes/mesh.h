@@ -68,6 +68,9 @@ Vec3 centroid(const Mesh& mesh, const Patch& patch);
 /// Volume share of each node [m^3]: an eighth of each hexahedron, a quarter of each tetrahedron.
 Eigen::VectorXd nodal_volumes(const Mesh& mesh);
 
+/// How many parts the mesh has that share no node.
+int separate_parts(const Mesh& mesh);
+
 /// The grid of a mesh whose hexahedra are equal axis-aligned boxes of one lattice (any subset of its cells), each
 /// with its lowest corner first, in the corner order above; else nothing.  Nodes may be off the lattice by 1e-9 of the
 /// body's extent along that axis.  One cell per box and one mesh node per lattice point, or it is no grid.

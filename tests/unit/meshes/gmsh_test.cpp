@@ -185,6 +185,33 @@ TEST_F(Gmsh, SecondOrderScriptsStillGiveEightNodes) {
   EXPECT_EQ(mesh_geo(geo, {1, 1, 1}, {2, 2, 2}).nodes.rows(), 27);
 }
 
+TEST_F(Gmsh, TwoBodiesAreRefused) {
+  const fs::path two = write("two.geo", R"(
+    SetFactory("OpenCASCADE");
+    Box(1) = {0, 0, 0, 1, 1, 1};
+    Box(2) = {3, 0, 0, 1, 1, 1};
+    Transfinite Curve "*" = 3; Transfinite Surface "*"; Recombine Surface "*"; Transfinite Volume "*";
+    Physical Volume("body") = {1, 2};
+  )");
+  EXPECT_NE(message_of(two).find("2 parts that share no node"), std::string::npos) << message_of(two);
+  EXPECT_EQ(separate_parts(block_mesh(Vec3::Ones(), {2, 1, 1})), 1);
+}
+
+TEST_F(Gmsh, SecondOrderHexahedraFollowTheSurface) {
+  const Mesh mesh = mesh_geo(built_in("thick_cylinder.geo"), Vec3(9, 9, 1), {4, 4, 1}, {.second_order = true});
+  ASSERT_EQ(mesh.curved.rows(), 27 * Eigen::Index(mesh.hexahedra.size()));
+  // Corners are among the 27 points, where the frame of the corners says.
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h)
+    for (int c = 0; c < 8; ++c) {
+      const auto& at = hexahedron_corners[c];
+      const Vec3 point = mesh.curved.row(27 * h + 2 * at[0] + 6 * at[1] + 18 * at[2]);
+      EXPECT_LE((point - mesh.nodes.row(mesh.hexahedra[h][c]).transpose()).norm(), 1e-12);
+    }
+  // A straight edge's middle would lie inside the circle.
+  const double outer = mesh.nodes.leftCols<2>().rowwise().norm().maxCoeff();
+  EXPECT_NEAR(mesh.curved.leftCols<2>().rowwise().norm().maxCoeff(), outer, 1e-9 * outer);
+}
+
 TEST_F(Gmsh, ErrorsCarryTheFileAndGmshsMessage) {
   const std::string syntax = message_of(write("syntax.geo", "Point(1) = {0, 0,\n"));
   EXPECT_NE(syntax.find("syntax.geo"), std::string::npos) << syntax;
