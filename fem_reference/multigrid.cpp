@@ -60,6 +60,7 @@ void use_gamg(PC preconditioner, Mat matrix, const dealii::Mapping<3>& mapping,
   check(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));
   set_rigid_motions(matrix, mapping, dof_handler);
   check(PCSetType(preconditioner, PCGAMG));
+  check(PCSetFromOptions(preconditioner));
 }
 
 }  // namespace
