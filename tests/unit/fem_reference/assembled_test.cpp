@@ -153,7 +153,9 @@ TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
         const auto a = fem::cell_residual(law, shape, up, smallest, nullptr);
         const auto b = fem::cell_residual(law, shape, down, smallest, nullptr);
         EXPECT_LE((flat(a.u - b.u) / (2 * h) - K.uu.col(j)).norm(), 1e-6 * K.uu.norm()) << name;
-        if (form == fem::Form::mixed) EXPECT_LE(((a.p - b.p) / (2 * h) - K.pu.col(j)).norm(), 1e-6 * K.pu.norm()) << name;
+        if (form == fem::Form::mixed) {
+          EXPECT_LE(((a.p - b.p) / (2 * h) - K.pu.col(j)).norm(), 1e-6 * K.pu.norm()) << name;
+        }
       }
       for (int j = 0; j < x.p.size(); ++j) {
         fem::CellVector up = x, down = x;
