@@ -99,7 +99,7 @@ function percent(x) {
   return minus(Math.abs(x) >= 99.5 ? x.toFixed(0) : x.toPrecision(2)) + ' %';
 }
 
-const signed = (x, text) => (x > 0 ? '+' : '') + text;
+const signed = (x, text) => (x > 0 && !text.startsWith('<') ? '+' : '') + text;
 
 const isDistance = measure => /^displacement_error(_max)?$|_distance$/.test(measure);
 const inPercent = (measure, unit) => unit === '1' && /^displacement|^volume/.test(measure) && !measure.endsWith('_order');
