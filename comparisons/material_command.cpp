@@ -55,7 +55,7 @@ int MaterialCommand::run() const {
   const double time_step = safe_time_step(model, m.density);
   const MeasuredModuli measured = measure_moduli(p, m);
   const StrainLimits limits = strain_limits(p, m);
-  const double correction = p.row.volume_correction ? kappa(m) : 0.0;
+  const double correction = p.has(Extension::volume_correction) ? kappa(m) : 0.0;
 
   if (json_) {
     const auto limit = [](double strain) { return std::isfinite(strain) ? nlohmann::json(strain) : nlohmann::json(nullptr); };
@@ -80,7 +80,7 @@ int MaterialCommand::run() const {
   fmt::print("  k_e  cell edge       {:>14.6g} N/m   rest length {:.6g} m\n", k[0], l);
   fmt::print("  k_f  face diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[1], l * std::sqrt(2.0));
   fmt::print("  k_c  cube diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[2], l * std::sqrt(3.0));
-  fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", correction, p.row.volume_correction ? "" : "    (this model has none)");
+  fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", correction, p.has(Extension::volume_correction) ? "" : "    (this model has none)");
   fmt::print("mass per cell corner   {:>14.6g} kg\n", m.density * l * l * l / 8);
   fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, any mesh of these cells)\n", time_step);
   fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n\n", strain(limits.bounded_energy), strain(limits.paper_energy));
@@ -88,7 +88,7 @@ int MaterialCommand::run() const {
   fmt::print("  E  = {:.8g} Pa   ({:+.2e} relative)\n", measured.youngs_modulus, measured.youngs_modulus / m.youngs_modulus - 1);
   fmt::print("  nu = {:.8g}   ({:+.2e})\n", measured.poisson_ratio, measured.poisson_ratio - m.poisson_ratio);
   fmt::print("  G  = {:.8g} Pa   ({:+.2e} relative)\n", measured.shear_modulus, measured.shear_modulus / shear_modulus(m) - 1);
-  if (!p.row.volume_correction && std::abs(m.poisson_ratio - 0.25) > 1e-12)
+  if (!p.has(Extension::volume_correction) && std::abs(m.poisson_ratio - 0.25) > 1e-12)
     fmt::print("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss for nu = {:g}\n", m.poisson_ratio);
   if (p.face_to_cube < 0.2)
     fmt::print("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");

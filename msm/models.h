@@ -1,4 +1,4 @@
-// THE table of models: name -> pattern + laws.  A new model is a new row.
+// THE table of models: name -> topology + pattern + laws.  A new model is a new row.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,27 @@
 
 namespace springproof {
 
+/// Where the nodes are and which of them are joined.
+enum class Topology {
+  cells,      ///< cubic lattice by superposition of cells: nodes are the corners of the mesh's cubes
+};
+
+/// What gives the springs, whose own Poisson's ratio is 1/4 (in the plane 1/3), another one.
+enum class Extension { none, volume_correction, momentum_dispersion };
+
 /// Which modulus the springs reproduce when their own Poisson's ratio (1/4) is not the material's.
 enum class Calibration {
-  shear_modulus,   ///< G = E / (2 (1 + nu)): what the volume correction needs
+  shear_modulus,   ///< G = E / (2 (1 + nu)): what an extension needs
   youngs_modulus,  ///< E, as if nu were 1/4 (G = 2 E / 5): how a classic mass-spring model is set up
 };
 
 struct ModelRow {
   std::string name;
   std::string what;            ///< one line for --help and the report
+  Topology topology;
   double face_to_cube;         ///< default A = k_f / k_c
   bool any_face_to_cube;       ///< A may be chosen
-  bool volume_correction;
+  Extension extension;
   bool bending_correction;
   bool torsion_correction;
   Calibration calibration;
@@ -35,6 +44,9 @@ struct ModelParameters {
   double face_to_cube = 2;
   bool paper_e_form = false;                          ///< springs from E by Golec et al. (2019), (5.12) right, as in its tables
   VolumeEnergy volume_energy = VolumeEnergy::bounded;
+  Dispersion dispersion = Dispersion::symmetric;
+
+  bool has(Extension extension) const { return row.extension == extension; }
 };
 
 /// @throws InputError (with the place in the case file) for an unknown model or option, the nearest name suggested.

@@ -16,16 +16,29 @@ NodalVectors forces(const MassSpringModel& model, const NodalVectors& x) {
   return f;
 }
 
-BlockMatrix tangent(const MassSpringModel& model, const NodalVectors& x) {
-  BlockMatrix K(coupled_nodes(model.network));
+Tangent tangent(const MassSpringModel& model, const NodalVectors& x) {
+  Tangent K;
+  K.local = BlockMatrix(coupled_nodes(model.network));
   update_tangent(model, x, K);
   return K;
 }
 
-void update_tangent(const MassSpringModel& model, const NodalVectors& x, BlockMatrix& K) {
-  K.set_zero();
+void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent& K) {
+  K.local.set_zero();
   for (const ForceLaw& law : model.laws)
-    std::visit([&](const auto& l) { l.add_tangent(model.network, x, K); }, law);
+    std::visit([&](const auto& l) { l.add_tangent(model.network, x, K.local); }, law);
+  if (const MomentumDispersion* dispersion = dispersion_of(model)) dispersion->add_flow(model.network, x, K);
+}
+
+const MomentumDispersion* dispersion_of(const MassSpringModel& model) {
+  for (const ForceLaw& law : model.laws)
+    if (const auto* dispersion = std::get_if<MomentumDispersion>(&law)) return dispersion;
+  return nullptr;
+}
+
+bool conservative(const MassSpringModel& model) {
+  const MomentumDispersion* dispersion = dispersion_of(model);
+  return !dispersion || dispersion->conservative();
 }
 
 }  // namespace springproof

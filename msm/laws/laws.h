@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "msm/laws/hourglass_correction.h"
+#include "msm/laws/momentum_dispersion.h"
 #include "msm/laws/springs.h"
 #include "msm/laws/volume_correction.h"
 
 namespace springproof {
 
-using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection>;
+using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion>;
 
 /// A mass-spring model: a network and what acts in it.
 struct MassSpringModel {
@@ -19,11 +20,17 @@ struct MassSpringModel {
   bool small_displacements_only = false;  ///< holds for linear kinematics only
 };
 
-double energy(const MassSpringModel& model, const NodalVectors& x);              ///< elastic energy [J]
+double energy(const MassSpringModel& model, const NodalVectors& x);              ///< elastic energy [J]; of a model that has one
 NodalVectors forces(const MassSpringModel& model, const NodalVectors& x);        ///< internal forces -dE/dx [N]
-BlockMatrix tangent(const MassSpringModel& model, const NodalVectors& x);        ///< d2E/dx2 [N/m]
+Tangent tangent(const MassSpringModel& model, const NodalVectors& x);            ///< -df/dx [N/m]
 
-/// Refills a matrix made by tangent() at another state, keeping its pattern.
-void update_tangent(const MassSpringModel& model, const NodalVectors& x, BlockMatrix& K);
+/// Refills what tangent() made at another state, keeping its pattern.
+void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent& K);
+
+/// The model's momentum dispersion; nullptr if it has none.
+const MomentumDispersion* dispersion_of(const MassSpringModel& model);
+
+/// True if the forces have an energy, so that the tangent is symmetric.
+bool conservative(const MassSpringModel& model);
 
 }  // namespace springproof

@@ -24,6 +24,9 @@ class BlockMatrix {
   /// Adds to block (i, j), which must be in the pattern.
   void add(int i, int j, const Eigen::Matrix3d& block) { blocks_[find(i, j)] += block; }
 
+  /// Block (i, j), which must be in the pattern.
+  const Blocks& at(int i, int j) const { return blocks_[find(i, j)]; }
+
   /// y = A x (vectors of 3 n).
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
 

@@ -11,7 +11,8 @@ namespace {
 MassSpringModel one_cell(const MassSpringModel& model) {
   if (model.network.cells.empty()) throw std::invalid_argument("the network has no cells");
   MassSpringModel cell;
-  cell.laws = model.laws;
+  for (const ForceLaw& law : model.laws)
+    if (!std::holds_alternative<MomentumDispersion>(law)) cell.laws.push_back(law);  // it is no cell's business
   cell.network.cell_edge = model.network.cell_edge;
   cell.network.springs = model.network.cell_springs;
   cell.network.X.resize(8, 3);
@@ -21,7 +22,7 @@ MassSpringModel one_cell(const MassSpringModel& model) {
   return cell;
 }
 
-CellMatrix dense(const BlockMatrix& K) {
+CellMatrix dense(const Tangent& K) {
   CellMatrix A;
   Eigen::VectorXd column(24);
   for (int i = 0; i < 24; ++i) {

@@ -8,7 +8,8 @@ namespace springproof {
 using CellMatrix = Eigen::Matrix<double, 24, 24>;
 using CellVector = Eigen::Matrix<double, 24, 1>;
 
-/// Rest stiffness of one cell [N/m], unknown 3 * corner + axis: its share of springs, and its own cell laws.
+/// Rest stiffness of one cell [N/m], unknown 3 * corner + axis: its share of springs, and its own cell laws; momentum
+/// dispersion, which reaches past the cell, is left out.
 /// total = without_volume + (kappa / V) gradient gradient^T.
 struct CellStiffness {
   CellMatrix total;

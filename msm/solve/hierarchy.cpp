@@ -141,12 +141,12 @@ void LatticeLevel::restrict_to(const Eigen::VectorXd& r_fine, const std::vector<
 }
 
 std::vector<LatticeLevel> lattice_levels(const Network& network, const std::vector<char>& fixed,
-                                         int coarsest_unknowns) {
+                                         int coarsest_unknowns, const std::vector<double>& fill) {
   if (!network.grid) throw std::invalid_argument("multigrid needs a network made from a lattice of cells");
   std::vector<LatticeLevel> levels(1);
   levels[0].nodes = network.nodes();
   levels[0].cells = network.cells;
-  levels[0].fill.assign(network.cells.size(), 1.0);
+  levels[0].fill = fill.empty() ? std::vector<double>(network.cells.size(), 1.0) : fill;
   levels[0].fixed = fixed;
   Indexed indexed = index_network(network);
   const auto shortest = [](const Indexed& i) { return *std::min_element(i.cells_per_side.begin(), i.cells_per_side.end()); };

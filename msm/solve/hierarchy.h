@@ -31,8 +31,9 @@ struct LatticeLevel {
 /// The levels of a lattice network, finest first, down to about `coarsest_unknowns` or a single cell per side.
 /// A coarse cell is there if any of its eight children is, with the mean of their fills; a coarse node is fixed where
 /// the node it coincides with is, or, outside the body, where a neighbouring fixed node is.
+/// `fill` is that of the network's cells, empty: 1.
 /// @throws std::invalid_argument if the network remembers no grid.
 std::vector<LatticeLevel> lattice_levels(const Network& network, const std::vector<char>& fixed,
-                                         int coarsest_unknowns = 900);
+                                         int coarsest_unknowns = 900, const std::vector<double>& fill = {});
 
 }  // namespace springproof

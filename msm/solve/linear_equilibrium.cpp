@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "meshes/volume.h"
 #include "msm/calibrate.h"
 #include "msm/solve/cell_stiffness.h"
@@ -7,6 +9,7 @@
 #include "msm/solve/equilibrium.h"
 #include "msm/solve/krylov.h"
 #include "msm/solve/mixed_multigrid.h"
+#include "msm/solve/tangent_solver.h"
 
 namespace springproof {
 namespace {
@@ -48,35 +51,17 @@ void report(const KrylovResult& k, const std::string& name, Equilibrium& result)
                                  k.iterations, k.negative_curvature ? " (stiffness not positive definite)" : "");
 }
 
-void solve_primal(const LinearProblem& p, const CellStiffness* cell, Equilibrium& result) {
-  BlockMatrix assembled;
-  std::unique_ptr<Multigrid> multigrid;
-  DirectSolver direct;
-  if (cell) {
-    multigrid = std::make_unique<Multigrid>(lattice_levels(p.model.network, p.conditions.fixed), cell->total);
-  } else {
-    assembled = tangent(p.model, p.model.network.X);
-    if (!direct.factor(assembled, p.conditions.fixed)) {
-      result.message = "the stiffness is not positive definite: the model has zero-energy or unstable modes here";
-      result.solver = "Cholesky";
-      return;
-    }
+void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
+  TangentSolver K(p.model, p.conditions.fixed, direct ? std::numeric_limits<long>::max() : 0);
+  if (!K.take(p.model.network.X)) {
+    result.message = "the stiffness is not positive definite: the model has zero-energy or unstable modes here";
+    result.solver = K.name();
+    return;
   }
-  const BlockMatrix& K = multigrid ? multigrid->finest() : assembled;
-  Eigen::VectorXd Ku;
+  Eigen::VectorXd Ku, du;
   K.multiply(p.prescribed, Ku);
-  Eigen::VectorXd b = p.external - Ku, du = Eigen::VectorXd::Zero(b.size());
-  keep(p.conditions.fixed, false, b);
-  const Operator apply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-    K.multiply(x, y);
-    keep(p.conditions.fixed, false, y);
-  };
   // A factorisation is a preconditioner too: one or two steps remove its round-off.
-  const Operator precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    multigrid ? multigrid->apply(r, z) : direct.solve(r, z);
-  };
-  report(conjugate_gradients(apply, precondition, b, p.options.tolerance, p.options.max_iterations, du),
-         multigrid ? "CG + multigrid" : "Cholesky", result);
+  report(K.solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du), K.name(), result);
   const Eigen::VectorXd u = p.prescribed + du;
   K.multiply(u, Ku);
   finish(p, u, Ku, result);
@@ -116,10 +101,10 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   const LinearProblem problem{model, conditions, options, flat(conditions.prescribed), flat(conditions.external)};
   LinearSolver solver = options.solver;
   const double G = affine_shear_modulus(model.network);
-  CellStiffness cell;
-  if (model.network.grid && !model.network.cells.empty()) cell = cell_stiffness(model);
+  const bool has_cells = model.network.grid && !model.network.cells.empty() && !dispersion_of(model);
+  const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
-    if (result.unknowns <= cholesky_limit || !model.network.grid)
+    if (result.unknowns <= cholesky_limit)
       solver = LinearSolver::cholesky;
     else
       solver = cell.kappa > mixed_above_kappa * G ? LinearSolver::mixed_multigrid : LinearSolver::multigrid;
@@ -128,7 +113,7 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
     if (solver == LinearSolver::mixed_multigrid)
       solve_mixed(problem, cell, G, result);
     else
-      solve_primal(problem, solver == LinearSolver::multigrid ? &cell : nullptr, result);
+      solve_primal(problem, solver == LinearSolver::cholesky, result);
   } catch (const std::runtime_error& e) {
     result.message = e.what();
   }

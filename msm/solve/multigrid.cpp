@@ -16,17 +16,18 @@ BlockMatrix assemble(const LatticeLevel& level, const CellMatrix& cell) {
   return K;
 }
 
-bool DirectSolver::factor(const BlockMatrix& A, const std::vector<char>& fixed) {
-  if (!analysed_) {
-    free_.clear();
-    number_.assign(fixed.size(), -1);
-    for (std::size_t i = 0; i < fixed.size(); ++i)
-      if (!fixed[i]) {
-        number_[i] = static_cast<int>(free_.size());
-        free_.push_back(static_cast<int>(i));
-      }
-  }
-  const Eigen::SparseMatrix<double> L = A.lower_triangle(number_, unknowns());
+void DirectSolver::number_free(const std::vector<char>& fixed) {
+  if (analysed_) return;
+  free_.clear();
+  number_.assign(fixed.size(), -1);
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (!fixed[i]) {
+      number_[i] = static_cast<int>(free_.size());
+      free_.push_back(static_cast<int>(i));
+    }
+}
+
+bool DirectSolver::factor_lower(const Eigen::SparseMatrix<double>& L) {
   if (!analysed_) ldlt_.analyzePattern(L);
   analysed_ = true;
   ldlt_.factorize(L);
@@ -46,7 +47,7 @@ void DirectSolver::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
   for (int i = 0; i < unknowns(); ++i) x[free_[i]] = solution[i];
 }
 
-Multigrid::Multigrid(std::vector<LatticeLevel> levels, const CellMatrix& cell, int smoothing_degree)
+Multigrid::Multigrid(std::vector<LatticeLevel> levels, const CellMatrix& cell, int smoothing_degree, bool may_float)
     : levels_(std::move(levels)), degree_(smoothing_degree) {
   const Eigen::VectorXd root = cell.diagonal().cwiseSqrt().cwiseInverse();
   const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
@@ -57,8 +58,12 @@ Multigrid::Multigrid(std::vector<LatticeLevel> levels, const CellMatrix& cell, i
     for (std::size_t i = 0; i < level.fixed.size(); ++i)
       if (level.fixed[i]) inverse_diagonal_.back()[i] = 0;
   }
-  if (!coarsest_.factor(matrix_.back(), levels_.back().fixed))
+  if (coarsest_.factor(matrix_.back(), levels_.back().fixed)) return;
+  if (!may_float)
     throw std::runtime_error("the coarsest lattice is singular: the body is not held, or the model has zero-energy modes");
+  const double anchor = 1e-3 * matrix_.back().diagonal().mean();
+  for (int n = 0; n < matrix_.back().nodes(); ++n) matrix_.back().add(n, n, anchor * Eigen::Matrix3d::Identity());
+  if (!coarsest_.factor(matrix_.back(), levels_.back().fixed)) throw std::runtime_error("the coarsest lattice is not positive definite");
 }
 
 void Multigrid::smooth(std::size_t level, Eigen::VectorXd& r, Eigen::VectorXd& x, bool update_residual) const {

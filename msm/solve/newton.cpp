@@ -4,18 +4,17 @@
 #include <cmath>
 
 #include "meshes/volume.h"
-#include "msm/solve/cell_stiffness.h"
 #include "msm/solve/cost.h"
 #include "msm/solve/equilibrium.h"
-#include "msm/solve/krylov.h"
-#include "msm/solve/multigrid.h"
+#include "msm/solve/tangent_solver.h"
 
 namespace springproof {
 namespace {
 
 Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data(), v.size()}; }
 
-constexpr int cholesky_limit = 8000;  // free unknowns; above it CG with the rest state's multigrid
+constexpr int cholesky_limit = 8000;   // free unknowns; above it Krylov with the rest state's multigrid
+constexpr int dispersive_limit = 4000; // the factors of momentum dispersion are several times as large
 
 /// One load step either lands on a stable state or says why not.
 enum class Outcome { accepted, unstable, inverted, not_converged };
@@ -25,19 +24,13 @@ struct Newton {
   const LoadPath& path;
   const NewtonOptions& options;
   const std::vector<char> fixed;
-  std::unique_ptr<Multigrid> multigrid;  ///< of the rest state, kept throughout; empty: direct solves
-  BlockMatrix K;                         ///< tangent at the last factored state
-  DirectSolver direct;                   ///< its factors
+  TangentSolver K;                       ///< tangent at the state taken over last
   double stiffness = 0;                  ///< largest diagonal entry at rest [N/m]
   int iterations = 0;
 
   Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
-      : model(m), path(p), options(o), fixed(fixed_unknowns), K(coupled_nodes(m.network)) {
-    if (unknowns() > cholesky_limit && m.network.grid)
-      multigrid = std::make_unique<Multigrid>(lattice_levels(m.network, fixed), cell_stiffness(m).total);
-  }
-
-  long unknowns() const { return std::count(fixed.begin(), fixed.end(), 0); }
+      : model(m), path(p), options(o), fixed(fixed_unknowns),
+        K(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit) {}
 
   /// Unbalanced force on free unknowns, relative to the forces that are in balance (or, for motions that need next
   /// to none, a thousandth of stiffness times displacement).
@@ -53,42 +46,9 @@ struct Newton {
     return scale > 0 ? std::sqrt(on_free) / scale : std::sqrt(on_free);
   }
 
-  /// Takes over the tangent at x; false if it is seen not to be positive definite.
-  bool factor(const NodalVectors& x) {
-    update_tangent(model, x, K);
-    return multigrid || direct.factor(K, fixed);
-  }
-
-  /// x = K^-1 b on the free unknowns; false if K is not positive definite.
-  bool solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x) const {
-    if (!multigrid) {
-      direct.solve(b, x);
-      return true;
-    }
-    const Operator apply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
-      K.multiply(v, y);
-      clear_fixed(y);
-    };
-    x.setZero(b.size());
-    Eigen::VectorXd free = b;
-    clear_fixed(free);
-    return !conjugate_gradients(apply, [&](const auto& r, auto& z) { multigrid->apply(r, z); }, free, tolerance, 4000, x)
-                .negative_curvature;
-  }
-
-  /// Positive definiteness of the tangent taken over last: the factors tell; without them, conjugate gradients on an
-  /// arbitrary right-hand side meet a direction of negative curvature if there is one (Lanczos).
-  bool stable() const {
-    if (!multigrid) return direct.negative_pivots() == 0;
-    Eigen::VectorXd b(static_cast<Eigen::Index>(fixed.size())), x;
-    unsigned state = 1;
-    for (double& value : b) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
-    return solve(b, 1e-6, x);
-  }
-
-  void clear_fixed(Eigen::VectorXd& v) const {
-    for (std::size_t i = 0; i < fixed.size(); ++i)
-      if (fixed[i]) v[i] = 0;
+  /// du = K^-1 b; false if K is seen not to be positive definite.
+  bool solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& du) const {
+    return !K.solve(b, tolerance, 4000, du).negative_curvature;
   }
 
   double potential(const NodalVectors& x, const NodalVectors& external) const {
@@ -107,18 +67,20 @@ struct Newton {
     return x + du + Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
   }
 
-  /// Moves x along du by the largest of 1, 1/2, 1/4 ... that lowers the potential (or the residual, at round-off).
+  /// Moves x along du by the largest of 1, 1/2, 1/4 ... that lowers the potential (or the residual, at round-off and for
+  /// forces without a potential).
   bool line_search(const Eigen::VectorXd& r, double relative, const Eigen::VectorXd& du, const NodalVectors& external,
                    NodalVectors& x) const {
     const double start = potential(x, external), slope = -r.dot(du);
+    const bool has_potential = conservative(model);
     const double noise = 1e-12 * (std::abs(start) + std::abs(slope));
     for (double t = 1; t > 1e-4; t /= 2) {
       const NodalVectors trial = x + t * Eigen::Map<const NodalVectors>(du.data(), x.rows(), 3);
       const double now = potential(trial, external);
       Eigen::VectorXd ignored;
-      const bool lower = now <= start + 1e-4 * t * slope;
-      const bool at_noise = std::abs(now - start) <= noise && residual(trial, external, ignored) < relative;
-      if (std::isfinite(now) && (lower || at_noise)) {
+      const bool lower = has_potential && now <= start + 1e-4 * t * slope;
+      const bool at_noise = !has_potential || std::abs(now - start) <= noise;
+      if (std::isfinite(now) && (lower || (at_noise && residual(trial, external, ignored) < relative))) {
         x = trial;
         return true;
       }
@@ -133,9 +95,9 @@ struct Newton {
       Eigen::VectorXd r, du;
       relative = residual(trial, bc.external, r);
       if (!std::isfinite(relative)) return Outcome::not_converged;
-      const bool definite = factor(trial);
+      const bool definite = K.take(trial);
       if (relative <= options.tolerance) {
-        if (!definite || !stable()) return Outcome::unstable;
+        if (!definite || !K.stable()) return Outcome::unstable;
         if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}, {}}, trial) <= 0)
           return Outcome::inverted;
         x = trial;
@@ -169,10 +131,10 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   int steps = 0;
   if (model.small_displacements_only) {
     result.message = "this model holds for linear kinematics only";
-  } else if (!newton.factor(x)) {
+  } else if (!newton.K.take(x)) {
     result.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
   } else {
-    newton.stiffness = newton.K.diagonal().maxCoeff();
+    newton.stiffness = newton.K.largest_diagonal();
     double step = options.first_step;
     while (result.load_reached < 1 && step >= options.smallest_step) {
       const double next = std::min(1.0, result.load_reached + step);
@@ -182,7 +144,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
         ++steps;
         step *= 1.5;
       } else {
-        newton.factor(x);
+        newton.K.take(x);
         step = std::min(step, next - result.load_reached) / 2;
         result.message = describe(outcome, result.load_reached);
       }
@@ -195,10 +157,10 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.support = -forces(model, x) - reached.external;
   for (Eigen::Index i = 0; i < result.support.size(); ++i)
     if (!full.fixed[i]) result.support.data()[i] = 0;
-  result.solver = fmt::format("Newton + {}, {} load step{}", newton.multigrid ? "CG with multigrid" : "Cholesky", steps,
+  result.solver = fmt::format("Newton + {}, {} load step{}", newton.K.name(), steps,
                               steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
-  result.unknowns = newton.unknowns();
+  result.unknowns = newton.K.unknowns();
   result.seconds = cpu_seconds() - start;
   result.memory_MiB = peak_memory_MiB();
   return result;

@@ -33,6 +33,15 @@ std::vector<Case> cases() {
         all.push_back({(form == VolumeEnergy::paper ? "VolumePaper" : "VolumeBounded") + name,
                        {network, {VolumeCorrection{kappa(material), form}}},
                        true});
+      const double q = dispersed_fraction(lame_lambda(material), shear_modulus(material));
+      all.push_back({"DispersionSymmetric" + name, {network, {MomentumDispersion{q}}}, true});
+      all.push_back({"DispersionShareWeighted" + name,
+                     {network, {MomentumDispersion{q, Dispersion::share_weighted, spring_shares(network)}}},
+                     true});
+      all.push_back({"DispersionPublished" + name, {network, {MomentumDispersion{q, Dispersion::published}}}, true});
+      all.push_back({"DispersionTransposed" + name,
+                     {network, {MomentumDispersion{q, Dispersion::published_transposed}}},
+                     true});
     }
   }
   return all;
@@ -77,6 +86,10 @@ TEST_P(LawSuite, RigidRotationLeavesNoForce) {
 }
 
 TEST_P(LawSuite, ForceIsMinusTheGradientOfTheEnergy) {
+  if (!conservative(model())) {
+    EXPECT_EQ(energy(model(), disturbed()), 0);
+    return;
+  }
   const NodalVectors x = disturbed(), f = forces(model(), x);
   NodalVectors g(x.rows(), 3);
   const double h = 1e-5 * edge();
@@ -91,7 +104,7 @@ TEST_P(LawSuite, ForceIsMinusTheGradientOfTheEnergy) {
 
 TEST_P(LawSuite, TangentIsTheDerivativeOfTheForce) {
   const NodalVectors x = disturbed();
-  const BlockMatrix K = tangent(model(), x);
+  const Tangent K = tangent(model(), x);
   const double h = 1e-5 * edge();
   double difference = 0, size = 0;
   Eigen::VectorXd column;
@@ -105,6 +118,22 @@ TEST_P(LawSuite, TangentIsTheDerivativeOfTheForce) {
     size += column.squaredNorm();
   }
   EXPECT_LE(std::sqrt(difference), test::finite_difference * std::sqrt(size));
+}
+
+// Reciprocity: v K u = u K v where there is an energy, and only there (an unsymmetric tangent must say so).
+TEST_P(LawSuite, TangentIsSymmetricIfThereIsAnEnergy) {
+  const Tangent K = tangent(model(), disturbed());
+  EXPECT_EQ(K.symmetric, conservative(model()));
+  const NodalVectors a = test::noise(X().rows(), 1, 7), b = test::noise(X().rows(), 1, 8);
+  const Eigen::Map<const Eigen::VectorXd> u(a.data(), a.size()), v(b.data(), b.size());
+  Eigen::VectorXd Ku, Kv;
+  K.multiply(u, Ku);
+  K.multiply(v, Kv);
+  const double asymmetry = std::abs(v.dot(Ku) - u.dot(Kv)) / (Ku.norm() * v.norm());
+  if (conservative(model()))
+    EXPECT_LE(asymmetry, 1e-14);
+  else
+    EXPECT_GE(asymmetry, 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()),

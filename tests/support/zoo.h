@@ -25,7 +25,7 @@ inline std::vector<ModelParameters> large_displacement_models() {
     if (row.bending_correction) continue;
     ModelParameters p = model(row.name);
     all.push_back(p);
-    if (!row.volume_correction) continue;
+    if (row.extension != Extension::volume_correction) continue;
     p.volume_energy = VolumeEnergy::paper;
     all.push_back(p);
   }

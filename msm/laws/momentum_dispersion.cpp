@@ -1,0 +1,189 @@
+#include "msm/laws/momentum_dispersion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace springproof {
+namespace {
+
+struct Coefficients {
+  std::vector<double> in;                   ///< a_s
+  std::vector<std::array<double, 2>> out;   ///< c_si, c_sj
+};
+
+/// Sum of `value` over the springs of each node, images added to their node.
+Eigen::VectorXd node_sums(const Network& network, const std::vector<double>& value) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());
+  for (std::size_t s = 0; s < value.size(); ++s) {
+    sum[network.master(network.springs[s].i)] += value[s];
+    sum[network.master(network.springs[s].j)] += value[s];
+  }
+  return sum;
+}
+
+/// c_sn = part_s / (sum of norm over the springs of n).
+void distribute(const Network& network, const std::vector<double>& part, const std::vector<double>& norm, Coefficients& c) {
+  const Eigen::VectorXd sum = node_sums(network, norm);
+  c.out.resize(part.size());
+  for (std::size_t s = 0; s < part.size(); ++s)
+    c.out[s] = {part[s] / sum[network.master(network.springs[s].i)], part[s] / sum[network.master(network.springs[s].j)]};
+}
+
+Coefficients coefficients(const MomentumDispersion& law, const Network& network) {
+  const std::size_t springs = network.springs.size();
+  Coefficients c;
+  c.in.resize(springs);
+  std::vector<double> part(springs), norm(springs);
+  for (std::size_t s = 0; s < springs; ++s) {
+    const double k = network.springs[s].stiffness, L = network.springs[s].rest_length;
+    switch (law.form) {
+      case Dispersion::symmetric: {
+        const double w = law.weight.empty() ? k * L : law.weight[s];
+        c.in[s] = w;
+        part[s] = law.q * w;
+        norm[s] = w * L;
+        break;
+      }
+      case Dispersion::share_weighted:
+        c.in[s] = law.q * k * L;
+        norm[s] = law.weight.empty() ? 1 : law.weight[s];
+        part[s] = norm[s] / L;
+        break;
+      case Dispersion::published:
+        c.in[s] = law.q * k * L;
+        part[s] = 1 / L;
+        norm[s] = 1;
+        break;
+      case Dispersion::published_transposed:
+        c.in[s] = law.q * k / L;
+        part[s] = L;
+        norm[s] = 1;
+        break;
+    }
+  }
+  distribute(network, part, norm, c);
+  return c;
+}
+
+Eigen::VectorXd inflow_of(const Coefficients& c, const Network& network, const NodalVectors& x) {
+  Eigen::VectorXd J = Eigen::VectorXd::Zero(network.nodes());
+  for (std::size_t n = 0; n < c.in.size(); ++n) {
+    const Spring& s = network.springs[n];
+    const double flow = c.in[n] * ((x.row(s.j) - x.row(s.i)).norm() - s.rest_length);
+    J[network.master(s.i)] += flow;
+    J[network.master(s.j)] += flow;
+  }
+  return J;
+}
+
+double tension(const Coefficients& c, const Network& network, const Eigen::VectorXd& J, std::size_t s) {
+  const Spring& spring = network.springs[s];
+  return c.out[s][0] * J[network.master(spring.i)] + c.out[s][1] * J[network.master(spring.j)];
+}
+
+void add_forces_of(const Coefficients& c, const Network& network, const NodalVectors& x, const Eigen::VectorXd& J,
+                   NodalVectors& f) {
+  for (std::size_t n = 0; n < c.in.size(); ++n) {
+    const Spring& s = network.springs[n];
+    const Eigen::RowVector3d pull = tension(c, network, J, n) * (x.row(s.j) - x.row(s.i)).normalized();
+    f.row(s.i) += pull;
+    f.row(s.j) -= pull;
+  }
+}
+
+}  // namespace
+
+double MomentumDispersion::energy(const Network& network, const NodalVectors& x) const {
+  if (!conservative()) return 0;
+  const Coefficients c = coefficients(*this, network);
+  const Eigen::VectorXd J = inflow_of(c, network, x);
+  double sum = 0;  // half of tension times elongation: the energy is quadratic in the elongations
+  for (std::size_t s = 0; s < network.springs.size(); ++s) {
+    const Spring& spring = network.springs[s];
+    sum += 0.5 * tension(c, network, J, s) * ((x.row(spring.j) - x.row(spring.i)).norm() - spring.rest_length);
+  }
+  return sum;
+}
+
+Eigen::VectorXd MomentumDispersion::inflow(const Network& network, const NodalVectors& x) const {
+  return inflow_of(coefficients(*this, network), network, x);
+}
+
+void MomentumDispersion::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
+  const Coefficients c = coefficients(*this, network);
+  add_forces_of(c, network, x, inflow_of(c, network, x), f);
+}
+
+void MomentumDispersion::add_forces(const Network& network, const NodalVectors& x, const Eigen::VectorXd& J,
+                                    NodalVectors& f) const {
+  add_forces_of(coefficients(*this, network), network, x, J, f);
+}
+
+std::vector<double> MomentumDispersion::tensions(const Network& network, const Eigen::VectorXd& J) const {
+  const Coefficients c = coefficients(*this, network);
+  std::vector<double> T(network.springs.size());
+  for (std::size_t s = 0; s < T.size(); ++s) T[s] = tension(c, network, J, s);
+  return T;
+}
+
+void MomentumDispersion::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
+  const Coefficients c = coefficients(*this, network);
+  const Eigen::VectorXd J = inflow_of(c, network, x);
+  if (J.isZero(0)) return;
+  for (std::size_t n = 0; n < c.in.size(); ++n) {
+    const Spring& s = network.springs[n];
+    const Vec3 d = (x.row(s.j) - x.row(s.i)).transpose();
+    const double length = d.norm();
+    const Vec3 e = d / length;
+    const Eigen::Matrix3d block = tension(c, network, J, n) / length * (Eigen::Matrix3d::Identity() - e * e.transpose());
+    K.add(s.i, s.i, block);
+    K.add(s.j, s.j, block);
+    K.add(s.i, s.j, -block);
+    K.add(s.j, s.i, -block);
+  }
+}
+
+void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x, Tangent& K) const {
+  const Coefficients c = coefficients(*this, network);
+  std::vector<Eigen::Triplet<double>> in, out;
+  in.reserve(12 * c.in.size());
+  out.reserve(12 * c.in.size());
+  for (std::size_t n = 0; n < c.in.size(); ++n) {
+    const Spring& s = network.springs[n];
+    const Vec3 e = (x.row(s.j) - x.row(s.i)).transpose().normalized();
+    for (int end = 0; end < 2; ++end) {
+      const int node = network.master(end == 0 ? s.i : s.j);
+      for (int d = 0; d < 3; ++d) {
+        in.emplace_back(node, 3 * s.j + d, c.in[n] * e[d]);
+        in.emplace_back(node, 3 * s.i + d, -c.in[n] * e[d]);
+        out.emplace_back(node, 3 * s.j + d, c.out[n][end] * e[d]);
+        out.emplace_back(node, 3 * s.i + d, -c.out[n][end] * e[d]);
+      }
+    }
+  }
+  K.inflow.resize(network.nodes(), 3 * network.nodes());
+  K.outflow.resize(network.nodes(), 3 * network.nodes());
+  K.inflow.setFromTriplets(in.begin(), in.end());
+  K.outflow.setFromTriplets(out.begin(), out.end());
+  K.symmetric = K.symmetric && conservative();
+}
+
+double dispersed_fraction(double lame_lambda, double shear_modulus, int dimensions) {
+  return (lame_lambda - shear_modulus) / (2 * (1 + 2.0 / dimensions) * shear_modulus);
+}
+
+std::vector<double> spring_shares(const Network& network) {
+  std::map<long, double> full;  // by rest length, to one part in a million
+  const auto length_class = [](const Spring& s) { return std::lround(1e6 * std::log(s.rest_length)); };
+  for (const Spring& s : network.springs) {
+    double& k = full[length_class(s)];
+    k = std::max(k, s.stiffness);
+  }
+  std::vector<double> share;
+  share.reserve(network.springs.size());
+  for (const Spring& s : network.springs) share.push_back(s.stiffness / full[length_class(s)]);
+  return share;
+}
+
+}  // namespace springproof

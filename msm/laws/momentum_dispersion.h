@@ -1,0 +1,50 @@
+// Force law: momentum dispersion of eMSM, which gives springs any Poisson's ratio.  Kot & Nagahashi (2015), sec. 3-5.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "msm/network.h"
+#include "msm/solve/tangent.h"
+
+namespace springproof {
+
+/// What a node takes from its springs, J_n = sum_s a_s dL_s, and what it gives back to the tension of each,
+/// T_s += c_si J_i + c_sj J_j (k spring constant, L rest length, dL elongation, b springs at the node).
+enum class Dispersion {
+  symmetric,             ///< a = w, c = q w / sum_n w L: the gradient of an energy; w = k L, or given
+  share_weighted,        ///< a = q k L, c = share / (L sum_n share): the paper's, right at the surface of a lattice
+  published,             ///< a = q k L, c = 1 / (b L): Kot & Nagahashi (2015), sec. 4
+  published_transposed,  ///< a = q k / L, c = L / b: its other form, for lattices of 18 springs only
+};
+
+struct MomentumDispersion {
+  double q = 0;  ///< Q / 2, the fraction of the incoming force that a node disperses
+  Dispersion form = Dispersion::symmetric;
+  std::vector<double> weight = {};  ///< per spring: w [N] (symmetric), share of the full spring (share_weighted); empty: k L, 1
+
+  bool conservative() const { return form == Dispersion::symmetric; }
+
+  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; 0 for the forms that have none
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< its part between joined nodes
+
+  /// The rest of the tangent, outflow^T inflow.
+  void add_flow(const Network& network, const NodalVectors& x, Tangent& K) const;
+
+  /// J_n at positions x; images of a node add to the node they are images of.
+  Eigen::VectorXd inflow(const Network& network, const NodalVectors& x) const;
+  /// The forces that given inflows cause at x.
+  void add_forces(const Network& network, const NodalVectors& x, const Eigen::VectorXd& J, NodalVectors& f) const;
+  /// The tension that given inflows add to each spring [N].
+  std::vector<double> tensions(const Network& network, const Eigen::VectorXd& J) const;
+};
+
+/// q = Q / 2 of Kot & Nagahashi (2015), eqs. (9), (36), for a Poisson's ratio in d dimensions:
+/// Q = (lambda - mu) / ((1 + 2/d) mu).
+double dispersed_fraction(double lame_lambda, double shear_modulus, int dimensions = 3);
+
+/// Share that each spring of a superposed lattice has of the full spring of its length inside, 0 < share <= 1.
+std::vector<double> spring_shares(const Network& network);
+
+}  // namespace springproof

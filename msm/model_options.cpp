@@ -1,0 +1,99 @@
+// What a case file may choose of a model: one row per option.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "msm/models.h"
+#include "problem/nearest_name.h"
+
+namespace springproof {
+namespace {
+
+using Value = std::variant<bool, double, std::string>;
+
+/// An option, and how it is taken; the setter returns what is allowed if the value is not.
+struct Option {
+  const char* name;
+  std::function<std::optional<std::string>(const Value&, ModelParameters&)> set;
+};
+
+/// A name out of a list of names and what they stand for.
+template <class T>
+Option choice(const char* name, T ModelParameters::*member, std::vector<std::pair<std::string, T>> allowed) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const std::string* given = std::get_if<std::string>(&value);
+            std::vector<std::string> names;
+            for (const auto& [known, meaning] : allowed) {
+              if (given && *given == known) {
+                p.*member = meaning;
+                return {};
+              }
+              names.push_back('"' + known + '"');
+            }
+            return fmt::format("must be {}", fmt::join(names, " or "));
+          }};
+}
+
+std::optional<std::string> set_face_to_cube(const Value& value, ModelParameters& p) {
+  const double* A = std::get_if<double>(&value);
+  if (!A || !(*A >= 0)) return "must be a number >= 0";
+  if (!p.row.any_face_to_cube && *A != p.row.face_to_cube)
+    return fmt::format("is {} by definition of this model", p.row.face_to_cube);
+  p.face_to_cube = *A;
+  return {};
+}
+
+std::optional<std::string> set_paper_e_form(const Value& value, ModelParameters& p) {
+  const bool* on = std::get_if<bool>(&value);
+  if (!on) return "must be true or false";
+  p.paper_e_form = *on;
+  return {};
+}
+
+/// The options that a model has.
+std::vector<Option> options_of(const ModelRow& row) {
+  std::vector<Option> options = {{"face_to_cube", set_face_to_cube}, {"paper_e_form", set_paper_e_form}};
+  if (row.extension == Extension::volume_correction)
+    options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
+                                           {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));
+  if (row.extension == Extension::momentum_dispersion)
+    options.push_back(choice<Dispersion>("dispersion", &ModelParameters::dispersion,
+                                         {{"symmetric", Dispersion::symmetric},
+                                          {"share_weighted", Dispersion::share_weighted},
+                                          {"published", Dispersion::published},
+                                          {"published_transposed", Dispersion::published_transposed}}));
+  return options;
+}
+
+[[noreturn]] void refuse_option(const ModelChoice& choice, const std::string& message) {
+  throw InputError(choice.where, fmt::format("models: {}: {}", choice.name, message));
+}
+
+}  // namespace
+
+ModelParameters resolve(const ModelChoice& choice) {
+  const auto& table = model_table();
+  const auto row = std::find_if(table.begin(), table.end(), [&](const ModelRow& r) { return r.name == choice.name; });
+  if (row == table.end()) {
+    std::vector<std::string> names;
+    for (const ModelRow& r : table) names.push_back(r.name);
+    throw InputError(choice.where, fmt::format("models: unknown model '{}' (allowed: {}){}", choice.name,
+                                               fmt::join(names, ", "), did_you_mean(choice.name, names)));
+  }
+  ModelParameters p{*row};
+  p.face_to_cube = row->face_to_cube;
+  const std::vector<Option> options = options_of(*row);
+  std::vector<std::string> known;
+  for (const Option& option : options) known.emplace_back(option.name);
+  for (const auto& [key, value] : choice.options) {
+    const auto option = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.name == key; });
+    if (option == options.end())
+      refuse_option(choice, fmt::format("unknown option '{}' (allowed: {}){}", key, fmt::join(known, ", "),
+                                        did_you_mean(key, known)));
+    if (const auto allowed = option->set(value, p)) refuse_option(choice, fmt::format("{} {}", key, *allowed));
+  }
+  return p;
+}
+
+}  // namespace springproof

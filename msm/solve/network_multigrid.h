@@ -1,0 +1,36 @@
+// Multigrid for networks without cells of their own: the network above, an auxiliary lattice of HybMSS cells below.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "msm/laws/laws.h"
+#include "msm/solve/multigrid.h"
+
+namespace springproof {
+
+/// Symmetric cycle for the rest state of a conservative model: Chebyshev (fourth kind) over the node blocks on the network
+/// itself, then one V-cycle of a lattice with cells of `spacings` mean node distances that fills the same body, with the
+/// network's affine shear modulus and the bulk modulus that momentum dispersion adds.
+class NetworkMultigrid {
+ public:
+  NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed);
+
+  /// z = M^-1 r, symmetric positive definite; zero on the fixed unknowns.
+  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+  const Tangent& finest() const { return K_; }
+
+ private:
+  void smooth(Eigen::VectorXd& r, Eigen::VectorXd& x, bool update_residual) const;
+  void block_jacobi(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+  double largest_eigenvalue() const;
+
+  std::vector<char> fixed_;
+  Tangent K_;
+  std::vector<Eigen::Matrix3d> inverse_block_;
+  double largest_eigenvalue_ = 0;
+  LatticeLevel passage_;  ///< from the auxiliary lattice to the network
+  std::unique_ptr<Multigrid> lattice_;
+};
+
+}  // namespace springproof

@@ -1,0 +1,89 @@
+#include "msm/solve/tangent_solver.h"
+
+#include <algorithm>
+
+namespace springproof {
+
+MassSpringModel symmetric_companion(const MassSpringModel& model) {
+  MassSpringModel companion = model;
+  for (ForceLaw& law : companion.laws)
+    if (auto* dispersion = std::get_if<MomentumDispersion>(&law)) *dispersion = {dispersion->q, Dispersion::symmetric, {}};
+  return companion;
+}
+
+TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<char>& fixed, long direct_limit)
+    : model_(model), fixed_(fixed), unknowns_(std::count(fixed.begin(), fixed.end(), 0)), direct_(unknowns_ <= direct_limit) {
+  if (!conservative(model)) companion_ = std::make_unique<MassSpringModel>(symmetric_companion(model));
+  if (direct_) return;
+  const Network& network = model.network;
+  if (network.grid && !network.cells.empty() && !dispersion_of(model))
+    lattice_ = std::make_unique<Multigrid>(lattice_levels(network, fixed), cell_stiffness(model).total);
+  else
+    network_ = std::make_unique<NetworkMultigrid>(companion_ ? *companion_ : model, fixed);
+}
+
+bool TangentSolver::take(const NodalVectors& x) {
+  at_rest_ = lattice_ && x == model_.network.X;  // then the finest matrix of the multigrid is the tangent
+  if (at_rest_) return true;
+  if (K_.local.nodes() == 0) K_.local = BlockMatrix(coupled_nodes(model_.network));
+  update_tangent(model_, x, K_);
+  if (!companion_) return !direct_ || factors_.factor(K_, fixed_);
+  if (companion_K_.local.nodes() == 0) companion_K_.local = BlockMatrix(coupled_nodes(model_.network));
+  update_tangent(*companion_, x, companion_K_);
+  return !direct_ || factors_.factor(companion_K_, fixed_);
+}
+
+void TangentSolver::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+  if (direct_)
+    factors_.solve(r, z);
+  else
+    lattice_ ? lattice_->apply(r, z) : network_->apply(r, z);
+}
+
+void TangentSolver::clear_fixed(Eigen::VectorXd& v) const {
+  for (std::size_t i = 0; i < fixed_.size(); ++i)
+    if (fixed_[i]) v[i] = 0;
+}
+
+KrylovResult TangentSolver::iterate(const Tangent& K, bool symmetric, const Eigen::VectorXd& b, double tolerance,
+                                    int max_iterations, Eigen::VectorXd& u) const {
+  const Operator apply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+    at_rest_ ? lattice_->finest().multiply(x, y) : K.multiply(x, y);
+    clear_fixed(y);
+  };
+  const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { precondition(r, z); };
+  Eigen::VectorXd free = b;
+  clear_fixed(free);
+  u.setZero(b.size());
+  return symmetric ? conjugate_gradients(apply, condition, free, tolerance, max_iterations, u)
+                   : gmres(apply, condition, free, tolerance, max_iterations, 60, u);
+}
+
+KrylovResult TangentSolver::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) const {
+  return iterate(K_, !companion_, b, tolerance, max_iterations, u);
+}
+
+void TangentSolver::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  at_rest_ ? lattice_->finest().multiply(x, y) : K_.multiply(x, y);
+}
+
+bool TangentSolver::stable() const {
+  if (direct_) return factors_.negative_pivots() == 0;
+  // Conjugate gradients on an arbitrary right-hand side meet a direction of negative curvature if there is one (Lanczos).
+  Eigen::VectorXd b(static_cast<Eigen::Index>(fixed_.size())), u;
+  unsigned state = 1;
+  for (double& value : b) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+  return !iterate(symmetric_tangent(), true, b, 1e-6, 4000, u).negative_curvature;
+}
+
+double TangentSolver::largest_diagonal() const {
+  return (at_rest_ ? lattice_->finest().diagonal() : K_.diagonal()).maxCoeff();
+}
+
+std::string TangentSolver::name() const {
+  const std::string inner = direct_ ? "Cholesky" : lattice_ ? "multigrid" : "network multigrid";
+  if (companion_) return "GMRES + " + inner + " of the symmetric form";
+  return direct_ ? inner : "CG + " + inner;
+}
+
+}  // namespace springproof

@@ -1,0 +1,57 @@
+// Solves with the tangent of a model: directly when small, else by a Krylov method over the rest state's multigrid.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "msm/solve/krylov.h"
+#include "msm/solve/multigrid.h"
+#include "msm/solve/network_multigrid.h"
+
+namespace springproof {
+
+/// The model with the energy form of momentum dispersion in place of one without: what preconditions the latter.
+MassSpringModel symmetric_companion(const MassSpringModel& model);
+
+class TangentSolver {
+ public:
+  /// `direct_limit`: up to so many free unknowns the tangent is factored.
+  TangentSolver(const MassSpringModel& model, const std::vector<char>& fixed, long direct_limit);
+
+  /// Takes over the tangent at x.  @return false if it is seen not to be positive definite (not conservative: its
+  /// symmetric companion).
+  bool take(const NodalVectors& x);
+
+  /// u = K^-1 b on the free unknowns, 0 on the fixed.
+  KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) const;
+
+  /// y = K x with the tangent taken over last, all unknowns.
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+
+  /// Positive definiteness of the tangent (of the companion's) taken over last.
+  bool stable() const;
+
+  double largest_diagonal() const;
+  long unknowns() const { return unknowns_; }
+  std::string name() const;  ///< "Cholesky", "CG + multigrid", ...
+
+ private:
+  KrylovResult iterate(const Tangent& K, bool symmetric, const Eigen::VectorXd& b, double tolerance, int max_iterations,
+                       Eigen::VectorXd& u) const;
+  void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+  void clear_fixed(Eigen::VectorXd& v) const;
+  const Tangent& symmetric_tangent() const { return companion_ ? companion_K_ : K_; }
+
+  const MassSpringModel& model_;
+  std::vector<char> fixed_;
+  long unknowns_ = 0;
+  std::unique_ptr<MassSpringModel> companion_;  ///< of a model that is not conservative
+  Tangent K_, companion_K_;
+  bool direct_ = false;
+  bool at_rest_ = false;                        ///< a lattice at rest: K_ is left empty
+  DirectSolver factors_;
+  std::unique_ptr<Multigrid> lattice_;
+  std::unique_ptr<NetworkMultigrid> network_;
+};
+
+}  // namespace springproof
