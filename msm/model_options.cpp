@@ -63,6 +63,8 @@ std::vector<Option> options_of(const ModelRow& row) {
                                           {"share_weighted", Dispersion::share_weighted},
                                           {"published", Dispersion::published},
                                           {"published_transposed", Dispersion::published_transposed}}));
+  if (row.extension == Extension::momentum_dispersion)
+    options.push_back(choice<bool>("weights", &ModelParameters::volume_weights, {{"volume", true}, {"kL", false}}));
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "msm/calibrate.h"
+#include "msm/dispersion_weights.h"
 #include "msm/topology/cubic_lattice.h"
 
 namespace springproof {
@@ -32,6 +33,8 @@ const std::vector<ModelRow> table = {
 MomentumDispersion dispersion(const ModelParameters& p, const Network& network, const IsotropicMaterial& material) {
   MomentumDispersion law{dispersed_fraction(lame_lambda(material), shear_modulus(material)), p.dispersion, {}};
   if (p.dispersion == Dispersion::share_weighted) law.weight = spring_shares(network);
+  if (p.dispersion == Dispersion::symmetric && p.volume_weights)
+    law.weight = volume_weights(network, cell_volume_gradient(network), shear_modulus(material)).weight;
   return law;
 }
 

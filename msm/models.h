@@ -45,6 +45,7 @@ struct ModelParameters {
   bool paper_e_form = false;                          ///< springs from E by Golec et al. (2019), (5.12) right, as in its tables
   VolumeEnergy volume_energy = VolumeEnergy::bounded;
   Dispersion dispersion = Dispersion::symmetric;
+  bool volume_weights = true;                         ///< exact nodal volumes (msm/dispersion_weights.h); false: w = k L
 
   bool has(Extension extension) const { return row.extension == extension; }
 };

@@ -8,61 +8,50 @@ namespace springproof {
 namespace {
 
 struct Coefficients {
-  std::vector<double> in;                   ///< a_s
+  std::vector<std::array<double, 2>> in;    ///< a_si, a_sj
   std::vector<std::array<double, 2>> out;   ///< c_si, c_sj
 };
-
-/// Sum of `value` over the springs of each node, images added to their node.
-Eigen::VectorXd node_sums(const Network& network, const std::vector<double>& value) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());
-  for (std::size_t s = 0; s < value.size(); ++s) {
-    sum[network.master(network.springs[s].i)] += value[s];
-    sum[network.master(network.springs[s].j)] += value[s];
-  }
-  return sum;
-}
-
-/// c_sn = part_s / (sum of norm over the springs of n).
-void distribute(const Network& network, const std::vector<double>& part, const std::vector<double>& norm, Coefficients& c) {
-  const Eigen::VectorXd sum = node_sums(network, norm);
-  c.out.resize(part.size());
-  for (std::size_t s = 0; s < part.size(); ++s)
-    c.out[s] = {part[s] / sum[network.master(network.springs[s].i)], part[s] / sum[network.master(network.springs[s].j)]};
-}
 
 Coefficients coefficients(const MomentumDispersion& law, const Network& network) {
   const std::size_t springs = network.springs.size();
   Coefficients c;
   c.in.resize(springs);
-  std::vector<double> part(springs), norm(springs);
+  c.out.resize(springs);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());  // what each node's outflow is divided by
   for (std::size_t s = 0; s < springs; ++s) {
-    const double k = network.springs[s].stiffness, L = network.springs[s].rest_length;
-    switch (law.form) {
-      case Dispersion::symmetric: {
-        const double w = law.weight.empty() ? k * L : law.weight[s];
-        c.in[s] = w;
-        part[s] = law.q * w;
-        norm[s] = w * L;
-        break;
+    const Spring& spring = network.springs[s];
+    const double k = spring.stiffness, L = spring.rest_length;
+    for (int end = 0; end < 2; ++end) {
+      double norm = 1;
+      switch (law.form) {
+        case Dispersion::symmetric: {
+          const double w = law.weight.empty() ? k * L : law.weight[2 * s + end];
+          c.in[s][end] = w;
+          c.out[s][end] = law.q * w;
+          norm = w * L;
+          break;
+        }
+        case Dispersion::share_weighted:
+          norm = law.weight.empty() ? 1 : law.weight[s];
+          c.in[s][end] = law.q * k * L;
+          c.out[s][end] = norm / L;
+          break;
+        case Dispersion::published:
+          c.in[s][end] = law.q * k * L;
+          c.out[s][end] = 1 / L;
+          break;
+        case Dispersion::published_transposed:
+          c.in[s][end] = law.q * k / L;
+          c.out[s][end] = L;
+          break;
       }
-      case Dispersion::share_weighted:
-        c.in[s] = law.q * k * L;
-        norm[s] = law.weight.empty() ? 1 : law.weight[s];
-        part[s] = norm[s] / L;
-        break;
-      case Dispersion::published:
-        c.in[s] = law.q * k * L;
-        part[s] = 1 / L;
-        norm[s] = 1;
-        break;
-      case Dispersion::published_transposed:
-        c.in[s] = law.q * k / L;
-        part[s] = L;
-        norm[s] = 1;
-        break;
+      sum[network.master(end == 0 ? spring.i : spring.j)] += norm;
     }
   }
-  distribute(network, part, norm, c);
+  for (std::size_t s = 0; s < springs; ++s) {
+    c.out[s][0] /= sum[network.master(network.springs[s].i)];
+    c.out[s][1] /= sum[network.master(network.springs[s].j)];
+  }
   return c;
 }
 
@@ -70,9 +59,9 @@ Eigen::VectorXd inflow_of(const Coefficients& c, const Network& network, const N
   Eigen::VectorXd J = Eigen::VectorXd::Zero(network.nodes());
   for (std::size_t n = 0; n < c.in.size(); ++n) {
     const Spring& s = network.springs[n];
-    const double flow = c.in[n] * ((x.row(s.j) - x.row(s.i)).norm() - s.rest_length);
-    J[network.master(s.i)] += flow;
-    J[network.master(s.j)] += flow;
+    const double elongation = (x.row(s.j) - x.row(s.i)).norm() - s.rest_length;
+    J[network.master(s.i)] += c.in[n][0] * elongation;
+    J[network.master(s.j)] += c.in[n][1] * elongation;
   }
   return J;
 }
@@ -155,8 +144,8 @@ void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x,
     for (int end = 0; end < 2; ++end) {
       const int node = network.master(end == 0 ? s.i : s.j);
       for (int d = 0; d < 3; ++d) {
-        in.emplace_back(node, 3 * s.j + d, c.in[n] * e[d]);
-        in.emplace_back(node, 3 * s.i + d, -c.in[n] * e[d]);
+        in.emplace_back(node, 3 * s.j + d, c.in[n][end] * e[d]);
+        in.emplace_back(node, 3 * s.i + d, -c.in[n][end] * e[d]);
         out.emplace_back(node, 3 * s.j + d, c.out[n][end] * e[d]);
         out.emplace_back(node, 3 * s.i + d, -c.out[n][end] * e[d]);
       }

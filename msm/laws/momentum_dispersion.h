@@ -9,10 +9,10 @@
 
 namespace springproof {
 
-/// What a node takes from its springs, J_n = sum_s a_s dL_s, and what it gives back to the tension of each,
-/// T_s += c_si J_i + c_sj J_j (k spring constant, L rest length, dL elongation, b springs at the node).
+/// What a node takes from its springs, J_n = sum_s a_sn dL_s, and what it gives back to the tension of each,
+/// T_s += c_si J_i + c_sj J_j (s = (i, j), k spring constant, L rest length, dL elongation, b springs at the node).
 enum class Dispersion {
-  symmetric,             ///< a = w, c = q w / sum_n w L: the gradient of an energy; w = k L, or given
+  symmetric,             ///< a = w, c = q w / sum_n w L: the gradient of an energy; w = k L, or given per spring end
   share_weighted,        ///< a = q k L, c = share / (L sum_n share): the paper's, right at the surface of a lattice
   published,             ///< a = q k L, c = 1 / (b L): Kot & Nagahashi (2015), sec. 4
   published_transposed,  ///< a = q k / L, c = L / b: its other form, for lattices of 18 springs only
@@ -21,7 +21,8 @@ enum class Dispersion {
 struct MomentumDispersion {
   double q = 0;  ///< Q / 2, the fraction of the incoming force that a node disperses
   Dispersion form = Dispersion::symmetric;
-  std::vector<double> weight = {};  ///< per spring: w [N] (symmetric), share of the full spring (share_weighted); empty: k L, 1
+  /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring; empty: 1.
+  std::vector<double> weight = {};
 
   bool conservative() const { return form == Dispersion::symmetric; }
 

@@ -1,0 +1,151 @@
+#include "msm/dispersion_weights.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <stdexcept>
+
+#include "msm/laws/volume_correction.h"
+#include "msm/solve/krylov.h"
+
+namespace springproof {
+namespace {
+
+// Conditions of a node: six for xx yy zz yz xz xy of sum w L n n^T = V I, three for the gradient of sum J.
+constexpr int per_node = 9;
+using Block = Eigen::Matrix<double, per_node, per_node>;
+using Condition = Eigen::Matrix<double, per_node, 1>;
+
+/// The linear conditions on the weights of spring ends, matrix-free.  Lengths in units of `unit`.
+struct Conditions {
+  const Network& network;
+  double unit;
+  std::vector<Vec3> direction;  ///< of each spring, i to j
+
+  explicit Conditions(const Network& n)
+      : network(n), unit(std::cbrt(n.volume.sum() / std::max<double>(1, static_cast<double>((n.volume.array() > 0).count())))) {
+    for (const Spring& s : n.springs) direction.push_back((n.X.row(s.j) - n.X.row(s.i)).transpose().normalized());
+  }
+
+  double length(std::size_t s) const { return network.springs[s].rest_length / unit; }
+
+  /// What a unit weight adds to the six conditions of its own node.
+  Eigen::Matrix<double, 6, 1> moment(std::size_t s) const {
+    const Vec3& e = direction[s];
+    Eigen::Matrix<double, 6, 1> m;
+    m << e[0] * e[0], e[1] * e[1], e[2] * e[2], e[1] * e[2], e[0] * e[2], e[0] * e[1];
+    return length(s) * m;
+  }
+
+  int end(std::size_t s, int side) const { return network.master(side == 0 ? network.springs[s].i : network.springs[s].j); }
+
+  /// r = A w.
+  void apply(const std::vector<double>& w, Eigen::VectorXd& r) const {
+    r.setZero(per_node * network.nodes());
+    for (std::size_t s = 0; s < direction.size(); ++s) {
+      const int i = end(s, 0), j = end(s, 1);
+      const auto m = moment(s);
+      r.segment<6>(per_node * i) += w[2 * s] * m;
+      r.segment<6>(per_node * j) += w[2 * s + 1] * m;
+      const Vec3 pull = (w[2 * s] + w[2 * s + 1]) * direction[s];
+      r.segment<3>(per_node * i + 6) -= pull;
+      r.segment<3>(per_node * j + 6) += pull;
+    }
+  }
+
+  /// w = D A^T y.
+  void transpose(const Eigen::VectorXd& y, const std::vector<double>& D, std::vector<double>& w) const {
+    w.resize(2 * direction.size());
+    for (std::size_t s = 0; s < direction.size(); ++s) {
+      const int i = end(s, 0), j = end(s, 1);
+      const auto m = moment(s);
+      const double both = direction[s].dot(y.segment<3>(per_node * j + 6) - y.segment<3>(per_node * i + 6));
+      w[2 * s] = D[2 * s] * (m.dot(y.segment<6>(per_node * i)) + both);
+      w[2 * s + 1] = D[2 * s + 1] * (m.dot(y.segment<6>(per_node * j)) + both);
+    }
+  }
+
+  /// Inverses of the node blocks of A D A^T; the conditions of a node that can say nothing are left out.
+  std::vector<Block> inverse_blocks(const std::vector<double>& D) const {
+    std::vector<Block> blocks(network.nodes(), Block::Zero());
+    for (std::size_t s = 0; s < direction.size(); ++s)
+      for (int side = 0; side < 2; ++side) {
+        Condition own;
+        own << moment(s), (side == 0 ? -1.0 : 1.0) * direction[s];
+        blocks[end(s, side)] += D[2 * s + side] * own * own.transpose();
+        Condition other = Condition::Zero();  // the weight of the far end pulls at this node too
+        other.tail<3>() = direction[s];
+        blocks[end(s, side)] += D[2 * s + 1 - side] * other * other.transpose();
+      }
+    for (Block& b : blocks) {
+      const double floor = 1e-10 * b.trace() + 1e-300;
+      b = (b + floor * Block::Identity()).inverse().eval();
+    }
+    return blocks;
+  }
+};
+
+}  // namespace
+
+DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus) {
+  const Conditions A(network);
+  const std::size_t springs = network.springs.size();
+  // Start from k L, each node's scaled to its volume: trace of sum w L n n^T = 3 V_n.
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(network.nodes()), volume = share;
+  for (int n = 0; n < network.nodes(); ++n) volume[network.master(n)] += network.volume[n] / std::pow(A.unit, 3);
+  for (std::size_t s = 0; s < springs; ++s)
+    for (int side = 0; side < 2; ++side) share[A.end(s, side)] += network.springs[s].stiffness * A.length(s) * A.length(s);
+  std::vector<double> w(2 * springs), change;
+  for (std::size_t s = 0; s < springs; ++s)
+    for (int side = 0; side < 2; ++side) {
+      const int n = A.end(s, side);
+      w[2 * s + side] = 3 * volume[n] / share[n] * network.springs[s].stiffness * A.length(s);
+    }
+  const std::vector<double> D = w;
+  Eigen::VectorXd target = Eigen::VectorXd::Zero(per_node * network.nodes()), met;
+  for (int n = 0; n < network.nodes(); ++n) {
+    for (int d = 0; d < 3; ++d) target[per_node * network.master(n) + d] = volume[network.master(n)];
+    target.segment<3>(per_node * network.master(n) + 6) += volume_gradient.row(n).transpose() / (A.unit * A.unit);
+  }
+  A.apply(w, met);
+  const std::vector<Block> inverse = A.inverse_blocks(D);
+  std::vector<double> scratch;
+  const Operator normal = [&](const Eigen::VectorXd& y, Eigen::VectorXd& r) {
+    A.transpose(y, D, scratch);
+    A.apply(scratch, r);
+  };
+  const Operator jacobi = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    z.resize(r.size());
+    for (int n = 0; n < network.nodes(); ++n)
+      z.segment<per_node>(per_node * n) = inverse[n] * r.segment<per_node>(per_node * n);
+  };
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(target.size());
+  DispersionWeights result;
+  const Eigen::VectorXd missing = target - met;
+  if (missing.norm() > 1e-13 * target.norm()) {
+    const KrylovResult k = conjugate_gradients(normal, jacobi, missing, 1e-12 * target.norm() / missing.norm(), 5000, y);
+    result.iterations = k.iterations;
+    A.transpose(y, D, change);
+    for (std::size_t e = 0; e < w.size(); ++e) w[e] += change[e];
+  }
+  A.apply(w, met);
+  result.residual = (target - met).norm() / target.norm();
+  if (!(result.residual < 1e-6))
+    throw std::runtime_error(fmt::format("the dispersion weights cannot be made exact (residual {:.1e}): too few springs at some nodes", result.residual));
+  const double scale = 10 * shear_modulus * A.unit * A.unit;
+  for (double& e : w) e *= scale;
+  result.weight = std::move(w);
+  return result;
+}
+
+NodalVectors cell_volume_gradient(const Network& network) {
+  NodalVectors gradient = NodalVectors::Zero(network.nodes(), 3);
+  for (const Hexahedron& cell : network.cells) {
+    const MeanEdgeVolume v = mean_edge_volume(cell, network.X);
+    for (int n = 0; n < 8; ++n) gradient.row(cell[n]) += v.gradient.row(n);
+  }
+  return gradient;
+}
+
+}  // namespace springproof

@@ -1,0 +1,29 @@
+// Weights that make the inflow of a node its exact share of the volume change.
+#pragma once
+
+#include <vector>
+
+#include "msm/network.h"
+
+namespace springproof {
+
+struct DispersionWeights {
+  std::vector<double> weight;  ///< per spring end, i then j: w [N], for Dispersion::symmetric
+  int iterations = 0;
+  double residual = 0;         ///< largest unmet condition, relative
+};
+
+/// Weights w nearest to k L (in the sum of (w - k L)^2 / (k L)) with two properties, up to a factor 10 G:
+///  - under any affine displacement, J_n = V_n div u (V_n the node's volume share): no node answers to shear;
+///  - for any displacement, sum_n J_n is the body's change of volume to first order, `volume_gradient` . u: uniform
+///    pressure is in equilibrium at every node.
+/// With w = k L the first fails at edges and corners and on disordered nodes, the second on disordered nodes, where the
+/// network relaxes the pressure away.
+/// @param volume_gradient dV/dx of the body at the nodes [m^2], n x 3; zero for periodic networks.
+/// @throws std::runtime_error if the conditions cannot be met (nodes with too few springs).
+DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus);
+
+/// dV/dx [m^2] of the cells of a network made from cells.
+NodalVectors cell_volume_gradient(const Network& network);
+
+}  // namespace springproof
