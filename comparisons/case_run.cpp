@@ -226,7 +226,7 @@ PreparedCase prepare(const Experiment& experiment) {
       for (const Patch& p : mesh.patches) patches.push_back(p.name);
       check_patches(experiment, patches);
       prepared.sharing = patches_sharing_supports(experiment.loads, mesh, experiment.model_kinematics());
-      require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh);
+      require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh.nodes);
       for (const ModelParameters& p : prepared.models) build_model(p, mesh, experiment.materials.front());
       const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
       if (experiment.section) section_distance(mesh, *experiment.section, u, u);

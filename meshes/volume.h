@@ -15,6 +15,9 @@ Eigen::VectorXd cell_volumes(const Mesh& mesh, const NodalVectors& x);
 /// Volume [m^3] of the body at node positions `x`.
 double volume(const Mesh& mesh, const NodalVectors& x);
 
+/// dV/dx [m^2] at rest: the force of a unit pressure from within on each node, n x 3.
+NodalVectors volume_gradient(const Mesh& mesh);
+
 /// (V' - V) / V of the displaced body, exact [1].
 double volume_change(const Mesh& mesh, const NodalVectors& displacement);
 

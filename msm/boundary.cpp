@@ -12,19 +12,19 @@
 namespace springproof {
 namespace {
 
-void prescribe(const Load& load, int number, const Mesh& mesh, Kinematics kinematics, double factor,
-               BoundaryConditions& bc) {
-  const std::string& name = *patch_of(load);
-  for (int node : nodes_of(patch(mesh, name))) {
-    const PrescribedValue value = prescribed_displacement(load, mesh.nodes.row(node).transpose(), kinematics, factor);
+/// Prescribes the load at the nodes that its patch holds; X their positions, `size` the body's.
+void prescribe(const Load& load, int number, const std::vector<int>& held, const NodalVectors& X, Kinematics kinematics,
+               double factor, BoundaryConditions& bc) {
+  const double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
+  for (int node : held) {
+    const PrescribedValue value = prescribed_displacement(load, X.row(node).transpose(), kinematics, factor);
     for (int d = 0; d < 3; ++d) {
       if (!value[d]) continue;
       const int unknown = 3 * node + d;
-      const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
       if (bc.fixed[unknown] && std::abs(bc.prescribed(node, d) - *value[d]) > 1e-9 * size)
         throw InputError(fmt::format(
             "load {}: patch '{}' prescribes displacement {} = {:.6g} m at a node where load {} already prescribes {:.6g} m",
-            number + 1, name, "xyz"[d], *value[d], bc.owner[unknown] + 1, bc.prescribed(node, d)));
+            number + 1, *patch_of(load), "xyz"[d], *value[d], bc.owner[unknown] + 1, bc.prescribed(node, d)));
       if (!bc.fixed[unknown]) bc.owner[unknown] = number;
       bc.fixed[unknown] = 1;
       bc.prescribed(node, d) = *value[d];
@@ -68,45 +68,79 @@ void add_pressure(const Mesh& mesh, const std::string& on, double pressure, Noda
   for (const auto& facet : patch(mesh, on).facets) add_facet_pressure(mesh, facet, pressure, external);
 }
 
-}  // namespace
+BoundaryConditions nothing(Eigen::Index n) {
+  return {std::vector<char>(3 * n, 0), std::vector<int>(3 * n, -1), NodalVectors::Zero(n, 3), NodalVectors::Zero(n, 3)};
+}
 
-BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
-                            double factor) {
-  const auto n = mesh.nodes.rows();
-  BoundaryConditions bc{std::vector<char>(3 * n, 0), std::vector<int>(3 * n, -1), NodalVectors::Zero(n, 3),
-                        NodalVectors::Zero(n, 3)};
+/// Does `act` for each load, naming the load in what goes wrong.
+template <class Action>
+void for_each(const std::vector<Load>& loads, const Action& act) {
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    const Load& load = loads[i];
     try {
-      if (prescribes_displacement(load))
-        prescribe(load, static_cast<int>(i), mesh, kinematics, factor, bc);
-      else if (const auto* t = std::get_if<Traction>(&load))
-        add_uniform(mesh, t->on, factor * t->traction, false, bc.external);
-      else if (const auto* q = std::get_if<Pressure>(&load))
-        add_pressure(mesh, q->on, factor * q->pressure, bc.external);
-      else if (const auto* f = std::get_if<PatchForce>(&load))
-        add_uniform(mesh, f->on, factor * f->force, true, bc.external);
-      else if (const auto* g = std::get_if<Gravity>(&load))
-        bc.external += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
-      else if (const auto* p = std::get_if<PointForce>(&load))
-        add_point_force({p->at, factor * p->force}, mesh, bc.external);
-      else if (std::holds_alternative<FieldBodyForce>(load))
-        throw InputError(fmt::format("load {}: body_force_of: the mass-spring models take no such load", i + 1));
+      act(loads[i], static_cast<int>(i));
     } catch (const std::invalid_argument& e) {
       throw InputError(fmt::format("load {}: {}", i + 1, e.what()));
     }
   }
+}
+
+/// Forces on the mesh's nodes [N].
+NodalVectors mesh_forces(const std::vector<Load>& loads, const Mesh& mesh, double density, double factor) {
+  NodalVectors external = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  for_each(loads, [&](const Load& load, int number) {
+    if (const auto* t = std::get_if<Traction>(&load))
+      add_uniform(mesh, t->on, factor * t->traction, false, external);
+    else if (const auto* q = std::get_if<Pressure>(&load))
+      add_pressure(mesh, q->on, factor * q->pressure, external);
+    else if (const auto* f = std::get_if<PatchForce>(&load))
+      add_uniform(mesh, f->on, factor * f->force, true, external);
+    else if (const auto* g = std::get_if<Gravity>(&load))
+      external += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
+    else if (const auto* p = std::get_if<PointForce>(&load))
+      add_point_force({p->at, factor * p->force}, mesh, external);
+    else if (std::holds_alternative<FieldBodyForce>(load))
+      throw InputError(fmt::format("load {}: body_force_of: the mass-spring models take no such load", number + 1));
+  });
+  return external;
+}
+
+}  // namespace
+
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
+                            double factor) {
+  BoundaryConditions bc = nothing(mesh.nodes.rows());
+  for_each(loads, [&](const Load& load, int number) {
+    if (prescribes_displacement(load))
+      prescribe(load, number, nodes_of(patch(mesh, *patch_of(load))), mesh.nodes, kinematics, factor, bc);
+  });
+  bc.external = mesh_forces(loads, mesh, density, factor);
   return bc;
 }
 
-void require_supported(const BoundaryConditions& bc, const Mesh& mesh) {
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& embedding, const Network& network,
+                            double density, Kinematics kinematics, double factor) {
+  BoundaryConditions bc = nothing(network.nodes());
+  for_each(loads, [&](const Load& load, int number) {
+    if (!prescribes_displacement(load)) return;
+    const std::vector<int>& held = embedding.held.at(patch(mesh, *patch_of(load)).name);
+    if (held.empty())
+      throw std::invalid_argument(fmt::format("no node of the network is near enough to patch '{}' to be held; choose a larger grip", *patch_of(load)));
+    prescribe(load, number, held, network.X, kinematics, factor, bc);
+  });
+  bc.external = embedding.weights.transpose() * mesh_forces(loads, mesh, density, factor);
+  if (!network.triangles.empty())
+    for (int n = 0; n < network.nodes(); ++n) bc.fixed[3 * n + 2] = 1;
+  return bc;
+}
+
+void require_supported(const BoundaryConditions& bc, const NodalVectors& X) {
   // Six rigid motions restricted to the fixed unknowns must be independent.
-  const Vec3 middle = mesh.nodes.colwise().mean().transpose();
-  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  const Vec3 middle = X.colwise().mean().transpose();
+  const double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
   Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
   double count = 0;
-  for (int node = 0; node < mesh.nodes.rows(); ++node) {
-    const Vec3 r = (mesh.nodes.row(node).transpose() - middle) / size;
+  for (int node = 0; node < X.rows(); ++node) {
+    const Vec3 r = (X.row(node).transpose() - middle) / size;
     for (int d = 0; d < 3; ++d) {
       if (!bc.fixed[3 * node + d]) continue;
       Eigen::Matrix<double, 6, 1> motion = Eigen::Matrix<double, 6, 1>::Zero();
@@ -145,7 +179,7 @@ std::set<std::string> patches_sharing_supports(const std::vector<Load>& loads, c
   return sharing;
 }
 
-std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh,
+std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh, const NodalVectors& X,
                                            const BoundaryConditions& bc, const NodalVectors& support,
                                            const NodalVectors& displacement, Kinematics kinematics) {
   std::vector<PatchReaction> reactions;
@@ -159,11 +193,12 @@ std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const
       reaction = reactions.end() - 1;
     }
     const Vec3 centre = centroid(mesh, p);
-    for (int node : nodes_of(p)) {
+    for (int node = 0; node < X.rows(); ++node) {
       Vec3 force = Vec3::Zero();
       for (int d = 0; d < 3; ++d)
         if (bc.owner[3 * node + d] == static_cast<int>(i)) force[d] = support(node, d);
-      Vec3 arm = mesh.nodes.row(node).transpose() - centre;
+      if (force.isZero(0)) continue;
+      Vec3 arm = X.row(node).transpose() - centre;
       if (kinematics == Kinematics::finite) arm += displacement.row(node).transpose();
       reaction->force += force;
       reaction->torque += arm.cross(force);

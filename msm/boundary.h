@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "meshes/field.h"
+#include "msm/embedding.h"
 #include "problem/experiment.h"
 
 namespace springproof {
@@ -24,12 +25,19 @@ struct BoundaryConditions {
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
                             double factor = 1.0);
 
-/// @throws InputError naming the free rigid motion if the fixed unknowns leave one.
-void require_supported(const BoundaryConditions& conditions, const Mesh& mesh);
+/// The same for a network in the mesh: forces pass through the embedding, so that resultant and moment are kept;
+/// supports hold the nodes that their patch holds, with the values at the nodes' own places.  The nodes of a planar
+/// network stay in their plane.
+/// @throws InputError also if a support finds no node to hold.
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& embedding, const Network& network,
+                            double density, Kinematics kinematics, double factor = 1.0);
 
-/// Support forces and torques per patch with prescribed displacement, from the support force of each node [N].
+/// @throws InputError naming the free rigid motion if the fixed unknowns of nodes at X leave one.
+void require_supported(const BoundaryConditions& conditions, const NodalVectors& X);
+
+/// Support forces and torques per patch with prescribed displacement, from the support force of each node at X [N].
 /// An unknown that two patches prescribe counts for the load named first.
-std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh,
+std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh, const NodalVectors& X,
                                            const BoundaryConditions& conditions, const NodalVectors& support,
                                            const NodalVectors& displacement, Kinematics kinematics);
 

@@ -51,8 +51,8 @@ using LoadPath = std::function<BoundaryConditions(double factor)>;
 /// the load reached and the reason (limit point or buckling, inverted cell, no convergence).
 Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options = {});
 
-/// The Field of an equilibrium, for the comparator.
-Field to_field(const Equilibrium& equilibrium, std::shared_ptr<const Mesh> mesh, const std::vector<Load>& loads,
-               const BoundaryConditions& conditions, Kinematics kinematics);
+/// The Field of an equilibrium of a network in a mesh, for the comparator.
+Field to_field(const Equilibrium& equilibrium, std::shared_ptr<const Mesh> mesh, const Embedding& embedding, const Network& network,
+               const std::vector<Load>& loads, const BoundaryConditions& conditions, Kinematics kinematics);
 
 }  // namespace springproof

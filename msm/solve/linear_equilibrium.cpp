@@ -122,14 +122,14 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   return result;
 }
 
-Field to_field(const Equilibrium& equilibrium, std::shared_ptr<const Mesh> mesh, const std::vector<Load>& loads,
-               const BoundaryConditions& conditions, Kinematics kinematics) {
+Field to_field(const Equilibrium& equilibrium, std::shared_ptr<const Mesh> mesh, const Embedding& embedding, const Network& network,
+               const std::vector<Load>& loads, const BoundaryConditions& conditions, Kinematics kinematics) {
   Field field;
-  field.displacement = equilibrium.displacement;
+  field.displacement = embedding.weights * equilibrium.displacement;
   field.reactions =
-      patch_reactions(loads, *mesh, conditions, equilibrium.support, equilibrium.displacement, kinematics);
-  field.volume_change = volume_change(*mesh, equilibrium.displacement);
-  field.volume_change_first_order = volume_change_first_order(*mesh, equilibrium.displacement);
+      patch_reactions(loads, *mesh, network.X, conditions, equilibrium.support, equilibrium.displacement, kinematics);
+  field.volume_change = volume_change(*mesh, field.displacement);
+  field.volume_change_first_order = volume_change_first_order(*mesh, field.displacement);
   field.mesh = std::move(mesh);
   return field;
 }
