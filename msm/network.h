@@ -1,6 +1,7 @@
 // The network: point masses joined by springs, and the cells that the springs came from.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct Network {
   std::vector<Spring> cell_springs; ///< what one cell contributed: springs between its corners 0..7
   Eigen::VectorXd volume;           ///< share of each node in the body [m^3]
   std::optional<Grid> grid;         ///< the lattice of the cells
+  std::vector<int> image_of;        ///< per node the node it is a periodic image of (itself if none); empty: no images
+  std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
 
   int nodes() const { return static_cast<int>(X.rows()); }
   double cell_volume() const { return cell_edge * cell_edge * cell_edge; }
