@@ -117,6 +117,15 @@ double volume_change_first_order(const Mesh& mesh, const NodalVectors& displacem
   return change / volume(mesh, mesh.nodes);
 }
 
+NodalVectors volume_gradient(const Mesh& mesh) {
+  NodalVectors gradient = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  for_each_cell(mesh, [&](const auto& cell) {
+    const auto own = volume_gradient(corners_of(cell, mesh.nodes));
+    for (std::size_t n = 0; n < cell.size(); ++n) gradient.row(cell[n]) += own.row(static_cast<Eigen::Index>(n));
+  });
+  return gradient;
+}
+
 std::array<double, 8> corner_jacobians(const Hexahedron& cell, const NodalVectors& x) {
   return corner_determinants(corners_of(cell, x));
 }

@@ -5,7 +5,8 @@ namespace springproof {
 double affine_shear_modulus(const Network& network) {
   double sum = 0;
   for (const Spring& s : network.springs) sum += s.stiffness * s.rest_length * s.rest_length;
-  return sum / (15.0 * network.volume.sum());
+  const double d = network.triangles.empty() ? 3 : 2;
+  return sum / (d * (d + 2) * network.volume.sum());
 }
 
 void calibrate(double shear_modulus, Network& network) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "msm/laws/volume_correction.h"
 #include "msm/solve/krylov.h"
 
 namespace springproof {
@@ -90,8 +89,9 @@ struct Conditions {
 
 DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus) {
   const Conditions A(network);
+  const int dimensions = network.triangles.empty() ? 3 : 2;
   const std::size_t springs = network.springs.size();
-  // Start from k L, each node's scaled to its volume: trace of sum w L n n^T = 3 V_n.
+  // Start from k L, each node's scaled to its volume: trace of sum w L n n^T = d V_n.
   Eigen::VectorXd share = Eigen::VectorXd::Zero(network.nodes()), volume = share;
   for (int n = 0; n < network.nodes(); ++n) volume[network.master(n)] += network.volume[n] / std::pow(A.unit, 3);
   for (std::size_t s = 0; s < springs; ++s)
@@ -100,12 +100,12 @@ DispersionWeights volume_weights(const Network& network, const NodalVectors& vol
   for (std::size_t s = 0; s < springs; ++s)
     for (int side = 0; side < 2; ++side) {
       const int n = A.end(s, side);
-      w[2 * s + side] = 3 * volume[n] / share[n] * network.springs[s].stiffness * A.length(s);
+      w[2 * s + side] = dimensions * volume[n] / share[n] * network.springs[s].stiffness * A.length(s);
     }
   const std::vector<double> D = w;
   Eigen::VectorXd target = Eigen::VectorXd::Zero(per_node * network.nodes()), met;
   for (int n = 0; n < network.nodes(); ++n) {
-    for (int d = 0; d < 3; ++d) target[per_node * network.master(n) + d] = volume[network.master(n)];
+    for (int d = 0; d < dimensions; ++d) target[per_node * network.master(n) + d] = volume[network.master(n)];
     target.segment<3>(per_node * network.master(n) + 6) += volume_gradient.row(n).transpose() / (A.unit * A.unit);
   }
   A.apply(w, met);
@@ -133,19 +133,10 @@ DispersionWeights volume_weights(const Network& network, const NodalVectors& vol
   result.residual = (target - met).norm() / target.norm();
   if (!(result.residual < 1e-6))
     throw std::runtime_error(fmt::format("the dispersion weights cannot be made exact (residual {:.1e}): too few springs at some nodes", result.residual));
-  const double scale = 10 * shear_modulus * A.unit * A.unit;
+  const double scale = 2 * (dimensions + 2) * shear_modulus * A.unit * A.unit;
   for (double& e : w) e *= scale;
   result.weight = std::move(w);
   return result;
-}
-
-NodalVectors cell_volume_gradient(const Network& network) {
-  NodalVectors gradient = NodalVectors::Zero(network.nodes(), 3);
-  for (const Hexahedron& cell : network.cells) {
-    const MeanEdgeVolume v = mean_edge_volume(cell, network.X);
-    for (int n = 0; n < 8; ++n) gradient.row(cell[n]) += v.gradient.row(n);
-  }
-  return gradient;
 }
 
 }  // namespace springproof

@@ -20,10 +20,8 @@ struct DispersionWeights {
 /// With w = k L the first fails at edges and corners and on disordered nodes, the second on disordered nodes, where the
 /// network relaxes the pressure away.
 /// @param volume_gradient dV/dx of the body at the nodes [m^2], n x 3; zero for periodic networks.
+/// Planar networks: J_n = V_n (the in-plane divergence), the factor is 8 G.
 /// @throws std::runtime_error if the conditions cannot be met (nodes with too few springs).
 DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus);
-
-/// dV/dx [m^2] of the cells of a network made from cells.
-NodalVectors cell_volume_gradient(const Network& network);
 
 }  // namespace springproof

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "msm/models.h"
@@ -51,9 +52,56 @@ std::optional<std::string> set_paper_e_form(const Value& value, ModelParameters&
   return {};
 }
 
+/// A number in a range, put where `set` says.
+Option number(const char* name, double low, double high, std::function<void(double, ModelParameters&)> set) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const double* given = std::get_if<double>(&value);
+            if (!given || !(*given >= low && *given <= high)) return fmt::format("must be a number, {:g} <= {} <= {:g}", low, name, high);
+            set(*given, p);
+            return {};
+          }};
+}
+
+/// A whole number from 1.
+Option whole(const char* name, double high, std::function<void(double, ModelParameters&)> set) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const double* given = std::get_if<double>(&value);
+            if (!given || !(*given >= 1 && *given <= high && *given == std::floor(*given)))
+              return fmt::format("must be a whole number, 1 <= {} <= {:g}", name, high);
+            set(*given, p);
+            return {};
+          }};
+}
+
+std::vector<Option> random_options() {
+  return {number("min_length", 0.1, 0.95, [](double v, ModelParameters& p) { p.random.min_length = v; }),
+          number("max_length", 0.5, 4, [](double v, ModelParameters& p) { p.random.max_length = v; }),
+          number("springs_per_node", 4, 60, [](double v, ModelParameters& p) { p.random.springs_per_node = v; }),
+          number("stiffness_exponent", -4, 4, [](double v, ModelParameters& p) { p.random.stiffness_exponent = v; }),
+          number("nodes_per_m3", 1e-12, 1e24, [](double v, ModelParameters& p) { p.node_density = v; }),
+          whole("seed", 4294967295.0, [](double v, ModelParameters& p) { p.random.seed = static_cast<std::uint64_t>(v); }),
+          whole("seeds", 1000, [](double v, ModelParameters& p) { p.seeds = static_cast<int>(v); }),
+          {"surface", [](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+             const std::string* given = std::get_if<std::string>(&value);
+             if (!given || (*given != "nodes" && *given != "cut")) return "must be \"nodes\" or \"cut\"";
+             p.random.surface_nodes = *given == "nodes";
+             return {};
+           }},
+          {"windows", [](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+             const bool* on = std::get_if<bool>(&value);
+             if (!on) return "must be true or false";
+             p.random.windows = *on;
+             return {};
+           }}};
+}
+
 /// The options that a model has.
 std::vector<Option> options_of(const ModelRow& row) {
-  std::vector<Option> options = {{"face_to_cube", set_face_to_cube}, {"paper_e_form", set_paper_e_form}};
+  std::vector<Option> options = {{"paper_e_form", set_paper_e_form}};
+  if (row.topology == Topology::cells || row.topology == Topology::centres) options.push_back({"face_to_cube", set_face_to_cube});
+  if (row.topology == Topology::random) options = random_options();
+  if (row.topology != Topology::cells)
+    options.push_back(number("grip", 0, 100, [](double v, ModelParameters& p) { p.grip = v; }));
   if (row.extension == Extension::volume_correction)
     options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
                                            {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));
@@ -83,7 +131,8 @@ ModelParameters resolve(const ModelChoice& choice) {
     throw InputError(choice.where, fmt::format("models: unknown model '{}' (allowed: {}){}", choice.name,
                                                fmt::join(names, ", "), did_you_mean(choice.name, names)));
   }
-  ModelParameters p{*row};
+  ModelParameters p;
+  p.row = *row;
   p.face_to_cube = row->face_to_cube;
   const std::vector<Option> options = options_of(*row);
   std::vector<std::string> known;

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
+#include "meshes/volume.h"
 #include "msm/calibrate.h"
 #include "msm/dispersion_weights.h"
 #include "msm/topology/cubic_lattice.h"
+#include "msm/topology/hexagonal_lattice.h"
+#include "msm/topology/node_lattice.h"
 
 namespace springproof {
 namespace {
@@ -18,23 +22,66 @@ constexpr Calibration G = Calibration::shear_modulus, E = Calibration::youngs_mo
 
 // clang-format off
 const std::vector<ModelRow> table = {
-//  name         what                                                                         nodes  A         any A  extension          bending torsion calibrated to
-  {"msm_18",    "classic 18-spring lattice (edges, face diagonals); nu = 1/4 only",           cells, infinity, false, none,                false, false, E},
-  {"msm_14",    "classic 14-spring lattice (edges, cube diagonals); nu = 1/4 only",           cells, 0,        false, none,                false, false, E},
-  {"emsm",      "springs + momentum dispersion; Kot & Nagahashi (2015), as an energy",        cells, infinity, true,  momentum_dispersion, false, false, G},
-  {"hybmss",    "springs + volume correction; Golec et al. (2019)",                           cells, 2,        true,  volume_correction,   false, false, G},
-  {"hybmss_fd", "HybMSS without face diagonals (A = 0): has zero-energy modes",               cells, 0,        false, volume_correction,   false, false, G},
-  {"hybmss_cf", "HybMSS springs without the volume correction",                               cells, 2,        true,  none,                false, false, G},
-  {"hybmss_b",  "HybMSS + bending hourglass correction (linear kinematics)",                  cells, 2,        true,  volume_correction,   true,  false, G},
-  {"hybmss_bt", "HybMSS + bending and torsion hourglass correction (linear kinematics)",      cells, 2,        true,  volume_correction,   true,  true,  G},
+//  name              what                                                                     nodes      A         any A  extension          bending torsion calibrated to
+  {"msm_18",         "classic 18-spring lattice (edges, face diagonals); nu = 1/4 only",       cells,     infinity, false, none,                false, false, E},
+  {"msm_14",         "classic 14-spring lattice (edges, cube diagonals); nu = 1/4 only",       cells,     0,        false, none,                false, false, E},
+  {"msm_centred",    "18 springs per node, nodes in the middle of the cubes; nu = 1/4 only",   centres,   infinity, true,  none,                false, false, E},
+  {"msm_random",     "disordered network of springs; nu = 1/4 only",                           random,    0,        false, none,                false, false, E},
+  {"msm_hexagonal",  "triangular sheet in plane strain; nu = 1/4 (1/3 in the plane) only",     hexagonal, 0,        false, none,                false, false, E},
+  {"emsm",           "springs + momentum dispersion; Kot & Nagahashi (2015), as an energy",    cells,     infinity, true,  momentum_dispersion, false, false, G},
+  {"emsm_centred",   "eMSM with nodes in the middle of the cubes",                             centres,   infinity, true,  momentum_dispersion, false, false, G},
+  {"emsm_random",    "disordered eMSM",                                                        random,    0,        false, momentum_dispersion, false, false, G},
+  {"emsm_hexagonal", "triangular sheet with momentum dispersion, in plane strain",             hexagonal, 0,        false, momentum_dispersion, false, false, G},
+  {"hybmss",         "springs + volume correction; Golec et al. (2019)",                       cells,     2,        true,  volume_correction,   false, false, G},
+  {"hybmss_fd",      "HybMSS without face diagonals (A = 0): has zero-energy modes",           cells,     0,        false, volume_correction,   false, false, G},
+  {"hybmss_cf",      "HybMSS springs without the volume correction",                           cells,     2,        true,  none,                false, false, G},
+  {"hybmss_b",       "HybMSS + bending hourglass correction (linear kinematics)",              cells,     2,        true,  volume_correction,   true,  false, G},
+  {"hybmss_bt",      "HybMSS + bending and torsion hourglass correction (linear kinematics)",  cells,     2,        true,  volume_correction,   true,  true,  G},
 };
 // clang-format on
 
-MomentumDispersion dispersion(const ModelParameters& p, const Network& network, const IsotropicMaterial& material) {
-  MomentumDispersion law{dispersed_fraction(lame_lambda(material), shear_modulus(material)), p.dispersion, {}};
-  if (p.dispersion == Dispersion::share_weighted) law.weight = spring_shares(network);
+/// Edge of a cube of the mesh, or of one as large as its mean cell [m].
+double mean_edge(const Mesh& mesh) {
+  const auto cells = static_cast<double>(mesh.hexahedra.size() + mesh.tetrahedra.size());
+  return mesh.grid ? mesh.grid->spacing.maxCoeff() : std::cbrt(volume(mesh, mesh.nodes) / cells);
+}
+
+Network network_of(const ModelParameters& p, const Mesh& mesh) {
+  switch (p.row.topology) {
+    case cells:
+      return cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
+    case centres:
+      return node_lattice(mesh, isotropic_pattern(p.face_to_cube));
+    case hexagonal:
+      return hexagonal_lattice(mesh, mean_edge(mesh));
+    case random:
+      break;
+  }
+  RandomParameters random = p.random;
+  random.spacing = p.node_density ? std::cbrt(1 / *p.node_density) : mean_edge(mesh);
+  return random_network(region_of(mesh), random);
+}
+
+/// Depth [m] to which a support holds nodes: on the surface, the outermost layer, or what the case says.
+double grip_of(const ModelParameters& p, const Mesh& mesh) {
+  const double layer = p.row.topology == centres || p.row.topology == hexagonal ? 0.51 : p.random.surface_nodes ? 0.0 : 1.0;
+  const double spacing = p.node_density ? std::cbrt(1 / *p.node_density) : mean_edge(mesh);
+  return spacing * p.grip.value_or(layer);
+}
+
+void calibrate_network(const ModelParameters& p, const IsotropicMaterial& material, const Mesh& mesh, Network& network) {
+  network.volume *= volume(mesh, mesh.nodes) / network.volume.sum();
+  //SURF
+  calibrate(spring_shear_modulus(p, material), network);
+}
+
+MomentumDispersion dispersion(const ModelParameters& p, const MassSpringModel& model, const Embedding& embedding, const Mesh& mesh,
+                              const IsotropicMaterial& material) {
+  const int dimensions = model.network.triangles.empty() ? 3 : 2;
+  MomentumDispersion law{dispersed_fraction(lame_lambda(material), shear_modulus(material), dimensions), p.dispersion, {}};
+  if (p.dispersion == Dispersion::share_weighted && p.row.topology == cells) law.weight = spring_shares(model.network);
   if (p.dispersion == Dispersion::symmetric && p.volume_weights)
-    law.weight = volume_weights(network, cell_volume_gradient(network), shear_modulus(material)).weight;
+    law.weight = volume_weights(model.network, embedding.weights.transpose() * volume_gradient(mesh), shear_modulus(material)).weight;
   return law;
 }
 
@@ -47,23 +94,26 @@ double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& m
   return as_if_quarter ? 0.4 * material.youngs_modulus : shear_modulus(material);
 }
 
-MassSpringModel build_model(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material) {
-  MassSpringModel model;
-  try {
-    model.network = cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
-  } catch (const std::invalid_argument& e) {
-    throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
-  }
-  calibrate(spring_shear_modulus(p, material), model.network);
+EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material) try {
+  EmbeddedModel built;
+  MassSpringModel& model = built.model;
+  model.network = network_of(p, mesh);
+  built.embedding = p.row.topology == cells ? nodes_of_mesh(mesh) : embed(mesh, model.network, grip_of(p, mesh));
+  calibrate_network(p, material, mesh, model.network);
   model.laws.push_back(Springs{});
   if (p.has(volume_correction)) model.laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
-  if (p.has(momentum_dispersion)) model.laws.push_back(dispersion(p, model.network, material));
+  if (p.has(momentum_dispersion)) model.laws.push_back(dispersion(p, model, built.embedding, mesh, material));
   if (p.row.bending_correction) {
     model.laws.push_back(HourglassCorrection{shear_modulus(material), material.poisson_ratio, p.face_to_cube,
                                              p.row.torsion_correction});
     model.small_displacements_only = true;
   }
-  return model;
+  return built;
+} catch (const std::invalid_argument& e) {
+  throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
+} catch (const std::runtime_error& e) {
+  if (dynamic_cast<const InputError*>(&e)) throw;
+  throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
 }
 
 }  // namespace springproof

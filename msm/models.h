@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "msm/embedding.h"
 #include "msm/laws/laws.h"
+#include "msm/topology/random_network.h"
 #include "problem/experiment.h"
 
 namespace springproof {
@@ -13,9 +15,12 @@ namespace springproof {
 /// Where the nodes are and which of them are joined.
 enum class Topology {
   cells,      ///< cubic lattice by superposition of cells: nodes are the corners of the mesh's cubes
+  centres,    ///< cubic lattice with a node in the middle of each cube
+  random,     ///< random sequential addition, one node per cube of the mesh on average
+  hexagonal,  ///< triangles in the plane z = const, for plane strain
 };
 
-/// What gives the springs, whose own Poisson's ratio is 1/4 (in the plane 1/3), another one.
+/// What gives the springs, whose own Poisson's ratio is 1/4, another one.
 enum class Extension { none, volume_correction, momentum_dispersion };
 
 /// Which modulus the springs reproduce when their own Poisson's ratio (1/4) is not the material's.
@@ -28,7 +33,7 @@ struct ModelRow {
   std::string name;
   std::string what;            ///< one line for --help and the report
   Topology topology;
-  double face_to_cube;         ///< default A = k_f / k_c
+  double face_to_cube;         ///< default A = k_f / k_c, of cubic lattices
   bool any_face_to_cube;       ///< A may be chosen
   Extension extension;
   bool bending_correction;
@@ -46,6 +51,10 @@ struct ModelParameters {
   VolumeEnergy volume_energy = VolumeEnergy::bounded;
   Dispersion dispersion = Dispersion::symmetric;
   bool volume_weights = true;                         ///< exact nodal volumes (msm/dispersion_weights.h); false: w = k L
+  RandomParameters random{};                          ///< of random networks; its spacing follows from the mesh
+  std::optional<double> node_density;                 ///< of random networks [1/m^3]; empty: one node per cube
+  std::optional<double> grip;                         ///< depth in node spacings to which supports hold nodes that are not the mesh's
+  int seeds = 1;                                      ///< random networks to take the mean of: random.seed and those after it
 
   bool has(Extension extension) const { return row.extension == extension; }
 };
@@ -53,8 +62,19 @@ struct ModelParameters {
 /// @throws InputError (with the place in the case file) for an unknown model or option, the nearest name suggested.
 ModelParameters resolve(const ModelChoice& choice);
 
+/// A model in the body that it stands for.
+struct EmbeddedModel {
+  MassSpringModel model;
+  Embedding embedding;
+};
+
 /// The model of a body.  @throws InputError if the mesh does not suit it.
-MassSpringModel build_model(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material);
+EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material);
+
+/// The same without its embedding.
+inline MassSpringModel build_model(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material) {
+  return build_embedded(p, mesh, material).model;
+}
 
 /// Shear modulus [Pa] that the springs of this model are calibrated to.
 double spring_shear_modulus(const ModelParameters& parameters, const IsotropicMaterial& material);

@@ -14,7 +14,7 @@ CubicPattern isotropic_pattern(double face_to_cube) {
   return {8.0 / 3.0 + face_to_cube, face_to_cube, 1.0};
 }
 
-Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
+double cube_edge(const Mesh& mesh) {
   if (!mesh.grid || mesh.hexahedra.empty())
     throw std::invalid_argument("a cubic lattice needs a mesh of equal cubes; this mesh is not cut from one lattice");
   const Vec3 edge = mesh.grid->spacing;
@@ -22,11 +22,15 @@ Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
     throw std::invalid_argument(fmt::format(
         "a cubic lattice needs cubes; the cells are {:.6g} x {:.6g} x {:.6g} m (choose cells in proportion to size)",
         edge[0], edge[1], edge[2]));
+  return edge[0];
+}
 
+Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
+  const double edge = cube_edge(mesh);
   Network network;
   network.X = mesh.nodes;
   network.cells = mesh.hexahedra;
-  network.cell_edge = edge[0];
+  network.cell_edge = edge;
   network.volume = nodal_volumes(mesh);
   network.grid = mesh.grid;
 
@@ -35,7 +39,7 @@ Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
     for (int b = a + 1; b < 8; ++b) {
       int axes = 0;
       for (int d = 0; d < 3; ++d) axes += hexahedron_corners[a][d] != hexahedron_corners[b][d];
-      if (share[axes] > 0) network.cell_springs.push_back({a, b, share[axes], edge[0] * std::sqrt(double(axes))});
+      if (share[axes] > 0) network.cell_springs.push_back({a, b, share[axes], edge * std::sqrt(double(axes))});
     }
   std::vector<Spring> springs;
   springs.reserve(network.cell_springs.size() * mesh.hexahedra.size());

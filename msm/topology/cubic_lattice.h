@@ -20,9 +20,13 @@ struct CubicPattern {
 /// @throws std::invalid_argument if A < 0 or NaN.
 CubicPattern isotropic_pattern(double face_to_cube);
 
+/// Edge [m] of the cubes that a mesh is cut into.
+/// @throws std::invalid_argument if it is not cut into equal cubes (says the edge lengths found).
+double cube_edge(const Mesh& mesh);
+
 /// Network of a mesh of equal cubes: each cell gives its edges k_e/4, face diagonals k_f/2 and cube diagonals k_c
 /// (Golec et al. 2019, sec. 5.4).
-/// @throws std::invalid_argument if the mesh is not cut into equal cubes (says the edge lengths found).
+/// @throws std::invalid_argument as cube_edge().
 Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern);
 
 }  // namespace springproof

@@ -1,0 +1,28 @@
+// The numbers by which Kot et al. (2014) describe a network (sec. 3.3).
+#pragma once
+
+#include "msm/network.h"
+#include "msm/topology/region.h"
+
+namespace springproof {
+
+struct NetworkStatistics {
+  long nodes;
+  long springs;
+  double springs_per_node;  ///< <S>: mean number of springs that meet at a node
+  double mean_length;       ///< <L> [m]
+  double length_deviation;  ///< standard deviation of L [m]
+  double spacing;           ///< l = n^(-1/3) [m]
+  double density;           ///< n = N/V [1/m^3]
+};
+
+/// Of all nodes and springs; <S> = 2 springs / nodes, the surface included, where nodes have fewer.  Images of a periodic
+/// network are not nodes, so that its numbers are those of the infinite network.
+NetworkStatistics statistics(const Network& network);
+
+/// Of the nodes further from the region's surface than the longest spring: none of theirs is missing.  `springs` are
+/// those with an end there, a length counts once per such end, V is the share of these nodes.
+/// All zero (NaN for means) if there is no such node.
+NetworkStatistics bulk_statistics(const Network& network, const Region& region);
+
+}  // namespace springproof

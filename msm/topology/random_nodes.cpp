@@ -1,0 +1,110 @@
+#include "msm/topology/random_nodes.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "msm/topology/random_addition.h"
+#include "msm/topology/surface_features.h"
+
+namespace springproof {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Number of nodes for so many lengths, areas or volumes of l.
+long count_for(double amount) { return std::lround(amount); }
+
+void require_placed(long placed, long wanted, const RandomParameters& parameters) {
+  if (placed >= wanted) return;
+  const double largest = parameters.min_length * std::cbrt(double(placed) / double(wanted));
+  throw std::invalid_argument(fmt::format(
+      "min_length: minL/l = {:.4g} was asked for, but random addition jams at {} of {} nodes; "
+      "this sample has room for minL/l = {:.3f} at most",
+      parameters.min_length, placed, wanted, std::floor(1000 * largest) / 1000));
+}
+
+double length(const std::vector<std::array<Vec3, 2>>& edges) {
+  double sum = 0;
+  for (const auto& [a, b] : edges) sum += (b - a).norm();
+  return sum;
+}
+
+double area(const std::vector<std::array<Vec3, 3>>& triangles) {
+  double sum = 0;
+  for (const auto& [a, b, c] : triangles) sum += (b - a).cross(c - a).norm() / 2;
+  return sum;
+}
+
+/// Spherical windows that step through the box, each filled to its expected number.  The paper steps by sqrt(2) R_s,
+/// which covers a plane but not space: between eight spheres in a cubic arrangement holes are left.  2 R_s / sqrt(3)
+/// is the largest step that covers.
+void fill_windows(Sample& sample, const Vec3& lower, const Vec3& upper, double density) {
+  const double radius = 3 * sample.min_distance, step = 2 * radius / std::sqrt(3.0);
+  const double expected = 4 * pi / 3 * radius * radius * radius * density;
+  int count[3];
+  for (int a = 0; a < 3; ++a) count[a] = static_cast<int>(std::ceil((upper[a] - lower[a]) / step));
+  for (int k = 0; k < count[2]; ++k)
+    for (int j = 0; j < count[1]; ++j)
+      for (int i = 0; i < count[0]; ++i) {
+        const Vec3 centre = lower + step * Vec3(i + 0.5, j + 0.5, k + 0.5);
+        const auto in_window = [&](const Vec3& x) { return (x - centre).squaredNorm() < radius * radius; };
+        long present = 0;
+        sample.cells.any_near(centre, [&](int p) { present += in_window(sample.points[p]); return false; }, 4);
+        const long wanted = static_cast<long>(expected + uniform(sample.random)) - present;
+        const Vec3 reach = Vec3::Constant(radius);
+        if (wanted > 0) fill_box(sample, centre - reach, centre + reach, in_window, wanted);
+      }
+}
+
+}  // namespace
+
+std::vector<Vec3> nodes_from_surface(const Region& region, const RandomParameters& parameters) {
+  const double l = parameters.spacing;
+  const SurfaceFeatures features = surface_features(region);
+  Sample sample(region.lower, region.upper, parameters.min_length * l, false, parameters.seed);
+  for (const Vec3& corner : features.corners)
+    if (sample.is_free(corner)) sample.add(corner);
+  const double corners = double(sample.points.size());
+  const double edges = fill_edges(sample, features.edges, count_for(length(features.edges) / l - corners / 2));
+  const double faces = fill_triangles(sample, features.triangles, count_for(area(features.triangles) / (l * l) - edges / 2 - corners / 4));
+  const long inner = count_for(region.volume / (l * l * l) - faces / 2 - edges / 4 - corners / 8);
+  const long placed = fill_box(sample, region.lower, region.upper, region.inside, inner);
+  const long on_surface = static_cast<long>(faces + edges + corners);
+  require_placed(on_surface + placed, on_surface + inner, parameters);
+  return std::move(sample.points);
+}
+
+std::vector<Vec3> nodes_cut_by_surface(const Region& region, const RandomParameters& parameters, double margin) {
+  const double density = 1 / (parameters.spacing * parameters.spacing * parameters.spacing);
+  const Vec3 lower = region.lower - Vec3::Constant(margin), upper = region.upper + Vec3::Constant(margin);
+  const long wanted = count_for((upper - lower).prod() * density);
+  Sample sample(lower, upper, parameters.min_length * parameters.spacing, false, parameters.seed);
+  if (parameters.windows) fill_windows(sample, lower, upper, density);
+  const auto in_box = [&](const Vec3& x) { return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all(); };
+  const long present = std::count_if(sample.points.begin(), sample.points.end(), in_box);
+  require_placed(present + fill_box(sample, lower, upper, {}, wanted - present), wanted, parameters);
+  std::vector<Vec3> nodes;
+  for (const Vec3& x : sample.points)
+    if (region.inside(x)) nodes.push_back(x);
+  return nodes;
+}
+
+std::vector<Vec3> periodic_nodes_up_to_jamming(const Vec3& box, const RandomParameters& parameters) {
+  const double l = parameters.spacing;
+  Sample sample(Vec3::Zero(), box, parameters.min_length * l, true, parameters.seed);
+  fill_box(sample, Vec3::Zero(), box, {}, count_for(box.prod() / (l * l * l)));
+  return std::move(sample.points);
+}
+
+std::vector<Vec3> periodic_nodes(const Vec3& box, const RandomParameters& parameters) {
+  const double l = parameters.spacing;
+  std::vector<Vec3> nodes = periodic_nodes_up_to_jamming(box, parameters);
+  require_placed(static_cast<long>(nodes.size()), count_for(box.prod() / (l * l * l)), parameters);
+  return nodes;
+}
+
+}  // namespace springproof

@@ -1,0 +1,34 @@
+// The space that a disordered network fills.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+struct Region {
+  Vec3 lower, upper;                                 ///< bounding box [m]
+  double volume;                                     ///< [m^3]
+  std::function<bool(const Vec3&)> inside;           ///< boundary included, within 1e-12 of size()
+  std::vector<Vec3> surface_points;                  ///< [m]; empty: no surface known
+  std::vector<std::array<int, 3>> surface_triangles; ///< anticlockwise seen from outside
+
+  double size() const { return (upper - lower).norm(); }
+};
+
+/// The body of a mesh.  Cells of a grid are looked up in constant time; any other mesh is bounded by its outer facets,
+/// quadrilaterals cut into two triangles (curved edges are taken as straight).
+/// @throws std::invalid_argument if the mesh has no cells.
+Region region_of(const Mesh& mesh);
+
+/// A ball; its surface is an icosahedron subdivided five times, at most 3e-4 radii within the sphere.
+/// @throws std::invalid_argument if the radius is not positive.
+Region ball(const Vec3& centre, double radius);
+
+/// Which points are closer than `distance` [m] to the region's surface.
+std::vector<char> near_surface(const Region& region, const std::vector<Vec3>& points, double distance);
+
+}  // namespace springproof

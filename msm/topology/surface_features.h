@@ -1,0 +1,16 @@
+// Corners and edges of a body: what the hull of its network must keep.
+#pragma once
+
+#include "msm/topology/region.h"
+
+namespace springproof {
+
+struct SurfaceFeatures {
+  std::vector<Vec3> corners;                    ///< where sharp edges end, meet or turn by more than 30 degrees [m]
+  std::vector<std::array<Vec3, 2>> edges;       ///< surface edges with normals more than 30 degrees apart [m]
+  std::vector<std::array<Vec3, 3>> triangles;   ///< the whole surface [m]
+};
+
+SurfaceFeatures surface_features(const Region& region);
+
+}  // namespace springproof
