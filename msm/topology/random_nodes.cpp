@@ -15,6 +15,11 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+/// How many nodes of the inside a node of a face replaces, per minL/l: with it the density far from the surface is that
+/// of the sample without surface.  Measured on cubes of 24 l: 0.14, 0.26, 0.37, 0.44, 0.46, 0.50 nodes at minL/l = 0.3,
+/// 0.5, 0.7, 0.8, 0.85, 0.88.
+constexpr double surface_weight = 0.54;
+
 /// Number of nodes for so many lengths, areas or volumes of l.
 long count_for(double amount) { return std::lround(amount); }
 
@@ -71,7 +76,8 @@ std::vector<Vec3> nodes_from_surface(const Region& region, const RandomParameter
   const double corners = double(sample.points.size());
   const double edges = fill_edges(sample, features.edges, count_for(length(features.edges) / l - corners / 2));
   const double faces = fill_triangles(sample, features.triangles, count_for(area(features.triangles) / (l * l) - edges / 2 - corners / 4));
-  const long inner = count_for(region.volume / (l * l * l) - faces / 2 - edges / 4 - corners / 8);
+  const double weight = surface_weight * parameters.min_length;
+  const long inner = count_for(region.volume / (l * l * l) - weight * (faces + edges / 2 + corners / 4));
   const long placed = fill_box(sample, region.lower, region.upper, region.inside, inner);
   const long on_surface = static_cast<long>(faces + edges + corners);
   require_placed(on_surface + placed, on_surface + inner, parameters);
