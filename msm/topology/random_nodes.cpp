@@ -23,13 +23,15 @@ constexpr double surface_weight = 0.54;
 /// Number of nodes for so many lengths, areas or volumes of l.
 long count_for(double amount) { return std::lround(amount); }
 
-void require_placed(long placed, long wanted, const RandomParameters& parameters) {
+/// `placed` of `wanted` nodes found room beside `others` that had been placed before.
+void require_placed(long placed, long wanted, const RandomParameters& parameters, long others = 0) {
   if (placed >= wanted) return;
+  // A jammed sample holds so many nodes per minL^3.
   const double largest = parameters.min_length * std::cbrt(double(placed) / double(wanted));
   throw std::invalid_argument(fmt::format(
       "min_length: minL/l = {:.4g} was asked for, but random addition jams at {} of {} nodes; "
       "this sample has room for minL/l = {:.3f} at most",
-      parameters.min_length, placed, wanted, std::floor(1000 * largest) / 1000));
+      parameters.min_length, others + placed, others + wanted, std::floor(1000 * largest) / 1000));
 }
 
 double length(const std::vector<std::array<Vec3, 2>>& edges) {
@@ -80,7 +82,7 @@ std::vector<Vec3> nodes_from_surface(const Region& region, const RandomParameter
   const long inner = count_for(region.volume / (l * l * l) - weight * (faces + edges / 2 + corners / 4));
   const long placed = fill_box(sample, region.lower, region.upper, region.inside, inner);
   const long on_surface = static_cast<long>(faces + edges + corners);
-  require_placed(on_surface + placed, on_surface + inner, parameters);
+  require_placed(placed, inner, parameters, on_surface);
   return std::move(sample.points);
 }
 
@@ -88,7 +90,8 @@ std::vector<Vec3> nodes_cut_by_surface(const Region& region, const RandomParamet
   const double density = 1 / (parameters.spacing * parameters.spacing * parameters.spacing);
   const Vec3 lower = region.lower - Vec3::Constant(margin), upper = region.upper + Vec3::Constant(margin);
   const long wanted = count_for((upper - lower).prod() * density);
-  Sample sample(lower, upper, parameters.min_length * parameters.spacing, false, parameters.seed);
+  // Walls would draw nodes to themselves; a periodic sample has none.  Windows leave their walls outside the box.
+  Sample sample(lower, upper, parameters.min_length * parameters.spacing, !parameters.windows, parameters.seed);
   if (parameters.windows) fill_windows(sample, lower, upper, density);
   const auto in_box = [&](const Vec3& x) { return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all(); };
   const long present = std::count_if(sample.points.begin(), sample.points.end(), in_box);
