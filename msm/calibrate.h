@@ -14,12 +14,11 @@ double affine_shear_modulus(const Network& network);
 /// Scales all spring constants so that affine_shear_modulus(network) == G.
 void calibrate(double shear_modulus, Network& network);
 
-/// Gives every node the stiffness that its volume asks for.  Near the surface nodes lack springs; each has a factor
-/// V_i c / (sum k L^2 / 2 over its springs), c the material's, and springs are scaled by the mean factor of their ends.
-/// Repeated a few times, a spring's stiffness changing by no more than a factor of 4.  sum k L^2 of the network becomes
-/// c V, c being the median of the nodes with at least the mean number of springs: the density of the bulk.
-/// Only nodes short of springs (fewer than 3/4 of ... ) are corrected.
-/// Not for periodic networks, which lack no springs: they stay as they are.
-void correct_surface(Network& network);
+/// Gives every node the stiffness that its volume asks for: near the surface nodes lack springs, or lie closer together.
+/// A node's factor is V_i c / (sum k L^2 / 2 over its springs); springs are scaled by the mean factor of their ends, five
+/// times over, each by no more than a factor of 4 in all.  c is the material's value, from the nodes marked in `bulk`
+/// (bulk_nodes(); empty, or none marked: from those with at least the mean number of springs).  Afterwards
+/// sum k L^2 = c V, that of a bulk network of the same volume.  Periodic networks are left as they are.
+void correct_surface(Network& network, const std::vector<char>& bulk = {});
 
 }  // namespace springproof

@@ -42,14 +42,18 @@ NetworkStatistics statistics(const Network& network) {
   return statistics_of(network, counted);
 }
 
-NetworkStatistics bulk_statistics(const Network& network, const Region& region) {
+std::vector<char> bulk_nodes(const Network& network, const Region& region) {
   double longest = 0;
   for (const Spring& s : network.springs) longest = std::max(longest, s.rest_length);
   std::vector<Vec3> points;
   for (int n = 0; n < network.nodes(); ++n) points.push_back(network.X.row(n).transpose());
-  std::vector<char> counted = near_surface(region, points, longest);
-  for (char& c : counted) c = !c;
-  return statistics_of(network, counted);
+  std::vector<char> marked = near_surface(region, points, longest);
+  for (char& m : marked) m = !m;
+  return marked;
+}
+
+NetworkStatistics bulk_statistics(const Network& network, const Region& region) {
+  return statistics_of(network, bulk_nodes(network, region));
 }
 
 }  // namespace springproof

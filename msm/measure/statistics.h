@@ -20,8 +20,10 @@ struct NetworkStatistics {
 /// network are not nodes, so that its numbers are those of the infinite network.
 NetworkStatistics statistics(const Network& network);
 
-/// Of the nodes further from the region's surface than the longest spring: none of theirs is missing.  `springs` are
-/// those with an end there, a length counts once per such end, V is the share of these nodes.
+/// Marks the nodes further from the region's surface than the longest spring: none of their springs is missing.
+std::vector<char> bulk_nodes(const Network& network, const Region& region);
+
+/// Of the bulk_nodes().  `springs` are those with an end there, a length counts once per such end, V is the share of these nodes.
 /// All zero (NaN for means) if there is no such node.
 NetworkStatistics bulk_statistics(const Network& network, const Region& region);
 

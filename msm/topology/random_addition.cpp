@@ -19,14 +19,20 @@ std::size_t draw_index(std::mt19937_64& random, std::size_t count) {
 /// One exclusion ball covers all the corners, so the convex part between them.
 template <class Corners>
 bool is_covered(const Sample& sample, const Corners& corners) {
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& c : corners) centre += c;
-  centre /= double(corners.size());
   const double reach = sample.min_distance * sample.min_distance;
-  return sample.cells.any_near(centre, [&](int p) {
+  return sample.cells.any_near(corners[0], [&](int p) {
     for (const Vec3& c : corners)
       if (!(sample.cells.nearest_image(c - sample.points[p]).squaredNorm() < reach)) return false;
     return true;
+  });
+}
+
+/// The same for a box, by its corner that is farthest from the node.
+bool is_box_covered(const Sample& sample, const Vec3& centre, const Vec3& edge) {
+  const double reach = sample.min_distance * sample.min_distance;
+  return sample.cells.any_near(centre, [&](int p) {
+    const Vec3 d = sample.cells.nearest_image(centre - sample.points[p]);
+    return (d.cwiseAbs() + edge / 2).squaredNorm() < reach;
   });
 }
 
@@ -50,9 +56,11 @@ struct Boxes {
     return corner(part, x, y, z);
   }
   bool is_open(const Sample& sample, const std::array<std::uint32_t, 3>& part) const {
+    const Vec3 centre = corner(part, 0.5, 0.5, 0.5);
+    if (is_box_covered(sample, centre, edge)) return false;
+    if (!inside || inside(centre)) return true;
     const auto all = corners(part);
-    if (is_covered(sample, all)) return false;
-    return !inside || inside(corner(part, 0.5, 0.5, 0.5)) || std::any_of(all.begin(), all.end(), std::ref(inside));
+    return std::any_of(all.begin(), all.end(), std::ref(inside));
   }
   void subdivide(const Sample& sample) {
     std::vector<std::array<std::uint32_t, 3>> finer;

@@ -30,8 +30,8 @@ struct NetworkRepair {
 /// Network of a body.  Springs join all nodes closer than maxL whose line stays in the body (tested at three points).
 /// If max_length is empty, maxL is that of a periodic sample of 8000 nodes with the same minL/l and <S> =
 /// springs_per_node.  Volume shares: nearest node of each point of a lattice of l/3, scaled to the body's volume.
-/// With surface nodes: corners, sharp edges and faces are filled first, to one node per l, l^2; then the inside, so that
-/// nodes of faces, edges and corners counted as 1/2, 1/4, 1/8 make V/l^3.
+/// With surface nodes: corners, sharp edges and faces are filled first, to one node per l, l^2; then the inside, to the
+/// number that gives the density 1/l^3 far from the surface.
 /// @throws std::invalid_argument: parameters out of range; more nodes than random addition can place (says the largest
 ///   minL/l there is room for); more than 20 % of the nodes removed as floppy or detached.
 Network random_network(const Region& region, const RandomParameters& parameters, NetworkRepair* repaired = nullptr);

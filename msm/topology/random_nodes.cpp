@@ -15,16 +15,23 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+/// How many nodes of the inside a node of a face replaces, per minL/l: with it the density far from the surface is that
+/// of the sample without surface.  Measured on cubes of 24 l: 0.14, 0.26, 0.37, 0.44, 0.46, 0.50 nodes at minL/l = 0.3,
+/// 0.5, 0.7, 0.8, 0.85, 0.88.
+constexpr double surface_weight = 0.54;
+
 /// Number of nodes for so many lengths, areas or volumes of l.
 long count_for(double amount) { return std::lround(amount); }
 
-void require_placed(long placed, long wanted, const RandomParameters& parameters) {
+/// `placed` of `wanted` nodes found room beside `others` that had been placed before.
+void require_placed(long placed, long wanted, const RandomParameters& parameters, long others = 0) {
   if (placed >= wanted) return;
+  // A jammed sample holds so many nodes per minL^3.
   const double largest = parameters.min_length * std::cbrt(double(placed) / double(wanted));
   throw std::invalid_argument(fmt::format(
       "min_length: minL/l = {:.4g} was asked for, but random addition jams at {} of {} nodes; "
       "this sample has room for minL/l = {:.3f} at most",
-      parameters.min_length, placed, wanted, std::floor(1000 * largest) / 1000));
+      parameters.min_length, others + placed, others + wanted, std::floor(1000 * largest) / 1000));
 }
 
 double length(const std::vector<std::array<Vec3, 2>>& edges) {
@@ -71,10 +78,11 @@ std::vector<Vec3> nodes_from_surface(const Region& region, const RandomParameter
   const double corners = double(sample.points.size());
   const double edges = fill_edges(sample, features.edges, count_for(length(features.edges) / l - corners / 2));
   const double faces = fill_triangles(sample, features.triangles, count_for(area(features.triangles) / (l * l) - edges / 2 - corners / 4));
-  const long inner = count_for(region.volume / (l * l * l) - faces / 2 - edges / 4 - corners / 8);
+  const double weight = surface_weight * parameters.min_length;
+  const long inner = count_for(region.volume / (l * l * l) - weight * (faces + edges / 2 + corners / 4));
   const long placed = fill_box(sample, region.lower, region.upper, region.inside, inner);
   const long on_surface = static_cast<long>(faces + edges + corners);
-  require_placed(on_surface + placed, on_surface + inner, parameters);
+  require_placed(placed, inner, parameters, on_surface);
   return std::move(sample.points);
 }
 
@@ -82,7 +90,8 @@ std::vector<Vec3> nodes_cut_by_surface(const Region& region, const RandomParamet
   const double density = 1 / (parameters.spacing * parameters.spacing * parameters.spacing);
   const Vec3 lower = region.lower - Vec3::Constant(margin), upper = region.upper + Vec3::Constant(margin);
   const long wanted = count_for((upper - lower).prod() * density);
-  Sample sample(lower, upper, parameters.min_length * parameters.spacing, false, parameters.seed);
+  // Walls would draw nodes to themselves; a periodic sample has none.  Windows leave their walls outside the box.
+  Sample sample(lower, upper, parameters.min_length * parameters.spacing, !parameters.windows, parameters.seed);
   if (parameters.windows) fill_windows(sample, lower, upper, density);
   const auto in_box = [&](const Vec3& x) { return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all(); };
   const long present = std::count_if(sample.points.begin(), sample.points.end(), in_box);
