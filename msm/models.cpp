@@ -71,7 +71,7 @@ double grip_of(const ModelParameters& p, const Mesh& mesh) {
 
 void calibrate_network(const ModelParameters& p, const IsotropicMaterial& material, const Mesh& mesh, Network& network) {
   network.volume *= volume(mesh, mesh.nodes) / network.volume.sum();
-  //SURF
+  if (p.row.topology == random) correct_surface(network);
   calibrate(spring_shear_modulus(p, material), network);
 }
 
