@@ -10,7 +10,7 @@ namespace springproof {
 /// node inside a hexagonal lattice.  Kot et al. (2014), eq. (13); Kot and Nagahashi (2015), eq. (4) (their coefficient:
 /// docs/papers.md #18).  The angle is measured in space, so the triangles may turn and leave their plane.
 /// An angle belongs to one triangle only: triangles superpose, a boundary needs no rule.
-/// The sides of the triangles must be springs.  No triangle may be flat (phi = 0 or pi: no direction for the force).
+/// No triangle may be flat (phi = 0 or pi: no direction for the force).
 struct AngularSprings {
   double beta = 0;  ///< stiffness of an angle [N m]
 
