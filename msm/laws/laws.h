@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "msm/laws/angular_springs.h"
 #include "msm/laws/hourglass_correction.h"
 #include "msm/laws/momentum_dispersion.h"
 #include "msm/laws/springs.h"
@@ -11,7 +12,7 @@
 
 namespace springproof {
 
-using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion>;
+using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion, AngularSprings>;
 
 /// A mass-spring model: a network and what acts in it.
 struct MassSpringModel {

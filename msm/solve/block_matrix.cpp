@@ -89,6 +89,8 @@ std::vector<std::vector<int>> coupled_nodes(const Network& network) {
     coupled[s.i].push_back(s.j);
     coupled[s.j].push_back(s.i);
   }
+  for (const auto& triangle : network.triangles)
+    for (int a : triangle) coupled[a].insert(coupled[a].end(), triangle.begin(), triangle.end());
   sort_unique(coupled);
   return coupled;
 }

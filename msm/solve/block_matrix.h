@@ -44,7 +44,7 @@ class BlockMatrix {
   std::vector<Blocks> blocks_;
 };
 
-/// For each node of a network the nodes that share a spring or a cell with it, itself included, ascending.
+/// For each node of a network the nodes that share a spring, a triangle or a cell with it, itself included, ascending.
 std::vector<std::vector<int>> coupled_nodes(const Network& network);
 
 /// The same for cells alone.

@@ -44,6 +44,10 @@ std::vector<Case> cases() {
                      true});
     }
   }
+  const Network sheet = test::bent_triangles();
+  for (double beta : {-20.0, 100.0})
+    all.push_back({"Angular" + std::string(beta < 0 ? "Negative" : "Positive"), {sheet, {AngularSprings{beta}}}, true});
+  all.push_back({"SpringsOfASheet", {sheet, {Springs{}}}, true});
   return all;
 }
 

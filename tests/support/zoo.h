@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -64,6 +65,30 @@ inline NodalVectors noise(Eigen::Index nodes, double size, unsigned seed = 1) {
   NodalVectors v(nodes, 3);
   for (Eigen::Index i = 0; i < v.size(); ++i) v.data()[i] = size * (2.0 * generator() / 4294967295.0 - 1);
   return v;
+}
+
+/// A sheet of 3 x 3 rhombi cut into two triangles each, nodes moved in the plane and out of it.
+inline Network bent_triangles(double edge = 0.5) {
+  const int n = 4;
+  Network network;
+  network.X.resize(n * n, 3);
+  std::vector<Spring> sides;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * n + i;
+      network.X.row(a) << edge * (i + 0.5 * j), edge * std::sqrt(0.75) * j, 0;
+      if (i + 1 == n || j + 1 == n) continue;
+      network.triangles.push_back({a, a + 1, a + n});
+      network.triangles.push_back({a + 1, a + n + 1, a + n});
+    }
+  network.X += noise(n * n, 0.1 * edge, 7);
+  for (const auto& t : network.triangles)
+    for (int c = 0; c < 3; ++c)
+      sides.push_back({t[c], t[(c + 1) % 3], 500, (network.X.row(t[c]) - network.X.row(t[(c + 1) % 3])).norm()});
+  network.springs = merge_springs(std::move(sides));
+  network.volume = Eigen::VectorXd::Constant(n * n, edge * edge * edge);
+  network.cell_edge = edge;
+  return network;
 }
 
 inline Eigen::Matrix3d rotation() {

@@ -1,0 +1,28 @@
+// Force law: angular springs at the corners of a planar triangular network (Kirkwood's model).
+#pragma once
+
+#include "msm/network.h"
+#include "msm/solve/block_matrix.h"
+
+namespace springproof {
+
+/// Energy sum beta/2 (phi - phi_0)^2 over the three angles of every triangle, phi_0 the angle at rest: six springs at a
+/// node inside a hexagonal lattice.  Kot et al. (2014), eq. (13); Kot and Nagahashi (2015), eq. (4) (their coefficient:
+/// docs/papers.md #18).  The angle is measured in space, so the triangles may turn and leave their plane.
+/// An angle belongs to one triangle only: triangles superpose, a boundary needs no rule.
+/// No triangle may be flat (phi = 0 or pi: no direction for the force).
+struct AngularSprings {
+  double beta = 0;  ///< stiffness of an angle [N m]
+
+  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+};
+
+/// beta [N m] that gives a hexagonal lattice with springs k [N/m] of length a [m] the plane Poisson's ratio nu_2d:
+/// k a^2/6 (1 - 3 nu)/(1 + nu).  Negative above nu = 1/3, and stable even so: in its plane a triangle has affine
+/// strains only, and its energy stays positive as long as 6 beta/(k a^2) > -1, nu < 1.
+/// @throws std::invalid_argument unless -1 < nu_2d < 1.
+double angular_stiffness(double k, double a, double nu_2d);
+
+}  // namespace springproof

@@ -1,0 +1,115 @@
+#include "msm/measure/local_fields.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace springproof {
+namespace {
+
+Vec3 between(const Spring& s, const NodalVectors& x) { return (x.row(s.j) - x.row(s.i)).transpose(); }
+
+void add(const std::vector<double>& more, std::vector<double>& sum) {
+  for (std::size_t s = 0; s < sum.size(); ++s) sum[s] += more[s];
+}
+
+bool planar(const Network& network) {
+  const auto z = network.X.col(2);
+  return z.maxCoeff() - z.minCoeff() <= 1e-9 * network.X.col(0).cwiseAbs().maxCoeff();
+}
+
+/// Which fraction of the segment from `a` to `a + d` lies in the ball.
+double fraction_inside(const Vec3& a, const Vec3& d, const Vec3& centre, double radius) {
+  const Vec3 from = a - centre;
+  const double dd = d.squaredNorm(), middle = -from.dot(d) / dd;
+  const double half_squared = middle * middle - (from.squaredNorm() - radius * radius) / dd;
+  if (half_squared <= 0) return 0;
+  const double half = std::sqrt(half_squared);
+  return std::max(0.0, std::min(1.0, middle + half) - std::max(0.0, middle - half));
+}
+
+}  // namespace
+
+std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVectors& u) {
+  const Network& network = model.network;
+  std::vector<double> T;
+  T.reserve(network.springs.size());
+  for (const Spring& s : network.springs) T.push_back(s.stiffness * between(s, u).dot(between(s, network.X).normalized()));
+  if (const MomentumDispersion* dispersion = dispersion_of(model)) {
+    Tangent flow;
+    dispersion->add_flow(network, network.X, flow);
+    add(dispersion->tensions(network, flow.inflow * Eigen::Map<const Eigen::VectorXd>(u.data(), u.size())), T);
+  }
+  return T;
+}
+
+std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVectors& x) {
+  const Network& network = model.network;
+  std::vector<double> T;
+  T.reserve(network.springs.size());
+  for (const Spring& s : network.springs) T.push_back(s.stiffness * (between(s, x).norm() - s.rest_length));
+  if (const MomentumDispersion* dispersion = dispersion_of(model))
+    add(dispersion->tensions(network, dispersion->inflow(network, x)), T);
+  return T;
+}
+
+Eigen::Matrix3d displacement_gradient(const Network& network, const NodalVectors& u, const Vec3& point, double radius) {
+  std::vector<int> near;
+  for (int n = 0; n < network.nodes(); ++n)
+    if ((network.X.row(n).transpose() - point).squaredNorm() < radius * radius) near.push_back(n);
+  const int directions = planar(network) ? 2 : 3;
+  Eigen::MatrixXd basis(near.size(), 1 + directions), value(near.size(), 3);
+  for (std::size_t m = 0; m < near.size(); ++m) {
+    const Vec3 r = (network.X.row(near[m]).transpose() - point) / radius;
+    const double root_weight = 1 - r.squaredNorm();
+    const auto row = static_cast<Eigen::Index>(m);
+    basis(row, 0) = root_weight;
+    basis.row(row).tail(directions) = root_weight * r.head(directions).transpose();
+    value.row(row) = root_weight * u.row(near[m]);
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(basis);
+  if (static_cast<int>(near.size()) <= directions || fit.rank() <= directions)
+    throw std::invalid_argument(fmt::format("{} nodes within {} m of ({}, {}, {}) do not determine a gradient; take a larger radius",
+                                            near.size(), radius, point[0], point[1], point[2]));
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+  gradient.leftCols(directions) = fit.solve(value).bottomRows(directions).transpose() / radius;
+  return gradient;
+}
+
+Eigen::Matrix3d hardy_stress(const Network& network, const NodalVectors& x, const std::vector<double>& tensions,
+                             const Vec3& point, double radius) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t s = 0; s < tensions.size(); ++s) {
+    const Vec3 d = between(network.springs[s], x);
+    const double fraction = fraction_inside(x.row(network.springs[s].i).transpose(), d, point, radius);
+    if (fraction > 0) sum += tensions[s] * fraction / d.norm() * d * d.transpose();
+  }
+  return sum / (4.0 / 3 * std::numbers::pi * radius * radius * radius);
+}
+
+double momentum_flow(const Network& network, const NodalVectors& x, const std::vector<double>& tensions,
+                     const Vec3& point, const Vec3& normal) {
+  const auto beyond = [&](int n) { return (x.row(n).transpose() - point).dot(normal) >= 0; };
+  double sum = 0;
+  for (std::size_t s = 0; s < tensions.size(); ++s) {
+    const Spring& spring = network.springs[s];
+    if (beyond(spring.i) != beyond(spring.j)) sum += tensions[s] * std::abs(between(spring, x).normalized().dot(normal));
+  }
+  return sum;
+}
+
+double poisson_ratio_of(const Eigen::Matrix3d& e, const Eigen::Matrix3d& s) {
+  return (e(0, 0) * s(1, 1) - e(1, 1) * s(0, 0)) /
+         (e(0, 0) * (s(0, 0) + s(2, 2)) - e(1, 1) * (s(1, 1) + s(2, 2)));
+}
+
+double poisson_ratio_as_printed(const Eigen::Matrix3d& e, const Eigen::Matrix3d& s) {
+  return (e(0, 0) * s(1, 1) - e(1, 1) * s(0, 0)) /
+         (e(0, 0) * (s(0, 0) + s(1, 1)) - e(1, 1) * (s(0, 0) + s(2, 2)));
+}
+
+}  // namespace springproof

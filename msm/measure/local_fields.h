@@ -1,0 +1,40 @@
+// Strain, stress and momentum flow at places of a network.
+#pragma once
+
+#include <vector>
+
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+/// Tension of each spring [N], positive if it pulls: its own and what momentum dispersion adds.  Forces of cells and angles
+/// are not tensions: models with those have their stress measured in part only.
+std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVectors& u);  ///< displacement from rest
+std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVectors& x);  ///< positions
+
+/// Displacement gradient du_i/dX_j at a point: linear fit to the nodes closer than `radius` [m], weights (1 - r^2/R^2)^2
+/// (moving least squares; an affine field is exact).  In a planar network (all z equal) d/dz is 0.
+/// @throws std::invalid_argument if the nodes within reach do not span the space (plane).
+Eigen::Matrix3d displacement_gradient(const Network& network, const NodalVectors& u, const Vec3& point, double radius);
+
+/// Mean stress in a ball [Pa]: (1/V) sum_s T_s n (x) d_s over the parts d_s of the springs inside, n their direction;
+/// the bond form of Hardy (1982).  Symmetric.  x: where springs are, Network::X for a linear model.
+/// The ball must lie inside the body: what sticks out counts as material without stress.
+Eigen::Matrix3d hardy_stress(const Network& network, const NodalVectors& x, const std::vector<double>& tensions,
+                             const Vec3& point, double radius);
+
+/// Force that the side of a plane towards `normal` (unit) draws on the other with [N], positive if it pulls: sum over
+/// the springs that cross it of the tension's normal part; Kot et al. (2014), sec. 5.1.  Nodes on the plane are on the
+/// side of `normal`.
+double momentum_flow(const Network& network, const NodalVectors& x, const std::vector<double>& tensions,
+                     const Vec3& point, const Vec3& normal);
+
+/// Poisson's ratio from normal strains and stresses along the axes, also if the sides are not free of stress:
+/// (exx syy - eyy sxx) / (exx (sxx + szz) - eyy (syy + szz)).  Kot & Nagahashi (2015), eq. (29), DEVIATION: subscripts of
+/// the denominator, docs/papers.md #17.
+double poisson_ratio_of(const Eigen::Matrix3d& strain, const Eigen::Matrix3d& stress);
+
+/// Eq. (29) as printed: nu/(1 + nu) in uniaxial stress.  For the record only.
+double poisson_ratio_as_printed(const Eigen::Matrix3d& strain, const Eigen::Matrix3d& stress);
+
+}  // namespace springproof
