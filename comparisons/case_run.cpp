@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "comparisons/measures.h"
+#include "comparisons/model_run.h"
 #include "comparisons/picture.h"
 #include "comparisons/reference_grids.h"
 #include "meshes/gmsh_io.h"
@@ -120,22 +121,46 @@ std::map<std::string, double> distances(const PartRun& run, std::size_t lattice,
   return out;
 }
 
+/// Mean and standard deviation of a measure over the samples that have it.
+void set_value(const std::vector<std::map<std::string, double>>& samples, const std::string& measure, Row& row) {
+  double sum = 0, squares = 0;
+  row.samples = 0;
+  for (const auto& sample : samples) {
+    const auto at = sample.find(measure);
+    if (at == sample.end()) continue;
+    ++row.samples;
+    sum += at->second;
+    squares += at->second * at->second;
+  }
+  row.value = sum / row.samples;
+  if (row.samples > 1)
+    row.spread = std::sqrt(std::max(0.0, squares - sum * row.value) / (row.samples - 1));
+}
+
+std::set<std::string> measures_in(const std::vector<std::map<std::string, double>>& samples) {
+  std::set<std::string> names;
+  for (const auto& sample : samples)
+    for (const auto& [measure, value] : sample) names.insert(measure);
+  return names;
+}
+
+/// One displacement field and one set of scalars per sample.
 void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
-              const NodalVectors& u, const std::map<std::string, double>& scalars) {
+              const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
   const auto& reference = run.reference[lattice];
   const Row blank{run.experiment().name, kinematics, model, run.material.poisson_ratio,
-                  run.experiment().body.cells[lattice], "", 0, "", {}, {}, {}};
-  for (const auto& [measure, value] : scalars) {
+                  run.experiment().body.cells[lattice], "", 0, "", {}, {}, {}, 1, {}};
+  for (const std::string& measure : measures_in(scalars)) {
     if (!wanted(measure, run.experiment().measures)) continue;
     Row row = blank;
     row.measure = measure;
-    row.value = value;
+    set_value(scalars, measure, row);
     row.unit = unit_of(measure);
-    if (reference && comparable(run.prepared, measure)) {
+    if (reference && reference->scalars.contains(measure) && comparable(run.prepared, measure)) {
       const ReferenceValue& r = reference->scalars.at(measure);
       row.reference = r.value;
       row.reference_uncertainty = r.uncertainty;
-      row.error = value - r.value;
+      row.error = row.value - r.value;
     }
     run.part.rows.push_back(row);
   }
@@ -144,15 +169,17 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
   NodalVectors doubt = reference->field.displacement;
   doubt.col(0) += reference->field.nodal_uncertainty;
   const std::map<std::string, double> uncertainty = distances(run, lattice, doubt);
-  for (const auto& [measure, value] : distances(run, lattice, u)) {
+  std::vector<std::map<std::string, double>> of_samples;
+  for (const NodalVectors& field : u) of_samples.push_back(distances(run, lattice, field));
+  for (const std::string& measure : measures_in(of_samples)) {
     if (!wanted(measure, run.experiment().measures)) continue;
     Row row = blank;
     row.measure = measure;
-    row.value = value;
+    set_value(of_samples, measure, row);
     row.unit = unit_of(measure);
     row.reference = 0.0;
     row.reference_uncertainty = uncertainty.at(measure);
-    row.error = value;
+    row.error = row.value;
     run.part.rows.push_back(row);
   }
 }
@@ -173,21 +200,28 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
 
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
-  const auto& mesh = run.prepared.meshes[lattice];
-  const Kinematics kinematics = e.model_kinematics();
   const std::string& label = e.models[number].label;
-  const MassSpringModel model = build_model(run.prepared.models[number], *mesh, run.material);
-  const LoadPath path = [&](double factor) { return transfer(e.loads, *mesh, run.material.density, kinematics, factor); };
-  const BoundaryConditions conditions = path(1.0);
-  const Equilibrium state = kinematics == Kinematics::linear ? solve_linear(model, conditions) : solve_finite(model, path);
-  const std::string kind = kinematics == Kinematics::linear ? "linear" : "finite";
-  run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, state.ok, state.message,
-                           state.solver, state.iterations, state.residual, state.seconds, state.unknowns, state.memory_MiB});
-  if (!state.ok) return;
-  const Field field = to_field(state, mesh, e.loads, conditions, kinematics);
-  const NodalVectors probes = interpolate(*mesh, field.displacement, points_of(e.probes));
-  add_rows(run, lattice, label, kind, field.displacement, scalar_measures(field, e.probes, probes));
-  save(run, lattice, label, field);
+  const std::string kind = e.model_kinematics() == Kinematics::linear ? "linear" : "finite";
+  const std::vector<Sample> samples = run_samples(run.prepared, lattice, number, run.material);
+  std::vector<NodalVectors> fields;
+  std::vector<std::map<std::string, double>> scalars;
+  for (const Sample& sample : samples) {
+    const Equilibrium& s = sample.state;
+    run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message, s.solver,
+                             s.iterations, s.residual, s.seconds, s.unknowns, s.memory_MiB});
+    if (!s.ok) continue;
+    if (fields.empty()) save(run, lattice, label, sample.field);
+    fields.push_back(sample.field.displacement);
+    scalars.push_back(sample.scalars);
+  }
+  if (!fields.empty()) add_rows(run, lattice, label, kind, fields, scalars);
+}
+
+/// Builds the model and puts the loads on it, for what may be wrong with either.
+void try_model(const Experiment& experiment, const ModelParameters& parameters, const Mesh& mesh) {
+  const auto [model, embedding] = build_embedded(parameters, mesh, experiment.materials.front());
+  if (parameters.row.topology == Topology::cells) return;
+  require_supported(transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics()), model.network.X);
 }
 
 /// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.
@@ -227,7 +261,8 @@ PreparedCase prepare(const Experiment& experiment) {
       check_patches(experiment, patches);
       prepared.sharing = patches_sharing_supports(experiment.loads, mesh, experiment.model_kinematics());
       require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh.nodes);
-      for (const ModelParameters& p : prepared.models) build_model(p, mesh, experiment.materials.front());
+      for (const ModelParameters& p : prepared.models)
+        if (p.row.topology == Topology::cells || prepared.meshes.size() == 1) try_model(experiment, p, mesh);
       const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
       if (experiment.section) section_distance(mesh, *experiment.section, u, u);
       interpolate(mesh, u, points_of(experiment.probes));
@@ -242,7 +277,7 @@ PreparedCase prepare(const Experiment& experiment) {
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {
   PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}};
   if (!vtu_folder.empty()) std::filesystem::create_directories(vtu_folder);
-  const std::vector<fem::Solution> peers = run_fem(run);
+  const std::vector<fem::Solution> peers = prepared.experiment.reference.elements.empty() ? std::vector<fem::Solution>() : run_fem(run);
   record_elements(run);
   build_reference(run);
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
@@ -255,7 +290,7 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
       const fem::Solution& s = peers[lattice];
       run.part.runs.push_back(fem_run(run, s, "fem_q1"));
       if (s.ok) {
-        add_rows(run, lattice, "fem_q1", run.part.runs.back().kinematics, at_lattice(prepared, lattice, s.displacement), measures_of(prepared, s));
+        add_rows(run, lattice, "fem_q1", run.part.runs.back().kinematics, {at_lattice(prepared, lattice, s.displacement)}, {measures_of(prepared, s)});
         save(run, lattice, "fem_q1", sampled_field(prepared, lattice, s));
       }
     }

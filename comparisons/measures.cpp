@@ -63,6 +63,9 @@ std::string unit_of(const std::string& measure) {
   if (kind == "torque") return "N m";
   if (kind == "displacement" || kind.starts_with("section_")) return "m";
   if (kind == "stress") return "Pa";
+  if (measure.starts_with("moduli.") && measure.ends_with("youngs_modulus")) return "Pa";
+  if (measure == "moduli.youngs_modulus_local") return "Pa";
+  if (measure == "network.mean_length" || measure == "network.length_deviation") return "m";
   return "1";
 }
 
@@ -74,7 +77,7 @@ bool wanted(const std::string& measure, const std::vector<std::string>& measures
   const std::string kind = head(measure);
   const std::string group = kind == "force" || kind == "torque" ? "reaction"
                             : kind == "displacement"            ? "probe"
-                            : kind == "stress"                  ? "stress"
+                            : kind == "stress" || kind == "network" || kind == "moduli" ? kind
                                                                 : measure;
   return std::find(measures.begin(), measures.end(), group) != measures.end();
 }

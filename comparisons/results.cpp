@@ -144,7 +144,9 @@ Json json_of(const Row& r) {
           {"unit", r.unit},
           {"reference", number(r.reference)},
           {"reference_uncertainty", number(r.reference_uncertainty)},
-          {"error", number(r.error)}};
+          {"error", number(r.error)},
+          {"samples", r.samples},
+          {"spread", number(r.spread)}};
 }
 
 Json json_of(const Run& r) {
@@ -383,13 +385,13 @@ Json pictures_to_json(const CaseResult& result) {
 
 std::string to_csv(const std::vector<CaseResult>& results) {
   std::string out =
-      "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error\n";
+      "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error,samples,spread\n";
   for (const CaseResult& result : results)
     for (const Row& r : result.rows)
-      out += fmt::format("{},{},{},{},{}x{}x{},{},{},{},{},{},{}\n", quoted(r.case_name),
+      out += fmt::format("{},{},{},{},{}x{}x{},{},{},{},{},{},{},{},{}\n", quoted(r.case_name),
                          quoted(r.kinematics), quoted(r.model), csv_number(r.poisson_ratio), r.cells[0],
                          r.cells[1], r.cells[2], quoted(r.measure), csv_number(r.value), quoted(r.unit),
-                         csv_number(r.reference), csv_number(r.reference_uncertainty), csv_number(r.error));
+                         csv_number(r.reference), csv_number(r.reference_uncertainty), csv_number(r.error), r.samples, csv_number(r.spread));
   return out;
 }
 

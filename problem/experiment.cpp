@@ -149,6 +149,7 @@ ReferenceChoice read_reference(const TomlValue& value) {
   if (const auto cells = table.find("cells")) reference.cells = as_cells(*cells);
   if (const auto elements = table.find("elements")) {
     reference.elements.clear();
+    if (const auto* array = elements->node->as_array(); array && array->empty()) return reference;
     for (const TomlValue& item : as_list(*elements, "a list of elements: q1, q2, p1, p2")) {
       const std::string element = as_choice(item, element_names());
       if (std::find(reference.elements.begin(), reference.elements.end(), element) != reference.elements.end())

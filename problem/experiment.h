@@ -60,7 +60,7 @@ struct Section {
 /// How the finite element reference is computed.
 struct ReferenceChoice {
   Cells cells = {0, 0, 0};          ///< finest of three grids; {0,0,0} = chosen from the body's cells
-  std::vector<std::string> elements = {"q2"};   ///< each run on the three grids; the first is the reference
+  std::vector<std::string> elements = {"q2"};   ///< each run on the three grids; the first is the reference; none: the case goes without
   double grading = 1.5;             ///< exponent that draws elements towards the faces of the block; 1 = uniform
   bool smooth = false;              ///< the exact solution has no singularity: the elements' own order may be trusted
 };

@@ -34,6 +34,15 @@ std::vector<std::string> stress_rows(const Experiment& experiment) {
   return rows;
 }
 
+std::vector<std::string> network_rows(const Experiment&) {
+  return {"network.nodes", "network.springs", "network.springs_per_node", "network.mean_length", "network.length_deviation"};
+}
+
+std::vector<std::string> moduli_rows(const Experiment&) {
+  return {"moduli.youngs_modulus", "moduli.youngs_modulus_local", "moduli.poisson_ratio", "moduli.poisson_ratio_of_fields",
+          "moduli.poisson_ratio_as_printed", "moduli.affine_youngs_modulus"};
+}
+
 struct Measure {
   const char* name;
   std::vector<std::string> (*rows)(const Experiment&);  ///< nullptr: one row of the same name
@@ -45,6 +54,7 @@ constexpr Measure measures[] = {
     {"volume_change", nullptr},      {"volume_change_magnitude", nullptr},   {"volume_change_first_order", nullptr},
     {"reaction", reaction_rows},     {"probe", probe_rows},                  {"stress", stress_rows},
     {"displacement_error_order", nullptr},
+    {"network", network_rows},       {"moduli", moduli_rows},
 };
 
 }  // namespace
@@ -59,6 +69,17 @@ std::vector<std::string> rows_of_measure(const std::string& name, const Experime
   for (const Measure& measure : measures)
     if (name == measure.name && measure.rows) return measure.rows(experiment);
   return {name};
+}
+
+std::optional<double> elongation_along_x(const Experiment& experiment) {
+  std::optional<double> low, high;
+  for (const Load& load : experiment.loads)
+    if (const auto* p = std::get_if<PrescribedDisplacement>(&load)) {
+      if (p->on == "x_min") low = p->displacement[0];
+      if (p->on == "x_max") high = p->displacement[0];
+    }
+  if (!low || !high || *low == *high) return {};
+  return *high - *low;
 }
 
 std::vector<std::string> supported_patches(const Experiment& experiment) {

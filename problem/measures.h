@@ -1,6 +1,7 @@
 // The measures a case can ask for, and the rows they give.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@ struct Experiment;
 /// Names allowed in [compare] measures: displacement_error, displacement_error_max, section_distance,
 /// section_axis_distance, volume_change, volume_change_magnitude (its absolute value, the papers' e),
 /// volume_change_first_order, reaction, probe, stress (finite elements only), displacement_error_order (observed, between
-/// the two finest grids; where the exact solution is known).
+/// the two finest grids; where the exact solution is known), network (what the spring network is made of), moduli (of a block
+/// stretched along x, as the papers measure them).
 std::vector<std::string> measure_names();
 
 /// Names of the rows that a measure gives for an experiment, as [[expect]] and [[published]] write them. Most
@@ -19,6 +21,9 @@ std::vector<std::string> measure_names();
 /// torque.<patch>.x|y|z|magnitude for each patch with prescribed displacement; `probe` gives
 /// displacement.<name>.x|y|z|magnitude for each probe, `stress` stress.<name>.xx|yy|zz|xy|yz|xz.
 std::vector<std::string> rows_of_measure(const std::string& measure, const Experiment& experiment);
+
+/// Relative displacement [m] along x that the loads prescribe between x_min and x_max; empty: they do not.
+std::optional<double> elongation_along_x(const Experiment& experiment);
 
 /// Patches on which a load prescribes displacement, in the file's order, each once.
 std::vector<std::string> supported_patches(const Experiment& experiment);

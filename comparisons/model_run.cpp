@@ -1,0 +1,76 @@
+#include "comparisons/model_run.h"
+
+#include <algorithm>
+
+#include "comparisons/measures.h"
+#include "msm/calibrate.h"
+#include "msm/measure/block_moduli.h"
+#include "msm/measure/statistics.h"
+#include "problem/measures.h"
+
+namespace springproof {
+namespace {
+
+bool asked(const Experiment& e, const std::string& measure) {
+  return std::find(e.measures.begin(), e.measures.end(), measure) != e.measures.end();
+}
+
+void add_network(const Network& network, std::map<std::string, double>& out) {
+  const NetworkStatistics s = statistics(network);
+  out["network.nodes"] = static_cast<double>(s.nodes);
+  out["network.springs"] = static_cast<double>(s.springs);
+  out["network.springs_per_node"] = s.springs_per_node;
+  out["network.mean_length"] = s.mean_length;
+  out["network.length_deviation"] = s.length_deviation;
+}
+
+/// The papers' moduli of a block stretched along x; lengths of the local fields as the network's spacing asks.
+void add_moduli(const Experiment& e, const MassSpringModel& model, const NodalVectors& u, std::map<std::string, double>& out) {
+  const StretchedBlock block{Vec3::Zero(), e.body.size, *elongation_along_x(e)};
+  const double spacing = std::cbrt(model.network.volume.sum() / model.network.nodes());
+  const double width = std::min(e.body.size[1], e.body.size[2]);
+  const BlockModuli m = measure_block(model, u, block, std::min(2.5 * spacing, 0.45 * width));
+  out["moduli.youngs_modulus"] = m.youngs_modulus_nominal;
+  out["moduli.youngs_modulus_local"] = m.youngs_modulus_local;
+  out["moduli.poisson_ratio"] = m.poisson_ratio;
+  out["moduli.poisson_ratio_of_fields"] = m.poisson_ratio_of_fields;
+  out["moduli.poisson_ratio_as_printed"] = m.poisson_ratio_as_printed;
+  out["moduli.affine_youngs_modulus"] = 2.5 * affine_shear_modulus(model.network);
+}
+
+NodalVectors points_of(const std::vector<Probe>& probes) {
+  NodalVectors points(static_cast<Eigen::Index>(probes.size()), 3);
+  for (std::size_t i = 0; i < probes.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = probes[i].at.transpose();
+  return points;
+}
+
+}  // namespace
+
+std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const auto& mesh = prepared.meshes[lattice];
+  const Kinematics kinematics = e.model_kinematics();
+  std::vector<Sample> samples;
+  for (int seed = 0; seed < prepared.models[number].seeds; ++seed) {
+    ModelParameters parameters = prepared.models[number];
+    parameters.random.seed += static_cast<std::uint64_t>(seed);
+    const auto [model, embedding] = build_embedded(parameters, *mesh, material);
+    const LoadPath path = [&, &model = model, &embedding = embedding](double factor) {
+      return transfer(e.loads, *mesh, embedding, model.network, material.density, kinematics, factor);
+    };
+    const BoundaryConditions conditions = path(1.0);
+    Sample sample;
+    sample.state = kinematics == Kinematics::linear ? solve_linear(model, conditions) : solve_finite(model, path);
+    if (sample.state.ok) {
+      sample.field = to_field(sample.state, mesh, embedding, model.network, e.loads, conditions, kinematics);
+      const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes));
+      sample.scalars = scalar_measures(sample.field, e.probes, probes);
+      if (asked(e, "network")) add_network(model.network, sample.scalars);
+      if (asked(e, "moduli")) add_moduli(e, model, sample.state.displacement, sample.scalars);
+    }
+    samples.push_back(std::move(sample));
+  }
+  return samples;
+}
+
+}  // namespace springproof

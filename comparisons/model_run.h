@@ -1,0 +1,23 @@
+// One spring model on one lattice at one material: solved, over all its seeds, and measured.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "comparisons/case_run.h"
+#include "msm/solve/equilibrium.h"
+
+namespace springproof {
+
+/// What one network gives.
+struct Sample {
+  Equilibrium state;
+  Field field;                            ///< on the lattice's mesh; empty where state.ok is false
+  std::map<std::string, double> scalars;  ///< every measure that has a value of its own
+};
+
+/// Solves model `number` of the case on lattice `lattice`; one sample per seed.
+std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material);
+
+}  // namespace springproof
