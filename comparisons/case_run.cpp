@@ -221,7 +221,8 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
 void try_model(const Experiment& experiment, const ModelParameters& parameters, const Mesh& mesh) {
   const auto [model, embedding] = build_embedded(parameters, mesh, experiment.materials.front());
   if (parameters.row.topology == Topology::cells) return;
-  require_supported(transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics()), model.network.X);
+  const BoundaryConditions bc = transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
+  if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
 }
 
 /// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.
@@ -260,7 +261,8 @@ PreparedCase prepare(const Experiment& experiment) {
       for (const Patch& p : mesh.patches) patches.push_back(p.name);
       check_patches(experiment, patches);
       prepared.sharing = patches_sharing_supports(experiment.loads, mesh, experiment.model_kinematics());
-      require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh.nodes);
+      if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
+        require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh.nodes);
       for (const ModelParameters& p : prepared.models)
         if (p.row.topology == Topology::cells || prepared.meshes.size() == 1) try_model(experiment, p, mesh);
       const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);

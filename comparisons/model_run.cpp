@@ -56,7 +56,9 @@ std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattic
     parameters.random.seed += static_cast<std::uint64_t>(seed);
     const auto [model, embedding] = build_embedded(parameters, *mesh, material);
     const LoadPath path = [&, &model = model, &embedding = embedding](double factor) {
-      return transfer(e.loads, *mesh, embedding, model.network, material.density, kinematics, factor);
+      BoundaryConditions bc = transfer(e.loads, *mesh, embedding, model.network, material.density, kinematics, factor);
+      if (parameters.hold_rigid_motions) hold_free_motions(model.network.X, bc);
+      return bc;
     };
     const BoundaryConditions conditions = path(1.0);
     Sample sample;

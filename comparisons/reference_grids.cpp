@@ -181,7 +181,7 @@ std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<Referen
     for (std::size_t i = 0; i < r.values.size(); ++i) {
       if (!std::isfinite(r.values[i])) continue;
       Row row{experiment.name, experiment.kinematics, "fem_" + r.element, r.poisson_ratio, r.cells[i], r.measure, r.values[i],
-              r.unit, target(experiment, r), {}, {}};
+              r.unit, target(experiment, r), {}, {}, 1, {}};
       if (row.reference) row.error = row.value - *row.reference;
       rows.push_back(row);
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "meshes/locate.h"
 
@@ -133,32 +134,66 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
   return bc;
 }
 
-void require_supported(const BoundaryConditions& bc, const NodalVectors& X) {
-  // Six rigid motions restricted to the fixed unknowns must be independent.
-  const Vec3 middle = X.colwise().mean().transpose();
-  const double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
+namespace {
+
+using Motion = Eigen::Matrix<double, 6, 1>;
+
+/// The six rigid motions, translations then rotations about the middle over the size, at an unknown.
+struct RigidMotions {
+  const NodalVectors& X;
+  Vec3 middle = X.colwise().mean().transpose();
+  double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
+
+  Motion at(int unknown) const {
+    const Vec3 r = (X.row(unknown / 3).transpose() - middle) / size;
+    Motion motion = Motion::Zero();
+    motion[unknown % 3] = 1;
+    for (int axis = 0; axis < 3; ++axis) motion[3 + axis] = Vec3::Unit(axis).cross(r)[unknown % 3];
+    return motion;
+  }
+};
+
+/// The rigid motion that the fixed unknowns hold least; nothing if they hold all six.
+std::optional<Motion> free_motion(const BoundaryConditions& bc, const RigidMotions& rigid) {
   Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
   double count = 0;
-  for (int node = 0; node < X.rows(); ++node) {
-    const Vec3 r = (X.row(node).transpose() - middle) / size;
-    for (int d = 0; d < 3; ++d) {
-      if (!bc.fixed[3 * node + d]) continue;
-      Eigen::Matrix<double, 6, 1> motion = Eigen::Matrix<double, 6, 1>::Zero();
-      motion[d] = 1;
-      for (int axis = 0; axis < 3; ++axis) motion[3 + axis] = Vec3::Unit(axis).cross(r)[d];
-      gram += motion * motion.transpose();
+  for (int i = 0; i < static_cast<int>(bc.fixed.size()); ++i)
+    if (bc.fixed[i]) {
+      gram += rigid.at(i) * rigid.at(i).transpose();
       ++count;
     }
-  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram);
-  if (count > 0 && eigen.eigenvalues()[0] > 1e-10 * count) return;
+  if (count > 0 && eigen.eigenvalues()[0] > 1e-10 * count) return {};
+  return eigen.eigenvectors().col(0);
+}
+
+}  // namespace
+
+void require_supported(const BoundaryConditions& bc, const NodalVectors& X) {
+  const auto motion = free_motion(bc, {X});
+  if (!motion) return;
   static const char* names[6] = {"translation along x", "translation along y", "translation along z",
                                  "rotation about x",    "rotation about y",    "rotation about z"};
   int dominant = 0;
-  eigen.eigenvectors().col(0).cwiseAbs().maxCoeff(&dominant);
+  motion->cwiseAbs().maxCoeff(&dominant);
+  const bool any = std::find(bc.fixed.begin(), bc.fixed.end(), 1) != bc.fixed.end();
   throw InputError(fmt::format(
       "the body is not held: the loads leave a rigid motion free ({}); prescribe displacements that prevent it",
-      count > 0 ? names[dominant] : "all six"));
+      any ? names[dominant] : "all six"));
+}
+
+void hold_free_motions(const NodalVectors& X, BoundaryConditions& bc) {
+  const RigidMotions rigid{X};
+  while (const auto motion = free_motion(bc, rigid)) {
+    int best = 0;
+    double most = -1;
+    for (int i = 0; i < static_cast<int>(bc.fixed.size()); ++i)
+      if (const double moved = std::abs(rigid.at(i).dot(*motion)); !bc.fixed[i] && moved > most + 1e-9) {
+        most = moved;
+        best = i;
+      }
+    bc.fixed[best] = 1;
+  }
 }
 
 std::set<std::string> patches_sharing_supports(const std::vector<Load>& loads, const Mesh& mesh, Kinematics kinematics) {

@@ -35,6 +35,10 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
 /// @throws InputError naming the free rigid motion if the fixed unknowns of nodes at X leave one.
 void require_supported(const BoundaryConditions& conditions, const NodalVectors& X);
 
+/// Fixes as few unknowns as hold the rigid motions that are left free, at zero displacement: nothing strains by it, and
+/// there is no force on them if the loads balance.
+void hold_free_motions(const NodalVectors& X, BoundaryConditions& conditions);
+
 /// Support forces and torques per patch with prescribed displacement, from the support force of each node at X [N].
 /// An unknown that two patches prescribe counts for the load named first.
 std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh, const NodalVectors& X,

@@ -45,11 +45,14 @@ std::optional<std::string> set_face_to_cube(const Value& value, ModelParameters&
   return {};
 }
 
-std::optional<std::string> set_paper_e_form(const Value& value, ModelParameters& p) {
-  const bool* on = std::get_if<bool>(&value);
-  if (!on) return "must be true or false";
-  p.paper_e_form = *on;
-  return {};
+/// Yes or no.
+Option flag(const char* name, std::function<void(bool, ModelParameters&)> set) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const bool* on = std::get_if<bool>(&value);
+            if (!on) return "must be true or false";
+            set(*on, p);
+            return {};
+          }};
 }
 
 /// A number in a range, put where `set` says.
@@ -87,19 +90,15 @@ std::vector<Option> random_options() {
              p.random.surface_nodes = *given == "nodes";
              return {};
            }},
-          {"windows", [](const Value& value, ModelParameters& p) -> std::optional<std::string> {
-             const bool* on = std::get_if<bool>(&value);
-             if (!on) return "must be true or false";
-             p.random.windows = *on;
-             return {};
-           }}};
+          flag("windows", [](bool on, ModelParameters& p) { p.random.windows = on; })};
 }
 
 /// The options that a model has.
 std::vector<Option> options_of(const ModelRow& row) {
-  std::vector<Option> options = {{"paper_e_form", set_paper_e_form}};
+  std::vector<Option> options = {flag("paper_e_form", [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
   if (row.topology == Topology::cells || row.topology == Topology::centres) options.push_back({"face_to_cube", set_face_to_cube});
   if (row.topology == Topology::random) options = random_options();
+  options.push_back(flag("hold_rigid_motions", [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; }));
   if (row.topology != Topology::cells)
     options.push_back(number("grip", 0, 100, [](double v, ModelParameters& p) { p.grip = v; }));
   if (row.extension == Extension::volume_correction)

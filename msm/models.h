@@ -54,6 +54,7 @@ struct ModelParameters {
   RandomParameters random{};                          ///< of random networks; its spacing follows from the mesh
   std::optional<double> node_density;                 ///< of random networks [1/m^3]; empty: one node per cube
   std::optional<double> grip;                         ///< depth in node spacings to which supports hold nodes that are not the mesh's
+  bool hold_rigid_motions = false;                    ///< those that the loads leave free, instead of refusing
   int seeds = 1;                                      ///< random networks to take the mean of: random.seed and those after it
 
   bool has(Extension extension) const { return row.extension == extension; }
