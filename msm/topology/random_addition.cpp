@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <numeric>
+#include <functional>
 #include <utility>
 
 namespace springproof {
@@ -27,15 +27,6 @@ bool is_covered(const Sample& sample, const Corners& corners) {
   });
 }
 
-/// The same for a box, by its corner that is farthest from the node.
-bool is_box_covered(const Sample& sample, const Vec3& centre, const Vec3& edge) {
-  const double reach = sample.min_distance * sample.min_distance;
-  return sample.cells.any_near(centre, [&](int p) {
-    const Vec3 d = sample.cells.nearest_image(centre - sample.points[p]);
-    return (d.cwiseAbs() + edge / 2).squaredNorm() < reach;
-  });
-}
-
 /// Equal boxes, by their place in a lattice that halves with each level.
 struct Boxes {
   Vec3 lower, edge;
@@ -55,22 +46,34 @@ struct Boxes {
     const double x = uniform(random), y = uniform(random), z = uniform(random);
     return corner(part, x, y, z);
   }
-  bool is_open(const Sample& sample, const std::array<std::uint32_t, 3>& part) const {
-    const Vec3 centre = corner(part, 0.5, 0.5, 0.5);
-    if (is_box_covered(sample, centre, edge)) return false;
-    if (!inside || inside(centre)) return true;
+  bool may_hold_points(const std::array<std::uint32_t, 3>& part) const {
+    if (!inside || inside(corner(part, 0.5, 0.5, 0.5))) return true;
     const auto all = corners(part);
     return std::any_of(all.begin(), all.end(), std::ref(inside));
   }
   void subdivide(const Sample& sample) {
     std::vector<std::array<std::uint32_t, 3>> finer;
-    edge /= 2;
-    for (const auto& part : parts)
+    std::vector<Vec3> away;  // from the nodes near a part to its centre
+    const double reach = sample.min_distance * sample.min_distance, near = sample.min_distance + edge.norm() / 2;
+    for (const auto& part : parts) {
+      const Vec3 centre = corner(part, 0.5, 0.5, 0.5);
+      away.clear();
+      sample.cells.any_near(centre, [&](int p) {
+        const Vec3 d = sample.cells.nearest_image(centre - sample.points[p]);
+        if (d.squaredNorm() < near * near) away.push_back(d);
+        return false;
+      });
       for (std::uint32_t c = 0; c < 8; ++c) {
-        const std::array<std::uint32_t, 3> child = {2 * part[0] + (c & 1), 2 * part[1] + (c >> 1 & 1), 2 * part[2] + (c >> 2)};
-        if (is_open(sample, child)) finer.push_back(child);
+        const Vec3 shift = edge.cwiseProduct(Vec3(c & 1, c >> 1 & 1, c >> 2) - Vec3(0.5, 0.5, 0.5)) / 2;
+        const bool covered = std::any_of(away.begin(), away.end(), [&](const Vec3& d) {  // the corner farthest from the node
+          return ((d + shift).cwiseAbs() + edge / 4).squaredNorm() < reach;
+        });
+        if (!covered) finer.push_back({2 * part[0] + (c & 1), 2 * part[1] + (c >> 1 & 1), 2 * part[2] + (c >> 2)});
       }
+    }
+    edge /= 2;
     parts = std::move(finer);
+    if (inside) std::erase_if(parts, [&](const auto& part) { return !may_hold_points(part); });
   }
 };
 
