@@ -101,8 +101,9 @@ void print(const std::vector<Sample>& samples, const ModelParameters& p, const I
   fmt::print("cell       {} nodes, {:.3g} springs per node, spacing {:.6g} m, {} sample{}\n\n", first.nodes, first.springs_per_node,
              spacing, samples.size(), samples.size() > 1 ? "s" : "");
   fmt::print("C [Pa]     xx yy zz yz zx xy{}\n", samples.size() > 1 ? fmt::format(", seed {}", first.seed) : "");
+  const double round_off = 1e-12 * first.h.C.cwiseAbs().maxCoeff();
   for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) fmt::print("{:>14.6g}", first.h.C(i, j));
+    for (int j = 0; j < 6; ++j) fmt::print("{:>14.6g}", std::abs(first.h.C(i, j)) > round_off ? first.h.C(i, j) : 0.0);
     fmt::print("\n");
   }
   fmt::print("\n{:<12}{:>14}{:>14}{:>14}{:>10}\n", "", "mean", "spread", "calibrated to", "ratio");
