@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "comparisons/calculix_command.h"
+#include "comparisons/homogenise_command.h"
 #include "comparisons/material_command.h"
 #include "comparisons/suite.h"
 #include "fem_reference/reference.h"
@@ -64,6 +65,11 @@ int main(int argc, char** argv) try {
       "material", "Any two moduli in: spring constants, kappa, safe time step, validity range, and the moduli measured back");
   material.add_options(*material_command);
 
+  HomogeniseCommand homogenisation;
+  CLI::App* homogenise_command = app.add_subcommand(
+      "homogenise", "The moduli of an endless network of a model: effective stiffness, anisotropy, mean and spread over seeds");
+  homogenisation.add_options(*homogenise_command);
+
   ExportCommand export_case;
   CLI::App* export_command = app.add_subcommand("export", "A case as an input deck for another program");
   export_case.add_options(*export_command);
@@ -98,6 +104,7 @@ int main(int argc, char** argv) try {
   if (*compare_command) return compare(find_cases(names), options);
   if (*list_command) return list();
   if (*bench_command) return fem::run_program(bench_arguments);
+  if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();
   if (*cross_check_command) return second_opinion.run();
   return material.run();

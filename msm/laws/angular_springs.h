@@ -8,7 +8,7 @@ namespace springproof {
 
 /// Energy sum beta/2 (phi - phi_0)^2 over the three angles of every triangle, phi_0 the angle at rest: six springs at a
 /// node inside a hexagonal lattice.  Kot et al. (2014), eq. (13); Kot and Nagahashi (2015), eq. (4) (their coefficient:
-/// docs/papers.md #18).  The angle is measured in space, so the triangles may turn and leave their plane.
+/// docs/papers.md #14).  The angle is measured in space, so the triangles may turn and leave their plane.
 /// An angle belongs to one triangle only: triangles superpose, a boundary needs no rule.
 /// No triangle may be flat (phi = 0 or pi: no direction for the force).
 struct AngularSprings {

@@ -13,6 +13,8 @@
 namespace springproof {
 namespace {
 
+constexpr double inner_tolerance = 1e-6;  // of the companion's solves; what they leave, GMRES makes up after a restart
+
 using Strains = std::vector<Eigen::Matrix3d>;
 
 /// Unit strain; shears are engineering strains.
@@ -63,6 +65,19 @@ class PeriodicStiffness {
     return [this](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = inverse_diagonal_.cwiseProduct(r); };
   }
 
+  /// Takes the net force off, which no equilibrium bears: round-off in exact loads.
+  Eigen::VectorXd balanced(Eigen::VectorXd f) const {
+    Vec3 net = Vec3::Zero();
+    int masters = 0;
+    for (int n = 0; n < network_.nodes(); ++n) {
+      net += f.segment<3>(3 * n);
+      masters += network_.master(n) == n;
+    }
+    for (int n = 0; n < network_.nodes(); ++n)
+      if (network_.master(n) == n) f.segment<3>(3 * n) -= net / masters;
+    return f;
+  }
+
   /// Size of the forces that a displacement causes before they cancel.
   double force_scale(const Eigen::VectorXd& u) const { return K_.diagonal().cwiseProduct(u).norm(); }
 
@@ -76,7 +91,7 @@ KrylovResult relax(const PeriodicStiffness& K, const PeriodicStiffness* companio
                    const HomogeniseOptions& options, Eigen::VectorXd& w) {
   const auto solve = [&](const PeriodicStiffness& matrix, double tolerance, const Eigen::VectorXd& load, Eigen::VectorXd& x) {
     const KrylovResult result =
-        conjugate_gradients(matrix.operation(), matrix.jacobi(), load, tolerance, options.max_iterations, x);
+        conjugate_gradients(matrix.operation(), matrix.jacobi(), matrix.balanced(load), tolerance, options.max_iterations, x);
     if (result.negative_curvature) throw std::runtime_error("the network is unstable: a periodic mode has negative energy");
     return result;
   };
@@ -84,7 +99,7 @@ KrylovResult relax(const PeriodicStiffness& K, const PeriodicStiffness* companio
   int inner = 0;
   const Operator precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z = Eigen::VectorXd::Zero(r.size());
-    inner += solve(*companion, 1e-2 * options.tolerance, r, z).iterations;
+    inner += solve(*companion, inner_tolerance, r, z).iterations;
   };
   KrylovResult result = gmres(K.operation(), precondition, b, options.tolerance, 200, 100, w);
   result.iterations += inner;

@@ -31,7 +31,7 @@ double momentum_flow(const Network& network, const NodalVectors& x, const std::v
 
 /// Poisson's ratio from normal strains and stresses along the axes, also if the sides are not free of stress:
 /// (exx syy - eyy sxx) / (exx (sxx + szz) - eyy (syy + szz)).  Kot & Nagahashi (2015), eq. (29), DEVIATION: subscripts of
-/// the denominator, docs/papers.md #17.
+/// the denominator, docs/papers.md #15.
 double poisson_ratio_of(const Eigen::Matrix3d& strain, const Eigen::Matrix3d& stress);
 
 /// Eq. (29) as printed: nu/(1 + nu) in uniaxial stress.  For the record only.

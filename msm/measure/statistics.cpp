@@ -10,14 +10,12 @@ NetworkStatistics statistics_of(const Network& network, const std::vector<char>&
   NetworkStatistics s{};
   double ends = 0, sum = 0, volume = 0;
   const auto ends_of = [&](const Spring& spring) {
-    const int j = network.image_of.empty() ? spring.j : network.image_of[spring.j];
-    return counted[spring.i] + counted[j];
+    return counted[network.master(spring.i)] + counted[network.master(spring.j)];
   };
-  for (int n = 0; n < network.nodes(); ++n)
-    if (counted[n]) {
-      ++s.nodes;
-      volume += network.volume[n];
-    }
+  for (int n = 0; n < network.nodes(); ++n) {
+    s.nodes += counted[n];
+    if (counted[network.master(n)]) volume += network.volume[n];
+  }
   for (const Spring& spring : network.springs) {
     s.springs += ends_of(spring) > 0;
     ends += ends_of(spring);

@@ -68,6 +68,11 @@ expect "unwritable output" "cannot write" compare "$work/good.toml" --out "$work
 expect "material: nu = 0.5" "poisson_ratio" material -E 1 --nu 0.5
 expect "material: one modulus" "two" material -E 1
 expect "material: no such model" "did you mean" material -E 1 --nu 0.3 --model hybms
+expect "homogenise: no such model" "did you mean" homogenise -E 1 --nu 0.3 --model hybms
+expect "homogenise: planar" "planar" homogenise -E 1 --nu 0.3 --model msm_hexagonal
+expect "homogenise: seeds of a lattice" "unknown option 'seeds'" homogenise -E 1 --nu 0.3 --model hybmss --seeds 3
+expect "homogenise: half a seed" "whole number" homogenise -E 1 --nu 0.3 --seed 1.5
+expect "homogenise: box too small" "three times" homogenise -E 1 --nu 0.3 --nodes 8
 
 [ $failures -eq 0 ] && echo "all refused as they should be"
 exit $((failures > 0))

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "msm/calibrate.h"
+#include "msm/measure/statistics.h"
 #include "msm/topology/cubic_lattice.h"
 #include "support/periodic.h"
 #include "support/tolerances.h"
@@ -31,8 +32,18 @@ TEST(Homogenise, SpringsOfEveryPatternHaveLambdaAndMuEqualToG) {
   }
 }
 
-// The cell's size and the place of its nodes must not matter: nodes moved off their sites relax to another C, but a cell of
-// twice the size made of the same cells has the same one.
+TEST(MakePeriodic, EveryNodeHasAllSpringsOfThePattern) {
+  for (const auto& [A, springs] : {std::pair{0.0, 14}, {test::infinity, 18}, {2.0, 26}}) {
+    const Network network = test::periodic_cubes(isotropic_pattern(A));
+    const NetworkStatistics s = statistics(network);
+    EXPECT_EQ(s.nodes, 27);
+    EXPECT_NEAR(s.springs_per_node, springs, test::round_off);
+    EXPECT_NEAR(s.spacing, 1, test::round_off);
+    for (const double share : spring_shares(network)) EXPECT_NEAR(share, 1, test::round_off);
+  }
+}
+
+// One cell, a node that is joined with its own images only, has the stiffness of many.
 TEST(Homogenise, DoesNotDependOnTheNumberOfCells) {
   const auto of = [](int cells) {
     Network network = cubic_lattice(block_mesh(Vec3::Constant(cells), {cells, cells, cells}), {1.0, 0.7, 0.2});

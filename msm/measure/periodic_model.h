@@ -1,0 +1,13 @@
+// A model of the table as an endless solid: its bulk, without surfaces.
+#pragma once
+
+#include "msm/models.h"
+
+namespace springproof {
+
+/// A periodic cell of about `nodes` nodes, one per volume `spacing`^3 [m^3], calibrated as build_model() does.
+/// Lattices of corners and of centres have the same bulk.  Random networks: p.random, its spacing replaced.
+/// @throws InputError for planar networks, and if a random network is out of range.
+MassSpringModel periodic_model(const ModelParameters& p, const IsotropicMaterial& material, double spacing, int nodes);
+
+}  // namespace springproof
