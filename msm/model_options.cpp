@@ -111,7 +111,9 @@ std::vector<Option> options_of(const ModelRow& row) {
                                           {"published", Dispersion::published},
                                           {"published_transposed", Dispersion::published_transposed}}));
   if (row.extension == Extension::momentum_dispersion)
-    options.push_back(choice<bool>("weights", &ModelParameters::volume_weights, {{"volume", true}, {"kL", false}}));
+    options.push_back(choice<std::optional<bool>>("weights", &ModelParameters::exact_volumes, {{"volume", true}, {"kL", false}}));
+  if (row.topology == Topology::random)
+    options.push_back(choice<bool>("calibration", &ModelParameters::homogenised, {{"homogenised", true}, {"affine", false}}));
   return options;
 }
 

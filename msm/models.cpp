@@ -8,6 +8,7 @@
 #include "meshes/volume.h"
 #include "msm/calibrate.h"
 #include "msm/dispersion_weights.h"
+#include "msm/measure/bulk_calibration.h"
 #include "msm/topology/cubic_lattice.h"
 #include "msm/topology/hexagonal_lattice.h"
 #include "msm/topology/node_lattice.h"
@@ -69,25 +70,41 @@ double grip_of(const ModelParameters& p, const Mesh& mesh) {
   return spacing * p.grip.value_or(layer);
 }
 
+BulkCalibration bulk_calibration(ModelParameters p, const IsotropicMaterial& material) {
+  p.exact_volumes = exact_volumes(p, material);
+  return p.homogenised ? calibrate_in_bulk(p, material) : affine_calibration(p, material);
+}
+
 void calibrate_network(const ModelParameters& p, const IsotropicMaterial& material, const Mesh& mesh, Network& network) {
   network.volume *= volume(mesh, mesh.nodes) / network.volume.sum();
-  if (p.row.topology == random) correct_surface(network);
-  calibrate(spring_shear_modulus(p, material), network);
+  if (p.row.topology != random) return calibrate(spring_shear_modulus(p, material), network);
+  if (p.random.surface_nodes) correct_surface(network);
+  calibrate(bulk_calibration(p, material).spring_shear_modulus, network);
 }
 
 MomentumDispersion dispersion(const ModelParameters& p, const MassSpringModel& model, const Embedding& embedding, const Mesh& mesh,
                               const IsotropicMaterial& material) {
   const int dimensions = model.network.triangles.empty() ? 3 : 2;
   MomentumDispersion law{dispersed_fraction(lame_lambda(material), shear_modulus(material), dimensions), p.dispersion, {}};
+  double weight_modulus = shear_modulus(material);
+  if (p.row.topology == random) {
+    const BulkCalibration bulk = bulk_calibration(p, material);
+    law.q = bulk.q;
+    weight_modulus = bulk.spring_shear_modulus;
+  }
   if (p.dispersion == Dispersion::share_weighted && p.row.topology == cells) law.weight = spring_shares(model.network);
-  if (p.dispersion == Dispersion::symmetric && p.volume_weights)
-    law.weight = volume_weights(model.network, embedding.weights.transpose() * volume_gradient(mesh), shear_modulus(material)).weight;
+  if (p.dispersion == Dispersion::symmetric && exact_volumes(p, material))
+    law.weight = volume_weights(model.network, embedding.weights.transpose() * volume_gradient(mesh), weight_modulus).weight;
   return law;
 }
 
 }  // namespace
 
 const std::vector<ModelRow>& model_table() { return table; }
+
+bool exact_volumes(const ModelParameters& p, const IsotropicMaterial& material) {
+  return p.exact_volumes.value_or(p.row.topology != random || material.poisson_ratio >= 0.25);
+}
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {
   const bool as_if_quarter = p.paper_e_form || p.row.calibration == Calibration::youngs_modulus;

@@ -50,7 +50,9 @@ struct ModelParameters {
   bool paper_e_form = false;                          ///< springs from E by Golec et al. (2019), (5.12) right, as in its tables
   VolumeEnergy volume_energy = VolumeEnergy::bounded;
   Dispersion dispersion = Dispersion::symmetric;
-  bool volume_weights = true;                         ///< exact nodal volumes (msm/dispersion_weights.h); false: w = k L
+  std::optional<bool> exact_volumes;                  ///< dispersion weights: exact nodal volumes (msm/dispersion_weights.h) or w = k L;
+                                                      ///< empty: exact, but k L on random networks below nu = 1/4
+  bool homogenised = true;                            ///< random networks: calibrated as measured in bulk; false: by eq. (20)
   RandomParameters random{};                          ///< of random networks; its spacing follows from the mesh
   std::optional<double> node_density;                 ///< of random networks [1/m^3]; empty: one node per cube
   std::optional<double> grip;                         ///< depth in node spacings to which supports hold nodes that are not the mesh's
@@ -59,6 +61,10 @@ struct ModelParameters {
 
   bool has(Extension extension) const { return row.extension == extension; }
 };
+
+/// Whether symmetric dispersion takes exact nodal volumes.  k L is proved stable for every nu > -1 on every network; exact
+/// volumes are energies too, but a negative one (nu < 1/4) can outweigh the springs at disordered nodes.
+bool exact_volumes(const ModelParameters& parameters, const IsotropicMaterial& material);
 
 /// @throws InputError (with the place in the case file) for an unknown model or option, the nearest name suggested.
 ModelParameters resolve(const ModelChoice& choice);
