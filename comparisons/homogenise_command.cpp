@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Dense>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -60,6 +61,10 @@ Sample measure(ModelParameters p, const IsotropicMaterial& material, double spac
   return {seed, s.nodes, s.springs_per_node, homogenise(model)};
 }
 
+bool stable(const Homogenised& h) {
+  return Eigen::LLT<Eigen::Matrix<double, 6, 6>>(h.C + h.C.transpose()).info() == Eigen::Success;
+}
+
 /// The modulus that the calibration, which takes the strain as affine, was set to.
 double wanted(const Quantity& quantity, const ModelParameters& p, const IsotropicMaterial& m) {
   const IsotropicMaterial aim =
@@ -88,7 +93,7 @@ nlohmann::json to_json(const std::vector<Sample>& samples, const ModelParameters
   }
   out["samples"] = nlohmann::json::array();
   for (const Sample& s : samples) {
-    nlohmann::json sample = {{"seed", s.seed}, {"nodes", s.nodes}, {"springs_per_node", s.springs_per_node}, {"C_Pa", matrix_json(s.h.C)}, {"iterations", s.h.iterations}, {"residual", s.h.residual}};
+    nlohmann::json sample = {{"seed", s.seed}, {"nodes", s.nodes}, {"springs_per_node", s.springs_per_node}, {"C_Pa", matrix_json(s.h.C)}, {"stable", stable(s.h)}, {"iterations", s.h.iterations}, {"residual", s.h.residual}};
     for (const Quantity& q : quantities) sample[q.key] = q.of(s.h);
     out["samples"].push_back(sample);
   }
@@ -115,6 +120,8 @@ void print(const std::vector<Sample>& samples, const ModelParameters& p, const I
     if (std::string(q.key) == "poisson_ratio") fmt::print("{:>14.6g}", aim);
     fmt::print("\n");
   }
+  for (const Sample& s : samples)
+    if (!stable(s.h)) fmt::print("\nwarning: seed {}: the stiffness is not positive definite; such a body is unstable\n", s.seed);
   fmt::print("\nThe calibration takes the strain as affine; ratio is what is left once the nodes have found their places.\n");
 }
 

@@ -5,20 +5,26 @@
 #include <cmath>
 
 #include "msm/calibrate.h"
+#include "msm/measure/block_moduli.h"
 #include "msm/measure/homogenise.h"
+#include "msm/solve/equilibrium.h"
 #include "msm/topology/random_network.h"
 #include "problem/material.h"
 
 namespace springproof {
 namespace {
 
-Network set_a(double springs_per_node, std::uint64_t seed) {
-  RandomParameters p;
+RandomParameters set_a_parameters(double springs_per_node, std::uint64_t seed) {
+  RandomParameters p{};
   p.spacing = std::cbrt(1 / 1.29);
   p.min_length = 0.8 / p.spacing;
   p.springs_per_node = springs_per_node;
   p.seed = seed;
-  return periodic_random_network({10, 10, 10}, p);
+  return p;
+}
+
+Network set_a(double springs_per_node, std::uint64_t seed) {
+  return periodic_random_network({10, 10, 10}, set_a_parameters(springs_per_node, seed));
 }
 
 struct Row {
@@ -68,6 +74,71 @@ TEST(RandomNetworks, DispersedMomentumMissesTheWantedPoissonRatio) {
   EXPECT_NEAR(poisson_ratio_of_emsm(12, 0.45, Dispersion::symmetric), 0.419, 0.003);
   EXPECT_NEAR(poisson_ratio_of_emsm(16, 0.45, Dispersion::symmetric), 0.425, 0.003);
   EXPECT_NEAR(poisson_ratio_of_emsm(22, 0.45, Dispersion::symmetric), 0.434, 0.003);
+}
+
+/// Kot et al. (2014), sec. 5.1: x prescribed on all nodes within 1.5 maxL of both ends, nothing else.
+struct GrippedBlock {
+  Vec3 size;
+  double grip = 0;  ///< 1.5 maxL [m]
+  MassSpringModel model;
+  NodalVectors u;
+
+  double elongation() const { return 0.01 * size[0]; }
+
+  GrippedBlock(const Vec3& block_size, std::uint64_t seed) : size(block_size) {
+    RandomParameters p = set_a_parameters(15, seed);
+    p.surface_nodes = false;
+    Network network = random_network(region_of(block_mesh(size, {2, 2, 2})), p);
+    network.volume *= size.prod() / network.volume.sum();
+    calibrate(0.4, network);
+    for (const Spring& s : network.springs) grip = std::max(grip, 1.5 * s.rest_length);
+    model = {network, {Springs{}}};
+    const Equilibrium e = solve_linear(model, conditions());
+    EXPECT_TRUE(e.ok) << e.message;
+    u = e.displacement;
+  }
+
+  BoundaryConditions conditions() const {
+    const NodalVectors& X = model.network.X;
+    const Eigen::Index n = X.rows();
+    BoundaryConditions bc{std::vector<char>(3 * n, 0), std::vector<int>(3 * n, -1), NodalVectors::Zero(n, 3), NodalVectors::Zero(n, 3)};
+    const auto hold = [&](Eigen::Index unknown) { bc.fixed[unknown] = 1, bc.owner[unknown] = 0; };
+    Eigen::Index low = 0, high = 0;  // two held nodes far apart along y
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (X(i, 0) > grip && X(i, 0) < size[0] - grip) continue;
+      hold(3 * i);
+      if (X(i, 0) > grip) bc.prescribed(i, 0) = elongation();
+      if (X(i, 1) < X(low, 1)) low = i;
+      if (X(i, 1) > X(high, 1)) high = i;
+    }
+    for (const Eigen::Index unknown : {3 * low + 1, 3 * low + 2, 3 * high + 2}) hold(unknown);  // no rigid motion
+    return bc;
+  }
+};
+
+// A block seems to have the modulus of (20): its grips shorten the length that stretches.  Over the local strain it is as
+// soft as the endless network, a little harder for the surface, whose missing springs (20) does not count.
+TEST(RandomNetworks, GripsOfABlockHideItsSoftness) {
+  const Vec3 size(36, 9, 9);
+  const int seeds = 10;
+  double nominal = 0, local = 0, nu = 0, nu_of_fields = 0, as_printed = 0, gauge = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const GrippedBlock block(size, seed);
+    const BlockModuli m = measure_block(block.model, block.u, {Vec3::Zero(), size, block.elongation()}, 2.0);
+    nominal += m.youngs_modulus_nominal / seeds;
+    local += m.youngs_modulus_local / seeds;
+    nu += m.poisson_ratio / seeds;
+    nu_of_fields += m.poisson_ratio_of_fields / seeds;
+    as_printed += m.poisson_ratio_as_printed / seeds;
+    gauge += size[0] / (size[0] - 2 * block.grip) / seeds;
+  }
+  EXPECT_NEAR(nominal / local, gauge, 0.03);  // where a grip ends is known to half a node distance
+  EXPECT_GT(nominal, 0.95);
+  EXPECT_LT(local, 0.95);
+  // The spread of one network is 0.004.
+  EXPECT_NEAR(nu, 0.25, 0.006);
+  EXPECT_NEAR(nu_of_fields, 0.25, 0.006);
+  EXPECT_NEAR(as_printed, 0.25 / 1.25, 0.01);
 }
 
 }  // namespace
