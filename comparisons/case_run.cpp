@@ -218,11 +218,15 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
 }
 
 /// Builds the model and puts the loads on it, for what may be wrong with either.
-void try_model(const Experiment& experiment, const ModelParameters& parameters, const Mesh& mesh) {
+void try_model(const Experiment& experiment, const ModelParameters& parameters, const Mesh& mesh) try {
   const auto [model, embedding] = build_embedded(parameters, mesh, experiment.materials.front());
   if (parameters.row.topology == Topology::cells) return;
   const BoundaryConditions bc = transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
   if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
+} catch (const InputError&) {
+  throw;
+} catch (const std::runtime_error&) {
+  // No network with this material's moduli: the run will say so.
 }
 
 /// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.

@@ -44,33 +44,44 @@ NodalVectors points_of(const std::vector<Probe>& probes) {
   return points;
 }
 
+/// One network of the model, solved and measured.
+Sample run_sample(const PreparedCase& prepared, const std::shared_ptr<const Mesh>& mesh, const ModelParameters& parameters,
+                  const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const Kinematics kinematics = e.model_kinematics();
+  const EmbeddedModel built = build_embedded(parameters, *mesh, material);
+  const Network& network = built.model.network;
+  const LoadPath path = [&](double factor) {
+    BoundaryConditions bc = transfer(e.loads, *mesh, built.embedding, network, material.density, kinematics, factor);
+    if (parameters.hold_rigid_motions) hold_free_motions(network.X, bc);
+    return bc;
+  };
+  const BoundaryConditions conditions = path(1.0);
+  Sample sample;
+  sample.state = kinematics == Kinematics::linear ? solve_linear(built.model, conditions) : solve_finite(built.model, path);
+  if (!sample.state.ok) return sample;
+  sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, kinematics);
+  const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes));
+  sample.scalars = scalar_measures(sample.field, e.probes, probes);
+  if (asked(e, "network")) add_network(network, sample.scalars);
+  if (asked(e, "moduli")) add_moduli(e, built.model, sample.state.displacement, sample.scalars);
+  return sample;
+}
+
 }  // namespace
 
 std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
-  const Experiment& e = prepared.experiment;
-  const auto& mesh = prepared.meshes[lattice];
-  const Kinematics kinematics = e.model_kinematics();
   std::vector<Sample> samples;
-  for (int seed = 0; seed < prepared.models[number].seeds; ++seed) {
-    ModelParameters parameters = prepared.models[number];
-    parameters.random.seed += static_cast<std::uint64_t>(seed);
-    const auto [model, embedding] = build_embedded(parameters, *mesh, material);
-    const LoadPath path = [&, &model = model, &embedding = embedding](double factor) {
-      BoundaryConditions bc = transfer(e.loads, *mesh, embedding, model.network, material.density, kinematics, factor);
-      if (parameters.hold_rigid_motions) hold_free_motions(model.network.X, bc);
-      return bc;
-    };
-    const BoundaryConditions conditions = path(1.0);
-    Sample sample;
-    sample.state = kinematics == Kinematics::linear ? solve_linear(model, conditions) : solve_finite(model, path);
-    if (sample.state.ok) {
-      sample.field = to_field(sample.state, mesh, embedding, model.network, e.loads, conditions, kinematics);
-      const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes));
-      sample.scalars = scalar_measures(sample.field, e.probes, probes);
-      if (asked(e, "network")) add_network(model.network, sample.scalars);
-      if (asked(e, "moduli")) add_moduli(e, model, sample.state.displacement, sample.scalars);
+  ModelParameters parameters = prepared.models[number];
+  for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
+    try {
+      samples.push_back(run_sample(prepared, prepared.meshes[lattice], parameters, material));
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli
+      samples.emplace_back();
+      samples.back().state.message = e.what();
     }
-    samples.push_back(std::move(sample));
   }
   return samples;
 }

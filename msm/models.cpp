@@ -128,9 +128,6 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   return built;
 } catch (const std::invalid_argument& e) {
   throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
-} catch (const std::runtime_error& e) {
-  if (dynamic_cast<const InputError*>(&e)) throw;
-  throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
 }
 
 }  // namespace springproof

@@ -75,7 +75,8 @@ struct EmbeddedModel {
   Embedding embedding;
 };
 
-/// The model of a body.  @throws InputError if the mesh does not suit it.
+/// The model of a body.
+/// @throws InputError if the mesh does not suit it; std::runtime_error if the network cannot have the material's moduli.
 EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material);
 
 /// The same without its embedding.
