@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "msm/solve/krylov.h"
@@ -15,17 +16,19 @@ namespace {
 constexpr int per_node = 9;
 constexpr double smallest_slack = 1e-3;
 constexpr double largest_residual = 0.2;
+constexpr double largest_lean = 0.3;  // |sum k d| / sum k |d| of a node: 0 in the middle of a lattice, some 0.5 on its faces
 using Block = Eigen::Matrix<double, per_node, per_node>;
 using Condition = Eigen::Matrix<double, per_node, 1>;
 
 /// The linear conditions on the weights of spring ends, matrix-free.  Lengths in units of `unit`.
 struct Conditions {
   const Network& network;
+  std::vector<int> group;
   double unit;
   std::vector<Vec3> direction;  ///< of each spring, i to j
 
   explicit Conditions(const Network& n)
-      : network(n), unit(std::cbrt(n.volume.sum() / std::max<double>(1, static_cast<double>((n.volume.array() > 0).count())))) {
+      : network(n), group(volume_groups(n)), unit(std::cbrt(n.volume.sum() / std::max<double>(1, static_cast<double>((n.volume.array() > 0).count())))) {
     for (const Spring& s : n.springs) direction.push_back((n.X.row(s.j) - n.X.row(s.i)).transpose().normalized());
   }
 
@@ -40,6 +43,7 @@ struct Conditions {
   }
 
   int end(std::size_t s, int side) const { return network.master(side == 0 ? network.springs[s].i : network.springs[s].j); }
+  int sink(std::size_t s, int side) const { return group[end(s, side)]; }
 
   /// r = A w.
   void apply(const std::vector<double>& w, Eigen::VectorXd& r) const {
@@ -47,8 +51,8 @@ struct Conditions {
     for (std::size_t s = 0; s < direction.size(); ++s) {
       const int i = end(s, 0), j = end(s, 1);
       const auto m = moment(s);
-      r.segment<6>(per_node * i) += w[2 * s] * m;
-      r.segment<6>(per_node * j) += w[2 * s + 1] * m;
+      r.segment<6>(per_node * sink(s, 0)) += w[2 * s] * m;
+      r.segment<6>(per_node * sink(s, 1)) += w[2 * s + 1] * m;
       const Vec3 pull = (w[2 * s] + w[2 * s + 1]) * direction[s];
       r.segment<3>(per_node * i + 6) -= pull;
       r.segment<3>(per_node * j + 6) += pull;
@@ -62,8 +66,8 @@ struct Conditions {
       const int i = end(s, 0), j = end(s, 1);
       const auto m = moment(s);
       const double both = direction[s].dot(y.segment<3>(per_node * j + 6) - y.segment<3>(per_node * i + 6));
-      w[2 * s] = D[2 * s] * (m.dot(y.segment<6>(per_node * i)) + both);
-      w[2 * s + 1] = D[2 * s + 1] * (m.dot(y.segment<6>(per_node * j)) + both);
+      w[2 * s] = D[2 * s] * (m.dot(y.segment<6>(per_node * sink(s, 0))) + both);
+      w[2 * s + 1] = D[2 * s + 1] * (m.dot(y.segment<6>(per_node * sink(s, 1))) + both);
     }
   }
 
@@ -74,10 +78,16 @@ struct Conditions {
       for (int side = 0; side < 2; ++side) {
         Condition own;
         own << moment(s), (side == 0 ? -1.0 : 1.0) * direction[s];
+        Condition pull = Condition::Zero();
+        pull.tail<3>() = direction[s];
+        if (sink(s, side) != end(s, side)) {  // the moment is another node's business
+          Condition elsewhere = own;
+          elsewhere.tail<3>().setZero();
+          blocks[sink(s, side)] += D[2 * s + side] * elsewhere * elsewhere.transpose();
+          own.head<6>().setZero();
+        }
         blocks[end(s, side)] += D[2 * s + side] * own * own.transpose();
-        Condition other = Condition::Zero();  // the weight of the far end pulls at this node too
-        other.tail<3>() = direction[s];
-        blocks[end(s, side)] += D[2 * s + 1 - side] * other * other.transpose();
+        blocks[end(s, side)] += D[2 * s + 1 - side] * pull * pull.transpose();  // the far end's weight pulls here too
       }
     for (int n = 0; n < network.nodes(); ++n) diagonal.segment<per_node>(per_node * n) = blocks[n].diagonal();
     for (Block& b : blocks) {
@@ -90,25 +100,52 @@ struct Conditions {
 
 }  // namespace
 
+std::vector<int> volume_groups(const Network& network) {
+  NodalVectors lean = NodalVectors::Zero(network.nodes(), 3);
+  Eigen::VectorXd springs = Eigen::VectorXd::Zero(network.nodes());
+  for (const Spring& s : network.springs) {
+    const Eigen::RowVector3d pull = s.stiffness * (network.X.row(s.j) - network.X.row(s.i));
+    lean.row(network.master(s.i)) += pull;
+    lean.row(network.master(s.j)) -= pull;
+    springs[network.master(s.i)] += pull.norm();
+    springs[network.master(s.j)] += pull.norm();
+  }
+  const auto one_sided = [&](int n) { return lean.row(n).norm() > largest_lean * springs[n]; };
+  std::vector<int> group(network.nodes());
+  std::vector<double> shortest(network.nodes(), std::numeric_limits<double>::infinity());
+  for (int n = 0; n < network.nodes(); ++n) group[n] = network.master(n);
+  const auto join = [&](int n, int other, double length) {
+    if (!one_sided(n) || one_sided(other) || length >= shortest[n]) return;
+    shortest[n] = length;
+    group[n] = other;
+  };
+  for (const Spring& s : network.springs) {
+    join(network.master(s.i), network.master(s.j), s.rest_length);
+    join(network.master(s.j), network.master(s.i), s.rest_length);
+  }
+  return group;
+}
+
 DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus) {
   const Conditions A(network);
   const int dimensions = network.triangles.empty() ? 3 : 2;
   const std::size_t springs = network.springs.size();
   // Start from k L, each node's scaled to its volume: trace of sum w L n n^T = d V_n.
   Eigen::VectorXd share = Eigen::VectorXd::Zero(network.nodes()), volume = share;
-  for (int n = 0; n < network.nodes(); ++n) volume[network.master(n)] += network.volume[n] / std::pow(A.unit, 3);
+  for (int n = 0; n < network.nodes(); ++n) volume[A.group[network.master(n)]] += network.volume[n] / std::pow(A.unit, 3);
   for (std::size_t s = 0; s < springs; ++s)
-    for (int side = 0; side < 2; ++side) share[A.end(s, side)] += network.springs[s].stiffness * A.length(s) * A.length(s);
+    for (int side = 0; side < 2; ++side) share[A.sink(s, side)] += network.springs[s].stiffness * A.length(s) * A.length(s);
   std::vector<double> w(2 * springs), change;
   for (std::size_t s = 0; s < springs; ++s)
     for (int side = 0; side < 2; ++side) {
-      const int n = A.end(s, side);
+      const int n = A.sink(s, side);
       w[2 * s + side] = dimensions * volume[n] / share[n] * network.springs[s].stiffness * A.length(s);
     }
   const std::vector<double> D = w;
   Eigen::VectorXd target = Eigen::VectorXd::Zero(per_node * network.nodes()), met;
   for (int n = 0; n < network.nodes(); ++n) {
-    for (int d = 0; d < dimensions; ++d) target[per_node * network.master(n) + d] = volume[network.master(n)];
+    if (A.group[network.master(n)] == n)
+      for (int d = 0; d < dimensions; ++d) target[per_node * n + d] = volume[n];
     target.segment<3>(per_node * network.master(n) + 6) += volume_gradient.row(n).transpose() / (A.unit * A.unit);
   }
   A.apply(w, met);
@@ -147,6 +184,7 @@ DispersionWeights volume_weights(const Network& network, const NodalVectors& vol
   const double scale = 2 * (dimensions + 2) * shear_modulus * A.unit * A.unit;
   for (double& e : w) e *= scale;
   result.weight = std::move(w);
+  result.group = A.group;
   return result;
 }
 

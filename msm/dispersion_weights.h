@@ -9,12 +9,18 @@ namespace springproof {
 
 struct DispersionWeights {
   std::vector<double> weight;  ///< per spring end, i then j: w [N], for Dispersion::symmetric
+  std::vector<int> group;      ///< for MomentumDispersion::group
   int iterations = 0;
   double residual = 0;         ///< |unmet conditions| / |conditions|
 };
 
+/// Nodes whose springs lie to one side (surfaces) share the J of the inner node that their shortest spring leads to: on
+/// their own they could not tell shear from a change of volume, and a constraint each would stiffen the body near nu = 1/2.
+/// Per node the node whose J it shares.
+std::vector<int> volume_groups(const Network& network);
+
 /// Weights w nearest to k L (in the sum of (w - k L)^2 / (k L)) with two properties, up to a factor 10 G:
-///  - under any affine displacement, J_n = V_n div u (V_n the node's volume share): no node answers to shear;
+///  - under any affine displacement, J_n = V_n div u (V_n the volume share of the group): no node answers to shear;
 ///  - for any displacement, sum_n J_n is the body's change of volume to first order, `volume_gradient` . u: uniform
 ///    pressure is in equilibrium at every node.
 /// With w = k L the first fails at edges and corners and on disordered nodes, the second on disordered nodes, where the

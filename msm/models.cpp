@@ -93,8 +93,11 @@ MomentumDispersion dispersion(const ModelParameters& p, const MassSpringModel& m
     weight_modulus = bulk.spring_shear_modulus;
   }
   if (p.dispersion == Dispersion::share_weighted && p.row.topology == cells) law.weight = spring_shares(model.network);
-  if (p.dispersion == Dispersion::symmetric && exact_volumes(p, material))
-    law.weight = volume_weights(model.network, embedding.weights.transpose() * volume_gradient(mesh), weight_modulus).weight;
+  if (p.dispersion == Dispersion::symmetric && exact_volumes(p, material)) {
+    DispersionWeights exact = volume_weights(model.network, embedding.weights.transpose() * volume_gradient(mesh), weight_modulus);
+    law.weight = std::move(exact.weight);
+    law.group = std::move(exact.group);
+  }
   return law;
 }
 

@@ -7,6 +7,11 @@
 namespace springproof {
 namespace {
 
+/// The node whose J an end of a spring adds to.
+int sink(const MomentumDispersion& law, const Network& network, int node) {
+  return law.group.empty() ? network.master(node) : law.group[network.master(node)];
+}
+
 struct Coefficients {
   std::vector<std::array<double, 2>> in;    ///< a_si, a_sj
   std::vector<std::array<double, 2>> out;   ///< c_si, c_sj
@@ -45,37 +50,37 @@ Coefficients coefficients(const MomentumDispersion& law, const Network& network)
           c.out[s][end] = L;
           break;
       }
-      sum[network.master(end == 0 ? spring.i : spring.j)] += norm;
+      sum[sink(law, network, end == 0 ? spring.i : spring.j)] += norm;
     }
   }
   for (std::size_t s = 0; s < springs; ++s) {
-    c.out[s][0] /= sum[network.master(network.springs[s].i)];
-    c.out[s][1] /= sum[network.master(network.springs[s].j)];
+    c.out[s][0] /= sum[sink(law, network, network.springs[s].i)];
+    c.out[s][1] /= sum[sink(law, network, network.springs[s].j)];
   }
   return c;
 }
 
-Eigen::VectorXd inflow_of(const Coefficients& c, const Network& network, const NodalVectors& x) {
+Eigen::VectorXd inflow_of(const MomentumDispersion& law, const Coefficients& c, const Network& network, const NodalVectors& x) {
   Eigen::VectorXd J = Eigen::VectorXd::Zero(network.nodes());
   for (std::size_t n = 0; n < c.in.size(); ++n) {
     const Spring& s = network.springs[n];
     const double elongation = (x.row(s.j) - x.row(s.i)).norm() - s.rest_length;
-    J[network.master(s.i)] += c.in[n][0] * elongation;
-    J[network.master(s.j)] += c.in[n][1] * elongation;
+    J[sink(law, network, s.i)] += c.in[n][0] * elongation;
+    J[sink(law, network, s.j)] += c.in[n][1] * elongation;
   }
   return J;
 }
 
-double tension(const Coefficients& c, const Network& network, const Eigen::VectorXd& J, std::size_t s) {
+double tension(const MomentumDispersion& law, const Coefficients& c, const Network& network, const Eigen::VectorXd& J, std::size_t s) {
   const Spring& spring = network.springs[s];
-  return c.out[s][0] * J[network.master(spring.i)] + c.out[s][1] * J[network.master(spring.j)];
+  return c.out[s][0] * J[sink(law, network, spring.i)] + c.out[s][1] * J[sink(law, network, spring.j)];
 }
 
-void add_forces_of(const Coefficients& c, const Network& network, const NodalVectors& x, const Eigen::VectorXd& J,
-                   NodalVectors& f) {
+void add_forces_of(const MomentumDispersion& law, const Coefficients& c, const Network& network, const NodalVectors& x,
+                   const Eigen::VectorXd& J, NodalVectors& f) {
   for (std::size_t n = 0; n < c.in.size(); ++n) {
     const Spring& s = network.springs[n];
-    const Eigen::RowVector3d pull = tension(c, network, J, n) * (x.row(s.j) - x.row(s.i)).normalized();
+    const Eigen::RowVector3d pull = tension(law, c, network, J, n) * (x.row(s.j) - x.row(s.i)).normalized();
     f.row(s.i) += pull;
     f.row(s.j) -= pull;
   }
@@ -86,46 +91,46 @@ void add_forces_of(const Coefficients& c, const Network& network, const NodalVec
 double MomentumDispersion::energy(const Network& network, const NodalVectors& x) const {
   if (!conservative()) return 0;
   const Coefficients c = coefficients(*this, network);
-  const Eigen::VectorXd J = inflow_of(c, network, x);
+  const Eigen::VectorXd J = inflow_of(*this, c, network, x);
   double sum = 0;  // half of tension times elongation: the energy is quadratic in the elongations
   for (std::size_t s = 0; s < network.springs.size(); ++s) {
     const Spring& spring = network.springs[s];
-    sum += 0.5 * tension(c, network, J, s) * ((x.row(spring.j) - x.row(spring.i)).norm() - spring.rest_length);
+    sum += 0.5 * tension(*this, c, network, J, s) * ((x.row(spring.j) - x.row(spring.i)).norm() - spring.rest_length);
   }
   return sum;
 }
 
 Eigen::VectorXd MomentumDispersion::inflow(const Network& network, const NodalVectors& x) const {
-  return inflow_of(coefficients(*this, network), network, x);
+  return inflow_of(*this, coefficients(*this, network), network, x);
 }
 
 void MomentumDispersion::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
   const Coefficients c = coefficients(*this, network);
-  add_forces_of(c, network, x, inflow_of(c, network, x), f);
+  add_forces_of(*this, c, network, x, inflow_of(*this, c, network, x), f);
 }
 
 void MomentumDispersion::add_forces(const Network& network, const NodalVectors& x, const Eigen::VectorXd& J,
                                     NodalVectors& f) const {
-  add_forces_of(coefficients(*this, network), network, x, J, f);
+  add_forces_of(*this, coefficients(*this, network), network, x, J, f);
 }
 
 std::vector<double> MomentumDispersion::tensions(const Network& network, const Eigen::VectorXd& J) const {
   const Coefficients c = coefficients(*this, network);
   std::vector<double> T(network.springs.size());
-  for (std::size_t s = 0; s < T.size(); ++s) T[s] = tension(c, network, J, s);
+  for (std::size_t s = 0; s < T.size(); ++s) T[s] = tension(*this, c, network, J, s);
   return T;
 }
 
 void MomentumDispersion::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   const Coefficients c = coefficients(*this, network);
-  const Eigen::VectorXd J = inflow_of(c, network, x);
+  const Eigen::VectorXd J = inflow_of(*this, c, network, x);
   if (J.isZero(0)) return;
   for (std::size_t n = 0; n < c.in.size(); ++n) {
     const Spring& s = network.springs[n];
     const Vec3 d = (x.row(s.j) - x.row(s.i)).transpose();
     const double length = d.norm();
     const Vec3 e = d / length;
-    const Eigen::Matrix3d block = tension(c, network, J, n) / length * (Eigen::Matrix3d::Identity() - e * e.transpose());
+    const Eigen::Matrix3d block = tension(*this, c, network, J, n) / length * (Eigen::Matrix3d::Identity() - e * e.transpose());
     K.add(s.i, s.i, block);
     K.add(s.j, s.j, block);
     K.add(s.i, s.j, -block);
@@ -142,7 +147,7 @@ void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x,
     const Spring& s = network.springs[n];
     const Vec3 e = (x.row(s.j) - x.row(s.i)).transpose().normalized();
     for (int end = 0; end < 2; ++end) {
-      const int node = network.master(end == 0 ? s.i : s.j);
+      const int node = sink(*this, network, end == 0 ? s.i : s.j);
       for (int d = 0; d < 3; ++d) {
         in.emplace_back(node, 3 * s.j + d, c.in[n][end] * e[d]);
         in.emplace_back(node, 3 * s.i + d, -c.in[n][end] * e[d]);

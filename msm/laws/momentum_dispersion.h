@@ -23,6 +23,8 @@ struct MomentumDispersion {
   Dispersion form = Dispersion::symmetric;
   /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring; empty: 1.
   std::vector<double> weight = {};
+  /// Per node the node whose J takes its springs' flow; empty: its own.  Symmetric form only.
+  std::vector<int> group = {};
 
   bool conservative() const { return form == Dispersion::symmetric; }
 

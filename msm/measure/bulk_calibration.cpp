@@ -31,8 +31,11 @@ struct SampleNetwork {
     model.laws = {Springs{}};
     if (!p.has(Extension::momentum_dispersion)) return;
     MomentumDispersion law{0, p.dispersion, {}};
-    if (p.dispersion == Dispersion::symmetric && *p.exact_volumes)
-      law.weight = volume_weights(model.network, NodalVectors::Zero(model.network.nodes(), 3), 1).weight;
+    if (p.dispersion == Dispersion::symmetric && *p.exact_volumes) {
+      DispersionWeights exact = volume_weights(model.network, NodalVectors::Zero(model.network.nodes(), 3), 1);
+      law.weight = std::move(exact.weight);
+      law.group = std::move(exact.group);
+    }
     model.laws.push_back(law);
   }
 

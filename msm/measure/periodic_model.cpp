@@ -30,8 +30,11 @@ Network periodic_network(const ModelParameters& p, double spacing, int nodes) {
 
 MomentumDispersion dispersion(const ModelParameters& p, const Network& network, const IsotropicMaterial& material) {
   MomentumDispersion law{dispersed_fraction(lame_lambda(material), shear_modulus(material)), p.dispersion, {}};
-  if (p.dispersion == Dispersion::symmetric && exact_volumes(p, material))
-    law.weight = volume_weights(network, NodalVectors::Zero(network.nodes(), 3), shear_modulus(material)).weight;
+  if (p.dispersion == Dispersion::symmetric && exact_volumes(p, material)) {
+    DispersionWeights exact = volume_weights(network, NodalVectors::Zero(network.nodes(), 3), shear_modulus(material));
+    law.weight = std::move(exact.weight);
+    law.group = std::move(exact.group);
+  }
   return law;
 }
 

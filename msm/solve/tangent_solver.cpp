@@ -7,7 +7,7 @@ namespace springproof {
 MassSpringModel symmetric_companion(const MassSpringModel& model) {
   MassSpringModel companion = model;
   for (ForceLaw& law : companion.laws)
-    if (auto* dispersion = std::get_if<MomentumDispersion>(&law)) *dispersion = {dispersion->q, Dispersion::symmetric, {}};
+    if (auto* dispersion = std::get_if<MomentumDispersion>(&law)) *dispersion = {dispersion->q, Dispersion::symmetric, {}, {}};
   return companion;
 }
 
