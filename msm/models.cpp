@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -33,6 +34,7 @@ const std::vector<ModelRow> table = {
   {"emsm_centred",   "eMSM with nodes in the middle of the cubes",                             centres,   infinity, true,  momentum_dispersion, false, false, G},
   {"emsm_random",    "disordered eMSM",                                                        random,    0,        false, momentum_dispersion, false, false, G},
   {"emsm_hexagonal", "triangular sheet with momentum dispersion, in plane strain",             hexagonal, 0,        false, momentum_dispersion, false, false, G},
+  {"kirkwood",       "triangular sheet with angular springs (Kirkwood), in plane strain",      hexagonal, 0,        false, angular_springs,     false, false, G},
   {"hybmss",         "springs + volume correction; Golec et al. (2019)",                       cells,     2,        true,  volume_correction,   false, false, G},
   {"hybmss_fd",      "HybMSS without face diagonals (A = 0): has zero-energy modes",           cells,     0,        false, volume_correction,   false, false, G},
   {"hybmss_cf",      "HybMSS springs without the volume correction",                           cells,     2,        true,  none,                false, false, G},
@@ -101,6 +103,13 @@ MomentumDispersion dispersion(const ModelParameters& p, const MassSpringModel& m
   return law;
 }
 
+AngularSprings angular(const Network& network, const IsotropicMaterial& material) {
+  const double lambda = lame_lambda(material), planar_nu = lambda / (lambda + 2 * shear_modulus(material));
+  double k = 0;  // of a spring inside: the boundary has halves
+  for (const Spring& s : network.springs) k = std::max(k, s.stiffness);
+  return {angular_stiffness(k, network.cell_edge, planar_nu)};
+}
+
 }  // namespace
 
 const std::vector<ModelRow>& model_table() { return table; }
@@ -110,6 +119,8 @@ bool exact_volumes(const ModelParameters& p, const IsotropicMaterial& material) 
 }
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {
+  // Angular springs leave the planar bulk modulus lambda + G to the springs, which have twice their shear modulus for it.
+  if (p.has(angular_springs)) return (lame_lambda(material) + shear_modulus(material)) / 2;
   const bool as_if_quarter = p.paper_e_form || p.row.calibration == Calibration::youngs_modulus;
   return as_if_quarter ? 0.4 * material.youngs_modulus : shear_modulus(material);
 }
@@ -123,6 +134,7 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   model.laws.push_back(Springs{});
   if (p.has(volume_correction)) model.laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   if (p.has(momentum_dispersion)) model.laws.push_back(dispersion(p, model, built.embedding, mesh, material));
+  if (p.has(angular_springs)) model.laws.push_back(angular(model.network, material));
   if (p.row.bending_correction) {
     model.laws.push_back(HourglassCorrection{shear_modulus(material), material.poisson_ratio, p.face_to_cube,
                                              p.row.torsion_correction});

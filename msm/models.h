@@ -21,7 +21,7 @@ enum class Topology {
 };
 
 /// What gives the springs, whose own Poisson's ratio is 1/4, another one.
-enum class Extension { none, volume_correction, momentum_dispersion };
+enum class Extension { none, volume_correction, momentum_dispersion, angular_springs };
 
 /// Which modulus the springs reproduce when their own Poisson's ratio (1/4) is not the material's.
 enum class Calibration {
