@@ -131,6 +131,9 @@ function bandDataset(points) {
           borderWidth: 1, borderDash: [2, 3], pointRadius: 0, pointHitRadius: 0, pointStyle: 'rect', order: 10};
 }
 
+/// How many spring models some cases have.
+const springCount = chosen => distinct(chosen.flatMap(c => c.models)).filter(model => !isFem(model)).length;
+
 function poissonTooltip(unit) {
   return {
     filter: item => item.raw && item.raw.row,
@@ -159,11 +162,12 @@ function poissonChart(chosen, measure, resolution, even) {
   if (nus.length === 1) even = false;   // a band needs width
   const x = nu => even ? nuText(nu) : nu;
   const unit = (chosen.find(c => c.scales.has(measure)) || {scales: new Map()}).scales.get(measure)?.unit ?? '';
-  const datasets = [...byModel].map(([model, points]) => lineDataset(model, model, nus.map(nu => {
+  const springModels = [...byModel.keys()].filter(model => !isFem(model));
+  const datasets = [...byModel].map(([model, points]) => ({hidden: springModels.indexOf(model) >= mostLines, ...lineDataset(model, model, nus.map(nu => {
     const point = points.get(nu);
     if (!point) return {x: x(nu), y: null};
     return {x: x(nu), y: point.error, below: point.uncertainty !== null && point.error <= point.uncertainty, ...point};
-  })));
+  }))}));
   const values = [...byModel.values()].flatMap(points => [...points.values()].map(p => p.error));
   const limits = decades(values, [...band.values()]);
   const room = nus.length === 1 ? 0.05 : 0.03 * (nus[nus.length - 1] - nus[0]);
@@ -182,8 +186,10 @@ function poissonChart(chosen, measure, resolution, even) {
   return {type: 'line', data: {datasets}, options};
 }
 
+const mostLines = 6;   // spring models drawn at first
+
 function poissonSection(section) {
-  const plot = figure();
+  const plot = figure(), volumePlot = figure();
   const empty = notice('No error of this case is known.');
   const caseChoice = select('Case', caseChoices(), update);
   const measureChoice = select('Measure', [], draw);
@@ -203,13 +209,20 @@ function poissonSection(section) {
     empty.hidden = !plot.node.hidden;
     if (!measureChoice.value) return;
     const notes = ['Below the shaded band a difference cannot be told from the uncertainty of the reference; ' +
-      'such points are hollow.', ...missingNotes(chosen, resolutionChoice.value)];
+      'such points are hollow.', ...(springCount(chosen) > mostLines ? ['Models struck out in the legend are hidden: click to show them.'] : []),
+      ...missingNotes(chosen, resolutionChoice.value)];
     plot.draw(poissonChart(chosen, measureChoice.value, resolutionChoice.value, axisChoice.value === 'even'),
               'Error against Poisson’s ratio, one line per model; the numbers are in the case pages', notes);
+    // The two errors that the question is about stand together.
+    const together = measureChoice.value === 'displacement_error' && measureChoices(chosen).some(([m]) => m === 'volume_change');
+    volumePlot.node.hidden = !together;
+    if (together)
+      volumePlot.draw(poissonChart(chosen, 'volume_change', resolutionChoice.value, axisChoice.value === 'even'),
+                      'Error of the volume change, the same runs', []);
   }
   section.append(el('p', {class: 'lead'}, 'How far each model is from the finite element reference.'),
                  el('div', {class: 'choices'}, caseChoice.node, measureChoice.node, resolutionChoice.node, axisChoice.node),
-                 empty, plot.node);
+                 empty, plot.node, volumePlot.node);
   update();
   charts.push(draw);
   return {show(id) { caseChoice.value = id; update(); }};
