@@ -9,7 +9,7 @@
 #include "comparisons/calculix/deck.h"
 #include "comparisons/case_run.h"
 #include "comparisons/suite.h"
-#include "meshes/gmsh_io.h"
+#include "comparisons/lattice_body.h"
 
 namespace springproof {
 namespace {
@@ -45,7 +45,7 @@ int ExportCommand::run() const {
   const IsotropicMaterial material = material_of(experiment, poisson_ratio_);
   const PreparedCase prepared = prepare(experiment);
   const Cells cells = cells_.empty() ? experiment.body.cells.front() : to_cells(cells_);
-  const Mesh mesh = mesh_geo(prepared.geo, experiment.body.size, cells);
+  const Mesh mesh = *lattice_body(prepared.geo, experiment.body, cells).mesh;
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
   const std::string file = out_.empty() ? experiment.name + ".inp" : out_;
   std::ofstream out(file);

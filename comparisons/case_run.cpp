@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "comparisons/lattice_body.h"
+#include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
 #include "comparisons/model_run.h"
 #include "comparisons/picture.h"
@@ -156,6 +158,7 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
     row.measure = measure;
     set_value(scalars, measure, row);
     row.unit = unit_of(measure);
+    if (is_deviation(measure)) row.error = row.value;
     if (reference && reference->scalars.contains(measure) && comparable(run.prepared, measure)) {
       const ReferenceValue& r = reference->scalars.at(measure);
       row.reference = r.value;
@@ -198,6 +201,13 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   write_vtu(run.vtu_folder / name, field, extra);
 }
 
+void add_line(PartRun& run, std::size_t lattice, const std::string& model, LineRecord line) {
+  line.model = model;
+  line.poisson_ratio = run.material.poisson_ratio;
+  line.cells = run.experiment().body.cells[lattice];
+  run.part.lines.push_back(std::move(line));
+}
+
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
@@ -210,7 +220,10 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message, s.solver,
                              s.iterations, s.residual, s.seconds, s.unknowns, s.memory_MiB});
     if (!s.ok) continue;
-    if (fields.empty()) save(run, lattice, label, sample.field);
+    if (fields.empty()) {
+      save(run, lattice, label, sample.field);
+      if (sample.line) add_line(run, lattice, label, *sample.line);
+    }
     fields.push_back(sample.field.displacement);
     scalars.push_back(sample.scalars);
   }
@@ -218,8 +231,8 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
 }
 
 /// Builds the model and puts the loads on it, for what may be wrong with either.
-void try_model(const Experiment& experiment, const ModelParameters& parameters, const Mesh& mesh) try {
-  const auto [model, embedding] = build_embedded(parameters, mesh, experiment.materials.front());
+void try_model(const Experiment& experiment, const ModelParameters& parameters, const Mesh& mesh, const Region* region) try {
+  const auto [model, embedding] = build_embedded(parameters, mesh, experiment.materials.front(), region);
   if (parameters.row.topology == Topology::cells) return;
   const BoundaryConditions bc = transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
   if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
@@ -240,7 +253,7 @@ std::vector<Load> lattice_loads(const Experiment& experiment) {
 }  // namespace
 
 PreparedCase prepare(const Experiment& experiment) {
-  PreparedCase prepared{experiment, {}, {}, reference_cells(experiment), {}, {}};
+  PreparedCase prepared{experiment, {}, {}, {}, reference_cells(experiment), {}, {}};
   for (int n : prepared.reference_cells)
     if (n % 4 != 0 && n != 1)
       throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", experiment.file.string(), n));
@@ -259,7 +272,9 @@ PreparedCase prepare(const Experiment& experiment) {
   try {
     prepared.geo = find_geo(experiment.body, experiment.file);
     for (const Cells& cells : experiment.body.cells) {
-      prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, experiment.body.size, cells)));
+      const LatticeBody body = lattice_body(prepared.geo, experiment.body, cells);
+      prepared.meshes.push_back(body.mesh);
+      prepared.regions.push_back(body.region);
       const Mesh& mesh = *prepared.meshes.back();
       std::vector<std::string> patches;
       for (const Patch& p : mesh.patches) patches.push_back(p.name);
@@ -268,7 +283,7 @@ PreparedCase prepare(const Experiment& experiment) {
       if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
         require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh.nodes);
       for (const ModelParameters& p : prepared.models)
-        if (p.row.topology == Topology::cells || prepared.meshes.size() == 1) try_model(experiment, p, mesh);
+        if (p.row.topology == Topology::cells || prepared.meshes.size() == 1) try_model(experiment, p, mesh, body.region.get());
       const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
       if (experiment.section) section_distance(mesh, *experiment.section, u, u);
       interpolate(mesh, u, points_of(experiment.probes));
@@ -302,6 +317,7 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
     }
     for (std::size_t m = 0; m < prepared.models.size(); ++m) run_model(run, lattice, m);
   }
+  if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);
   return std::move(run.part);
 }
 

@@ -10,6 +10,7 @@
 #include "comparisons/results.h"
 #include "meshes/mesh.h"
 #include "msm/models.h"
+#include "msm/topology/region.h"
 
 namespace springproof {
 
@@ -17,6 +18,7 @@ namespace springproof {
 struct PreparedCase {
   Experiment experiment;
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
+  std::vector<std::shared_ptr<const Region>> regions;  ///< beside them: the true body where cubes stand for it, else empty
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids
   std::set<std::string> sharing;                    ///< patches whose separate forces are a convention
@@ -32,6 +34,7 @@ struct Part {
   std::vector<Row> rows;
   std::vector<ReferenceRecord> references;
   std::vector<Picture> pictures;
+  std::vector<LineRecord> lines;
 };
 
 /// Runs everything for experiment.materials[material]; writes one VTU per run into `vtu_folder` (empty: none).

@@ -73,11 +73,13 @@ bool is_distance(const std::string& measure) {
   return measure == "displacement_error" || measure == "displacement_error_max" || measure.starts_with("section_");
 }
 
+bool is_deviation(const std::string& measure) { return head(measure) == "line" && !measure.ends_with(".order"); }
+
 bool wanted(const std::string& measure, const std::vector<std::string>& measures) {
   const std::string kind = head(measure);
   const std::string group = kind == "force" || kind == "torque" ? "reaction"
                             : kind == "displacement"            ? "probe"
-                            : kind == "stress" || kind == "network" || kind == "moduli" ? kind
+                            : kind == "stress" || kind == "network" || kind == "moduli" || kind == "line" ? kind
                                                                 : measure;
   return std::find(measures.begin(), measures.end(), group) != measures.end();
 }

@@ -28,6 +28,9 @@ std::string unit_of(const std::string& measure);
 /// True if the measure is a distance from the reference, whose best value is 0.
 bool is_distance(const std::string& measure);
 
+/// True if the measure is a deviation from a solution in closed form: line.strain.xx and the like.
+bool is_deviation(const std::string& measure);
+
 /// Names that [compare] measures stand for in this case ("reaction" is many).
 bool wanted(const std::string& measure, const std::vector<std::string>& measures);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
 #include "msm/calibrate.h"
 #include "msm/measure/block_moduli.h"
@@ -45,11 +46,12 @@ NodalVectors points_of(const std::vector<Probe>& probes) {
 }
 
 /// One network of the model, solved and measured.
-Sample run_sample(const PreparedCase& prepared, const std::shared_ptr<const Mesh>& mesh, const ModelParameters& parameters,
+Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
                   const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
   const Kinematics kinematics = e.model_kinematics();
-  const EmbeddedModel built = build_embedded(parameters, *mesh, material);
+  const auto& mesh = prepared.meshes[lattice];
+  const EmbeddedModel built = build_embedded(parameters, *mesh, material, prepared.regions[lattice].get());
   const Network& network = built.model.network;
   const LoadPath path = [&](double factor) {
     BoundaryConditions bc = transfer(e.loads, *mesh, built.embedding, network, material.density, kinematics, factor);
@@ -64,6 +66,10 @@ Sample run_sample(const PreparedCase& prepared, const std::shared_ptr<const Mesh
   const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes));
   sample.scalars = scalar_measures(sample.field, e.probes, probes);
   if (asked(e, "network")) add_network(network, sample.scalars);
+  if (asked(e, "line")) {
+    sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);
+    sample.scalars.merge(line_deviations(*sample.line));
+  }
   if (asked(e, "moduli")) add_moduli(e, built.model, sample.state.displacement, sample.scalars);
   return sample;
 }
@@ -75,7 +81,7 @@ std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattic
   ModelParameters parameters = prepared.models[number];
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
     try {
-      samples.push_back(run_sample(prepared, prepared.meshes[lattice], parameters, material));
+      samples.push_back(run_sample(prepared, lattice, parameters, material));
     } catch (const InputError&) {
       throw;
     } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli

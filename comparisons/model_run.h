@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct Sample {
   Equilibrium state;
   Field field;                            ///< on the lattice's mesh; empty where state.ok is false
   std::map<std::string, double> scalars;  ///< every measure that has a value of its own
+  std::optional<LineRecord> line;         ///< where the case has one
 };
 
 /// Solves model `number` of the case on lattice `lattice`; one sample per seed.

@@ -28,6 +28,7 @@ set(report_assets
     style_css=${report_dir}/report/style.css
     report_js=${report_dir}/report/data.js
     report_js=${report_dir}/report/charts.js
+    report_js=${report_dir}/report/line.js
     report_js=${report_dir}/report/shapes.js
     report_js=${report_dir}/report/pages.js
     report_js=${report_dir}/report/verification.js

@@ -133,6 +133,10 @@ Json json_of(const Section& section) {
   return {{"point", vector(section.point)}, {"normal", vector(section.normal)}};
 }
 
+Json json_of(const Line& line) {
+  return {{"from", vector(line.from)}, {"to", vector(line.to)}, {"points", line.points}, {"middle", line.middle}};
+}
+
 Json json_of(const Row& r) {
   return {{"case_name", r.case_name},
           {"kinematics", r.kinematics},
@@ -194,6 +198,19 @@ Json json_of(const Check& c) {
           {"at_least", c.at_least}};
 }
 
+Json json_of(const LineRecord& l) {
+  return {{"model", l.model},
+          {"poisson_ratio", number(l.poisson_ratio)},
+          {"cells", l.cells},
+          {"first", l.first},
+          {"last", l.last},
+          {"distance", numbers(l.distance)},
+          {"strain", numbers(l.strain)},
+          {"stress", numbers(l.stress)},
+          {"exact_strain", numbers(l.exact_strain)},
+          {"exact_stress", numbers(l.exact_stress)}};
+}
+
 Json json_of(const PublishedRow& p) {
   return {{"model", p.model},
           {"poisson_ratio", number(p.poisson_ratio)},
@@ -221,7 +238,7 @@ Json json_of(const Experiment& e) {
           {"cite", e.cite},
           {"what", e.what},
           {"kinematics", e.kinematics},
-          {"body", {{"geo", e.body.geo}, {"size", vector(e.body.size)}, {"cells", e.body.cells}}},
+          {"body", {{"geo", e.body.geo}, {"size", vector(e.body.size)}, {"cells", e.body.cells}, {"voxels", e.body.voxels}}},
           {"materials", list(e.materials)},
           {"poisson_ratios", poisson_ratios},
           {"loads", loads},
@@ -229,6 +246,7 @@ Json json_of(const Experiment& e) {
           {"measures", e.measures},
           {"probes", list(e.probes)},
           {"section", e.section ? json_of(*e.section) : Json(nullptr)},
+          {"line", e.line ? json_of(*e.line) : Json(nullptr)},
           {"reference",
            {{"cells", e.reference.cells},
             {"elements", e.reference.elements},
@@ -356,7 +374,8 @@ Json to_json(const CaseResult& result) {
           {"rows", list(result.rows)},
           {"references", list(result.references)},
           {"checks", list(result.checks)},
-          {"published", list(result.published)}};
+          {"published", list(result.published)},
+          {"lines", list(result.lines)}};
 }
 
 Json pictures_to_json(const CaseResult& result) {

@@ -103,6 +103,21 @@ struct Picture {
   std::vector<int> quads;              ///< 4 surface-node numbers per facet
 };
 
+/// xx yy zz xy yz xz at each point of a line, one point after the other.
+using LineTensors = std::vector<double>;
+
+/// Strain and stress of one model along the case's line; of several networks, of the first.
+struct LineRecord {
+  std::string model;
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  int first = 0, last = 0;             ///< of the points, from 1, that deviations are the mean over
+  std::vector<double> distance;        ///< of each point from the line's start [m]
+  LineTensors strain;                  ///< [1]
+  LineTensors stress;                  ///< [Pa]; empty: the model has forces that are no tensions of springs
+  LineTensors exact_strain, exact_stress;  ///< Kelvin's
+};
+
 struct CaseResult {
   Experiment experiment;
   std::vector<Run> runs;
@@ -111,6 +126,7 @@ struct CaseResult {
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
   std::vector<Picture> pictures;
+  std::vector<LineRecord> lines;
 };
 
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".

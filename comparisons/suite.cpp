@@ -157,6 +157,7 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
       append(task.part.rows, result.rows);
       append(task.part.references, result.references);
       append(task.part.pictures, result.pictures);
+      append(task.part.lines, result.lines);
     }
     judge(result);
     results.push_back(std::move(result));

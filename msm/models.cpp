@@ -49,7 +49,7 @@ double mean_edge(const Mesh& mesh) {
   return mesh.grid ? mesh.grid->spacing.maxCoeff() : std::cbrt(volume(mesh, mesh.nodes) / cells);
 }
 
-Network network_of(const ModelParameters& p, const Mesh& mesh) {
+Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* region) {
   switch (p.row.topology) {
     case cells:
       return cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
@@ -62,7 +62,7 @@ Network network_of(const ModelParameters& p, const Mesh& mesh) {
   }
   RandomParameters random = p.random;
   random.spacing = p.node_density ? std::cbrt(1 / *p.node_density) : mean_edge(mesh);
-  return random_network(region_of(mesh), random);
+  return random_network(region ? *region : region_of(mesh), random);
 }
 
 /// Depth [m] to which a support holds nodes: on the surface, the outermost layer, or what the case says.
@@ -77,8 +77,8 @@ BulkCalibration bulk_calibration(ModelParameters p, const IsotropicMaterial& mat
   return p.homogenised ? calibrate_in_bulk(p, material) : affine_calibration(p, material);
 }
 
-void calibrate_network(const ModelParameters& p, const IsotropicMaterial& material, const Mesh& mesh, Network& network) {
-  network.volume *= volume(mesh, mesh.nodes) / network.volume.sum();
+void calibrate_network(const ModelParameters& p, const IsotropicMaterial& material, double volume_of_body, Network& network) {
+  network.volume *= volume_of_body / network.volume.sum();
   if (p.row.topology != random) return calibrate(spring_shear_modulus(p, material), network);
   if (p.random.surface_nodes) correct_surface(network);
   calibrate(bulk_calibration(p, material).spring_shear_modulus, network);
@@ -125,12 +125,13 @@ double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& m
   return as_if_quarter ? 0.4 * material.youngs_modulus : shear_modulus(material);
 }
 
-EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material) try {
+EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material,
+                             const Region* region) try {
   EmbeddedModel built;
   MassSpringModel& model = built.model;
-  model.network = network_of(p, mesh);
+  model.network = network_of(p, mesh, region);
   built.embedding = p.row.topology == cells ? nodes_of_mesh(mesh) : embed(mesh, model.network, grip_of(p, mesh));
-  calibrate_network(p, material, mesh, model.network);
+  calibrate_network(p, material, region && p.row.topology == random ? region->volume : volume(mesh, mesh.nodes), model.network);
   model.laws.push_back(Springs{});
   if (p.has(volume_correction)) model.laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   if (p.has(momentum_dispersion)) model.laws.push_back(dispersion(p, model, built.embedding, mesh, material));

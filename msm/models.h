@@ -75,9 +75,10 @@ struct EmbeddedModel {
   Embedding embedding;
 };
 
-/// The model of a body.
+/// The model of a body.  Disordered networks fill `region`, where there is one that the mesh's cells only roughly fill.
 /// @throws InputError if the mesh does not suit it; std::runtime_error if the network cannot have the material's moduli.
-EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material);
+EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material,
+                             const Region* region = nullptr);
 
 /// The same without its embedding.
 inline MassSpringModel build_model(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material) {

@@ -36,7 +36,7 @@ PrescribedValue value_at(const PrescribedRotation& load, const Vec3& X, Kinemati
 }
 
 PrescribedValue value_at(const PrescribedField& load, const Vec3& X, Kinematics, double factor) {
-  return all_components(factor * exact_displacement(load.field, X));
+  return all_components(factor * (load.kelvin ? kelvin_displacement(*load.kelvin, X) : exact_displacement(load.field, X)));
 }
 
 template <class OtherLoad>

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "problem/kelvin.h"
 #include "problem/vector.h"
 
 namespace springproof {
@@ -33,10 +34,11 @@ struct PrescribedRotation {
   double angle = 0;            ///< [rad]
 };
 
-/// A named displacement field, prescribed on a patch (problem/exact_field.h).
+/// A named displacement field, prescribed on a patch (problem/exact_field.h); "kelvin": that of the case's point force.
 struct PrescribedField {
   std::string on;
   std::string field;
+  std::optional<KelvinSolution> kelvin = {};  ///< of the field "kelvin"
 };
 
 /// Force per rest area, constant in direction (dead load) [Pa].

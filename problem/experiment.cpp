@@ -21,6 +21,7 @@ constexpr Key document_schema[] = {{"cite", Presence::optional, ""},
                                    {"load", Presence::required, "at least one [[load]]"},
                                    {"compare", Presence::optional, ""},
                                    {"section", Presence::optional, ""},
+                                   {"line", Presence::optional, ""},
                                    {"probe", Presence::optional, ""},
                                    {"reference", Presence::optional, ""},
                                    {"expect", Presence::optional, ""},
@@ -29,7 +30,8 @@ constexpr Key document_schema[] = {{"cite", Presence::optional, ""},
 constexpr Key body_schema[] = {
     {"geo", Presence::required, "the name of a gmsh script, e.g. \"block.geo\""},
     {"size_m", Presence::required, "[x, y, z], lengths > 0"},
-    {"cells", Presence::required, "[nx, ny, nz] or a list of such, integers from 1 to 1000"}};
+    {"cells", Presence::required, "[nx, ny, nz] or a list of such, integers from 1 to 1000"},
+    {"voxels", Presence::optional, ""}};
 
 constexpr Key material_schema[] = {
     {"youngs_modulus_Pa", Presence::optional, ""}, {"poisson_ratio", Presence::optional, ""},
@@ -68,6 +70,7 @@ Body read_body(const TomlValue& value) {
   body.where = location_of(table.at("geo"));
   body.geo = as_text(table.at("geo"));
   body.size = as_vector(table.at("size_m"), positive_number);
+  if (const auto voxels = table.find("voxels")) body.voxels = as_flag(*voxels);
   const TomlValue cells = table.at("cells");
   const auto items = as_list(cells, "[nx, ny, nz] or a list of such, integers from 1 to 1000");
   if (!items.front().node->is_array()) {
@@ -191,6 +194,10 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);
   if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference);
+  if (experiment.body.voxels && !experiment.reference.elements.empty())
+    throw InputError(experiment.body.where, "body.voxels: the finite elements do not take such a body (allowed: with [reference] elements = [])");
+  settle_kelvin(experiment);
+  read_line(document, experiment);
   read_compare(document, experiment);
   check_body_forces(experiment);
   read_expectations(document, experiment);

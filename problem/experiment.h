@@ -36,6 +36,7 @@ struct Body {
   Vec3 size = Vec3::Zero();        ///< [m]
   std::vector<Cells> cells;        ///< resolutions of the mass-spring models, one or more
   SourceLocation where;            ///< of the key `geo`
+  bool voxels = false;             ///< lattices of those cubes of the box [0, size] whose centres lie in the body
 };
 
 /// A model as named in the case file, with its options; what they mean is the model table's business (msm/models.h).
@@ -56,6 +57,16 @@ struct Section {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
 };
+
+/// Line along which strain and stress are held against Kelvin's solution (Kot et al. 2014, sec. 5.2).
+struct Line {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]
+  int points = 100;                             ///< point i of 1 ... points lies at from + (i / points) (to - from)
+  std::array<int, 2> middle = {15, 80};         ///< first and last of the points that deviations are the mean over
+};
+
+/// Place [m] of a point of the line, numbered from 1.
+Vec3 point_of(const Line& line, int number);
 
 /// How the finite element reference is computed.
 struct ReferenceChoice {
@@ -117,6 +128,7 @@ struct Experiment {
   std::vector<std::string> measures;
   std::vector<Probe> probes;
   std::optional<Section> section;
+  std::optional<Line> line;
   ReferenceChoice reference;
   std::vector<Expectation> expectations;
   std::vector<PublishedValue> published;
@@ -131,6 +143,9 @@ Experiment read_experiment(const std::filesystem::path& file);
 
 /// As read_experiment, from text; `file` is used for messages and relative paths.
 Experiment parse_experiment(const std::string& text, const std::filesystem::path& file);
+
+/// Kelvin's solution of the case's point force; empty: there is not exactly one point force, or several materials.
+std::optional<KelvinSolution> kelvin_of(const Experiment& experiment);
 
 /// @throws InputError at the load that acts on a patch that is not among `patches`, those of the body.
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches);

@@ -128,6 +128,7 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
       refuse(item, fmt::format("'{}' needs points", measure), "with at least one [[probe]] in the file");
     if (measure == "displacement_error_order" && experiment.exact.empty())
       refuse(item, "'displacement_error_order' needs the solution", "with exact = \"...\" in [compare]");
+    if (measure == "line" && !experiment.line) refuse(item, "'line' needs one", "with a [line] in the file");
     if (measure == "moduli" && !elongation_along_x(experiment))
       refuse(item, "'moduli' needs a block stretched along x", "with a load that prescribes x on x_min and another on x_max");
     measures.push_back(measure);

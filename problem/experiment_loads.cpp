@@ -76,7 +76,9 @@ Load read_rotation(const TomlTable& table, const std::string& on) {
 }
 
 Load read_field(const TomlTable& table, const std::string& on) {
-  return PrescribedField{on, as_choice(table.at("field"), exact_field_names())};
+  std::vector<std::string> names = exact_field_names();
+  names.emplace_back("kelvin");
+  return PrescribedField{on, as_choice(table.at("field"), names)};
 }
 
 Load read_pressure(const TomlTable& table, const std::string& on) {

@@ -9,6 +9,13 @@ namespace springproof {
 /// One [[load]]: as many loads as `on` names patches.
 std::vector<Load> read_load(const TomlValue& value);
 
+/// [line]; loads, materials and kinematics must have been read.
+void read_line(const TomlTable& document, Experiment& experiment);
+
+/// Gives the loads of the field "kelvin" their solution.
+/// @throws InputError at such a load if the case has no such solution, or a finite element reference.
+void settle_kelvin(Experiment& experiment);
+
 /// [compare] and, held against it, [[expect]] and [[published]].  Body, materials, loads, probes, section and
 /// reference of the experiment must have been read.
 void read_compare(const TomlTable& document, Experiment& experiment);

@@ -57,6 +57,7 @@ void write_body(const Body& body, Writer& out) {
   std::vector<std::string> cells;
   for (const Cells& c : body.cells) cells.push_back(row(c));
   out.line("cells", fmt::format("[{}]", fmt::join(cells, ", ")));
+  if (body.voxels) out.line("voxels", "true");
 }
 
 void write_materials(const std::vector<IsotropicMaterial>& materials, Writer& out) {
@@ -185,6 +186,13 @@ std::string to_toml(const Experiment& experiment) {
     out.heading("[section]");
     out.line("point_m", row(experiment.section->point));
     out.line("normal", row(experiment.section->normal));
+  }
+  if (experiment.line) {
+    out.heading("[line]");
+    out.line("from_m", row(experiment.line->from));
+    out.line("to_m", row(experiment.line->to));
+    out.line("points", fmt::format("{}", experiment.line->points));
+    out.line("middle", fmt::format("[{}]", fmt::join(experiment.line->middle, ", ")));
   }
   for (const Probe& probe : experiment.probes) {
     out.heading("[[probe]]");

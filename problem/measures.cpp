@@ -43,6 +43,15 @@ std::vector<std::string> moduli_rows(const Experiment&) {
           "moduli.poisson_ratio_as_printed", "moduli.affine_youngs_modulus"};
 }
 
+std::vector<std::string> line_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const std::string field : {"line.strain", "line.stress"}) {
+    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz", ".all"}) rows.push_back(field + component);
+    if (experiment.body.cells.size() > 1) rows.push_back(field + ".order");
+  }
+  return rows;
+}
+
 struct Measure {
   const char* name;
   std::vector<std::string> (*rows)(const Experiment&);  ///< nullptr: one row of the same name
@@ -55,6 +64,7 @@ constexpr Measure measures[] = {
     {"reaction", reaction_rows},     {"probe", probe_rows},                  {"stress", stress_rows},
     {"displacement_error_order", nullptr},
     {"network", network_rows},       {"moduli", moduli_rows},
+    {"line", line_rows},
 };
 
 }  // namespace

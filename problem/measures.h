@@ -13,13 +13,14 @@ struct Experiment;
 /// section_axis_distance, volume_change, volume_change_magnitude (its absolute value, the papers' e),
 /// volume_change_first_order, reaction, probe, stress (finite elements only), displacement_error_order (observed, between
 /// the two finest grids; where the exact solution is known), network (what the spring network is made of), moduli (of a block
-/// stretched along x, as the papers measure them).
+/// stretched along x, as the papers measure them), line (strain and stress along a line, against Kelvin's solution).
 std::vector<std::string> measure_names();
 
 /// Names of the rows that a measure gives for an experiment, as [[expect]] and [[published]] write them. Most
 /// give one row of their own name; `reaction` gives force.<patch>.x|y|z|magnitude and
 /// torque.<patch>.x|y|z|magnitude for each patch with prescribed displacement; `probe` gives
-/// displacement.<name>.x|y|z|magnitude for each probe, `stress` stress.<name>.xx|yy|zz|xy|yz|xz.
+/// displacement.<name>.x|y|z|magnitude for each probe, `stress` stress.<name>.xx|yy|zz|xy|yz|xz;
+/// `line` line.strain|stress.xx|yy|zz|xy|yz|xz|all, and .order with several resolutions.
 std::vector<std::string> rows_of_measure(const std::string& measure, const Experiment& experiment);
 
 /// Relative displacement [m] along x that the loads prescribe between x_min and x_max; empty: they do not.

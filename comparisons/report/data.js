@@ -101,8 +101,8 @@ function percent(x) {
 
 const signed = (x, text) => (x > 0 && !text.startsWith('<') ? '+' : '') + text;
 
-const isDistance = measure => /^displacement_error(_max)?$|_distance$/.test(measure);
-const inPercent = (measure, unit) => unit === '1' && /^displacement|^volume/.test(measure) && !measure.endsWith('_order');
+const isDistance = measure => /^displacement_error(_max)?$|_distance$|^line\.\w+\.(all|[xyz]{2})$/.test(measure);
+const inPercent = (measure, unit) => unit === '1' && /^displacement|^volume|^line/.test(measure) && !/[_.]order$/.test(measure);
 
 /// The unit a set of values is shown in: percent, a fitting length unit, or the unit itself.
 function displayUnit(measure, unit, values) {
@@ -165,12 +165,16 @@ const measureMeanings = {
   volume_change_magnitude: '|V′ − V| / V, as the paper prints it; errors in percentage points',
   volume_change_first_order: 'integral of div u over V; errors in percentage points',
   section_distance: 'mean |u − u_fem| over the nodes of the section',
+  'line.strain.all': 'mean |ε − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
+  'line.stress.all': 'mean |σ − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
   section_axis_distance: 'mean |u − u_fem| per coordinate in the section, (|Δx| + |Δy|)/2',
 };
 
 function measureText(measure) {
   if (measureNames[measure]) return measureNames[measure];
   const [what, where, component] = measure.split('.');
+  if (what === 'line') return component === 'order' ? `observed order of the ${where} deviation` :
+    `${where} deviation${component === 'all' ? '' : ', ' + component}`;
   const words = what.replace(/_/g, ' ');
   if (!where) return words;
   return `${words} ${/force|torque|reaction/.test(what) ? 'on' : 'at'} ${where}` + (component ? `, ${component}` : '');
@@ -199,7 +203,7 @@ function prepareCase(data) {
     linear: experiment.kinematics === 'linear',
     verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
-    checks: data.checks || [], published: data.published || [],
+    checks: data.checks || [], published: data.published || [], lines: data.lines || [],
   };
   const key = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;
   result.runAt = new Map(result.runs.map(run => [key(run), run]));

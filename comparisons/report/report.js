@@ -84,11 +84,13 @@ function start() {
   const poisson = build('poisson', needsCases(poissonSection));
   const convergence = build('convergence', needsCases(convergenceSection));
   const shapes = build('shapes', shapesSection);
+  const line = build('line', lineSection);
   build('verification', verificationSection);
   build('fem-column', femColumnSection);
   build('pages', section => pagesSection(section, [
     {text: 'Error against ν', go: jumpTo('poisson', poisson), has: compared},
     {text: 'Convergence', go: jumpTo('convergence', convergence), has: compared},
+    {text: 'Along the line', go: jumpTo('line', line), has: id => line.has(id)},
     {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
   ]));
   build('about', aboutSection);

@@ -4,12 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "problem/vector.h"
+#include "meshes/outer_facets.h"
 
 namespace springproof {
-
-/// Point of a triangle nearest to p.
-Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Counts how often a ray along +z crosses the surface.  Triangles lie in buckets over the x-y plane; cells of a coarse
 /// grid that no triangle meets are classified once.

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "meshes/outer_facets.h"
 #include "meshes/volume.h"
 #include "msm/topology/point_cells.h"
 #include "msm/topology/ray_parity.h"
@@ -17,44 +18,6 @@ namespace {
 
 constexpr double boundary_tolerance = 1e-12;  // of the size of the body
 constexpr double pi = 3.14159265358979323846;
-
-constexpr std::array<std::array<int, 3>, 4> tetrahedron_faces = {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-
-struct Facet {
-  std::array<int, 4> key;    // node numbers, ascending; -1 first for a triangle
-  std::array<int, 4> nodes;  // in order; -1 last for a triangle
-  Vec3 cell_centre;
-};
-
-template <class Cell>
-Vec3 centre_of(const Mesh& mesh, const Cell& cell) {
-  Vec3 sum = Vec3::Zero();
-  for (const int n : cell) sum += mesh.nodes.row(n).transpose();
-  return sum / double(cell.size());
-}
-
-/// Facets that belong to one cell only.
-std::vector<Facet> outer_facets(const Mesh& mesh) {
-  std::vector<Facet> all;
-  const auto add = [&](std::array<int, 4> nodes, const Vec3& centre) {
-    auto key = nodes;
-    std::sort(key.begin(), key.end());
-    all.push_back({key, nodes, centre});
-  };
-  for (const Hexahedron& cell : mesh.hexahedra)
-    for (int f = 0; f < 6; ++f) add(face_of(cell, f), centre_of(mesh, cell));
-  for (const Tetrahedron& cell : mesh.tetrahedra)
-    for (const auto& f : tetrahedron_faces) add({cell[f[0]], cell[f[1]], cell[f[2]], -1}, centre_of(mesh, cell));
-  std::stable_sort(all.begin(), all.end(), [](const Facet& a, const Facet& b) { return a.key < b.key; });
-  std::vector<Facet> outer;
-  for (std::size_t i = 0; i < all.size();) {
-    std::size_t j = i;
-    while (j < all.size() && all[j].key == all[i].key) ++j;
-    if (j == i + 1) outer.push_back(all[i]);
-    i = j;
-  }
-  return outer;
-}
 
 /// Triangles of the outer facets, pointing away from their cell, and the points they use.
 void add_surface(const Mesh& mesh, Region& region) {
@@ -73,7 +36,7 @@ void add_surface(const Mesh& mesh, Region& region) {
     if (normal.dot(x - behind) < 0) std::swap(t[1], t[2]);
     region.surface_triangles.push_back(t);
   };
-  for (const Facet& f : outer_facets(mesh)) {
+  for (const OuterFacet& f : outer_facets(mesh)) {
     add_triangle(f.nodes[0], f.nodes[1], f.nodes[2], f.cell_centre);
     if (f.nodes[3] >= 0) add_triangle(f.nodes[0], f.nodes[2], f.nodes[3], f.cell_centre);
   }
