@@ -57,7 +57,7 @@ std::string script_json(const Json& json) {
 Json packed(Json results) {
   static const std::vector<std::string> columns = {
       "kinematics", "model",     "poisson_ratio",         "cells", "measure", "value",
-      "unit",       "reference", "reference_uncertainty", "error", "spread"};
+      "unit",       "reference", "reference_uncertainty", "error", "samples", "spread"};
   if (!results.contains("cases")) return results;
   for (Json& result : results.at("cases")) {
     Json values = Json::array();

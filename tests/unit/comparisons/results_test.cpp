@@ -26,7 +26,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(ResultsCsv, ColumnsAreTheAgreedOnes) {
   EXPECT_EQ(
       to_csv({}),
-      "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error\n");
+      "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error,"
+      "samples,spread\n");
 }
 
 TEST(ResultsCsv, RowKeepsEveryDigitAndLeavesUnknownEmpty) {
@@ -36,20 +37,20 @@ TEST(ResultsCsv, RowKeepsEveryDigitAndLeavesUnknownEmpty) {
   const auto lines = lines_of(to_csv({c}));
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[1],
-            "beam,linear,emsm,-0.2,24x4x4,volume_change,0.3333333333333333,1,0.30000000000000004,,");
+            "beam,linear,emsm,-0.2,24x4x4,volume_change,0.3333333333333333,1,0.30000000000000004,,,1,");
 }
 
 TEST(ResultsCsv, TextWithCommasQuotesAndLineBreaksIsQuoted) {
   CaseResult c;
   c.rows.push_back({"a,b", "linear", "say \"A=1\"", 0.25, {1, 1, 1}, "two\nlines", 1, "N", {}, {}, {}});
-  EXPECT_NE(to_csv({c}).find("\n\"a,b\",linear,\"say \"\"A=1\"\"\",0.25,1x1x1,\"two\nlines\",1,N,,,\n"),
+  EXPECT_NE(to_csv({c}).find("\n\"a,b\",linear,\"say \"\"A=1\"\"\",0.25,1x1x1,\"two\nlines\",1,N,,,,1,\n"),
             std::string::npos);
 }
 
 TEST(ResultsCsv, NumbersThatAreNotFiniteAreEmpty) {
   CaseResult c;
   c.rows.push_back({"a", "linear", "m", 0.25, {1, 1, 1}, "x", std::nan(""), "N", INFINITY, {}, {}});
-  EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,m,0.25,1x1x1,x,,N,,,");
+  EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,m,0.25,1x1x1,x,,N,,,,1,");
 }
 
 TEST(DescribeLoad, PrescribedDisplacement) {
