@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace springproof {
+namespace {
+
+constexpr double inner_tolerance = 1e-6;  // of the symmetric solves that precondition GMRES
+
+}  // namespace
 
 MassSpringModel symmetric_companion(const MassSpringModel& model) {
   MassSpringModel companion = model;
@@ -55,8 +60,12 @@ KrylovResult TangentSolver::iterate(const Tangent& K, bool symmetric, const Eige
   Eigen::VectorXd free = b;
   clear_fixed(free);
   u.setZero(b.size());
-  return symmetric ? conjugate_gradients(apply, condition, free, tolerance, max_iterations, u)
-                   : gmres(apply, condition, free, tolerance, max_iterations, 60, u);
+  if (symmetric) return conjugate_gradients(apply, condition, free, tolerance, max_iterations, u);
+  // A cycle alone leaves the soft motions of a body held at few points to GMRES, which forgets them at a restart.
+  const Operator solved = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    direct_ ? precondition(r, z) : void(iterate(companion_K_, true, r, inner_tolerance, max_iterations, z));
+  };
+  return gmres(apply, solved, free, tolerance, max_iterations, 60, u);
 }
 
 KrylovResult TangentSolver::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) const {
