@@ -8,7 +8,7 @@
 
 #include "msm/measure/moduli.h"
 #include "msm/measure/validity.h"
-#include "msm/solve/cell_stiffness.h"
+#include "msm/solve/time_step.h"
 #include "msm/topology/cubic_lattice.h"
 
 namespace springproof {
