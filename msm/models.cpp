@@ -115,7 +115,7 @@ AngularSprings angular(const Network& network, const IsotropicMaterial& material
 const std::vector<ModelRow>& model_table() { return table; }
 
 bool exact_volumes(const ModelParameters& p, const IsotropicMaterial& material) {
-  return p.exact_volumes.value_or(p.row.topology != random || material.poisson_ratio >= 0.25);
+  return p.exact_volumes.value_or(material.poisson_ratio >= 0.25);
 }
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {
