@@ -6,6 +6,7 @@
 #include "msm/calibrate.h"
 #include "msm/measure/bulk_calibration.h"
 #include "msm/measure/moduli.h"
+#include "msm/measure/stability.h"
 #include "msm/solve/dynamics.h"
 #include "msm/solve/equilibrium.h"
 #include "support/zoo.h"
@@ -35,8 +36,7 @@ TEST(EmsmModuli, OfALatticeAreExactInEveryFormButThePublished) {
       }
       const MeasuredModuli plain = measure_moduli(emsm(Dispersion::published), m, cells);
       const double E = plain.youngs_modulus / 1e4;
-      std::printf("published nu %g cells %d: E %.4f nu %.4f\n", nu, cells, E, plain.poisson_ratio);
-      EXPECT_GT(std::abs(plain.poisson_ratio - nu), 1e-3) << nu;  // as many springs as at any node, but halves and quarters
+      EXPECT_GT(std::abs(plain.poisson_ratio - nu) + std::abs(E - 1), 1e-3) << nu;  // counts halves and quarters as springs
       EXPECT_GT(E, 0.88);
       EXPECT_LT(E, 1.08);
     }
@@ -67,7 +67,6 @@ TEST(NetworkMultigrid, IterationsDoNotGrowWithTheNetwork) {
     for (int n : {12, 22}) {
       const Solved s = under_gravity(name, 0.25, n);
       ASSERT_TRUE(s.state.ok) << s.state.message;
-      std::printf("%s %ld unknowns: %d iterations, %.1f s, %s\n", name, s.state.unknowns, s.state.iterations, s.state.seconds, s.state.solver.c_str());
       if (n == 12) coarse = s.state.iterations;
       EXPECT_LE(s.state.iterations, n == 12 ? 25 : coarse + 6) << name;
     }
@@ -95,7 +94,6 @@ TEST(NetworkMultigrid, UnsymmetricFormsTakeFewStepsOverTheSymmetricOne) {
       s.conditions = transfer(loads, mesh, s.built.embedding, s.built.model.network, density, Kinematics::linear);
       s.state = solve_linear(s.built.model, s.conditions, {LinearSolver::cholesky, 1e-10, 300});
       ASSERT_TRUE(s.state.ok) << s.state.message;
-      std::printf("%s nu %g: %d iterations, unbalanced %.2e\n", name, nu, s.state.iterations, unbalanced(s));
       EXPECT_LE(s.state.iterations, 25) << name << " nu = " << nu;
       EXPECT_LE(unbalanced(s), 1e-4) << name << " nu = " << nu;  // of second order in strains of 1e-6
     }
@@ -111,7 +109,6 @@ TEST(BulkCalibration, HoldsForOtherSamples) {
       ModelParameters p = test::model("emsm_random");
       p.random.seed = static_cast<std::uint64_t>(seed);
       const MeasuredModuli found = measure_moduli(p, m);
-      std::printf("bulk nu %g seed %d: G %.4f nu %.4f\n", nu, seed, found.shear_modulus / shear_modulus(m), found.poisson_ratio);
       EXPECT_NEAR(found.shear_modulus / shear_modulus(m), 1, 0.03) << "nu = " << nu << " seed " << seed;
       EXPECT_NEAR(found.poisson_ratio, nu, 0.01) << "nu = " << nu << " seed " << seed;
       G += found.shear_modulus / shear_modulus(m) / seeds;
@@ -133,15 +130,25 @@ TEST(BulkCalibration, SaysThatWeightsKLSaturate) {
   }
 }
 
-// A negative energy of exact volumes outweighs the springs at surfaces; k L, the default below nu = 1/4, does not.
-TEST(EmsmWeights, BelowOneQuarterAreKLOnEveryNetwork) {
-  for (const char* name : {"emsm", "emsm_centred", "emsm_random"})
-    for (double nu : {-0.9, -0.3, 0.1}) EXPECT_FALSE(exact_volumes(test::model(name), {1, nu, 1}));
-  const Mesh mesh = block_mesh({2, 1, 1}, {6, 3, 3});
-  const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, Gravity{{0, 0, -1}}};
-  const BoundaryConditions bc = transfer(loads, mesh, density, Kinematics::linear);
-  for (double nu : {-0.9, -0.3, 0.2}) EXPECT_TRUE(solve_linear(build_model(test::model("emsm"), mesh, {1e5, nu, density}), bc).ok);
-  EXPECT_FALSE(solve_linear(build_model(emsm(Dispersion::symmetric, true), mesh, {1e5, -0.3, density}), bc).ok);
+// A negative energy of exact volumes outweighs the springs where surface nodes lack some; k L, the default there, does not.
+TEST(EmsmWeights, BelowOneQuarterAreKLWhereExactVolumesAreUnstable) {
+  const IsotropicMaterial m{1e4, -0.5, density};
+  ModelParameters centred = test::model("emsm_centred");
+  EXPECT_FALSE(exact_volumes(centred, m));
+  EXPECT_FALSE(exact_volumes(test::model("emsm_random"), m));
+  EXPECT_GT(block_stability(centred, m, 0.1).smallest_eigenvalue, 0.01);
+  EXPECT_GT(block_stability(test::model("emsm"), m, 0.1).smallest_eigenvalue, 0.01);
+  centred.exact_volumes = true;
+  EXPECT_LT(block_stability(centred, m, 0.1).smallest_eigenvalue, -0.01);
+}
+
+// The damping that stops flutter is that of the eigenvalues; an energy needs none.
+TEST(BlockStability, TellsWhoFlutters) {
+  const IsotropicMaterial m{1e4, 0.49, density};
+  EXPECT_EQ(block_stability(emsm(Dispersion::symmetric), m, 0.1).flutter_damping, 0);
+  EXPECT_LT(block_stability(emsm(Dispersion::symmetric), m, 0.1).asymmetry, 1e-14);
+  EXPECT_NEAR(block_stability(emsm(Dispersion::published), m, 0.1).flutter_damping, 1.1, 0.05);
+  EXPECT_GT(block_stability(emsm(Dispersion::published), m, 0.1).asymmetry, 0.1);
 }
 
 TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
@@ -166,11 +173,10 @@ TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
         options.rest_tolerance = 1e-9;
         const DynamicsResult run = run_dynamics(built.model, density, path_to(1), options);
         ASSERT_TRUE(run.state.ok) << name << " nu = " << nu << ": " << run.state.message;
-        std::printf("%s nu %g form %d: %d iterations %s, dynamics %.1e\n", name, nu, (int)form, newton.iterations, newton.solver.c_str(), (run.state.displacement - newton.displacement).norm() / newton.displacement.norm());
         EXPECT_LE((run.state.displacement - newton.displacement).norm(), 1e-6 * newton.displacement.norm());
-        const Equilibrium small = solve_finite(built.model, path_to(1e-5)), linear = solve_linear(built.model, path_to(1e-5)(1));
+        const Equilibrium small = solve_finite(built.model, path_to(1e-4)), linear = solve_linear(built.model, path_to(1e-4)(1));
         ASSERT_TRUE(small.ok && linear.ok);
-        EXPECT_LE((small.displacement - linear.displacement).norm(), 1e-4 * linear.displacement.norm());
+        EXPECT_LE((small.displacement - linear.displacement).norm(), 1e-3 * linear.displacement.norm());
       }
 }
 
