@@ -39,10 +39,10 @@ const char* name_of(Dispersion form) {
   return "";
 }
 
-/// A body that shows the row's springs and time step: one cube, a sheet, or a random network of some 200 nodes.
-Mesh sample_mesh(Topology topology, double l) {
-  const int n = topology == Topology::cells ? 1 : topology == Topology::hexagonal ? 6 : 5;
-  const int layers = topology == Topology::hexagonal ? 1 : n;
+/// A body that shows the row's time step: one cube where one bounds them all, else a block, or a sheet.
+Mesh sample_mesh(const ModelRow& row, double l) {
+  const int n = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion ? 1 : 5;
+  const int layers = row.topology == Topology::hexagonal ? 1 : n;
   return block_mesh(l * Vec3(n, n, layers), {n, n, layers});
 }
 
@@ -121,7 +121,7 @@ int MaterialCommand::run() const {
   if (weights_) choice.options["weights"] = *weights_;
   const ModelParameters p = resolve(choice);
   const double l = cell_size_;
-  const MassSpringModel model = build_model(p, sample_mesh(p.row.topology, l), m);
+  const MassSpringModel model = build_model(p, sample_mesh(p.row, l), m);
   const bool lattice = p.row.topology == Topology::cells;
   const std::array<double, 3> k = lattice_constants(model);
   const double time_step = safe_time_step(model, m.density);
@@ -151,7 +151,8 @@ int MaterialCommand::run() const {
   const auto strain = [](double limit) { return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %"); };
   fmt::print("material   E = {:.6g} Pa   nu = {:.6g}   G = {:.6g} Pa   K = {:.6g} Pa   lambda = {:.6g} Pa   rho = {:.6g} kg/m^3\n",
              m.youngs_modulus, m.poisson_ratio, shear_modulus(m), bulk_modulus(m), lame_lambda(m), m.density);
-  fmt::print("model      {}: {}   A = {:g}   cell edge l = {:.6g} m\n\n", p.row.name, p.row.what, p.face_to_cube, l);
+  fmt::print("model      {}: {}{}   cell edge l = {:.6g} m\n\n", p.row.name, p.row.what,
+             p.row.topology == Topology::cells || p.row.topology == Topology::centres ? fmt::format("   A = {:g}", p.face_to_cube) : "", l);
   if (lattice) {
     fmt::print("springs inside the lattice (a free edge has 1/4, a surface edge or face diagonal 1/2 of it)\n");
     fmt::print("  k_e  cell edge       {:>14.6g} N/m   rest length {:.6g} m\n", k[0], l);
@@ -159,10 +160,12 @@ int MaterialCommand::run() const {
     fmt::print("  k_c  cube diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[2], l * std::sqrt(3.0));
   }
   print(facts, p, m);
-  fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", correction, p.has(Extension::volume_correction) ? "" : "    (this model has none)");
-  fmt::print("mass per cell corner   {:>14.6g} kg\n", m.density * l * l * l / 8);
+  if (lattice) {
+    fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", correction, p.has(Extension::volume_correction) ? "" : "    (this model has none)");
+    fmt::print("mass per cell corner   {:>14.6g} kg\n", m.density * l * l * l / 8);
+  }
   fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", time_step,
-             lattice ? "one cell" : "the sample; safe_time_step() knows each network's");
+             has_limits ? "any mesh of these cells" : "a block of 5 cells; safe_time_step() knows each network's");
   if (has_limits)
     fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n", strain(limits.bounded_energy), strain(limits.paper_energy));
   fmt::print("\nmeasured back from {}\n", lattice ? "a block of 4 x 4 x 4 cells" : p.row.topology == Topology::hexagonal ? "a sheet of 4 rows" : "an endless sample");
