@@ -180,6 +180,20 @@ TEST(EmsmDynamics, LaggedDispersionGrowsBelowItsDampingAndNotAbove) {
   EXPECT_LT(growth_of_lagged_motion(negative, safe_time_step(negative.model(), density, true), 0, 3000), 1.5);
 }
 
+// On the way to rest the lag shows: a step's delay of J.
+TEST(EmsmDynamics, LaggedDispersionIsNotThatOfTheStep) {
+  const Cantilever c("emsm", 0.4, Dispersion::symmetric, 1);
+  DynamicsOptions options;
+  options.time_step = 0.5 * safe_time_step(c.model(), density, true);
+  options.damping = 1.01 * lagged_damping(c.model(), density, *options.time_step);
+  options.duration = 40 * *options.time_step;
+  const NodalVectors at_once = run_dynamics(c.model(), density, c.path(), options).state.displacement;
+  options.lagged = true;
+  const NodalVectors late = run_dynamics(c.model(), density, c.path(), options).state.displacement;
+  EXPECT_GT((late - at_once).norm(), 1e-4 * at_once.norm());
+  EXPECT_LT((late - at_once).norm(), 0.5 * at_once.norm());
+}
+
 TEST(EmsmDynamics, LaggedDispersionIsRefusedWithoutItsDamping) {
   const Cantilever c("emsm", 0.4);
   DynamicsOptions options;
