@@ -25,6 +25,7 @@ class MaterialCommand {
   double cell_size_ = 0.1;
   ModelChoice choice_{"hybmss", {}, "hybmss", {}};
   std::optional<double> face_to_cube_;
+  std::optional<std::string> dispersion_, weights_;
   bool json_ = false;
 };
 

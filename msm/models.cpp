@@ -115,7 +115,8 @@ AngularSprings angular(const Network& network, const IsotropicMaterial& material
 const std::vector<ModelRow>& model_table() { return table; }
 
 bool exact_volumes(const ModelParameters& p, const IsotropicMaterial& material) {
-  return p.exact_volumes.value_or(p.row.topology != random || material.poisson_ratio >= 0.25);
+  const bool by_volume = p.row.topology != Topology::random && p.row.topology != Topology::centres;
+  return p.exact_volumes.value_or(by_volume || material.poisson_ratio >= 0.25);
 }
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {

@@ -121,6 +121,29 @@ std::vector<double> MomentumDispersion::tensions(const Network& network, const E
   return T;
 }
 
+std::vector<double> MomentumDispersion::stiffness_bound(const Network& network, bool of_size) const {
+  const Coefficients c = coefficients(*this, network);
+  Eigen::VectorXd in = Eigen::VectorXd::Zero(network.nodes()), out = in, product = in;  // |a|^2, |c|^2, a . c
+  for (std::size_t s = 0; s < c.in.size(); ++s) {
+    const Spring& spring = network.springs[s];
+    for (int end = 0; end < 2; ++end) {
+      const int n = sink(*this, network, end == 0 ? spring.i : spring.j);
+      in[n] += c.in[s][end] * c.in[s][end] / spring.stiffness;
+      out[n] += c.out[s][end] * c.out[s][end] / spring.stiffness;
+      product[n] += c.in[s][end] * c.out[s][end] / spring.stiffness;
+    }
+  }
+  Eigen::VectorXd R = in.cwiseProduct(out).cwiseSqrt();
+  if (!of_size)
+    for (Eigen::Index n = 0; n < R.size(); ++n) R[n] = (product[n] > -(1 - 1e-12) * R[n]) ? (R[n] + product[n]) / 2 : 0;
+  std::vector<double> k(c.in.size());
+  for (std::size_t s = 0; s < k.size(); ++s) {
+    const Spring& spring = network.springs[s];
+    k[s] = spring.stiffness * (R[sink(*this, network, spring.i)] + R[sink(*this, network, spring.j)]);
+  }
+  return k;
+}
+
 void MomentumDispersion::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   const Coefficients c = coefficients(*this, network);
   const Eigen::VectorXd J = inflow_of(*this, c, network, x);

@@ -41,6 +41,11 @@ struct MomentumDispersion {
   void add_forces(const Network& network, const NodalVectors& x, const Eigen::VectorXd& J, NodalVectors& f) const;
   /// The tension that given inflows add to each spring [N].
   std::vector<double> tensions(const Network& network, const Eigen::VectorXd& J) const;
+
+  /// Per spring k (R_i + R_j) [N/m], so that v . K v <= sum_s k (R_i + R_j) (n . dv)^2 for every motion v, K the stiffness
+  /// at rest.  By Cauchy and Schwarz over the springs of a node R_n = (|a| |c| + a . c) / 2, a . c = sum a c / k: q of the
+  /// symmetric form with w = k L, or 0 if q is negative.  `of_size`: |v . K v|, R_n = |a| |c|.
+  std::vector<double> stiffness_bound(const Network& network, bool of_size) const;
 };
 
 /// q = Q / 2 of Kot & Nagahashi (2015), eqs. (9), (36), for a Poisson's ratio in d dimensions:

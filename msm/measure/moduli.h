@@ -1,4 +1,4 @@
-// What a lattice really has for moduli, measured on a block.
+// What a model really has for moduli, measured.
 #pragma once
 
 #include "msm/models.h"
@@ -6,13 +6,16 @@
 namespace springproof {
 
 struct MeasuredModuli {
-  double youngs_modulus;  ///< end force / (area * strain) between slipping plates [Pa]
-  double poisson_ratio;   ///< lateral over axial strain in the same test
-  double shear_modulus;   ///< from the energy of an affine shear [Pa]
+  double youngs_modulus;  ///< [Pa]
+  double poisson_ratio;
+  double shear_modulus;   ///< [Pa]
 };
 
-/// Uniaxial test between slipping plates, and an affine shear, on a free block of `cells` cubed cells, linearised.
-/// @throws std::runtime_error if the block has no equilibrium (zero-energy modes).
+/// Lattices whose nodes are the mesh's: uniaxial test between slipping plates (end force / (area * strain), lateral over
+/// axial strain) and an affine shear (from its energy), on a free block of `cells` cubed cells, linearised.  Planar
+/// networks: the same in the plane, as plane strain.  Others: the endless solid, homogenised; random networks on a sample
+/// of 1000 nodes with the seed after theirs: they are calibrated on seed 1.
+/// @throws std::runtime_error if there is no equilibrium (zero-energy modes).
 MeasuredModuli measure_moduli(const ModelParameters& parameters, const IsotropicMaterial& material, int cells = 4);
 
 }  // namespace springproof

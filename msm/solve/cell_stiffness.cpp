@@ -1,8 +1,5 @@
 #include "msm/solve/cell_stiffness.h"
 
-#include <Eigen/Eigenvalues>
-#include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace springproof {
@@ -45,13 +42,6 @@ CellStiffness cell_stiffness(const MassSpringModel& model) {
     if (const auto* correction = std::get_if<VolumeCorrection>(&law)) s.kappa += correction->kappa;
   s.without_volume = s.total - s.kappa / s.volume * s.volume_gradient * s.volume_gradient.transpose();
   return s;
-}
-
-double safe_time_step(const MassSpringModel& model, double density) {
-  const CellStiffness s = cell_stiffness(model);
-  const double corner_mass = density * s.volume / 8;
-  const Eigen::SelfAdjointEigenSolver<CellMatrix> eigen(s.total, Eigen::EigenvaluesOnly);
-  return 2 / std::sqrt(eigen.eigenvalues()[23] / corner_mass);
 }
 
 }  // namespace springproof

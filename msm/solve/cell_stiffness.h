@@ -22,9 +22,4 @@ struct CellStiffness {
 /// @throws std::invalid_argument for a network without cells.
 CellStiffness cell_stiffness(const MassSpringModel& model);
 
-/// Largest time step [s] that is safe for undamped explicit integration (semi-implicit Euler, central differences):
-/// 2 / omega, with omega^2 bounded by the largest eigenvalue of a single cell with corner masses rho V / 8
-/// (Irons and Treharne).  Rigorous for every lattice of such cells.
-double safe_time_step(const MassSpringModel& model, double density);
-
 }  // namespace springproof

@@ -4,24 +4,54 @@
 
 #include <cmath>
 
-#include "msm/solve/cell_stiffness.h"
+#include "msm/solve/time_step.h"
 #include "msm/solve/cost.h"
 
 namespace springproof {
 namespace {
 
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
-  const double bound = safe_time_step(model, density);
+  const double bound = safe_time_step(model, density, options.lagged);
   const double dt = options.time_step.value_or(0.95 * bound);
   if (!(dt > 0) || dt > bound)
     throw InputError(fmt::format(
-        "time_step_s: {:.6g} s is not safe for this model (allowed: 0 < time_step_s <= {:.6g} s, the bound of one cell)",
+        "time_step_s: {:.6g} s is not safe for this model (allowed: 0 < time_step_s <= {:.6g} s, the bound of its springs and cells)",
         dt, bound));
   if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
+  const double least = options.lagged ? lagged_damping(model, density, dt) : 0;
+  if (least > 0 && !(options.damping > least))
+    throw InputError(fmt::format("damping_1_s: {:.6g} 1/s lets lagged dispersion grow (allowed: > {:.6g} 1/s at a step of {:.6g} s)",
+                                 options.damping, least, dt));
   return dt;
 }
 
+/// Internal forces of a model; lagged: with the J that its nodes had at the step before.
+class Forces {
+ public:
+  Forces(const MassSpringModel& model, bool lagged) : model_(model), dispersion_(lagged ? dispersion_of(model) : nullptr) {}
+
+  NodalVectors at(const NodalVectors& x) {
+    if (!dispersion_) return forces(model_, x);
+    NodalVectors f = NodalVectors::Zero(x.rows(), 3);
+    for (const ForceLaw& law : model_.laws)
+      if (!std::holds_alternative<MomentumDispersion>(law)) std::visit([&](const auto& l) { l.add_forces(model_.network, x, f); }, law);
+    const Eigen::VectorXd J = dispersion_->inflow(model_.network, x);
+    dispersion_->add_forces(model_.network, x, J_.size() > 0 ? J_ : J, f);
+    J_ = J;
+    return f;
+  }
+
+ private:
+  const MassSpringModel& model_;
+  const MomentumDispersion* dispersion_;  ///< nullptr: nothing lags
+  Eigen::VectorXd J_;
+};
+
 }  // namespace
+
+double lagged_damping(const MassSpringModel& model, double density, double time_step) {
+  return time_step * dispersion_frequency_squared(model, density);
+}
 
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options) {
@@ -35,6 +65,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   const long last = static_cast<long>(std::ceil(options.duration / dt));
   Equilibrium& state = result.state;
   bool ramping = options.ramp > 0;
+  Forces internal(model, options.lagged);
   for (Eigen::Index i = 0; i < x.size(); ++i)
     if (bc.fixed[i]) x.data()[i] += bc.prescribed.data()[i];
   for (; result.steps < last; ++result.steps) {
@@ -44,7 +75,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       bc = load_path(factor);
       ramping = factor < 1;
     }
-    f = forces(model, x);
+    f = internal.at(x);
     double unbalanced = 0, support = 0;
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       const double force = f.data()[i] + bc.external.data()[i];
@@ -58,6 +89,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       speed = (speed + dt * force * inverse_mass[i / 3]) / (1 + dt * options.damping);
       x.data()[i] += dt * speed;
     }
+    if (options.after_step) options.after_step(result.time + dt, x, v);
     const double scale = std::max(std::sqrt(support), bc.external.norm());
     state.residual = scale > 0 ? std::sqrt(unbalanced) / scale : 0;
     if (!std::isfinite(state.residual)) {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "msm/measure/validity.h"
-#include "msm/solve/cell_stiffness.h"
+#include "msm/solve/time_step.h"
 #include "msm/solve/dynamics.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"

@@ -1,0 +1,184 @@
+// eMSM: exact where it should be, solved in few iterations at size, and under large displacements.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "msm/calibrate.h"
+#include "msm/measure/bulk_calibration.h"
+#include "msm/measure/moduli.h"
+#include "msm/measure/stability.h"
+#include "msm/solve/dynamics.h"
+#include "msm/solve/equilibrium.h"
+#include "support/zoo.h"
+
+namespace springproof {
+namespace {
+
+constexpr double density = 1000;
+
+ModelParameters emsm(Dispersion form, std::optional<bool> exact = {}) {
+  ModelParameters p = test::model("emsm");
+  p.dispersion = form;
+  p.exact_volumes = exact;
+  return p;
+}
+
+TEST(EmsmModuli, OfALatticeAreExactInEveryFormButThePublished) {
+  for (double nu : {-0.9, -0.5, 0.0, 0.4, 0.49, 0.499})
+    for (int cells : {2, 4, 6}) {
+      const IsotropicMaterial m{1e4, nu, density};
+      std::vector<ModelParameters> exact = {emsm(Dispersion::share_weighted), emsm(Dispersion::symmetric, false)};
+      if (nu >= 0.25) exact.push_back(emsm(Dispersion::symmetric, true));  // unstable below on small blocks
+      for (const ModelParameters& p : exact) {
+        const MeasuredModuli found = measure_moduli(p, m, cells);
+        EXPECT_NEAR(found.poisson_ratio, nu, 1e-8) << "form " << static_cast<int>(p.dispersion) << " cells " << cells;
+        EXPECT_NEAR(found.youngs_modulus / 1e4, 1, 1e-8) << "form " << static_cast<int>(p.dispersion) << " nu = " << nu;
+      }
+      const MeasuredModuli plain = measure_moduli(emsm(Dispersion::published), m, cells);
+      const double E = plain.youngs_modulus / 1e4;
+      EXPECT_GT(std::abs(plain.poisson_ratio - nu) + std::abs(E - 1), 1e-3) << nu;  // counts halves and quarters as springs
+      EXPECT_GT(E, 0.88);
+      EXPECT_LT(E, 1.08);
+    }
+}
+
+struct Solved {
+  EmbeddedModel built;
+  BoundaryConditions conditions;
+  Equilibrium state;
+};
+
+/// A body of about `n` cubed nodes, clamped below, under gravity.
+Solved under_gravity(const std::string& name, double nu, int n, Dispersion form = Dispersion::symmetric) {
+  ModelParameters p = test::model(name);
+  p.dispersion = form;
+  p.homogenised = false;
+  const Mesh mesh = block_mesh({1, 1, 1}, {n, n, n});
+  Solved s{build_embedded(p, mesh, {1e6, nu, density}), {}, {}};
+  const std::vector<Load> loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, Gravity{{1, 2, -3}}};
+  s.conditions = transfer(loads, mesh, s.built.embedding, s.built.model.network, density, Kinematics::linear);
+  s.state = solve_linear(s.built.model, s.conditions, {LinearSolver::multigrid, 1e-10, 300});
+  return s;
+}
+
+TEST(NetworkMultigrid, IterationsDoNotGrowWithTheNetwork) {
+  for (const char* name : {"emsm_random", "emsm"}) {
+    int coarse = 0;
+    for (int n : {12, 22}) {
+      const Solved s = under_gravity(name, 0.25, n);
+      ASSERT_TRUE(s.state.ok) << s.state.message;
+      if (n == 12) coarse = s.state.iterations;
+      EXPECT_LE(s.state.iterations, n == 12 ? 25 : coarse + 6) << name;
+    }
+  }
+}
+
+/// |forces + loads| on free unknowns, of the forces law itself at the small displacement t u.
+double unbalanced(const Solved& s) {
+  const double t = 1e-7 / s.state.displacement.cwiseAbs().maxCoeff();
+  NodalVectors f = forces(s.built.model, s.built.model.network.X + t * s.state.displacement) + t * s.conditions.external;
+  for (Eigen::Index i = 0; i < f.size(); ++i)
+    if (s.conditions.fixed[i]) f.data()[i] = 0;
+  return f.norm() / (t * s.conditions.external.norm());
+}
+
+TEST(NetworkMultigrid, UnsymmetricFormsTakeFewStepsOverTheSymmetricOne) {
+  for (double nu : {-0.5, 0.4, 0.49})
+    for (const char* name : {"emsm", "emsm_random"}) {
+      ModelParameters p = test::model(name);
+      p.dispersion = Dispersion::published;
+      p.homogenised = false;
+      const Mesh mesh = block_mesh({1, 1, 1}, {8, 8, 8});
+      Solved s{build_embedded(p, mesh, {1e6, nu, density}), {}, {}};
+      const std::vector<Load> loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, Gravity{{1, 2, -3}}};
+      s.conditions = transfer(loads, mesh, s.built.embedding, s.built.model.network, density, Kinematics::linear);
+      s.state = solve_linear(s.built.model, s.conditions, {LinearSolver::cholesky, 1e-10, 300});
+      ASSERT_TRUE(s.state.ok) << s.state.message;
+      EXPECT_LE(s.state.iterations, 25) << name << " nu = " << nu;
+      EXPECT_LE(unbalanced(s), 1e-4) << name << " nu = " << nu;  // of second order in strains of 1e-6
+    }
+}
+
+// An endless sample that the calibration has not seen has the material's moduli; one sample of 1000 nodes varies by 1 %.
+TEST(BulkCalibration, HoldsForOtherSamples) {
+  for (double nu : {-0.5, 0.0, 0.25, 0.4, 0.49}) {
+    const IsotropicMaterial m{1e4, nu, density};
+    const int seeds = 3;
+    double G = 0, ratio = 0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      ModelParameters p = test::model("emsm_random");
+      p.random.seed = static_cast<std::uint64_t>(seed);
+      const MeasuredModuli found = measure_moduli(p, m);
+      EXPECT_NEAR(found.shear_modulus / shear_modulus(m), 1, 0.03) << "nu = " << nu << " seed " << seed;
+      EXPECT_NEAR(found.poisson_ratio, nu, 0.01) << "nu = " << nu << " seed " << seed;
+      G += found.shear_modulus / shear_modulus(m) / seeds;
+      ratio += found.poisson_ratio / seeds;
+    }
+    EXPECT_NEAR(G, 1, 0.02) << "nu = " << nu;
+    EXPECT_NEAR(ratio, nu, 0.006) << "nu = " << nu;
+  }
+}
+
+TEST(BulkCalibration, SaysThatWeightsKLSaturate) {
+  ModelParameters p = test::model("emsm_random");
+  p.exact_volumes = false;
+  try {
+    calibrate_in_bulk(p, {1, 0.499, 1});
+    FAIL() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("saturates"), std::string::npos) << error.what();
+  }
+}
+
+// A negative energy of exact volumes outweighs the springs where surface nodes lack some; k L, the default there, does not.
+TEST(EmsmWeights, BelowOneQuarterAreKLWhereExactVolumesAreUnstable) {
+  const IsotropicMaterial m{1e4, -0.5, density};
+  ModelParameters centred = test::model("emsm_centred");
+  EXPECT_FALSE(exact_volumes(centred, m));
+  EXPECT_FALSE(exact_volumes(test::model("emsm_random"), m));
+  EXPECT_GT(block_stability(centred, m, 0.1).smallest_eigenvalue, 0.01);
+  EXPECT_GT(block_stability(test::model("emsm"), m, 0.1).smallest_eigenvalue, 0.01);
+  centred.exact_volumes = true;
+  EXPECT_LT(block_stability(centred, m, 0.1).smallest_eigenvalue, -0.01);
+}
+
+// The damping that stops flutter is that of the eigenvalues; an energy needs none.
+TEST(BlockStability, TellsWhoFlutters) {
+  const IsotropicMaterial m{1e4, 0.49, density};
+  EXPECT_EQ(block_stability(emsm(Dispersion::symmetric), m, 0.1).flutter_damping, 0);
+  EXPECT_LT(block_stability(emsm(Dispersion::symmetric), m, 0.1).asymmetry, 1e-14);
+  EXPECT_NEAR(block_stability(emsm(Dispersion::published), m, 0.1).flutter_damping, 1.1, 0.05);
+  EXPECT_GT(block_stability(emsm(Dispersion::published), m, 0.1).asymmetry, 0.1);
+}
+
+TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
+  const Mesh mesh = block_mesh({2, 1, 1}, {6, 3, 3});
+  const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"x_max", {-0.1, 0.2, 0.0}}};
+  for (const char* name : {"emsm", "emsm_random"})
+    for (double nu : {-0.3, 0.4})
+      for (Dispersion form : {Dispersion::symmetric, Dispersion::published}) {
+        ModelParameters p = test::model(name);
+        p.dispersion = form;
+        p.homogenised = false;
+        const EmbeddedModel built = build_embedded(p, mesh, {1e5, nu, density});
+        const auto path_to = [&](double size) {
+          return [&, size](double f) { return transfer(loads, mesh, built.embedding, built.model.network, density, Kinematics::finite, size * f); };
+        };
+        const Equilibrium newton = solve_finite(built.model, path_to(1));
+        ASSERT_TRUE(newton.ok) << name << " nu = " << nu << ": " << newton.message;
+        DynamicsOptions options;
+        options.damping = 20;
+        options.ramp = 0.3;
+        options.duration = 200;
+        options.rest_tolerance = 1e-9;
+        const DynamicsResult run = run_dynamics(built.model, density, path_to(1), options);
+        ASSERT_TRUE(run.state.ok) << name << " nu = " << nu << ": " << run.state.message;
+        EXPECT_LE((run.state.displacement - newton.displacement).norm(), 1e-6 * newton.displacement.norm());
+        const Equilibrium small = solve_finite(built.model, path_to(1e-4)), linear = solve_linear(built.model, path_to(1e-4)(1));
+        ASSERT_TRUE(small.ok && linear.ok);
+        EXPECT_LE((small.displacement - linear.displacement).norm(), 1e-3 * linear.displacement.norm());
+      }
+}
+
+}  // namespace
+}  // namespace springproof
