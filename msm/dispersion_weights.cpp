@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "msm/solve/krylov.h"
@@ -100,6 +101,18 @@ struct Conditions {
 
 }  // namespace
 
+namespace {
+
+/// A lattice has springs of three lengths at most.
+bool is_lattice(const Network& network) {
+  std::set<long> lengths;
+  for (const Spring& s : network.springs)
+    if (lengths.insert(std::lround(1e6 * std::log(s.rest_length))).second && lengths.size() > 3) return false;
+  return true;
+}
+
+}  // namespace
+
 std::vector<int> volume_groups(const Network& network) {
   NodalVectors lean = NodalVectors::Zero(network.nodes(), 3);
   Eigen::VectorXd springs = Eigen::VectorXd::Zero(network.nodes());
@@ -168,7 +181,7 @@ DispersionWeights volume_weights(const Network& network, const NodalVectors& vol
   const Eigen::VectorXd missing = target - met;
   if (missing.norm() > 1e-13 * target.norm()) {
     // At a disordered surface some conditions contradict each other; on a lattice or without a surface they do not.
-    const bool consistent = !network.cells.empty() || !network.triangles.empty() || !network.image_of.empty();
+    const bool consistent = is_lattice(network) || !network.image_of.empty();
     KrylovResult k;
     k.residual = 1;
     if (consistent) k = conjugate_gradients(normal, jacobi, missing, 1e-12 * target.norm() / missing.norm(), 500, y);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int sample_nodes = 1331;
 constexpr double wanted = 1e-3;
-constexpr int most_rounds = 30;
+constexpr int most_rounds = 12;
 
 /// A periodic sample with unit affine shear modulus, and the model on it.
 struct SampleNetwork {
