@@ -32,7 +32,11 @@ int list() {
                            "volume_change_magnitude     its absolute value, the papers' e",
                            "volume_change_first_order   integral of div u over V",
                            "reaction                    force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m]",
-                           "probe                       displacement.PROBE.x|y|z|magnitude [m]"})
+                           "probe                       displacement.PROBE.x|y|z|magnitude [m]",
+                           "stress                      stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only",
+                           "moduli                      E and nu of a block stretched along x, as the Kot papers measure them",
+                           "network                     nodes, springs, springs per node, spring lengths [m]",
+                           "line                        strain and stress along [line] against Kelvin's solution"})
     fmt::print("  {}\n", line);
   return 0;
 }
