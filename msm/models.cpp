@@ -115,8 +115,7 @@ AngularSprings angular(const Network& network, const IsotropicMaterial& material
 const std::vector<ModelRow>& model_table() { return table; }
 
 bool exact_volumes(const ModelParameters& p, const IsotropicMaterial& material) {
-  const bool by_volume = p.row.topology != Topology::random && p.row.topology != Topology::centres;
-  return p.exact_volumes.value_or(by_volume || material.poisson_ratio >= 0.25);
+  return p.exact_volumes.value_or(material.poisson_ratio >= 0.25);
 }
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {

@@ -51,7 +51,7 @@ struct ModelParameters {
   VolumeEnergy volume_energy = VolumeEnergy::bounded;
   Dispersion dispersion = Dispersion::symmetric;
   std::optional<bool> exact_volumes;                  ///< dispersion weights: exact nodal volumes (msm/dispersion_weights.h) or w = k L;
-                                                      ///< empty: exact, but below nu = 1/4 k L on random networks and lattices of centres
+                                                      ///< empty: exact from nu = 1/4 up
   bool homogenised = true;                            ///< random networks: calibrated as measured in bulk; false: by eq. (20)
   RandomParameters random{};                          ///< of random networks; its spacing follows from the mesh
   std::optional<double> node_density;                 ///< of random networks [1/m^3]; empty: one node per cube
