@@ -1,6 +1,7 @@
 #include "msm/solve/tangent_solver.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace springproof {
 namespace {
@@ -60,7 +61,14 @@ KrylovResult TangentSolver::iterate(const Tangent& K, bool symmetric, const Eige
   Eigen::VectorXd free = b;
   clear_fixed(free);
   u.setZero(b.size());
-  if (symmetric) return conjugate_gradients(apply, condition, free, tolerance, max_iterations, u);
+  if (symmetric) {
+    KrylovResult result = conjugate_gradients(apply, condition, free, tolerance, max_iterations, u);
+    if (result.converged || result.negative_curvature || at_rest_) return result;
+    // Near nu = 1/2 forces cancel in the product, and no solution in these digits leaves a smaller residual.
+    const double round_off = 64 * std::numeric_limits<double>::epsilon() * K.diagonal().cwiseProduct(u).norm() / free.norm();
+    result.converged = result.residual <= round_off;
+    return result;
+  }
   // A cycle alone leaves the soft motions of a body held at few points to GMRES, which forgets them at a restart.
   const Operator solved = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     direct_ ? precondition(r, z) : void(iterate(companion_K_, true, r, inner_tolerance, max_iterations, z));

@@ -22,7 +22,7 @@ class TangentSolver {
   /// symmetric companion).
   bool take(const NodalVectors& x);
 
-  /// u = K^-1 b on the free unknowns, 0 on the fixed.
+  /// u = K^-1 b on the free unknowns, 0 on the fixed; converged also where the residual is round-off.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) const;
 
   /// y = K x with the tangent taken over last, all unknowns.
