@@ -182,7 +182,7 @@ TEST_F(ReportInBrowser, ShowsTheCase) {
   const std::string dom = open({sample_case()}, "#case-golec_2019-compress");
   expect_no_complaint(dom);
   const std::string body = dom.substr(dom.find("<main>"), dom.find("</main>") - dom.find("<main>"));
-  EXPECT_EQ(count(body, "<canvas"), 3u) << "two figures and the deformed shapes";
+  EXPECT_EQ(count(body, "<canvas"), 4u) << "three figures and the deformed shapes";
   EXPECT_EQ(count(body, "class=\"panel\""), 2u) << "FEM and hybmss";
   EXPECT_NE(body.find("<td class=\"number tint2\">2.0 %<small>ν = 0.4</small>"), std::string::npos)
       << "table of cases";
