@@ -26,7 +26,7 @@ struct Row {
   std::optional<double> reference_uncertainty;
   std::optional<double> error;     ///< value - reference; for measures that are errors, the value itself
   int samples = 1;                 ///< disordered networks behind the value, which is then their mean
-  std::optional<double> spread;    ///< standard deviation over them; empty: one sample
+  std::optional<double> spread = {};  ///< standard deviation over them; empty: one sample
 };
 
 /// One run of one solver.

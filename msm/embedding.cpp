@@ -6,56 +6,40 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
+
+#include "msm/topology/point_cells.h"
 
 namespace springproof {
 namespace {
 
-/// Points sorted into cubic buckets, to find those near a place.
-class Buckets {
- public:
-  Buckets(const NodalVectors& points, double edge) : points_(points), edge_(edge), lower_(points.colwise().minCoeff().transpose()) {
-    const Vec3 extent = points.colwise().maxCoeff().transpose() - lower_;
-    for (int d = 0; d < 3; ++d) size_[d] = static_cast<int>(extent[d] / edge) + 1;
-    begin_.assign(std::size_t(size_[0]) * size_[1] * size_[2] + 1, 0);
-    std::vector<std::size_t> bucket(points.rows());
-    for (int n = 0; n < points.rows(); ++n) ++begin_[(bucket[n] = number(index(points.row(n).transpose()))) + 1];
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    member_.resize(points.rows());
-    std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    for (int n = 0; n < points.rows(); ++n) member_[next[bucket[n]]++] = n;
+/// Nodes by place, to find those near one.
+struct Neighbourhood {
+  const NodalVectors& X;
+  double edge;
+  PointCells cells;
+
+  Neighbourhood(const NodalVectors& nodes, double cell_edge)
+      : X(nodes), edge(cell_edge),
+        cells(nodes.colwise().minCoeff().transpose(),
+              nodes.colwise().maxCoeff().transpose() + Vec3::Constant(1e-9 * cell_edge), cell_edge, false) {
+    for (int n = 0; n < X.rows(); ++n) cells.add(X.row(n).transpose());
   }
 
-  /// Points within `radius` of p, in order of number.
+  /// Nodes within `radius` of p, in order of number.
   std::vector<int> near(const Vec3& p, double radius) const {
-    const auto low = index(p - radius * Vec3::Ones()), high = index(p + radius * Vec3::Ones());
     std::vector<int> found;
-    for (int z = low[2]; z <= high[2]; ++z)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int x = low[0]; x <= high[0]; ++x) {
-          const std::size_t b = number({x, y, z});
-          for (int e = begin_[b]; e < begin_[b + 1]; ++e)
-            if ((points_.row(member_[e]).transpose() - p).norm() <= radius) found.push_back(member_[e]);
-        }
+    cells.any_near(
+        p,
+        [&](int n) {
+          if ((X.row(n).transpose() - p).norm() <= radius) found.push_back(n);
+          return false;
+        },
+        static_cast<int>(radius / edge) + 1);
     std::sort(found.begin(), found.end());
     return found;
   }
-
- private:
-  std::array<int, 3> index(const Vec3& p) const {
-    std::array<int, 3> at;
-    for (int d = 0; d < 3; ++d) at[d] = static_cast<int>(std::clamp((p[d] - lower_[d]) / edge_, 0.0, size_[d] - 1.0));
-    return at;
-  }
-  std::size_t number(const std::array<int, 3>& at) const { return (std::size_t(at[2]) * size_[1] + at[1]) * size_[0] + at[0]; }
-
-  const NodalVectors& points_;
-  double edge_;
-  Vec3 lower_;
-  std::array<int, 3> size_{};
-  std::vector<int> begin_, member_;
 };
 
 /// Moving least squares weights of `nodes` for a field at p: sum = 1, sum weight X = p.  Nothing if the nodes do not span
@@ -90,7 +74,7 @@ double distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 /// Network nodes within `grip` of a patch.
-std::vector<int> held_by(const Patch& patch, const Mesh& mesh, const Network& network, const Buckets& buckets, double grip) {
+std::vector<int> held_by(const Patch& patch, const Mesh& mesh, const Network& network, const Neighbourhood& neighbourhood, double grip) {
   std::vector<char> held(network.nodes(), 0);
   for (const auto& facet : patch.facets) {
     const int corners = facet[3] < 0 ? 3 : 4;
@@ -99,7 +83,7 @@ std::vector<int> held_by(const Patch& patch, const Mesh& mesh, const Network& ne
     for (int i = 0; i < corners; ++i) middle += (x[i] = mesh.nodes.row(facet[i]).transpose()) / corners;
     double radius = 0;
     for (int i = 0; i < corners; ++i) radius = std::max(radius, (x[i] - middle).norm());
-    for (int n : buckets.near(middle, radius + grip)) {
+    for (int n : neighbourhood.near(middle, radius + grip)) {
       const Vec3 p = network.X.row(n).transpose();
       if (distance(p, x[0], x[1], x[2]) <= grip || (corners == 4 && distance(p, x[2], x[3], x[0]) <= grip)) held[n] = 1;
     }
@@ -124,7 +108,7 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip) {
   const Vec3 extent = (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()).transpose();
   const bool flat = extent[2] <= 1e-9 * extent.maxCoeff();
   const double spacing = flat ? std::sqrt(extent[0] * extent[1] / network.nodes()) : std::cbrt(network.volume.sum() / network.nodes());
-  const Buckets buckets(network.X, 1.5 * spacing);
+  const Neighbourhood neighbourhood(network.X, 1.5 * spacing);
   std::vector<Eigen::Triplet<double>> entries;
   for (int m = 0; m < mesh.nodes.rows(); ++m) {
     Vec3 p = mesh.nodes.row(m).transpose();
@@ -133,7 +117,7 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip) {
     std::vector<int> nodes;
     for (double radius = 1.6 * spacing; !weight; radius *= 1.2) {
       if (radius > 100 * spacing + extent.norm()) throw std::invalid_argument("the network's nodes span no volume");
-      nodes = buckets.near(p, radius);
+      nodes = neighbourhood.near(p, radius);
       weight = least_squares(network.X, nodes, p, radius, flat);
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) entries.emplace_back(m, nodes[i], (*weight)[static_cast<Eigen::Index>(i)]);
@@ -142,7 +126,7 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip) {
   e.weights.resize(mesh.nodes.rows(), network.nodes());
   e.weights.setFromTriplets(entries.begin(), entries.end());
   const double slack = grip + 1e-9 * extent.maxCoeff();
-  for (const Patch& p : mesh.patches) e.held[p.name] = held_by(p, mesh, network, buckets, slack);
+  for (const Patch& p : mesh.patches) e.held[p.name] = held_by(p, mesh, network, neighbourhood, slack);
   return e;
 }
 
