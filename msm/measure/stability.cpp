@@ -59,7 +59,8 @@ BlockStability block_stability(const ModelParameters& parameters, const Isotropi
 
 std::string stable_range(const ModelParameters& p, const IsotropicMaterial& material) {
   if (p.has(Extension::volume_correction)) return "-1 < nu < 1/2: every cell is positive (at A = 0: but for zero-energy modes)";
-  if (!p.has(Extension::momentum_dispersion)) return "always: springs alone are never negative";
+  if (p.has(Extension::angular_springs)) return "-1 < nu_2D < 1 in its plane: a triangle strains affinely, K > 0 and G > 0 suffice";
+  if (!p.has(Extension::momentum_dispersion)) return "never negative: springs alone are a sum of squares";
   if (p.dispersion == Dispersion::symmetric && !exact_volumes(p, material))
     return "-1 < nu < 1/2 on every network: J^2 <= sum k L^2 sum k dL^2 at each node (Cauchy-Schwarz)";
   if (p.dispersion == Dispersion::symmetric)
