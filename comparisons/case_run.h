@@ -19,6 +19,8 @@ struct PreparedCase {
   Experiment experiment;
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
   std::vector<std::shared_ptr<const Region>> regions;  ///< beside them: the true body where cubes stand for it, else empty
+  std::vector<std::shared_ptr<const Mesh>> tetrahedra;  ///< of a body of voxels: three meshes, coarse to fine (the last is the true body)
+  std::vector<std::string> notes;                   ///< what was mended or left out of the body
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids
   std::set<std::string> sharing;                    ///< patches whose separate forces are a convention
@@ -35,6 +37,7 @@ struct Part {
   std::vector<ReferenceRecord> references;
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
+  std::vector<ErrorSplit> splits;
 };
 
 /// Runs everything for experiment.materials[material]; writes one VTU per run into `vtu_folder` (empty: none).

@@ -25,7 +25,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, poisson_ratio, measure, unit
                                    uncertainty, note, element)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Picture, model, poisson_ratio, cells, rest, displacement, difference, quads)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LineRecord, model, poisson_ratio, cells, first, last, distance, strain, stress, exact_strain, exact_stress)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorSplit, model, poisson_ratio, cells, voxel_edge, measure, unit, total, model_error, discretisation_error,
+                                   geometry_error, voxel_uncertainty, body_uncertainty)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, splits)
 
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part) {
   const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor({{"stamp", stamp}, {"part", part}});

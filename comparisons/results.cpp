@@ -238,7 +238,7 @@ Json json_of(const Experiment& e) {
           {"cite", e.cite},
           {"what", e.what},
           {"kinematics", e.kinematics},
-          {"body", {{"geo", e.body.geo}, {"size", vector(e.body.size)}, {"cells", e.body.cells}, {"voxels", e.body.voxels}}},
+          {"body", {{"geo", e.body.geo}, {"size", vector(e.body.size)}, {"cells", e.body.cells}, {"voxels", e.body.is_voxels()}}},
           {"materials", list(e.materials)},
           {"poisson_ratios", poisson_ratios},
           {"loads", loads},
@@ -251,6 +251,7 @@ Json json_of(const Experiment& e) {
            {{"cells", e.reference.cells},
             {"elements", e.reference.elements},
             {"grading", e.reference.grading},
+            {"edge", e.reference.edge},
             {"smooth", e.reference.smooth}}},
           {"exact", e.exact},
           {"text", e.text}};

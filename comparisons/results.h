@@ -92,6 +92,23 @@ struct PublishedRow {
   std::string remark;
 };
 
+/// Where a model's difference from the body-fitted reference comes from, on a body of voxels.  Of a scalar measure the three
+/// parts add up to the total; of displacement_error each is the norm of its own field, over the reference's norm.
+struct ErrorSplit {
+  std::string model;
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  double voxel_edge = 0;           ///< [m]
+  std::string measure;
+  std::string unit;
+  double total = 0;                ///< model - body-fitted limit
+  double model_error = 0;          ///< model - eight-node elements on the same voxels
+  double discretisation_error = 0; ///< those - the limit of refined elements on the same voxels
+  double geometry_error = 0;       ///< that limit - body-fitted limit
+  double voxel_uncertainty = 0;    ///< of the limit on the voxels
+  double body_uncertainty = 0;     ///< of the body-fitted limit
+};
+
 /// The deformed surface of one run, for the report's 3D view.
 struct Picture {
   std::string model;               ///< "fem" is the reference sampled at the same nodes
@@ -127,6 +144,7 @@ struct CaseResult {
   std::vector<PublishedRow> published;
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
+  std::vector<ErrorSplit> splits;
 };
 
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".

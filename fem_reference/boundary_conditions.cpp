@@ -126,28 +126,54 @@ PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Bod
   return geometry;
 }
 
-// `traction` is called with the outward normal.
-void add_traction(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
-                  const std::function<Vec3(const Vec3&)>& traction, DofVector& load) {
-  for_each_face(dof_handler, body, patch, [&](const auto& cell, const auto& values) {
-    const auto at = [&](unsigned int q) {
-      const dealii::Tensor<1, 3> n = values.normal_vector(q);
-      return traction(Vec3(n[0], n[1], n[2]));
-    };
-    add_integral(values, cell, at, load);
-  });
-}
-
-void add_body_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, unsigned int quadrature_points,
-                    const std::function<Vec3(const Vec3&)>& f, DofVector& load) {
+// Calls visit(cell, values) on every cell that belongs to this process.
+template <typename Visit>
+void for_each_cell(const dealii::DoFHandler<3>& dof_handler, const Body3& body, unsigned int quadrature_points,
+                   const Visit& visit) {
   dealii::FEValues<3> values(
       *body.mapping, dof_handler.get_fe(), cell_quadrature(body, quadrature_points),
       dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
   for (const auto& cell : dof_handler.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
     values.reinit(cell);
-    add_integral(values, cell, [&](unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
+    visit(cell, values);
   }
+}
+
+// Adds force(values, q), per area or volume, over a region: region(visit) calls visit(cell, values).
+template <typename Region, typename Force>
+void add_force(const Region& region, const Force& force, DofVector& load) {
+  region([&](const auto& cell, const auto& values) {
+    add_integral(values, cell, [&](unsigned int q) { return force(values, q); }, load);
+  });
+}
+
+// Besides `force`, which is added elsewhere, the rigid field that together with it has the wrench.
+template <typename Region, typename Force>
+void complete(const Region& region, const Force& force, const std::optional<Wrench>& wrench, MPI_Comm comm, DofVector& load) {
+  if (!wrench) return;
+  RegionMoments moments;
+  Wrench missing = *wrench;
+  region([&](const auto&, const auto& values) {
+    for (const unsigned int q : values.quadrature_point_indices()) {
+      const Vec3 X = vec(values.quadrature_point(q)), f = values.JxW(q) * force(values, q);
+      moments.add(values.JxW(q), X);
+      missing.force -= f;
+      missing.moment -= (X - wrench->about).cross(f);
+    }
+  });
+  // The wrench counts once, not once per process.
+  missing.force -= wrench->force;
+  missing.moment -= wrench->moment;
+  moments.measure = dealii::Utilities::MPI::sum(moments.measure, comm);
+  sum_over_processes(moments.first, comm);
+  sum_over_processes(moments.second, comm);
+  sum_over_processes(missing.force, comm);
+  sum_over_processes(missing.moment, comm);
+  missing.force += wrench->force;
+  missing.moment += wrench->moment;
+  const RigidField field = rigid_field(moments, missing);
+  add_force(region, [&](const auto& values, unsigned int q) { return field.at(vec(values.quadrature_point(q))); }, load);
 }
 
 void add_point_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const PointForce& point,
@@ -260,27 +286,44 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
                       const std::function<Vec3(const Vec3&)>& body_force) {
   DofVector load = zero_vector(dof_handler);
   const unsigned int points = dof_handler.get_fe().degree + 1;
+  const MPI_Comm comm = dof_handler.get_communicator();
+  const auto over_patch = [&](const std::string& patch) {
+    return [&](const auto& visit) { for_each_face(dof_handler, body, patch, visit); };
+  };
+  const auto over_body = [&](unsigned int n) {
+    return [&, n](const auto& visit) { for_each_cell(dof_handler, body, n, visit); };
+  };
+  const auto add = [&](const auto& region, const auto& force, const std::optional<Wrench>& wrench) {
+    add_force(region, force, load);
+    complete(region, force, wrench, comm, load);
+  };
+  const auto add_field = [&](const std::function<Vec3(const Vec3&)>& f) {
+    add_force(over_body(std::min(points + 2, 4u)),
+              [&](const auto& values, unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
+  };
   for (const Load& l : loads) {
     if (const auto* traction = std::get_if<Traction>(&l))
-      add_traction(dof_handler, body, traction->on, [&](const Vec3&) { return traction->traction; }, load);
+      add(over_patch(traction->on), [&](const auto&, unsigned int) { return traction->traction; }, traction->wrench);
     if (const auto* pressure = std::get_if<Pressure>(&l))
-      add_traction(dof_handler, body, pressure->on, [&](const Vec3& n) -> Vec3 { return -pressure->pressure * n; }, load);
+      add(over_patch(pressure->on),
+          [&](const auto& values, unsigned int q) -> Vec3 {
+            const dealii::Tensor<1, 3> n = values.normal_vector(q);
+            return -pressure->pressure * Vec3(n[0], n[1], n[2]);
+          },
+          pressure->wrench);
     if (const auto* total = std::get_if<PatchForce>(&l)) {
       const Vec3 traction = total->force / patch_geometry(dof_handler, body, total->on).area;
-      add_traction(dof_handler, body, total->on, [&](const Vec3&) { return traction; }, load);
+      add(over_patch(total->on), [&](const auto&, unsigned int) { return traction; }, total->wrench);
     }
     if (const auto* gravity = std::get_if<Gravity>(&l)) {
       const Vec3 weight = material.density * gravity->acceleration;
-      add_body_force(
-          dof_handler, body, points, [&](const Vec3&) { return weight; }, load);
+      add(over_body(points), [&](const auto&, unsigned int) { return weight; }, gravity->wrench);
     }
     if (const auto* field = std::get_if<FieldBodyForce>(&l))
-      add_body_force(
-          dof_handler, body, std::min(points + 2, 4u),
-          [&](const Vec3& X) { return exact_body_force(field->field, X, material); }, load);
+      add_field([&](const Vec3& X) { return exact_body_force(field->field, X, material); });
     if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, body, *point, load);
   }
-  if (body_force) add_body_force(dof_handler, body, std::min(points + 2, 4u), body_force, load);
+  if (body_force) add_field(body_force);
   load.compress(dealii::VectorOperation::add);
   return load;
 }

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "meshes/mesh_json.h"
+
 namespace springproof::fem {
 namespace {
 
@@ -25,11 +27,18 @@ Vec3 to_vec(const json& j) {
 }
 
 json grid(const Discretisation& g) {
-  return {{"cells", g.cells}, {"element", g.element}, {"grading", g.grading}};
+  return {{"cells", g.cells}, {"element", g.element}, {"grading", g.grading}, {"mesh", g.mesh}, {"refinements", g.refinements}};
 }
 
 Discretisation to_grid(const json& j) {
-  return {j.at("cells"), j.at("element"), j.at("grading")};
+  return {j.at("cells"), j.at("element"), j.at("grading"), j.at("mesh"), j.at("refinements")};
+}
+
+// Case files do not say it: it is the body's, known once the body is meshed.
+json wrench(const Load& load) {
+  const auto* w = wrench_of(load);
+  if (!w || !*w) return nullptr;
+  return {vec((*w)->force), vec((*w)->moment), vec((*w)->about)};
 }
 
 json solution(const Solution& s) {
@@ -80,8 +89,10 @@ Solution to_solution(const json& j) {
 }  // namespace
 
 json to_json(const Request& request) {
-  json grids = json::array();
+  json grids = json::array(), meshes = json::array(), wrenches = json::array();
   for (const Discretisation& g : request.grids) grids.push_back(grid(g));
+  for (const auto& mesh : request.meshes) meshes.push_back(to_json(*mesh));
+  for (const Load& load : request.experiment.loads) wrenches.push_back(wrench(load));
   return {{"experiment", to_toml(request.experiment)},
           {"file", request.experiment.file.string()},
           {"youngs_modulus", request.material.youngs_modulus},
@@ -90,7 +101,9 @@ json to_json(const Request& request) {
           {"grids", grids},
           {"points", rows(request.points)},
           {"stress_points", rows(request.stress_points)},
-          {"tolerance", request.tolerance}};
+          {"tolerance", request.tolerance},
+          {"meshes", meshes},
+          {"wrenches", wrenches}};
 }
 
 Request request_from_json(const json& j) {
@@ -101,6 +114,10 @@ Request request_from_json(const json& j) {
   request.points = to_rows(j.at("points"));
   request.stress_points = to_rows(j.at("stress_points"));
   request.tolerance = j.at("tolerance");
+  for (const json& mesh : j.at("meshes")) request.meshes.push_back(std::make_shared<Mesh>(mesh_from_json(mesh)));
+  for (std::size_t l = 0; l < request.experiment.loads.size(); ++l)
+    if (const json& w = j.at("wrenches").at(l); !w.is_null())
+      *wrench_of(request.experiment.loads[l]) = Wrench{to_vec(w.at(0)), to_vec(w.at(1)), to_vec(w.at(2))};
   return request;
 }
 

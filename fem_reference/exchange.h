@@ -1,5 +1,4 @@
-// What travels between a caller and `springproof-fem`: a request as JSON, the answer as CBOR of the same
-// shape.
+// What travels between a caller and `springproof-fem`: a request and its answer, as CBOR.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -126,8 +126,12 @@ std::string trimmed(std::string text) {
 std::vector<Solution> solve(const Request& request) {
   const fs::path file = program_or_throw();
   const TemporaryFolder folder;
-  const fs::path question = folder.path / "request.json", answer = folder.path / "answer.cbor";
-  std::ofstream(question) << to_json(request);
+  const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor";
+  {
+    std::ofstream out(question, std::ios::binary);
+    nlohmann::json::to_cbor(to_json(request), out);
+    if (!out.flush()) throw std::runtime_error("cannot write " + question.string());
+  }
   const int status = wait_status_of(file, {"--request", question.string(), "--answer", answer.string()},
                                  folder.path / "output", folder.path / "errors");
   const std::string last_words = trimmed(read_file(folder.path / "errors"));

@@ -4,6 +4,7 @@
 // program that does not need FEM pays nothing for it, and a failing reference cannot take its caller down.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct Discretisation {
   Cells cells;                 ///< nx, ny, nz of the .geo: cells along each side of a block
   std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra): problem/experiment.h
   double grading = 1.0;  ///< draws the cells of a block towards its faces (fem::graded), exponent; 1 = uniform
+  int mesh = -1;         ///< number in Request::meshes that takes the place of the .geo; -1: none
+  int refinements = 0;   ///< of that mesh's hexahedra: each is cut into 8 this many times
 };
 
 /// xx yy zz xy yz xz [Pa], one row per point.
@@ -26,9 +29,11 @@ struct Request {
   Experiment experiment;       ///< geometry, loads, kinematics or law
   IsotropicMaterial material;  ///< the one to solve for
   std::vector<Discretisation> grids;
-  NodalVectors points;      ///< rest positions at which the displacement is wanted, n x 3 [m]
+  NodalVectors points;      ///< rest positions at which the displacement is wanted, n x 3 [m]; of a given mesh also
+                            ///< outside, where the displacement of the nearest place is continued linearly
   NodalVectors stress_points = NodalVectors(0, 3);  ///< rest positions at which the stress is wanted, m x 3 [m]
   double tolerance = 1e-9;                          ///< relative residual of the linear solves
+  std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the experiment's .geo
 };
 
 /// The answer on one grid.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -85,22 +86,47 @@ void for_each(const std::vector<Load>& loads, const Action& act) {
   }
 }
 
+/// Adds to a load's nodal forces the rigid field over the nodes' areas or volumes that gives them the wrench it carries.
+void complete(const std::optional<Wrench>& wrench, double factor, const Mesh& mesh, const Eigen::VectorXd& weights, NodalVectors& force) {
+  if (!wrench) return;
+  RegionMoments region;
+  Wrench missing{factor * wrench->force, factor * wrench->moment, wrench->about};
+  for (Eigen::Index n = 0; n < force.rows(); ++n) {
+    const Vec3 X = mesh.nodes.row(n).transpose(), f = force.row(n).transpose();
+    if (weights[n] > 0) region.add(weights[n], X);
+    missing.force -= f;
+    missing.moment -= (X - wrench->about).cross(f);
+  }
+  const RigidField field = rigid_field(region, missing);
+  for (Eigen::Index n = 0; n < force.rows(); ++n)
+    force.row(n) += weights[n] * field.at(mesh.nodes.row(n).transpose()).transpose();
+}
+
+/// Forces of one load on the mesh's nodes [N].
+NodalVectors forces_of(const Load& load, const Mesh& mesh, double density, double factor) {
+  NodalVectors force = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  if (const auto* t = std::get_if<Traction>(&load))
+    add_uniform(mesh, t->on, factor * t->traction, false, force);
+  else if (const auto* q = std::get_if<Pressure>(&load))
+    add_pressure(mesh, q->on, factor * q->pressure, force);
+  else if (const auto* f = std::get_if<PatchForce>(&load))
+    add_uniform(mesh, f->on, factor * f->force, true, force);
+  else if (const auto* g = std::get_if<Gravity>(&load))
+    force += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
+  else if (const auto* p = std::get_if<PointForce>(&load))
+    add_point_force({p->at, factor * p->force}, mesh, force);
+  if (const auto* wrench = wrench_of(load); wrench && *wrench)
+    complete(*wrench, factor, mesh, patch_of(load) ? nodal_areas(mesh, patch(mesh, *patch_of(load))) : nodal_volumes(mesh), force);
+  return force;
+}
+
 /// Forces on the mesh's nodes [N].
 NodalVectors mesh_forces(const std::vector<Load>& loads, const Mesh& mesh, double density, double factor) {
   NodalVectors external = NodalVectors::Zero(mesh.nodes.rows(), 3);
   for_each(loads, [&](const Load& load, int number) {
-    if (const auto* t = std::get_if<Traction>(&load))
-      add_uniform(mesh, t->on, factor * t->traction, false, external);
-    else if (const auto* q = std::get_if<Pressure>(&load))
-      add_pressure(mesh, q->on, factor * q->pressure, external);
-    else if (const auto* f = std::get_if<PatchForce>(&load))
-      add_uniform(mesh, f->on, factor * f->force, true, external);
-    else if (const auto* g = std::get_if<Gravity>(&load))
-      external += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
-    else if (const auto* p = std::get_if<PointForce>(&load))
-      add_point_force({p->at, factor * p->force}, mesh, external);
-    else if (std::holds_alternative<FieldBodyForce>(load))
+    if (std::holds_alternative<FieldBodyForce>(load))
       throw InputError(fmt::format("load {}: body_force_of: the mass-spring models take no such load", number + 1));
+    if (!prescribes_displacement(load)) external += forces_of(load, mesh, density, factor);
   });
   return external;
 }

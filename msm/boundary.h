@@ -19,7 +19,8 @@ struct BoundaryConditions {
 };
 
 /// Transfers the loads to the mesh's nodes.  Tractions and pressure by the facets' shape functions, gravity by nodal mass, a point
-/// force by the shape functions of the cell that holds it: resultant and moment are kept.
+/// force by the shape functions of the cell that holds it: resultant and moment are kept.  A load that carries a wrench (of the true
+/// body, of which the mesh is only nearly one) gets that wrench.
 /// @throws InputError: a body force of an exact field, no such patch, a point force outside the body, two loads that prescribe different values at
 ///   one node.
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,

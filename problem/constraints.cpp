@@ -1,7 +1,10 @@
 #include "problem/constraints.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
+#include <stdexcept>
 #include <type_traits>
 
 #include "problem/exact_field.h"
@@ -48,6 +51,18 @@ template <class T>
 constexpr bool prescribes = std::is_same_v<T, PrescribedDisplacement> || std::is_same_v<T, PrescribedAffine> ||
                             std::is_same_v<T, PrescribedRotation> || std::is_same_v<T, PrescribedField>;
 
+template <class OptionalWrench, class AnyLoad>
+OptionalWrench* wrench_in(AnyLoad& load) {
+  return std::visit(
+      [](auto& l) -> OptionalWrench* {
+        if constexpr (requires { l.wrench; })
+          return &l.wrench;
+        else
+          return nullptr;
+      },
+      load);
+}
+
 }  // namespace
 
 const std::string* patch_of(const Load& load) {
@@ -60,6 +75,33 @@ const std::string* patch_of(const Load& load) {
       },
       load);
 }
+
+std::optional<Wrench>* wrench_of(Load& load) { return wrench_in<std::optional<Wrench>>(load); }
+const std::optional<Wrench>* wrench_of(const Load& load) { return wrench_in<const std::optional<Wrench>>(load); }
+
+void RegionMoments::add(double weight, const Vec3& X) {
+  measure += weight;
+  first += weight * X;
+  second += weight * X * X.transpose();
+}
+
+RigidField rigid_field(const RegionMoments& region, const Wrench& wrench) {
+  if (!(region.measure > 0)) throw std::invalid_argument("a load acts on nothing: the patch has no area");
+  RigidField field;
+  field.c = region.first / region.measure;
+  field.a = wrench.force / region.measure;
+  const Eigen::Matrix3d central = region.second - region.measure * field.c * field.c.transpose();
+  const Eigen::Matrix3d inertia = central.trace() * Eigen::Matrix3d::Identity() - central;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(inertia);
+  if (!(eigen.eigenvalues()[0] > 1e-10 * eigen.eigenvalues()[2]))
+    throw std::invalid_argument("a load acts on a line: the patch bears no moment about it");
+  field.b = inertia.inverse() * moved(wrench, field.c).moment;
+  return field;
+}
+
+Vec3 RigidField::at(const Vec3& X) const { return a + b.cross(X - c); }
+
+Wrench moved(const Wrench& w, const Vec3& about) { return {w.force, w.moment + (w.about - about).cross(w.force), about}; }
 
 bool prescribes_displacement(const Load& load) {
   return std::visit([](const auto& l) { return prescribes<std::decay_t<decltype(l)>>; }, load);

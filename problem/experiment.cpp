@@ -28,10 +28,12 @@ constexpr Key document_schema[] = {{"cite", Presence::optional, ""},
                                    {"published", Presence::optional, ""}};
 
 constexpr Key body_schema[] = {
-    {"geo", Presence::required, "the name of a gmsh script, e.g. \"block.geo\""},
-    {"size_m", Presence::required, "[x, y, z], lengths > 0"},
-    {"cells", Presence::required, "[nx, ny, nz] or a list of such, integers from 1 to 1000"},
-    {"voxels", Presence::optional, ""}};
+    {"geo", Presence::required, "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .msh, .step or .brep file"},
+    {"size_m", Presence::optional, ""},
+    {"scale", Presence::optional, ""},
+    {"cells", Presence::optional, ""},
+    {"voxels", Presence::optional, ""},
+    {"voxel_edge_m", Presence::optional, ""}};
 
 constexpr Key material_schema[] = {
     {"youngs_modulus_Pa", Presence::optional, ""}, {"poisson_ratio", Presence::optional, ""},
@@ -45,6 +47,7 @@ constexpr Key probe_schema[] = {{"name", Presence::required, "a name"},
 constexpr Key reference_schema[] = {{"cells", Presence::optional, ""},
                                     {"elements", Presence::optional, ""},
                                     {"grading", Presence::optional, ""},
+                                    {"edge_m", Presence::optional, ""},
                                     {"smooth", Presence::optional, ""}};
 
 /// A modulus of the file and where it goes.
@@ -64,25 +67,59 @@ constexpr ModulusKey modulus_keys[] = {
 const std::vector<std::string> kinematics_names = {"linear", "hencky", "log_cauchy", "neo_hooke",
                                                    "neo_hooke_isochoric", "st_venant_kirchhoff"};
 
+[[noreturn]] void missing(const TomlValue& table, const std::string& key, const std::string& allowed) {
+  refuse({table.node, table.key + "." + key, table.file}, "is missing", allowed);
+}
+
+std::vector<Cells> read_resolutions(const TomlValue& cells) {
+  const auto items = as_list(cells, "[nx, ny, nz] or a list of such, integers from 1 to 1000");
+  if (!items.front().node->is_array()) return {as_cells(cells)};
+  std::vector<Cells> resolutions;
+  for (const TomlValue& item : items) {
+    const Cells resolution = as_cells(item);
+    if (std::find(resolutions.begin(), resolutions.end(), resolution) != resolutions.end())
+      refuse(item, fmt::format("[{}] is named twice", fmt::join(resolution, ", ")), "each resolution once");
+    resolutions.push_back(resolution);
+  }
+  return resolutions;
+}
+
+template <class T>
+std::vector<T> read_each_once(const TomlValue& value, const Range& range) {
+  std::vector<T> numbers;
+  for (const TomlValue& item : one_or_several(value)) {
+    const T number = static_cast<T>(as_number(item, range));
+    if (std::find(numbers.begin(), numbers.end(), number) != numbers.end()) refuse(item, fmt::format("{} is named twice", number), "each once");
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
 Body read_body(const TomlValue& value) {
   const TomlTable table(value, body_schema);
   Body body;
   body.where = location_of(table.at("geo"));
   body.geo = as_text(table.at("geo"));
-  body.size = as_vector(table.at("size_m"), positive_number);
-  if (const auto voxels = table.find("voxels")) body.voxels = as_flag(*voxels);
-  const TomlValue cells = table.at("cells");
-  const auto items = as_list(cells, "[nx, ny, nz] or a list of such, integers from 1 to 1000");
-  if (!items.front().node->is_array()) {
-    body.cells = {as_cells(cells)};
-    return body;
+  const bool script = body.is_script();
+  if (const auto size = table.find("size_m")) {
+    if (!script) refuse(*size, "is a parameter of .geo scripts", "scale, to multiply the coordinates of a file");
+    body.size = as_vector(*size, positive_number);
+  } else if (script) {
+    missing(value, "size_m", "[x, y, z], lengths > 0");
   }
-  for (const TomlValue& item : items) {
-    const Cells resolution = as_cells(item);
-    if (std::find(body.cells.begin(), body.cells.end(), resolution) != body.cells.end())
-      refuse(item, fmt::format("[{}] is named twice", fmt::join(resolution, ", ")), "each resolution once");
-    body.cells.push_back(resolution);
+  if (const auto scale = table.find("scale")) {
+    if (script) refuse(*scale, "is for files", "size_m, for .geo scripts");
+    body.scale = as_number(*scale, positive_number);
   }
+  const auto cells = table.find("cells"), voxels = table.find("voxels"), edges = table.find("voxel_edge_m");
+  constexpr const char* fineness = "one of cells = [nx, ny, nz] (bodies of hexahedra), voxels = 5000 (about so many cubes), voxel_edge_m = 0.01; each may be a list";
+  const int said = cells.has_value() + voxels.has_value() + edges.has_value();
+  if (said == 0) missing(value, "cells", fineness);
+  if (said > 1) refuse(value, "says twice how fine the lattices are", fineness);
+  if (cells) body.cells = read_resolutions(*cells);
+  if (voxels) body.voxel_counts = read_each_once<int>(*voxels, {"a number from 1 to 4e6, or a list of such", 1, 4e6, true, true});
+  if (edges) body.voxel_edges = read_each_once<double>(*edges, positive_number);
+  if (cells && !script) refuse(*cells, "is for bodies of hexahedra", "voxels or voxel_edge_m");
   return body;
 }
 
@@ -146,15 +183,22 @@ Section read_section(const TomlValue& value) {
   return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
 }
 
-ReferenceChoice read_reference(const TomlValue& value) {
+ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   const TomlTable table(value, reference_schema);
   ReferenceChoice reference;
+  if (voxels) reference.elements = {"p2"};
+  if (const auto edge = table.find("edge_m")) {
+    if (!voxels) refuse(*edge, "is for bodies of voxels", "cells, for bodies of hexahedra");
+    reference.edge = as_number(*edge, positive_number);
+  }
+  for (const char* key : {"cells", "grading"})
+    if (const auto given = table.find(key); given && voxels) refuse(*given, "is for bodies of hexahedra", "edge_m, for bodies of voxels");
   if (const auto cells = table.find("cells")) reference.cells = as_cells(*cells);
   if (const auto elements = table.find("elements")) {
     reference.elements.clear();
     if (const auto* array = elements->node->as_array(); array && array->empty()) return reference;
     for (const TomlValue& item : as_list(*elements, "a list of elements: q1, q2, p1, p2")) {
-      const std::string element = as_choice(item, element_names());
+      const std::string element = as_choice(item, voxels ? std::vector<std::string>{"p2", "p1"} : element_names());
       if (std::find(reference.elements.begin(), reference.elements.end(), element) != reference.elements.end())
         refuse(item, fmt::format("'{}' is named twice", element), "each element once");
       reference.elements.push_back(element);
@@ -193,9 +237,8 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
     }
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);
-  if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference);
-  if (experiment.body.voxels && !experiment.reference.elements.empty())
-    throw InputError(experiment.body.where, "body.voxels: the finite elements do not take such a body (allowed: with [reference] elements = [])");
+  if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference, experiment.body.is_voxels());
+  else if (experiment.body.is_voxels()) experiment.reference.elements = {"p2"};
   settle_kelvin(experiment);
   read_line(document, experiment);
   read_compare(document, experiment);
@@ -215,6 +258,11 @@ std::string located(const SourceLocation& where, const std::string& message) {
 
 InputError::InputError(const SourceLocation& where, const std::string& message)
     : std::runtime_error(located(where, message)) {}
+
+bool Body::is_script() const {
+  const std::string extension = std::filesystem::path(geo).extension();
+  return extension != ".stl" && extension != ".msh" && extension != ".step" && extension != ".stp" && extension != ".brep";
+}
 
 std::vector<std::string> element_names() { return {"q1", "q2", "p1", "p2"}; }
 

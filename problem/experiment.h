@@ -1,6 +1,7 @@
 // An experiment: body, material, loads, models, measures, published values, tolerances.  Read from TOML.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <map>
@@ -31,12 +32,19 @@ class InputError : public std::runtime_error {
 
 using Cells = std::array<int, 3>;
 
+/// A block is cut into `cells`; any other body into the cubes of a lattice whose centres it holds.
 struct Body {
   std::string geo;                 ///< file name: one of meshes/geo/, or a path relative to the case file
-  Vec3 size = Vec3::Zero();        ///< [m]
-  std::vector<Cells> cells;        ///< resolutions of the mass-spring models, one or more
+  Vec3 size = Vec3::Zero();        ///< [m], parameters of a .geo; of voxels the box around the body, once it is known
+  std::vector<Cells> cells;        ///< resolutions of the mass-spring models, one or more; of voxels those of the box
   SourceLocation where;            ///< of the key `geo`
-  bool voxels = false;             ///< lattices of those cubes of the box [0, size] whose centres lie in the body
+  std::vector<double> voxel_edges = {};  ///< [m]; empty: no voxels, or their counts are given
+  std::vector<int> voxel_counts = {};    ///< about so many cubes; empty: their edges are given
+  double scale = 1;                ///< coordinates of a file are multiplied by it
+
+  bool is_script() const;   ///< a .geo, whose size is a parameter; else a file of a body as it is
+  bool is_voxels() const { return !voxel_edges.empty() || !voxel_counts.empty(); }
+  std::size_t resolutions() const { return std::max({cells.size(), voxel_edges.size(), voxel_counts.size()}); }
 };
 
 /// A model as named in the case file, with its options; what they mean is the model table's business (msm/models.h).
@@ -73,6 +81,7 @@ struct ReferenceChoice {
   Cells cells = {0, 0, 0};          ///< finest of three grids; {0,0,0} = chosen from the body's cells
   std::vector<std::string> elements = {"q2"};   ///< each run on the three grids; the first is the reference; none: the case goes without
   double grading = 1.5;             ///< exponent that draws elements towards the faces of the block; 1 = uniform
+  double edge = 0;                  ///< [m] of the tetrahedra of a body of voxels, finest of three meshes; 0 = chosen
   bool smooth = false;              ///< the exact solution has no singularity: the elements' own order may be trusted
 };
 

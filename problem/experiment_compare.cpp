@@ -165,7 +165,8 @@ std::string read_judged_model(const TomlValue& value, const Experiment& experime
 Cells read_row_cells(const TomlValue& value, const std::string& model, const Experiment& experiment) {
   const Cells cells = as_cells(value);
   const auto& known = experiment.body.cells;
-  if (is_fem(model) || std::find(known.begin(), known.end(), cells) != known.end()) return cells;
+  const bool not_known_yet = experiment.body.is_voxels();
+  if (is_fem(model) || not_known_yet || std::find(known.begin(), known.end(), cells) != known.end()) return cells;
   std::vector<std::string> allowed;
   for (const Cells& c : known) allowed.push_back(fmt::format("[{}]", fmt::join(c, ", ")));
   refuse(value, fmt::format("[{}] is not in the case", fmt::join(cells, ", ")),

@@ -53,11 +53,18 @@ class Writer {
 void write_body(const Body& body, Writer& out) {
   out.heading("[body]");
   out.text("geo", body.geo);
-  out.line("size_m", row(body.size));
+  if (body.is_script())
+    out.line("size_m", row(body.size));
+  else
+    out.line("scale", number(body.scale));
   std::vector<std::string> cells;
   for (const Cells& c : body.cells) cells.push_back(row(c));
-  out.line("cells", fmt::format("[{}]", fmt::join(cells, ", ")));
-  if (body.voxels) out.line("voxels", "true");
+  if (!body.voxel_counts.empty())
+    out.line("voxels", fmt::format("[{}]", fmt::join(body.voxel_counts, ", ")));
+  else if (!body.voxel_edges.empty())
+    out.line("voxel_edge_m", fmt::format("[{}]", fmt::join(body.voxel_edges, ", ")));
+  else
+    out.line("cells", fmt::format("[{}]", fmt::join(cells, ", ")));
 }
 
 void write_materials(const std::vector<IsotropicMaterial>& materials, Writer& out) {
@@ -202,7 +209,8 @@ std::string to_toml(const Experiment& experiment) {
   out.heading("[reference]");
   if (experiment.reference.cells[0] > 0) out.line("cells", row(experiment.reference.cells));
   out.line("elements", list_of(experiment.reference.elements));
-  out.line("grading", number(experiment.reference.grading));
+  if (!experiment.body.is_voxels()) out.line("grading", number(experiment.reference.grading));
+  if (experiment.reference.edge > 0) out.line("edge_m", number(experiment.reference.edge));
   if (experiment.reference.smooth) out.line("smooth", "true");
   for (const Expectation& expect : experiment.expectations) write_expectation(expect, out);
   for (const PublishedValue& printed : experiment.published) write_published(printed, out);

@@ -47,7 +47,7 @@ std::vector<std::string> line_rows(const Experiment& experiment) {
   std::vector<std::string> rows;
   for (const std::string field : {"line.strain", "line.stress"}) {
     for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz", ".all"}) rows.push_back(field + component);
-    if (experiment.body.cells.size() > 1) rows.push_back(field + ".order");
+    if (experiment.body.resolutions() > 1) rows.push_back(field + ".order");
   }
   return rows;
 }

@@ -218,7 +218,10 @@ inline void expect_same(const Experiment& a, const Experiment& b) {
   EXPECT_EQ(a.body.geo, b.body.geo);
   EXPECT_EQ(a.body.size, b.body.size);
   EXPECT_EQ(a.body.cells, b.body.cells);
-  EXPECT_EQ(a.body.voxels, b.body.voxels);
+  EXPECT_EQ(a.body.voxel_edges, b.body.voxel_edges);
+  EXPECT_EQ(a.body.voxel_counts, b.body.voxel_counts);
+  EXPECT_EQ(a.body.scale, b.body.scale);
+  EXPECT_EQ(a.reference.edge, b.reference.edge);
   EXPECT_EQ(a.line.has_value(), b.line.has_value());
   ASSERT_EQ(a.materials.size(), b.materials.size());
   for (std::size_t i = 0; i < a.materials.size(); ++i) {

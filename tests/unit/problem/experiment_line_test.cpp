@@ -11,8 +11,7 @@ namespace {
 const std::string line_case = R"([body]
 geo = "sphere.geo"
 size_m = [2, 2, 2]
-cells = [8, 8, 8]
-voxels = true
+voxel_edge_m = 0.25
 
 [material]
 youngs_modulus_Pa = 100
@@ -58,7 +57,7 @@ std::string message_of(const std::string& text) {
 
 TEST(LineCase, IsRead) {
   const Experiment e = parse_experiment(line_case, "case.toml");
-  EXPECT_TRUE(e.body.voxels);
+  EXPECT_EQ(e.body.voxel_edges, std::vector<double>{0.25});
   ASSERT_TRUE(e.line);
   EXPECT_EQ(e.line->points, 40);
   EXPECT_EQ(e.line->middle, (std::array<int, 2>{7, 30}));
@@ -84,7 +83,7 @@ TEST(LineCase, ReadsBackAsWritten) {
 
 TEST(LineCase, RowsHaveOrdersWhereThereAreSeveralLattices) {
   const Experiment one = parse_experiment(line_case, "case.toml");
-  const Experiment two = parse_experiment(edited("cells = [8, 8, 8]", "cells = [[8, 8, 8], [4, 4, 4]]"), "case.toml");
+  const Experiment two = parse_experiment(edited("voxel_edge_m = 0.25", "cells = [[8, 8, 8], [4, 4, 4]]"), "case.toml");
   EXPECT_EQ(rows_of_measure("line", one).size(), 14u);
   EXPECT_EQ(rows_of_measure("line", two).size(), 16u);
 }
@@ -97,7 +96,7 @@ struct Mistake {
 
 TEST(LineCase, MistakesAreExplained) {
   const Mistake mistakes[] = {
-      {"points = 40", "points = 1", ":22:10: line.points: is 1 (allowed: an integer from 2 to 10000)"},
+      {"points = 40", "points = 1", ":21:10: line.points: is 1 (allowed: an integer from 2 to 10000)"},
       {"points = 40", "points = 4.5", "line.points: is no integer"},
       {"middle = [7, 30]", "middle = [7, 41]", "line.middle: is 41 (allowed: an integer from 7 to 40)"},
       {"middle = [7, 30]", "middle = [0, 30]", "line.middle: is 0"},
@@ -112,8 +111,8 @@ TEST(LineCase, MistakesAreExplained) {
       {"[body]", "kinematics = \"hencky\"\n[body]", "needed: kinematics = \"linear\""},
       {"field = \"kelvin\"", "field = \"kelvn\"", "did you mean 'kelvin'?"},
       {"field = \"kelvin\"", "displacement_m = [0, 0, 0]\n[[load]]\nforce_N = [0, 10, 0]\nat_m = [1, 1, 1]", "is held against Kelvin's solution"},
-      {"elements = []", "elements = [\"q2\"]", "case.toml:2:7: body.voxels: the finite elements do not take such a body"},
-      {"voxels = true", "voxels = 1", "body.voxels"},
+      {"elements = []", "elements = [\"q2\"]", "reference.elements: 'q2' is not known (allowed: p2, p1)"},
+      {"voxel_edge_m = 0.25", "voxel_edge_m = 0", "body.voxel_edge_m"},
   };
   for (const Mistake& m : mistakes) {
     const std::string message = message_of(edited(m.old, m.with));
@@ -123,8 +122,8 @@ TEST(LineCase, MistakesAreExplained) {
 
 TEST(LineCase, KelvinsFieldGoesWithoutFiniteElements) {
   std::string text = edited("elements = []", "elements = [\"q2\"]");
-  text.replace(text.find("voxels = true"), 13, "");
-  EXPECT_NE(message_of(text).find(":11:1: load.field: \"kelvin\" is not known to the finite elements"), std::string::npos) << message_of(text);
+  text.replace(text.find("voxel_edge_m = 0.25"), 19, "cells = [8, 8, 8]");
+  EXPECT_NE(message_of(text).find(":10:1: load.field: \"kelvin\" is not known to the finite elements"), std::string::npos) << message_of(text);
 }
 
 }  // namespace

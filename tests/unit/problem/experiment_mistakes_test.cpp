@@ -61,7 +61,7 @@ const Mistake mistakes[] = {
      small_case,
      "size_m",
      "sizes_m",
-     {":3:1: body.sizes_m", "allowed: geo, size_m, cells", "'size_m'?"}},
+     {":3:1: body.sizes_m", "allowed: geo, size_m, scale, cells", "'size_m'?"}},
     {"UnknownKeyOfALoad",
      small_case,
      "displacement_m",

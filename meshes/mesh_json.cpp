@@ -1,0 +1,76 @@
+#include "meshes/mesh_json.h"
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace springproof {
+namespace {
+
+using nlohmann::json;
+
+json bytes(const void* data, std::size_t size) {
+  const auto* first = static_cast<const std::uint8_t*>(data);
+  return json::binary({first, first + size});
+}
+
+json points(const NodalVectors& x) { return bytes(x.data(), sizeof(double) * x.size()); }
+
+NodalVectors to_points(const json& j) {
+  const auto& binary = j.get_binary();
+  NodalVectors x(static_cast<Eigen::Index>(binary.size() / (3 * sizeof(double))), 3);
+  if (sizeof(double) * x.size() != binary.size()) throw std::runtime_error("a mesh with a cut-off list of points");
+  std::memcpy(x.data(), binary.data(), binary.size());
+  return x;
+}
+
+template <std::size_t n>
+json tuples(const std::vector<std::array<int, n>>& values) {
+  return bytes(values.data(), sizeof(values[0]) * values.size());
+}
+
+template <std::size_t n>
+std::vector<std::array<int, n>> to_tuples(const json& j) {
+  const auto& binary = j.get_binary();
+  std::vector<std::array<int, n>> values(binary.size() / sizeof(std::array<int, n>));
+  if (sizeof(std::array<int, n>) * values.size() != binary.size()) throw std::runtime_error("a mesh with a cut-off list of numbers");
+  std::memcpy(values.data(), binary.data(), binary.size());
+  return values;
+}
+
+json vec(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Vec3 to_vec(const json& j) { return Vec3(j.at(0), j.at(1), j.at(2)); }
+
+}  // namespace
+
+json to_json(const Mesh& mesh) {
+  json patches = json::array();
+  for (const Patch& p : mesh.patches) patches.push_back({{"name", p.name}, {"facets", tuples(p.facets)}});
+  json out = {{"nodes", points(mesh.nodes)},
+              {"hexahedra", tuples(mesh.hexahedra)},
+              {"tetrahedra", tuples(mesh.tetrahedra)},
+              {"patches", patches},
+              {"curved", points(mesh.curved)}};
+  if (mesh.grid)
+    out["grid"] = {{"cells", mesh.grid->cells},
+                   {"origin", vec(mesh.grid->origin)},
+                   {"spacing", vec(mesh.grid->spacing)},
+                   {"cell_index", tuples(mesh.grid->cell_index)}};
+  return out;
+}
+
+Mesh mesh_from_json(const json& j) {
+  Mesh mesh;
+  mesh.nodes = to_points(j.at("nodes"));
+  mesh.hexahedra = to_tuples<8>(j.at("hexahedra"));
+  mesh.tetrahedra = to_tuples<4>(j.at("tetrahedra"));
+  for (const json& p : j.at("patches")) mesh.patches.push_back({p.at("name"), to_tuples<4>(p.at("facets"))});
+  mesh.curved = to_points(j.at("curved"));
+  if (j.contains("grid")) {
+    const json& g = j.at("grid");
+    mesh.grid = Grid{g.at("cells"), to_vec(g.at("origin")), to_vec(g.at("spacing")), to_tuples<3>(g.at("cell_index"))};
+  }
+  return mesh;
+}
+
+}  // namespace springproof
