@@ -17,6 +17,7 @@ constexpr Key document_schema[] = {{"cite", Presence::optional, ""},
                                    {"what", Presence::optional, ""},
                                    {"kinematics", Presence::optional, ""},
                                    {"body", Presence::required, "a table [body] with geo, size_m, cells"},
+                                   {"patch", Presence::optional, ""},
                                    {"material", Presence::required, "a table [material] with two moduli"},
                                    {"load", Presence::required, "at least one [[load]]"},
                                    {"compare", Presence::optional, ""},
@@ -229,6 +230,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   if (const auto name = document.find("kinematics"))
     experiment.kinematics = as_choice(*name, kinematics_names);
   experiment.body = read_body(document.at("body"));
+  experiment.patches = read_patch_rules(document);
   experiment.materials = read_materials(document.at("material"));
   for (const TomlValue& value : document.tables("load"))
     for (const Load& load : read_load(value)) {

@@ -6,29 +6,16 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "problem/constraints.h"
+#include "problem/input_error.h"
 #include "problem/material.h"
+#include "problem/patch_rule.h"
 
 namespace springproof {
-
-/// Where in a case file something stands; line and column count from 1, 0 = unknown.
-struct SourceLocation {
-  std::string file;
-  int line = 0;
-  int column = 0;
-};
-
-/// An input that cannot be used.  what() reads "file:line:column: key: what is wrong, what is allowed".
-class InputError : public std::runtime_error {
- public:
-  InputError(const SourceLocation& where, const std::string& message);
-  explicit InputError(const std::string& message) : std::runtime_error(message) {}
-};
 
 using Cells = std::array<int, 3>;
 
@@ -129,6 +116,7 @@ struct Experiment {
   std::string what;
   std::string kinematics = "linear";   ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"
   Body body;
+  std::vector<PatchRule> patches;  ///< named by rules, besides those that the body brings
   std::vector<IsotropicMaterial> materials;   ///< in the file's order, each Poisson's ratio once
   std::vector<Load> loads;
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty

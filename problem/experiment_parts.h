@@ -9,6 +9,9 @@ namespace springproof {
 /// One [[load]]: as many loads as `on` names patches.
 std::vector<Load> read_load(const TomlValue& value);
 
+/// The [[patch]] tables, in order.
+std::vector<PatchRule> read_patch_rules(const TomlTable& document);
+
 /// [line]; loads, materials and kinematics must have been read.
 void read_line(const TomlTable& document, Experiment& experiment);
 

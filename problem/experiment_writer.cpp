@@ -67,6 +67,18 @@ void write_body(const Body& body, Writer& out) {
     out.line("cells", fmt::format("[{}]", fmt::join(cells, ", ")));
 }
 
+void write_patch_rule(const PatchRule& rule, Writer& out) {
+  out.heading("[[patch]]");
+  out.text("name", rule.name);
+  if (rule.box) out.line("box_m", fmt::format("[{}, {}]", row(rule.box->low), row(rule.box->high)));
+  if (rule.beyond)
+    out.line("beyond", fmt::format("{{ point_m = {}, normal = {} }}", row(rule.beyond->point), row(rule.beyond->normal)));
+  if (rule.facing)
+    out.line("facing", fmt::format("{{ direction = {}, within_deg = {} }}", row(rule.facing->direction), number(rule.facing->within_deg)));
+  if (rule.near)
+    out.line("near", fmt::format("{{ point_m = {}, radius_m = {} }}", row(rule.near->point), number(rule.near->radius)));
+}
+
 void write_materials(const std::vector<IsotropicMaterial>& materials, Writer& out) {
   std::vector<double> E, nu;
   for (const IsotropicMaterial& m : materials) {
@@ -182,6 +194,7 @@ std::string to_toml(const Experiment& experiment) {
   out.text("what", experiment.what);
   out.text("kinematics", experiment.kinematics);
   write_body(experiment.body, out);
+  for (const PatchRule& rule : experiment.patches) write_patch_rule(rule, out);
   write_materials(experiment.materials, out);
   for (const Load& load : experiment.loads) {
     out.heading("[[load]]");

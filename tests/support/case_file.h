@@ -32,6 +32,16 @@ geo = "beam.geo"
 size_m = [2.4, 0.4, 0.4]
 cells = [[24, 4, 4], [48, 8, 8]]
 
+[[patch]]
+name = "middle"
+box_m = [[1, 0, 0], [1.4, 0.4, 0.45]]
+facing = { direction = [0, 0.6, 0.8], within_deg = 36.9 }
+
+[[patch]]
+name = "end"
+beyond = { point_m = [2.3, 0.1, 0], normal = [1, 1, 0] }
+near = { point_m = [2.5, 0.2, 0.1], radius_m = 0.3 }
+
 [material]
 shear_modulus_Pa = 4e3
 poisson_ratio = [-0.5, 0.25, 0.499]
@@ -210,6 +220,30 @@ inline void expect_same(const Load& a, const Load& b) {
   }
 }
 
+inline void expect_same(const PatchRule& a, const PatchRule& b) {
+  EXPECT_EQ(a.name, b.name);
+  ASSERT_EQ(a.box.has_value(), b.box.has_value());
+  if (a.box) {
+    EXPECT_EQ(a.box->low, b.box->low);
+    EXPECT_EQ(a.box->high, b.box->high);
+  }
+  ASSERT_EQ(a.beyond.has_value(), b.beyond.has_value());
+  if (a.beyond) {
+    EXPECT_EQ(a.beyond->point, b.beyond->point);
+    EXPECT_EQ(a.beyond->normal, b.beyond->normal);
+  }
+  ASSERT_EQ(a.facing.has_value(), b.facing.has_value());
+  if (a.facing) {
+    EXPECT_EQ(a.facing->direction, b.facing->direction);
+    EXPECT_EQ(a.facing->within_deg, b.facing->within_deg);
+  }
+  ASSERT_EQ(a.near.has_value(), b.near.has_value());
+  if (a.near) {
+    EXPECT_EQ(a.near->point, b.near->point);
+    EXPECT_EQ(a.near->radius, b.near->radius);
+  }
+}
+
 /// Everything but places in the file.
 inline void expect_same(const Experiment& a, const Experiment& b) {
   EXPECT_EQ(a.cite, b.cite);
@@ -223,6 +257,8 @@ inline void expect_same(const Experiment& a, const Experiment& b) {
   EXPECT_EQ(a.body.scale, b.body.scale);
   EXPECT_EQ(a.reference.edge, b.reference.edge);
   EXPECT_EQ(a.line.has_value(), b.line.has_value());
+  ASSERT_EQ(a.patches.size(), b.patches.size());
+  for (std::size_t i = 0; i < a.patches.size(); ++i) expect_same(a.patches[i], b.patches[i]);
   ASSERT_EQ(a.materials.size(), b.materials.size());
   for (std::size_t i = 0; i < a.materials.size(); ++i) {
     EXPECT_EQ(a.materials[i].youngs_modulus, b.materials[i].youngs_modulus);

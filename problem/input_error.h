@@ -1,0 +1,23 @@
+// What is wrong with an input, and where.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace springproof {
+
+/// Where in a case file something stands; line and column count from 1, 0 = unknown.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// An input that cannot be used.  what() reads "file:line:column: key: what is wrong, what is allowed".
+class InputError : public std::runtime_error {
+ public:
+  InputError(const SourceLocation& where, const std::string& message);
+  explicit InputError(const std::string& message) : std::runtime_error(message) {}
+};
+
+}  // namespace springproof
