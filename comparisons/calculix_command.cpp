@@ -9,7 +9,7 @@
 #include "comparisons/calculix/deck.h"
 #include "comparisons/case_run.h"
 #include "comparisons/suite.h"
-#include "comparisons/lattice_body.h"
+#include "meshes/mesher.h"
 
 namespace springproof {
 namespace {
@@ -44,8 +44,9 @@ int ExportCommand::run() const {
   calculix::require_counterpart(experiment);
   const IsotropicMaterial material = material_of(experiment, poisson_ratio_);
   const PreparedCase prepared = prepare(experiment);
-  const Cells cells = cells_.empty() ? experiment.body.cells.front() : to_cells(cells_);
-  const Mesh mesh = *lattice_body(prepared.geo, experiment.body, cells).mesh;
+  if (experiment.body.is_voxels() && !cells_.empty()) throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
+  const Cells cells = cells_.empty() && !experiment.body.is_voxels() ? experiment.body.cells.front() : to_cells(cells_);
+  const Mesh mesh = experiment.body.is_voxels() ? *prepared.tetrahedra.back() : mesh_geo(prepared.geo, experiment.body.size, cells);
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
   const std::string file = out_.empty() ? experiment.name + ".inp" : out_;
   std::ofstream out(file);

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "comparisons/lattice_body.h"
 #include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
 #include "comparisons/model_run.h"
 #include "comparisons/picture.h"
 #include "comparisons/reference_grids.h"
-#include "meshes/gmsh_io.h"
-#include "meshes/locate.h"
+#include "comparisons/voxel_body.h"
+#include "comparisons/voxel_reference.h"
+#include "meshes/mesher.h"
+#include "meshes/select_patches.h"
 #include "msm/solve/equilibrium.h"
 
 namespace springproof {
@@ -48,8 +49,9 @@ struct PartRun {
   const std::filesystem::path& vtu_folder;
   Part part;
 
-  std::vector<ElementGrids> grids;                  ///< of every element; empty: none to be had
+  ReferenceGrids grids;                             ///< no elements: none to be had
   std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: none to be had
+  std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
 
   const Experiment& experiment() const { return prepared.experiment; }
 };
@@ -66,20 +68,20 @@ Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model
           s.seconds, s.degrees_of_freedom, s.memory_MiB};
 }
 
-/// Runs the finite elements; fills run.grids and gives the peers of the models.
-std::vector<fem::Solution> run_fem(PartRun& run) {
-  ReferenceGrids answer = solve_grids(run.prepared, run.material);
-  if (answer.elements.empty())
+/// Runs the finite elements.
+void run_fem(PartRun& run) {
+  run.grids = solve_grids(run.prepared, run.material);
+  if (run.grids.elements.empty())
     run.part.runs.push_back({"fem_" + run.experiment().reference.elements.front(), "fem", run.material.poisson_ratio,
-                             run.prepared.reference_cells, run.experiment().kinematics, false, answer.failure, "", 0, 0, 0, 0, 0});
-  for (const ElementGrids& e : answer.elements)
+                             run.prepared.reference_cells, run.experiment().kinematics, false, run.grids.failure, "", 0, 0, 0, 0, 0});
+  for (const ElementGrids& e : run.grids.elements)
     for (const fem::Solution& s : e.grids) run.part.runs.push_back(fem_run(run, s, "fem_" + e.element));
-  run.grids = std::move(answer.elements);
-  return std::move(answer.peers);
+  for (const auto& on_cubes : run.grids.refined)
+    for (const fem::Solution& s : on_cubes) run.part.runs.push_back(fem_run(run, s, "fem_q2"));
 }
 
 void record_elements(PartRun& run) {
-  for (const ElementGrids& e : run.grids) {
+  for (const ElementGrids& e : run.grids.elements) {
     if (!complete(e)) continue;
     const std::vector<ReferenceRecord> records = records_of(run.prepared, run.material, e);
     run.part.references.insert(run.part.references.end(), records.begin(), records.end());
@@ -90,14 +92,16 @@ void record_elements(PartRun& run) {
 /// The first element's fields as the reference of the lattices; with an exact field, that field.
 void build_reference(PartRun& run) {
   run.reference.assign(run.prepared.meshes.size(), {});
-  if (run.grids.empty() || !complete(run.grids.front())) return;
-  const ElementGrids& first = run.grids.front();
+  run.voxels.assign(run.prepared.meshes.size(), {});
+  if (run.grids.elements.empty() || !complete(run.grids.elements.front())) return;
+  const ElementGrids& first = run.grids.elements.front();
   const std::map<std::string, ReferenceValue> scalars = limits_of(run.prepared, first);
   for (std::size_t i = 0; i < run.prepared.meshes.size(); ++i) {
     const Mesh& mesh = *run.prepared.meshes[i];
     std::vector<NodalVectors> fields;
     for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
-    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh)), scalars};
+    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), grid_ratio(run.experiment())), scalars};
+    if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
     ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, f.note,
@@ -208,6 +212,18 @@ void add_line(PartRun& run, std::size_t lattice, const std::string& model, LineR
   run.part.lines.push_back(std::move(line));
 }
 
+void add_splits(PartRun& run, std::size_t lattice, const std::string& model, const std::vector<NodalVectors>& u,
+                const std::vector<std::map<std::string, double>>& scalars) {
+  const auto& reference = run.reference[lattice];
+  const auto& voxels = run.voxels[lattice];
+  if (!reference || !voxels) return;
+  for (ErrorSplit& split : split_error(run.prepared, lattice, *voxels, {reference->field, reference->scalars}, u, scalars)) {
+    split.model = model;
+    split.poisson_ratio = run.material.poisson_ratio;
+    run.part.splits.push_back(std::move(split));
+  }
+}
+
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
@@ -227,7 +243,9 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     fields.push_back(sample.field.displacement);
     scalars.push_back(sample.scalars);
   }
-  if (!fields.empty()) add_rows(run, lattice, label, kind, fields, scalars);
+  if (fields.empty()) return;
+  add_rows(run, lattice, label, kind, fields, scalars);
+  add_splits(run, lattice, label, fields, scalars);
 }
 
 /// Builds the model and puts the loads on it, for what may be wrong with either.
@@ -250,17 +268,14 @@ std::vector<Load> lattice_loads(const Experiment& experiment) {
   return loads;
 }
 
-}  // namespace
-
-PreparedCase prepare(const Experiment& experiment) {
-  PreparedCase prepared{experiment, {}, {}, {}, reference_cells(experiment), {}, {}};
-  for (int n : prepared.reference_cells)
-    if (n % 4 != 0 && n != 1)
-      throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", experiment.file.string(), n));
-  for (const Cells& c : experiment.body.cells)
+void check_fineness(const Experiment& e) {
+  for (const Cells& c : e.body.cells)
     if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
-      throw InputError(experiment.body.where, fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
-                                                          c[0], c[1], c[2], total, largest_lattice));
+      throw InputError(e.body.where, fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
+                                                 c[0], c[1], c[2], total, largest_lattice));
+}
+
+void check_expectations(const Experiment& experiment) {
   for (const Expectation& e : experiment.expectations) {
     if (e.value || e.at_least) continue;
     if (reference_element(experiment, e.model))
@@ -268,53 +283,81 @@ PreparedCase prepare(const Experiment& experiment) {
     if (e.relative && is_distance(e.measure))
       throw InputError(e.location, fmt::format("within_relative: {} is expected to be 0; give an absolute `within`", e.measure));
   }
-  for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
-  try {
-    prepared.geo = find_geo(experiment.body, experiment.file);
-    for (const Cells& cells : experiment.body.cells) {
-      const LatticeBody body = lattice_body(prepared.geo, experiment.body, cells);
-      prepared.meshes.push_back(body.mesh);
-      prepared.regions.push_back(body.region);
-      const Mesh& mesh = *prepared.meshes.back();
-      std::vector<std::string> patches;
-      for (const Patch& p : mesh.patches) patches.push_back(p.name);
-      check_patches(experiment, patches);
-      prepared.sharing = patches_sharing_supports(experiment.loads, mesh, experiment.model_kinematics());
-      if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
-        require_supported(transfer(lattice_loads(experiment), mesh, 1000, experiment.model_kinematics()), mesh.nodes);
-      for (const ModelParameters& p : prepared.models)
-        if (p.row.topology == Topology::cells || prepared.meshes.size() == 1) try_model(experiment, p, mesh, body.region.get());
-      const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
-      if (experiment.section) section_distance(mesh, *experiment.section, u, u);
-      interpolate(mesh, u, points_of(experiment.probes));
-    }
-  } catch (const InputError& e) {
-    const std::string message = e.what(), file = experiment.file.string();
-    throw InputError(message.starts_with(file) ? message : file + ": " + message);
+}
+
+void prepare_blocks(PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  prepared.reference_cells = reference_cells(e);
+  for (int n : prepared.reference_cells)
+    if (n % 4 != 0 && n != 1)
+      throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", e.file.string(), n));
+  check_fineness(e);
+  for (const Cells& cells : e.body.cells) {
+    Mesh mesh = mesh_geo(prepared.geo, e.body.size, cells);
+    select_patches(e.patches, mesh);
+    prepared.meshes.push_back(std::make_shared<Mesh>(std::move(mesh)));
+    prepared.regions.push_back(nullptr);
   }
+}
+
+/// Tries what the case asks for on one lattice.
+void try_lattice(PreparedCase& prepared, std::size_t lattice) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *prepared.meshes[lattice];
+  std::vector<std::string> patches;
+  for (const Patch& p : mesh.patches) patches.push_back(p.name);
+  check_patches(e, patches);
+  prepared.sharing = patches_sharing_supports(e.loads, mesh, e.model_kinematics());
+  if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
+    require_supported(transfer(lattice_loads(e), mesh, 1000, e.model_kinematics()), mesh.nodes);
+  for (const ModelParameters& p : prepared.models)
+    if (p.row.topology == Topology::cells || lattice == 0) try_model(e, p, mesh, prepared.regions[lattice].get());
+  const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  if (e.section) section_distance(mesh, *e.section, u, u);
+  interpolate(mesh, u, points_of(e.probes));
+}
+
+/// The finite elements' results at the nodes of one lattice.
+void add_fem(PartRun& run, std::size_t lattice) {
+  const PreparedCase& prepared = run.prepared;
+  if (run.reference[lattice]) {
+    Field field = sampled_field(prepared, lattice, run.grids.elements.front().grids.back());
+    field.displacement = run.reference[lattice]->field.displacement;
+    save(run, lattice, "fem", field);
+  }
+  if (lattice >= run.grids.peers.size() || run.grids.peers[lattice].grid.cells[0] == 0) return;
+  const fem::Solution& s = run.grids.peers[lattice];
+  run.part.runs.push_back(fem_run(run, s, "fem_q1"));
+  if (!s.ok) return;
+  add_rows(run, lattice, "fem_q1", run.part.runs.back().kinematics, {at_lattice(prepared, lattice, s.displacement)}, {measures_of(prepared, s)});
+  save(run, lattice, "fem_q1", sampled_field(prepared, lattice, s));
+}
+
+}  // namespace
+
+PreparedCase prepare(const Experiment& experiment) try {
+  PreparedCase prepared;
+  prepared.experiment = experiment;
+  check_expectations(experiment);
+  for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
+  prepared.geo = find_geo(experiment.body, experiment.file);
+  experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
+  check_fineness(prepared.experiment);
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) try_lattice(prepared, lattice);
   return prepared;
+} catch (const InputError& e) {
+  const std::string message = e.what(), file = experiment.file.string();
+  throw InputError(message.starts_with(file) ? message : file + ": " + message);
 }
 
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {
-  PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}};
+  PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}, {}};
   if (!vtu_folder.empty()) std::filesystem::create_directories(vtu_folder);
-  const std::vector<fem::Solution> peers = prepared.experiment.reference.elements.empty() ? std::vector<fem::Solution>() : run_fem(run);
+  if (!prepared.experiment.reference.elements.empty()) run_fem(run);
   record_elements(run);
   build_reference(run);
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
-    if (run.reference[lattice]) {
-      Field field = sampled_field(prepared, lattice, run.grids.front().grids.back());
-      field.displacement = run.reference[lattice]->field.displacement;
-      save(run, lattice, "fem", field);
-    }
-    if (lattice < peers.size()) {
-      const fem::Solution& s = peers[lattice];
-      run.part.runs.push_back(fem_run(run, s, "fem_q1"));
-      if (s.ok) {
-        add_rows(run, lattice, "fem_q1", run.part.runs.back().kinematics, {at_lattice(prepared, lattice, s.displacement)}, {measures_of(prepared, s)});
-        save(run, lattice, "fem_q1", sampled_field(prepared, lattice, s));
-      }
-    }
+    add_fem(run, lattice);
     for (std::size_t m = 0; m < prepared.models.size(); ++m) run_model(run, lattice, m);
   }
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);

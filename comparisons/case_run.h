@@ -14,12 +14,25 @@
 
 namespace springproof {
 
+/// What a lattice node of a body of voxels takes from the finite elements' displacements at PreparedCase::body_points: that at
+/// `at`, or outside the body 2 u(at) - u(within): the displacement of the nearest place of the surface, continued linearly.
+struct BodySample {
+  int at;
+  int within = -1;   ///< as far behind the surface as the node is in front of it; -1: the node itself is in the body
+};
+
+/// Edges of one mesh of tetrahedra over those of the next finer one.
+inline constexpr double mesh_ratio = 1.5;
+
 /// An experiment made ready: meshed, its models resolved, its loads tried on the mesh.
 struct PreparedCase {
   Experiment experiment;
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
   std::vector<std::shared_ptr<const Region>> regions;  ///< beside them: the true body where cubes stand for it, else empty
   std::vector<std::shared_ptr<const Mesh>> tetrahedra;  ///< of a body of voxels: three meshes, coarse to fine (the last is the true body)
+  std::vector<double> voxel_edges;                  ///< of a body of voxels, one per resolution [m]
+  NodalVectors body_points = NodalVectors(0, 3);    ///< and where its finite elements are asked for their displacement,
+  std::vector<BodySample> body_samples;             ///< from which each lattice node takes its own
   std::vector<std::string> notes;                   ///< what was mended or left out of the body
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids

@@ -12,7 +12,7 @@
 #include "comparisons/case_run.h"
 #include "comparisons/measures.h"
 #include "fem_reference/reference.h"
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 
 namespace springproof {
 namespace {
@@ -268,6 +268,8 @@ void print_title(const Question& q) {
 Question question(const PreparedCase& prepared, const IsotropicMaterial& material,
                   const CrossCheckOptions& options) {
   const Experiment& e = prepared.experiment;
+  if (e.body.is_voxels())
+    throw InputError(e.body.where, "a body of voxels has no cross-check of its own; `springproof export` writes its tetrahedra with the loads for CalculiX");
   Question q{
       prepared, material, three_grids(finest_cells(e, material, options.cells)), {}, options.time_limit};
   for (const Cells& cells : q.cells) {

@@ -4,6 +4,7 @@
 
 #include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
+#include "comparisons/voxel_body.h"
 #include "msm/calibrate.h"
 #include "msm/measure/block_moduli.h"
 #include "msm/measure/statistics.h"
@@ -63,6 +64,7 @@ Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const Model
   sample.state = kinematics == Kinematics::linear ? solve_linear(built.model, conditions) : solve_finite(built.model, path);
   if (!sample.state.ok) return sample;
   sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, kinematics);
+  if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
   const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes));
   sample.scalars = scalar_measures(sample.field, e.probes, probes);
   if (asked(e, "network")) add_network(network, sample.scalars);

@@ -5,16 +5,11 @@
 #include <limits>
 
 #include "comparisons/measures.h"
+#include "comparisons/voxel_reference.h"
 #include "problem/exact_field.h"
 
 namespace springproof {
 namespace {
-
-NodalVectors probe_points(const Experiment& e) {
-  NodalVectors points(static_cast<Eigen::Index>(e.probes.size()), 3);
-  for (std::size_t i = 0; i < e.probes.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = e.probes[i].at.transpose();
-  return points;
-}
 
 /// All points at which the displacement is wanted: the nodes of every lattice, then the probes.
 NodalVectors sample_points(const PreparedCase& prepared) {
@@ -80,12 +75,19 @@ std::optional<double> target(const Experiment& experiment, const ReferenceRecord
 
 }  // namespace
 
+NodalVectors probe_points(const Experiment& e) {
+  NodalVectors points(static_cast<Eigen::Index>(e.probes.size()), 3);
+  for (std::size_t i = 0; i < e.probes.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = e.probes[i].at.transpose();
+  return points;
+}
+
 bool complete(const ElementGrids& e) {
   return e.grids.size() == 3 && std::all_of(e.grids.begin(), e.grids.end(), [](const auto& s) { return s.ok; });
 }
 
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
   const Experiment& experiment = prepared.experiment;
+  if (experiment.body.is_voxels()) return solve_body_grids(prepared, material);
   const bool stresses = wanted("stress", experiment.measures);
   fem::Request request{experiment, material, {}, sample_points(prepared), stresses ? probe_points(experiment) : NodalVectors(0, 3), 1e-8};
   for (const std::string& element : experiment.reference.elements)
@@ -141,6 +143,8 @@ NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   return u;
 }
 
+double grid_ratio(const Experiment& experiment) { return experiment.body.is_voxels() ? mesh_ratio : 2; }
+
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
@@ -150,7 +154,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
   for (const auto& [measure, fine] : values[2])
     limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
                                   noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
-                                  trusted_order(measure, e.element, experiment.reference.smooth));
+                                  trusted_order(measure, e.element, experiment.reference.smooth), grid_ratio(experiment));
   return limits;
 }
 

@@ -22,6 +22,8 @@ bool complete(const ElementGrids& e);
 struct ReferenceGrids {
   std::vector<ElementGrids> elements;  ///< in the order of [reference] elements; empty: the program gave no answer
   std::vector<fem::Solution> peers;    ///< eight-node elements on the models' own cells, if there are models
+  std::vector<std::vector<fem::Solution>> refined;  ///< of a body of voxels, per lattice: q2 on its cubes, and on these cut
+                                                    ///< into eight; none where that would be too many
   std::string failure;                 ///< why there is no answer
 };
 
@@ -36,11 +38,17 @@ Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem
 /// Every scalar measure of one solution, stresses among them.
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);
 
+/// Rest positions of the probes, n x 3 [m].
+NodalVectors probe_points(const Experiment& experiment);
+
 /// False for the force or torque on a patch that shares held nodes with another: no reference can be given.
 bool comparable(const PreparedCase& prepared, const std::string& measure);
 
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
+
+/// By which the cell sizes of the three grids fall.
+double grid_ratio(const Experiment& experiment);
 
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);

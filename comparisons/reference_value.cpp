@@ -14,8 +14,8 @@ struct Factors {
   double limit, uncertainty;
 };
 
-Factors factors(double order, const TrustedOrder& trusted) {
-  const double limit = 1 / (std::pow(2.0, std::min(order, trusted.highest)) - 1);
+Factors factors(double order, const TrustedOrder& trusted, double ratio) {
+  const double limit = 1 / (std::pow(ratio, std::min(order, trusted.highest)) - 1);
   return {limit, safety_factor * (order > trusted.suspicious ? 1 : limit)};
 }
 
@@ -37,21 +37,25 @@ TrustedOrder trusted_order(const std::string& measure, const std::string& elemen
   return {};
 }
 
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted) {
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted, double ratio) {
   if (values.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const double f1 = values[values.size() - 3], f2 = values[values.size() - 2], f3 = values.back();
   const double coarse = f2 - f1, fine = f3 - f2;
   if (std::max(std::abs(coarse), std::abs(fine)) <= noise) return {f3, noise, {}, "equal on all grids to solver accuracy"};
-  const double order = coarse * fine > 0 ? std::log2(coarse / fine) : 0;
+  const double order = coarse * fine > 0 ? std::log(coarse / fine) / std::log(ratio) : 0;
   if (order < lowest_order) {
     const double spread = std::max({f1, f2, f3}) - std::min({f1, f2, f3});
     return {f3, safety_factor * spread + noise, {}, "not converging monotonically: finest grid, spread of the three"};
   }
-  const Factors by = factors(order, trusted);
+  const Factors by = factors(order, trusted, ratio);
   return {f3 + by.limit * fine, by.uncertainty * std::abs(fine) + noise, order, note(order, trusted)};
 }
 
-ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights) {
+ReferenceValue extrapolate_two(double f1, double f2) {
+  return {2 * f2 - f1, 3 * std::abs(f2 - f1), {}, "two grids, first order assumed"};
+}
+
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, double ratio) {
   if (fields.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const NodalVectors &u1 = fields[fields.size() - 3], &u2 = fields[fields.size() - 2], &u3 = fields.back();
   const double size = weighted_norm(u3, weights), noise = 1e-8 * size;
@@ -61,9 +65,9 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
     return ReferenceField{u3 + limit * (u3 - u2), size > 0 ? (factor * fine + noise) / size : 0, nodal, order, text};
   };
   if (std::max(coarse, fine) <= noise) return result(0, 0, {}, "equal on all grids to solver accuracy");
-  const double order = std::log2(coarse / fine);
+  const double order = std::log(coarse / fine) / std::log(ratio);
   if (order < lowest_order) return result(0, safety_factor * std::max(coarse, fine) / fine, {}, "not converging: finest grid, largest difference");
-  const Factors by = factors(order, {});
+  const Factors by = factors(order, {}, ratio);
   return result(by.limit, by.uncertainty, order, note(order, {}));
 }
 

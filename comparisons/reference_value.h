@@ -30,11 +30,15 @@ struct TrustedOrder {
 /// degree + 1 and stresses with degree, at nodes with up to 2 degree; all else as with clamped edges.
 TrustedOrder trusted_order(const std::string& measure, const std::string& element, bool smooth);
 
-/// Limit of a quantity computed on grids of cell sizes h, h/2, h/4 (coarse to fine; the last three of more).
-/// Monotone with an order p of 1/2 or more: Richardson extrapolation, uncertainty Fs |f3 - f2| / (2^p - 1), p taken as
+/// Limit of a quantity computed on three grids (coarse to fine; the last three of more), cell sizes falling by `ratio`.
+/// Monotone with an order p of 1/2 or more: Richardson extrapolation, uncertainty Fs |f3 - f2| / (ratio^p - 1), p taken as
 /// at most `trusted.highest`; where it shows more than `trusted.suspicious` the uncertainty is Fs |f3 - f2|.
 /// Otherwise the finest value, uncertainty Fs times the spread.  `noise`: round-off of the values.
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted = {});
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted = {}, double ratio = 2);
+
+/// Limit from grids of cell sizes h and h/2 alone, first order being assumed (edges of cubes and of supports are singular):
+/// 2 f2 - f1, uncertainty 3 |f2 - f1| (Roache's safety factor for two grids).
+ReferenceValue extrapolate_two(double f1, double f2);
 
 /// The same for a displacement field sampled at the same points on three grids: order and uncertainty from weighted L2
 /// norms of the differences; `uncertainty` is relative to the limit's norm.
@@ -45,7 +49,7 @@ struct ReferenceField {
   std::optional<double> observed_order;
   std::string note;
 };
-ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights);
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, double ratio = 2);
 
 /// Weighted L2 norm of a nodal field: sqrt(sum w |u|^2 / sum w).
 double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights);

@@ -211,6 +211,21 @@ Json json_of(const LineRecord& l) {
           {"exact_stress", numbers(l.exact_stress)}};
 }
 
+Json json_of(const ErrorSplit& s) {
+  return {{"model", s.model},
+          {"poisson_ratio", number(s.poisson_ratio)},
+          {"cells", s.cells},
+          {"voxel_edge_m", number(s.voxel_edge)},
+          {"measure", s.measure},
+          {"unit", s.unit},
+          {"total", number(s.total)},
+          {"model_error", number(s.model_error)},
+          {"discretisation_error", number(s.discretisation_error)},
+          {"geometry_error", number(s.geometry_error)},
+          {"voxel_uncertainty", number(s.voxel_uncertainty)},
+          {"body_uncertainty", number(s.body_uncertainty)}};
+}
+
 Json json_of(const PublishedRow& p) {
   return {{"model", p.model},
           {"poisson_ratio", number(p.poisson_ratio)},
@@ -376,7 +391,9 @@ Json to_json(const CaseResult& result) {
           {"references", list(result.references)},
           {"checks", list(result.checks)},
           {"published", list(result.published)},
-          {"lines", list(result.lines)}};
+          {"lines", list(result.lines)},
+          {"splits", list(result.splits)},
+          {"notes", result.notes}};
 }
 
 Json pictures_to_json(const CaseResult& result) {

@@ -145,6 +145,7 @@ struct CaseResult {
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
   std::vector<ErrorSplit> splits;
+  std::vector<std::string> notes;  ///< what was mended or left out of the body
 };
 
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".

@@ -150,7 +150,9 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
 std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const std::vector<Task>& tasks) {
   std::vector<CaseResult> results;
   for (const PreparedCase& p : prepared) {
-    CaseResult result{p.experiment, {}, {}, {}, {}, {}, {}};
+    CaseResult result;
+    result.experiment = p.experiment;
+    result.notes = p.notes;
     for (const Task& task : tasks) {
       if (task.prepared != &p) continue;
       append(task.part.runs, result.runs);
@@ -158,6 +160,7 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
       append(task.part.references, result.references);
       append(task.part.pictures, result.pictures);
       append(task.part.lines, result.lines);
+      append(task.part.splits, result.splits);
     }
     judge(result);
     results.push_back(std::move(result));

@@ -29,10 +29,15 @@ int halve(Cells& cells) {
 // Blocks become few cells, refined: multigrid needs that.  Other bodies are meshed as they are wanted, hexahedra with
 // second-order edges, so that a curved surface stays curved.
 void mesh_into(GridProblem& problem, const Request& request, const Discretisation& grid) {
-  const Body& body = request.experiment.body;
-  const std::filesystem::path geo = find_geo(body, request.experiment.file);
   const Element element = element_named(grid.element);
   problem.degree = element.degree;
+  if (grid.mesh >= 0) {
+    problem.coarse = *request.meshes.at(grid.mesh);
+    problem.refinements = grid.refinements;
+    return;
+  }
+  const Body& body = request.experiment.body;
+  const std::filesystem::path geo = find_geo(body, request.experiment.file);
   if (element.tetrahedra) {
     problem.coarse = mesh_geo(geo, body.size, grid.cells, {.tetrahedra = true});
     return;
@@ -85,8 +90,8 @@ std::vector<Solution> solve_all(const Request& request, Method method = Method::
 }
 
 void answer_request(const std::string& request_file, const std::string& answer_file) {
-  std::ifstream in(request_file);
-  const std::vector<Solution> solutions = solve_all(request_from_json(nlohmann::json::parse(in)));
+  std::ifstream in(request_file, std::ios::binary);
+  const std::vector<Solution> solutions = solve_all(request_from_json(nlohmann::json::from_cbor(in)));
   together([&] {
     if (process_rank() > 0) return;
     std::ofstream out(answer_file, std::ios::binary);

@@ -67,12 +67,13 @@ double peak_memory_MiB() {
   return usage.ru_maxrss / 1024.0;
 }
 
-// Multigrid without a matrix needs cells that come from refining few; algebraic multigrid takes the rest.
+// Multigrid without a matrix needs cells that come from refining few, or cubes, of which all are alike; algebraic
+// multigrid takes the rest.
 constexpr unsigned int largest_coarse_grid = 1000;  // cells
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
   return problem.method == Method::automatic && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
-         body.triangulation.n_cells(0) <= largest_coarse_grid;
+         (problem.coarse.grid || body.triangulation.n_cells(0) <= largest_coarse_grid);
 }
 
 std::string element_name(const ElasticSystem& system) {

@@ -62,7 +62,7 @@ class VCycle {
     const bool solves = level == 0 && levels_[0]->m() < largest_coarse_system;
     data.degree = solves ? dealii::numbers::invalid_unsigned_int : 5;
     data.smoothing_range = solves ? 1e-2 : 15;
-    data.eig_cg_n_iterations = solves ? levels_[0]->m() : 12;
+    data.eig_cg_n_iterations = solves ? std::min(levels_[0]->m(), most_eigenvalue_steps) : 12;
     data.preconditioner =
         std::make_shared<dealii::DiagonalMatrix<Vector<float>>>(levels_[level]->inverse_diagonal());
     return data;
@@ -82,7 +82,8 @@ class VCycle {
     smoothers_[l]->step(x_[l], b_[l]);
   }
 
-  static constexpr unsigned int largest_coarse_system = 20000;
+  // Up to which the coarsest level is solved by Chebyshev's iteration; the cubes of a body of voxels are that level.
+  static constexpr dealii::types::global_dof_index largest_coarse_system = 1000000, most_eigenvalue_steps = 1000;
 
   const dealii::DoFHandler<3>& dof_handler_;
   dealii::MGConstrainedDoFs constrained_dofs_;

@@ -42,6 +42,28 @@ struct Neighbourhood {
   }
 };
 
+std::vector<std::vector<int>> neighbours_of(const Network& network) {
+  std::vector<std::vector<int>> neighbours(network.nodes());
+  for (const Spring& s : network.springs) {
+    neighbours[s.i].push_back(s.j);
+    neighbours[s.j].push_back(s.i);
+  }
+  return neighbours;
+}
+
+/// Those of `nodes` (ascending) that hang together, by springs among them, with the one nearest to p: what lies across a gap in
+/// the body has no say at p.
+std::vector<int> hanging_together(const NodalVectors& X, const std::vector<std::vector<int>>& neighbours, const std::vector<int>& nodes, const Vec3& p) {
+  if (nodes.empty()) return {};
+  const auto distance = [&](int n) { return (X.row(n).transpose() - p).squaredNorm(); };
+  std::vector<int> found = {*std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) { return distance(a) < distance(b); })};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const int n : neighbours[found[i]])
+      if (std::binary_search(nodes.begin(), nodes.end(), n) && std::find(found.begin(), found.end(), n) == found.end()) found.push_back(n);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 /// Moving least squares weights of `nodes` for a field at p: sum = 1, sum weight X = p.  Nothing if the nodes do not span
 /// the directions that the whole network spans (`flat`: it lies in a plane z = const).
 std::optional<Eigen::VectorXd> least_squares(const NodalVectors& X, const std::vector<int>& nodes, const Vec3& p, double radius,
@@ -109,6 +131,7 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip) {
   const bool flat = extent[2] <= 1e-9 * extent.maxCoeff();
   const double spacing = flat ? std::sqrt(extent[0] * extent[1] / network.nodes()) : std::cbrt(network.volume.sum() / network.nodes());
   const Neighbourhood neighbourhood(network.X, 1.5 * spacing);
+  const std::vector<std::vector<int>> neighbours = neighbours_of(network);
   std::vector<Eigen::Triplet<double>> entries;
   for (int m = 0; m < mesh.nodes.rows(); ++m) {
     Vec3 p = mesh.nodes.row(m).transpose();
@@ -117,7 +140,7 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip) {
     std::vector<int> nodes;
     for (double radius = 1.6 * spacing; !weight; radius *= 1.2) {
       if (radius > 100 * spacing + extent.norm()) throw std::invalid_argument("the network's nodes span no volume");
-      nodes = neighbourhood.near(p, radius);
+      nodes = hanging_together(network.X, neighbours, neighbourhood.near(p, radius), p);
       weight = least_squares(network.X, nodes, p, radius, flat);
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) entries.emplace_back(m, nodes[i], (*weight)[static_cast<Eigen::Index>(i)]);

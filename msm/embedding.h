@@ -20,7 +20,8 @@ struct Embedding {
 /// Of a network whose nodes are the mesh's nodes, in their order.
 Embedding nodes_of_mesh(const Mesh& mesh);
 
-/// Of any other: moving least squares with linear fields over the nearest network nodes, and each patch holds the nodes
+/// Of any other: moving least squares with linear fields over the nearest network nodes that springs join to the nearest of
+/// them (not across a gap in the body), and each patch holds the nodes
 /// within `grip` [m] of it (none, if there is none so near).
 /// @throws std::invalid_argument if the nodes span no volume (no area, for a network in a plane z = const).
 Embedding embed(const Mesh& mesh, const Network& network, double grip);

@@ -1,0 +1,173 @@
+#include "comparisons/voxel_body.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "meshes/facet_tree.h"
+#include "meshes/mesher.h"
+#include "meshes/select_patches.h"
+#include "meshes/volume.h"
+#include "meshes/voxelise.h"
+
+namespace springproof {
+namespace {
+
+// Of the finest mesh: quadratic ones are 140,000 unknowns, some ten seconds of one core.
+constexpr int finest_tetrahedra = 30000;
+
+std::shared_ptr<const Mesh> tetrahedra(PreparedCase& prepared, MeshRequest request, double& edge) {
+  const Experiment& e = prepared.experiment;
+  request.file = prepared.geo;
+  request.size = e.body.size;
+  request.scale = e.body.scale;
+  MeshedBody body = mesh_body(request);
+  for (const std::string& note : body.notes)
+    if (std::find(prepared.notes.begin(), prepared.notes.end(), note) == prepared.notes.end()) prepared.notes.push_back(note);
+  select_patches(e.patches, body.mesh);
+  edge = body.edge;
+  return std::make_shared<Mesh>(std::move(body.mesh));
+}
+
+void mesh_the_body(PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  double edge = 0, ignored;
+  MeshRequest finest;
+  finest.edge = e.reference.edge;
+  finest.tetrahedra = finest_tetrahedra;
+  const auto true_body = tetrahedra(prepared, finest, edge);
+  if (!e.reference.elements.empty())
+    for (const double coarser : {mesh_ratio * mesh_ratio, mesh_ratio}) {
+      MeshRequest request;
+      request.edge = coarser * edge;
+      prepared.tetrahedra.push_back(tetrahedra(prepared, request, ignored));
+    }
+  prepared.tetrahedra.push_back(true_body);
+}
+
+std::vector<double> voxel_edges(const Body& body, double volume) {
+  if (!body.voxel_edges.empty()) return body.voxel_edges;
+  std::vector<double> edges;
+  for (const int count : body.voxel_counts) edges.push_back(std::cbrt(volume / count));
+  return edges;
+}
+
+void cut_lattices(PreparedCase& prepared) {
+  Body& body = prepared.experiment.body;
+  const Mesh& true_body = *prepared.tetrahedra.back();
+  const auto region = std::make_shared<Region>(region_of(true_body));
+  body.size = region->upper - region->lower;
+  for (const double edge : voxel_edges(body, region->volume)) {
+    const VoxelGrid grid = voxel_grid(true_body, edge);
+    Voxels voxels = voxelise(grid, true_body);
+    for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
+    body.cells.push_back(grid.cells);
+    prepared.voxel_edges.push_back(edge);
+    prepared.meshes.push_back(std::make_shared<Mesh>(std::move(voxels.mesh)));
+    prepared.regions.push_back(region);
+  }
+}
+
+/// Visits the facets of a patch as triangles.
+template <class Visit>
+void for_each_triangle(const Mesh& mesh, const Patch& patch, const Visit& visit) {
+  const auto X = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
+  for (const auto& f : patch.facets) {
+    visit(X(f[0]), X(f[1]), X(f[2]));
+    if (f[3] >= 0) visit(X(f[0]), X(f[2]), X(f[3]));
+  }
+}
+
+Wrench of_pressure(const Mesh& mesh, const Patch& patch, double pressure) {
+  Wrench wrench{Vec3::Zero(), Vec3::Zero(), centroid(mesh, patch)};
+  for_each_triangle(mesh, patch, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 force = -pressure / 2 * (b - a).cross(c - a);
+    wrench.force += force;
+    wrench.moment += ((a + b + c) / 3 - wrench.about).cross(force);
+  });
+  return wrench;
+}
+
+Vec3 centroid(const Mesh& mesh) {
+  const Eigen::VectorXd volumes = nodal_volumes(mesh);
+  return mesh.nodes.transpose() * volumes / volumes.sum();
+}
+
+void set_wrenches(PreparedCase& prepared) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
+  for (Load& load : prepared.experiment.loads) {
+    if (auto* t = std::get_if<Traction>(&load)) {
+      const Patch& p = patch(body, t->on);
+      t->wrench = at_centroid(nodal_areas(body, p).sum() * t->traction, centroid(body, p));
+    } else if (auto* q = std::get_if<Pressure>(&load)) {
+      q->wrench = of_pressure(body, patch(body, q->on), q->pressure);
+    } else if (auto* f = std::get_if<PatchForce>(&load)) {
+      f->wrench = at_centroid(f->force, centroid(body, patch(body, f->on)));
+    } else if (auto* g = std::get_if<Gravity>(&load)) {
+      const double mass = prepared.experiment.materials.front().density * volume(body, body.nodes);
+      g->wrench = at_centroid(mass * g->acceleration, centroid(body));
+    }
+  }
+}
+
+/// Lattice nodes in the body are asked for themselves; those outside at the nearest place and behind it.
+void place_samples(PreparedCase& prepared) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  const std::vector<OuterFacet> facets = outer_facets(body);
+  const FacetTree tree(body, facets);
+  const Region& region = *prepared.regions.front();
+  std::vector<Vec3> points;
+  const auto ask = [&](const Vec3& p) {
+    points.push_back(p);
+    return static_cast<int>(points.size()) - 1;
+  };
+  for (const auto& mesh : prepared.meshes)
+    for (const auto& row : mesh->nodes.rowwise()) {
+      const Vec3 X = row.transpose();
+      if (region.inside(X)) {
+        prepared.body_samples.push_back({ask(X)});
+        continue;
+      }
+      const Vec3 nearest = tree.nearest(X).point, mirrored = 2 * nearest - X;
+      const int at = ask(nearest);
+      prepared.body_samples.push_back({at, region.inside(mirrored) ? ask(mirrored) : at});
+    }
+  prepared.body_points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) prepared.body_points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+}
+
+}  // namespace
+
+void prepare_voxel_body(PreparedCase& prepared) try {
+  const Experiment& e = prepared.experiment;
+  mesh_the_body(prepared);
+  std::vector<std::string> patches;
+  for (const Patch& p : prepared.tetrahedra.back()->patches) patches.push_back(p.name);
+  check_patches(e, patches);
+  cut_lattices(prepared);
+  set_wrenches(prepared);
+  if (!e.reference.elements.empty()) place_samples(prepared);
+} catch (const std::invalid_argument& e) {
+  throw InputError(prepared.experiment.body.where, e.what());
+}
+
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {
+  NodalVectors out(static_cast<Eigen::Index>(prepared.body_samples.size()), 3);
+  for (std::size_t n = 0; n < prepared.body_samples.size(); ++n) {
+    const BodySample& s = prepared.body_samples[n];
+    const auto row = static_cast<Eigen::Index>(n);
+    out.row(row) = s.within < 0 ? Eigen::RowVector3d(u.row(s.at)) : 2 * u.row(s.at) - u.row(s.within);
+  }
+  return out;
+}
+
+std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own, std::vector<PatchReaction> reactions) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  for (PatchReaction& r : reactions)
+    r.torque += (centroid(own, patch(own, r.patch)) - centroid(body, patch(body, r.patch))).cross(r.force);
+  return reactions;
+}
+
+}  // namespace springproof

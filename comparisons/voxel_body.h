@@ -1,0 +1,19 @@
+// Any closed body: tetrahedra for the finite elements, cubes cut out of it for the lattices.
+#pragma once
+
+#include "comparisons/case_run.h"
+
+namespace springproof {
+
+/// Meshes the body of a case, cuts its lattices and gives its loads the wrenches that they have on the true body, the
+/// finest of the tetrahedral meshes.
+/// @throws InputError for what is wrong with the body, its patches or its voxels.
+void prepare_voxel_body(PreparedCase& prepared);
+
+/// Displacement at the nodes of every lattice, one after the other, from that at body_points.
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& at_body_points);
+
+/// Torques as of forces about the rest centroids of the true body's patches instead of those of `own`.
+std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own, std::vector<PatchReaction> reactions);
+
+}  // namespace springproof

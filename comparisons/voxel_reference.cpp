@@ -1,0 +1,152 @@
+#include "comparisons/voxel_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "comparisons/measures.h"
+#include "comparisons/voxel_body.h"
+
+namespace springproof {
+namespace {
+
+// Cubes of a lattice up to which they are also cut into eight, and up to which finite elements run on them at all: some
+// million unknowns of elements with 27 and with 8 nodes.
+constexpr std::size_t most_refined_cubes = 8000, most_cubes = 200000;
+
+NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
+  NodalVectors both(a.rows() + b.rows(), 3);
+  both << a, b;
+  return both;
+}
+
+std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const NodalVectors probes = probe_points(e);
+  const bool stresses = wanted("stress", e.measures);
+  fem::Request request{e, material, {}, stacked(prepared.body_points, probes), stresses ? probes : NodalVectors(0, 3), 1e-8, prepared.tetrahedra};
+  for (const std::string& element : e.reference.elements)
+    for (int m = 0; m < static_cast<int>(prepared.tetrahedra.size()); ++m) {
+      const int cells = static_cast<int>(prepared.tetrahedra[m]->tetrahedra.size());
+      request.grids.push_back({{cells, 0, 0}, element, 1.0, m, 0});
+    }
+  std::vector<fem::Solution> solutions = fem::solve(request);
+  for (fem::Solution& s : solutions) {
+    if (!s.ok) continue;
+    const Mesh& own = *prepared.tetrahedra[s.grid.mesh];
+    s.reactions = about_true_patches(prepared, own, s.reactions);
+    s.displacement = stacked(at_lattice_nodes(prepared, s.displacement.topRows(prepared.body_points.rows())),
+                             s.displacement.bottomRows(probes.rows()));
+  }
+  return solutions;
+}
+
+/// On the cubes of one lattice: q1, and if they are not too many q2 and q2 on cubes cut into eight.
+std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t lattice, const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const auto& mesh = prepared.meshes[lattice];
+  const Cells& cells = e.body.cells[lattice];
+  if (mesh->hexahedra.size() > most_cubes) return {};
+  fem::Request request{e, material, {{cells, "q1", 1.0, 0, 0}}, mesh->nodes, NodalVectors(0, 3), 1e-8, {mesh}};
+  if (mesh->hexahedra.size() <= most_refined_cubes) {
+    request.grids.push_back({cells, "q2", 1.0, 0, 0});
+    request.grids.push_back({{2 * cells[0], 2 * cells[1], 2 * cells[2]}, "q2", 1.0, 0, 1});
+  }
+  std::vector<fem::Solution> solutions = fem::solve(request);
+  Eigen::Index nodes = 0, first = 0;
+  for (std::size_t i = 0; i < prepared.meshes.size(); ++i) {
+    if (i == lattice) first = nodes;
+    nodes += prepared.meshes[i]->nodes.rows();
+  }
+  for (fem::Solution& s : solutions) {
+    if (!s.ok) continue;
+    s.reactions = about_true_patches(prepared, *mesh, s.reactions);
+    const NodalVectors probes = interpolate(*mesh, s.displacement, probe_points(e));
+    NodalVectors all = NodalVectors::Zero(nodes + probes.rows(), 3);
+    all.middleRows(first, mesh->nodes.rows()) = s.displacement;
+    all.bottomRows(probes.rows()) = probes;
+    s.displacement = std::move(all);
+  }
+  return solutions;
+}
+
+}  // namespace
+
+ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
+  ReferenceGrids out;
+  const std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material);
+  auto at = solutions.begin();
+  for (const std::string& element : prepared.experiment.reference.elements) {
+    out.elements.push_back({element, {at, at + 3}});
+    at += 3;
+  }
+  if (prepared.experiment.models.empty()) return out;
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material);
+    out.peers.push_back(cubes.empty() ? fem::Solution() : cubes.front());
+    out.refined.emplace_back(cubes.begin() + std::min<std::size_t>(1, cubes.size()), cubes.end());
+  }
+  return out;
+} catch (const InputError&) {
+  throw;
+} catch (const std::runtime_error& e) {
+  ReferenceGrids none;
+  none.failure = e.what();
+  return none;
+}
+
+std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t lattice, const ReferenceGrids& grids) {
+  if (lattice >= grids.refined.size() || grids.refined[lattice].size() != 2) return {};
+  const fem::Solution &peer = grids.peers[lattice], &h = grids.refined[lattice][0], &half = grids.refined[lattice][1];
+  if (!peer.ok || !h.ok || !half.ok) return {};
+  const NodalVectors u1 = at_lattice(prepared, lattice, h.displacement), u2 = at_lattice(prepared, lattice, half.displacement);
+  VoxelLimit out{at_lattice(prepared, lattice, peer.displacement), 2 * u2 - u1, 3 * (u2 - u1).rowwise().norm(), measures_of(prepared, peer), {}};
+  const auto coarse = measures_of(prepared, h), fine = measures_of(prepared, half);
+  for (const auto& [measure, value] : fine) out.limits[measure] = extrapolate_two(coarse.at(measure), value);
+  return out;
+}
+
+std::vector<ErrorSplit> split_error(const PreparedCase& prepared, std::size_t lattice, const VoxelLimit& voxels, const BodyLimit& body,
+                                    const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& values) {
+  const Experiment& e = prepared.experiment;
+  const double samples = static_cast<double>(u.size());
+  ErrorSplit blank;
+  blank.cells = e.body.cells[lattice];
+  blank.voxel_edge = prepared.voxel_edges[lattice];
+  std::vector<ErrorSplit> splits;
+
+  const Eigen::VectorXd weights = nodal_volumes(*prepared.meshes[lattice]);
+  const double size = weighted_norm(body.field.displacement, weights);
+  const auto distance = [&](const NodalVectors& a, const NodalVectors& b) { return weighted_norm(a - b, weights) / size; };
+  ErrorSplit field = blank;
+  field.measure = "displacement_error";
+  field.unit = unit_of(field.measure);
+  for (const NodalVectors& sample : u) {
+    field.total += distance(sample, body.field.displacement) / samples;
+    field.model_error += distance(sample, voxels.peer) / samples;
+  }
+  field.discretisation_error = distance(voxels.peer, voxels.limit);
+  field.geometry_error = distance(voxels.limit, body.field.displacement);
+  field.voxel_uncertainty = std::sqrt(weights.dot(voxels.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size;
+  field.body_uncertainty = body.field.uncertainty;
+  splits.push_back(field);
+
+  for (const auto& [measure, limit] : voxels.limits) {
+    if (!wanted(measure, e.measures) || !comparable(prepared, measure) || !body.scalars.contains(measure)) continue;
+    ErrorSplit s = blank;
+    s.measure = measure;
+    s.unit = unit_of(measure);
+    const ReferenceValue& truth = body.scalars.at(measure);
+    double mean = 0;
+    for (const auto& sample : values) mean += sample.at(measure) / samples;
+    s.total = mean - truth.value;
+    s.model_error = mean - voxels.peer_values.at(measure);
+    s.discretisation_error = voxels.peer_values.at(measure) - limit.value;
+    s.geometry_error = limit.value - truth.value;
+    s.voxel_uncertainty = limit.uncertainty;
+    s.body_uncertainty = truth.uncertainty;
+    splits.push_back(s);
+  }
+  return splits;
+}
+
+}  // namespace springproof
