@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "meshes/mesh.h"
 #include "msm/topology/region.h"
@@ -13,6 +15,7 @@ namespace springproof {
 struct LatticeBody {
   std::shared_ptr<const Mesh> mesh;      ///< hexahedra
   std::shared_ptr<const Region> region;  ///< the true body, which disordered networks fill; empty: the mesh's
+  std::vector<std::string> notes;        ///< what is left out of the body, for the user
 };
 
 /// Meshes the gmsh script `geo`; with body.voxels into tetrahedra, whose place the cubes take.
