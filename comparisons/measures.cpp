@@ -113,8 +113,9 @@ double section_axis_distance(const Mesh& mesh, const Section& section, const Nod
 
 NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points) {
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  const Locator locator(mesh);
   for (int i = 0; i < points.rows(); ++i) {
-    const std::optional<Location> at = locate(mesh, points.row(i).transpose());
+    const std::optional<Location> at = locator.find(points.row(i).transpose());
     if (!at)
       throw InputError(fmt::format("at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body", points(i, 0),
                                    points(i, 1), points(i, 2)));

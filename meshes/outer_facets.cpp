@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 namespace springproof {
 namespace {
@@ -15,27 +17,64 @@ Vec3 centre_of(const Mesh& mesh, const Cell& cell) {
   return sum / double(cell.size());
 }
 
+constexpr int faces_of(const Hexahedron&) { return 6; }
+constexpr int faces_of(const Tetrahedron&) { return 4; }
+
+std::array<int, 4> face(const Hexahedron& cell, int f) { return face_of(cell, f); }
+std::array<int, 4> face(const Tetrahedron& cell, int f) {
+  const auto& corners = tetrahedron_faces[f];
+  return {cell[corners[0]], cell[corners[1]], cell[corners[2]], -1};
+}
+
+int lowest(const std::array<int, 4>& face) {
+  const int first = std::min({face[0], face[1], face[2]});
+  return face[3] < 0 ? first : std::min(first, face[3]);
+}
+
+/// The faces, `cell * faces + f`, in buckets by their lowest node: those of node n are items[start[n]] ... items[start[n + 1] - 1].
+template <class Cell>
+void bucket_faces(const Mesh& mesh, const std::vector<Cell>& cells, std::vector<std::size_t>& start, std::vector<std::uint32_t>& items) {
+  const int faces = faces_of(Cell{});
+  start.assign(mesh.nodes.rows() + 2, 0);
+  for (const Cell& cell : cells)
+    for (int f = 0; f < faces; ++f) ++start[lowest(face(cell, f)) + 2];
+  for (std::size_t n = 2; n < start.size(); ++n) start[n] += start[n - 1];
+  items.resize(cells.size() * faces);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (int f = 0; f < faces; ++f) items[start[lowest(face(cells[c], f)) + 1]++] = static_cast<std::uint32_t>(c * faces + f);
+}
+
+/// A full sort of all faces would take most of the time of voxelising: buckets of a node hold a dozen.
+template <class Cell>
+void add_outer(const Mesh& mesh, const std::vector<Cell>& cells, std::vector<OuterFacet>& outer) {
+  const int faces = faces_of(Cell{});
+  std::vector<std::size_t> start;
+  std::vector<std::uint32_t> items;
+  bucket_faces(mesh, cells, start, items);
+  std::vector<std::pair<std::array<int, 4>, std::uint32_t>> bucket;
+  for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) {
+    bucket.clear();
+    for (std::size_t i = start[n]; i < start[n + 1]; ++i) {
+      auto key = face(cells[items[i] / faces], items[i] % faces);
+      std::sort(key.begin(), key.end());
+      bucket.emplace_back(key, items[i]);
+    }
+    std::sort(bucket.begin(), bucket.end());
+    for (std::size_t i = 0, j; i < bucket.size(); i = j) {
+      for (j = i + 1; j < bucket.size() && bucket[j].first == bucket[i].first;) ++j;
+      if (j > i + 1) continue;
+      const Cell& cell = cells[bucket[i].second / faces];
+      outer.push_back({bucket[i].first, face(cell, bucket[i].second % faces), centre_of(mesh, cell)});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<OuterFacet> outer_facets(const Mesh& mesh) {
-  std::vector<OuterFacet> all;
-  const auto add = [&](std::array<int, 4> nodes, const Vec3& centre) {
-    auto key = nodes;
-    std::sort(key.begin(), key.end());
-    all.push_back({key, nodes, centre});
-  };
-  for (const Hexahedron& cell : mesh.hexahedra)
-    for (int f = 0; f < 6; ++f) add(face_of(cell, f), centre_of(mesh, cell));
-  for (const Tetrahedron& cell : mesh.tetrahedra)
-    for (const auto& f : tetrahedron_faces) add({cell[f[0]], cell[f[1]], cell[f[2]], -1}, centre_of(mesh, cell));
-  std::stable_sort(all.begin(), all.end(), [](const OuterFacet& a, const OuterFacet& b) { return a.key < b.key; });
   std::vector<OuterFacet> outer;
-  for (std::size_t i = 0; i < all.size();) {
-    std::size_t j = i;
-    while (j < all.size() && all[j].key == all[i].key) ++j;
-    if (j == i + 1) outer.push_back(all[i]);
-    i = j;
-  }
+  add_outer(mesh, mesh.tetrahedra, outer);  // their keys begin with -1
+  add_outer(mesh, mesh.hexahedra, outer);
   return outer;
 }
 

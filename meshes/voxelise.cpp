@@ -3,130 +3,266 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <map>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
-#include "meshes/outer_facets.h"
+#include "meshes/facet_tree.h"
+#include "meshes/scan_lines.h"
 
 namespace springproof {
 namespace {
 
-constexpr double tolerance = 1e-6;  // of the box
+constexpr double tolerance = 1e-6;     // of an edge
+constexpr double most_cubes = 1e9;     // in the box
+constexpr double most_left_out = 0.02;
 
-void check_box(const Vec3& size, const std::array<int, 3>& cells, const Mesh& body) {
-  const Vec3 edge = size.cwiseQuotient(Vec3(cells[0], cells[1], cells[2]));
-  if (edge.maxCoeff() > (1 + tolerance) * edge.minCoeff())
-    throw std::invalid_argument(fmt::format("voxels: cells of {:.6g} x {:.6g} x {:.6g} m are no cubes", edge[0], edge[1], edge[2]));
-  const Vec3 low = body.nodes.colwise().minCoeff(), high = body.nodes.colwise().maxCoeff(), slack = tolerance * size;
-  if ((low.array() < -slack.array()).any() || (high.array() > (size + slack).array()).any())
-    throw std::invalid_argument(fmt::format("voxels: the body spans ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m, which is not "
-                                            "within the box from 0 to size_m",
-                                            low[0], low[1], low[2], high[0], high[1], high[2]));
+struct Extent {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+};
+
+Extent extent_of(const Mesh& body) {
+  Extent box;
+  const auto add = [&](const auto& cells) {
+    for (const auto& cell : cells)
+      for (const int n : cell) {
+        box.low = box.low.cwiseMin(body.nodes.row(n).transpose());
+        box.high = box.high.cwiseMax(body.nodes.row(n).transpose());
+      }
+  };
+  add(body.hexahedra);
+  add(body.tetrahedra);
+  return box;
 }
 
-/// The cubes and their nodes, x fastest; only points that a cube uses are nodes.
-Mesh cubes(const Vec3& size, const std::array<int, 3>& cells, const std::function<bool(const Vec3&)>& inside) {
-  const auto [nx, ny, nz] = cells;
-  const Vec3 edge = size.cwiseQuotient(Vec3(nx, ny, nz));
-  const auto point = [&, nx = nx, ny = ny](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
-  Mesh mesh;
-  std::vector<int> number(std::size_t(nx + 1) * (ny + 1) * (nz + 1), -1);
-  for (int k = 0; k < nz; ++k)
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        if (!inside(Vec3(i + 0.5, j + 0.5, k + 0.5).cwiseProduct(edge))) continue;
+void check_edge(double edge, double cubes) {
+  if (!(edge > 0) || !std::isfinite(edge)) throw std::invalid_argument(fmt::format("voxels: an edge of {:.6g} m is not positive", edge));
+  if (!(cubes <= most_cubes))
+    throw std::invalid_argument(fmt::format("voxels: cubes of {:.6g} m are too small: the box around the body holds {:.3g}, at most {:.0e} are "
+                                            "taken", edge, cubes, most_cubes));
+}
+
+void check_grid(const VoxelGrid& grid, const Mesh& body) {
+  if (*std::min_element(grid.cells.begin(), grid.cells.end()) < 1) throw std::invalid_argument("voxels: the grid has no cells");
+  check_edge(grid.edge, double(grid.cells[0]) * grid.cells[1] * grid.cells[2]);
+  const Extent body_box = extent_of(body);
+  const Vec3 slack = Vec3::Constant(2 * tolerance * grid.edge);
+  const Vec3 end = grid.origin + grid.edge * Vec3(grid.cells[0], grid.cells[1], grid.cells[2]);
+  if ((body_box.low.array() >= (grid.origin - slack).array()).all() && (body_box.high.array() <= (end + slack).array()).all()) return;
+  const auto text = [](const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]); };
+  throw std::invalid_argument(fmt::format("voxels: the body spans {} to {} m, which is not within the box from {} to {} m",
+                                          text(body_box.low), text(body_box.high), text(grid.origin), text(end)));
+}
+
+/// The cubes whose centres lie inside; cube (0,0,0) has its centre at the lattice's origin.
+std::vector<Run> cubes_inside(const VoxelGrid& grid, const Mesh& body, const std::vector<OuterFacet>& facets) {
+  std::vector<Vec3> points(body.nodes.rows());
+  for (Eigen::Index n = 0; n < body.nodes.rows(); ++n)
+    points[n] = (body.nodes.row(n).transpose() - grid.origin) / grid.edge - Vec3::Constant(0.5);
+  std::vector<std::array<int, 3>> triangles;
+  triangles.reserve(2 * facets.size());
+  for (const OuterFacet& f : facets) {
+    triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
+    if (f.nodes[3] >= 0) triangles.push_back({f.nodes[0], f.nodes[2], f.nodes[3]});
+  }
+  return runs_inside(points, triangles, grid.cells);
+}
+
+std::size_t cubes_in(const std::vector<Run>& runs) {
+  std::size_t sum = 0;
+  for (const Run& r : runs) sum += r.end - r.begin;
+  return sum;
+}
+
+/// Which piece each run belongs to, as the number of one of its runs: runs hang together where cubes share a face.
+std::vector<int> pieces_of(const std::vector<Run>& runs, const std::array<int, 3>& cells) {
+  std::vector<int> parent(runs.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int r) {
+    while (parent[r] != r) r = parent[r] = parent[parent[r]];
+    return r;
+  };
+  const auto join_rows = [&](int distance, bool over_layers) {  // of rows: to the next in y, or in z
+    for (std::size_t a = 0, b = 0; a < runs.size(); ++a) {
+      if (!over_layers && (runs[a].row + 1) % cells[1] == 0) continue;  // the last row of its layer
+      const int row = runs[a].row + distance;
+      while (b < runs.size() && (runs[b].row < row || (runs[b].row == row && runs[b].end <= runs[a].begin))) ++b;
+      for (std::size_t c = b; c < runs.size() && runs[c].row == row && runs[c].begin < runs[a].end; ++c)
+        parent[root(static_cast<int>(c))] = root(static_cast<int>(a));
+    }
+  };
+  join_rows(1, false);
+  join_rows(cells[1], true);
+  for (std::size_t r = 0; r < runs.size(); ++r) parent[r] = root(static_cast<int>(r));
+  return parent;
+}
+
+/// Drops all but the largest piece.
+void keep_one_piece(std::vector<Run>& runs, const VoxelGrid& grid, std::vector<std::string>& notes) {
+  const std::vector<int> piece = pieces_of(runs, grid.cells);
+  std::vector<std::size_t> size(runs.size(), 0);
+  for (std::size_t r = 0; r < runs.size(); ++r) size[piece[r]] += runs[r].end - runs[r].begin;
+  const auto largest = std::max_element(size.begin(), size.end());
+  const auto pieces = std::count_if(size.begin(), size.end(), [](std::size_t n) { return n > 0; });
+  if (pieces == 1) return;
+  const std::size_t all = cubes_in(runs), left_out = all - *largest;
+  if (double(left_out) > most_left_out * double(all))
+    throw std::invalid_argument(fmt::format("voxels: the {} cubes of {:.6g} m fall into {} pieces that share no face, the largest of {}; take smaller "
+                                            "voxels", all, grid.edge, pieces, *largest));
+  notes.push_back(fmt::format("{} of {} cubes {} on by an edge or {} apart: left out", left_out, all, left_out == 1 ? "hangs" : "hang",
+                              left_out == 1 ? "lies" : "lie"));
+  const int kept = static_cast<int>(largest - size.begin());
+  std::size_t next = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    if (piece[r] == kept) runs[next++] = runs[r];
+  runs.resize(next);
+}
+
+/// The cubes and their nodes, both x fastest; only points that a cube uses are nodes.
+class CubeMesh {
+ public:
+  CubeMesh(const VoxelGrid& grid, const std::vector<Run>& runs) : grid_(grid), runs_(runs), layer_start_(grid.cells[2] + 1) {
+    for (int k = 0; k <= grid.cells[2]; ++k)
+      layer_start_[k] = std::lower_bound(runs.begin(), runs.end(), std::int64_t{k} * grid.cells[1],
+                                         [](const Run& r, std::int64_t row) { return r.row < row; }) - runs.begin();
+  }
+
+  Mesh build() {
+    mesh_.hexahedra.reserve(cubes_in(runs_));
+    std::vector<int> below = number_points(0);
+    for (int k = 0; k < grid_.cells[2]; ++k) {
+      const std::vector<int> above = number_points(k + 1);
+      add_cubes(k, below, above);
+      below = above;
+    }
+    mesh_.nodes.resize(points_.size(), 3);
+    for (std::size_t n = 0; n < points_.size(); ++n)
+      for (int axis = 0; axis < 3; ++axis) mesh_.nodes(n, axis) = grid_.origin[axis] + points_[n][axis] * grid_.edge;
+    set_grid();
+    return std::move(mesh_);
+  }
+
+ private:
+  std::size_t point(int i, int j) const { return std::size_t(j) * (grid_.cells[0] + 1) + i; }
+
+  /// f(run, j) for the runs of layer k of cubes, if there is one.
+  template <class F>
+  void for_layer(int k, F f) const {
+    if (k < 0 || k >= grid_.cells[2]) return;
+    for (std::size_t r = layer_start_[k]; r < layer_start_[k + 1]; ++r) f(runs_[r], runs_[r].row % grid_.cells[1]);
+  }
+
+  /// Node numbers of the lattice points of height k; -1 where there is none.
+  std::vector<int> number_points(int k) {
+    std::vector<int> number(point(0, grid_.cells[1] + 1), -1);
+    for (const int layer : {k - 1, k})
+      for_layer(layer, [&](const Run& run, int j) {
+        for (const int row : {j, j + 1}) std::fill(&number[point(run.begin, row)], &number[point(run.end, row)] + 1, 0);
+      });
+    for (int j = 0; j <= grid_.cells[1]; ++j)
+      for (int i = 0; i <= grid_.cells[0]; ++i)
+        if (int& n = number[point(i, j)]; n == 0) {
+          n = static_cast<int>(points_.size());
+          points_.push_back({i, j, k});
+        }
+    return number;
+  }
+
+  void add_cubes(int k, const std::vector<int>& below, const std::vector<int>& above) {
+    for_layer(k, [&](const Run& run, int j) {
+      for (int i = run.begin; i < run.end; ++i) {
         Hexahedron cube;
         for (int c = 0; c < 8; ++c) {
           const auto& [di, dj, dk] = hexahedron_corners[c];
-          cube[c] = point(i + di, j + dj, k + dk);
-          number[cube[c]] = 0;
+          cube[c] = (dk ? above : below)[point(i + di, j + dj)];
         }
-        mesh.hexahedra.push_back(cube);
+        mesh_.hexahedra.push_back(cube);
+        index_.push_back({i, j, k});
       }
-  mesh.nodes.resize(std::count(number.begin(), number.end(), 0), 3);
-  int next = 0;
-  for (int k = 0; k <= nz; ++k)
-    for (int j = 0; j <= ny; ++j)
-      for (int i = 0; i <= nx; ++i)
-        if (int& n = number[point(i, j, k)]; n == 0) {
-          mesh.nodes.row(next) << size.x() * i / nx, size.y() * j / ny, size.z() * k / nz;
-          n = next++;
-        }
-  for (Hexahedron& cube : mesh.hexahedra)
-    for (int& n : cube) n = number[n];
-  return mesh;
-}
-
-/// An outer facet of the body, and the ball that holds it.
-struct BodyFacet {
-  std::array<Vec3, 4> x;
-  int corners;
-  Vec3 middle = Vec3::Zero();
-  double radius = 0;
-  std::vector<std::size_t> patches;
-
-  double distance(const Vec3& p) const {
-    const double first = (closest_point(p, x[0], x[1], x[2]) - p).norm();
-    return corners == 3 ? first : std::min(first, (closest_point(p, x[0], x[2], x[3]) - p).norm());
+    });
   }
+
+  /// The grid of the cubes that are there.
+  void set_grid() {
+    std::array<int, 3> low = index_.front(), high = low;
+    for (const auto& index : index_)
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], index[axis]);
+        high[axis] = std::max(high[axis], index[axis]);
+      }
+    Grid grid;
+    for (int axis = 0; axis < 3; ++axis) {
+      grid.cells[axis] = high[axis] - low[axis] + 1;
+      grid.origin[axis] = grid_.origin[axis] + low[axis] * grid_.edge;
+      grid.spacing[axis] = grid_.edge;
+    }
+    for (auto& index : index_)
+      for (int axis = 0; axis < 3; ++axis) index[axis] -= low[axis];
+    grid.cell_index = std::move(index_);
+    mesh_.grid = std::move(grid);
+  }
+
+  const VoxelGrid& grid_;
+  const std::vector<Run>& runs_;
+  std::vector<std::size_t> layer_start_;  ///< of the runs
+  std::vector<std::array<int, 3>> points_, index_;
+  Mesh mesh_;
 };
 
-std::vector<BodyFacet> body_facets(const Mesh& body) {
-  std::map<std::array<int, 4>, std::vector<std::size_t>> patches_of;
+/// (key of a facet, number of a patch that holds it), ascending.
+std::vector<std::pair<std::array<int, 4>, std::size_t>> patches_by_facet(const Mesh& body) {
+  std::vector<std::pair<std::array<int, 4>, std::size_t>> list;
   for (std::size_t p = 0; p < body.patches.size(); ++p)
     for (std::array<int, 4> facet : body.patches[p].facets) {
       std::sort(facet.begin(), facet.end());
-      patches_of[facet].push_back(p);
+      list.emplace_back(facet, p);
     }
-  std::vector<BodyFacet> facets;
-  for (const OuterFacet& outer : outer_facets(body)) {
-    BodyFacet f;
-    f.corners = outer.nodes[3] < 0 ? 3 : 4;
-    for (int c = 0; c < f.corners; ++c) f.middle += (f.x[c] = body.nodes.row(outer.nodes[c]).transpose()) / f.corners;
-    for (int c = 0; c < f.corners; ++c) f.radius = std::max(f.radius, (f.x[c] - f.middle).norm());
-    if (const auto it = patches_of.find(outer.key); it != patches_of.end()) f.patches = it->second;
-    facets.push_back(std::move(f));
-  }
-  return facets;
+  std::sort(list.begin(), list.end());
+  return list;
 }
 
-const BodyFacet& nearest(const std::vector<BodyFacet>& facets, const Vec3& p) {
-  const BodyFacet* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  for (const BodyFacet& f : facets) {
-    const double reach = least + f.radius;
-    if ((f.middle - p).squaredNorm() > reach * reach) continue;
-    if (const double d = f.distance(p); d < least) {
-      least = d;
-      best = &f;
-    }
-  }
-  return *best;
-}
-
-void add_patches(const Mesh& body, Mesh& mesh) {
+void add_patches(const Mesh& body, const std::vector<OuterFacet>& facets, Mesh& mesh) {
+  if (body.patches.empty()) return;
   for (const Patch& p : body.patches) mesh.patches.push_back({p.name, {}});
-  const std::vector<BodyFacet> facets = body_facets(body);
-  std::vector<std::array<int, 4>> outer;  // node numbers, in order of the cubes
+  const auto patches = patches_by_facet(body);
+  const FacetTree tree(body, facets);
   for (const OuterFacet& facet : outer_facets(mesh)) {
     Vec3 middle = Vec3::Zero();
     for (const int n : facet.nodes) middle += mesh.nodes.row(n).transpose() / 4;
-    for (const std::size_t p : nearest(facets, middle).patches) mesh.patches[p].facets.push_back(facet.nodes);
+    const auto& key = facets[tree.nearest(middle).facet].key;
+    for (auto it = std::lower_bound(patches.begin(), patches.end(), std::pair(key, std::size_t{0})); it != patches.end() && it->first == key; ++it)
+      mesh.patches[it->second].facets.push_back(facet.nodes);
   }
 }
 
 }  // namespace
 
-Mesh voxelise(const Vec3& size, const std::array<int, 3>& cells, const std::function<bool(const Vec3&)>& inside, const Mesh& body) {
-  check_box(size, cells, body);
-  Mesh mesh = cubes(size, cells, inside);
-  if (mesh.hexahedra.empty()) throw std::invalid_argument("voxels: no cube has its centre in the body; take more cells");
-  if (const int parts = separate_parts(mesh); parts > 1)
-    throw std::invalid_argument(fmt::format("voxels: the cubes fall into {} parts that share no node; take more cells", parts));
-  add_patches(body, mesh);
-  mesh.grid = detect_grid(mesh);
-  return mesh;
+VoxelGrid voxel_grid(const Mesh& body, double edge) {
+  if (body.hexahedra.empty() && body.tetrahedra.empty()) throw std::invalid_argument("voxels: the body has no cells");
+  const Extent box = extent_of(body);
+  const Vec3 counts = ((box.high - box.low) / edge).unaryExpr([](double n) { return std::max(1.0, std::ceil(n - tolerance)); });
+  check_edge(edge, counts.prod());
+  VoxelGrid grid{box.low, edge, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.cells[axis] = static_cast<int>(counts[axis]);
+    const double excess = counts[axis] * edge - (box.high[axis] - box.low[axis]);
+    if (excess > tolerance * edge) grid.origin[axis] -= excess / 2;
+  }
+  return grid;
+}
+
+Voxels voxelise(const VoxelGrid& grid, const Mesh& body) {
+  check_grid(grid, body);
+  const std::vector<OuterFacet> facets = outer_facets(body);
+  std::vector<Run> runs = cubes_inside(grid, body, facets);
+  if (runs.empty()) throw std::invalid_argument(fmt::format("voxels: no cube of {:.6g} m has its centre in the body; take smaller voxels", grid.edge));
+  Voxels voxels;
+  keep_one_piece(runs, grid, voxels.notes);
+  voxels.mesh = CubeMesh(grid, runs).build();
+  add_patches(body, facets, voxels.mesh);
+  return voxels;
 }
 
 }  // namespace springproof
