@@ -11,7 +11,7 @@
 #include "comparisons/model_run.h"
 #include "comparisons/picture.h"
 #include "comparisons/reference_grids.h"
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 #include "meshes/locate.h"
 #include "msm/solve/equilibrium.h"
 

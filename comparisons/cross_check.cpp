@@ -12,7 +12,7 @@
 #include "comparisons/case_run.h"
 #include "comparisons/measures.h"
 #include "fem_reference/reference.h"
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 
 namespace springproof {
 namespace {

@@ -1,6 +1,6 @@
 #include "comparisons/lattice_body.h"
 
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 #include "meshes/voxelise.h"
 
 namespace springproof {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 #include "meshes/volume.h"
 
 namespace springproof {
