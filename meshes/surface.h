@@ -1,0 +1,31 @@
+// The surface of a body as triangles.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "problem/vector.h"
+
+namespace springproof {
+
+/// Facets are outward by the right-hand rule where the surface is that of a body (surface_check.h).
+struct Surface {
+  std::vector<Vec3> points;                   ///< [m], or in the units of the file it was read from
+  std::vector<std::array<int, 3>> triangles;  ///< numbers of points
+};
+
+/// Box with edges along the axes.
+struct Box {
+  Vec3 low, high;
+};
+
+/// Volume enclosed by a closed surface [m^3]; negative if its facets point inward.
+double volume(const Surface& surface);
+
+/// Area of all facets [m^2].
+double area(const Surface& surface);
+
+/// Box around the points of the facets; low > high if there are none.
+Box bounding_box(const Surface& surface);
+
+}  // namespace springproof
