@@ -13,7 +13,6 @@
 #include "comparisons/voxel_body.h"
 #include "comparisons/voxel_reference.h"
 #include "meshes/mesher.h"
-#include "meshes/select_patches.h"
 #include "msm/solve/equilibrium.h"
 
 namespace springproof {
@@ -293,9 +292,7 @@ void prepare_blocks(PreparedCase& prepared) {
       throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", e.file.string(), n));
   check_fineness(e);
   for (const Cells& cells : e.body.cells) {
-    Mesh mesh = mesh_geo(prepared.geo, e.body.size, cells);
-    select_patches(e.patches, mesh);
-    prepared.meshes.push_back(std::make_shared<Mesh>(std::move(mesh)));
+    prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells)));
     prepared.regions.push_back(nullptr);
   }
 }

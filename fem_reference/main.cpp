@@ -10,7 +10,7 @@
 #include "fem_reference/exchange.h"
 #include "fem_reference/processes.h"
 #include "fem_reference/solve_grid.h"
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 
 namespace springproof::fem {
 namespace {

@@ -1,99 +1,26 @@
 #include "comparisons/calculix/run.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <memory>
 #include <sstream>
-#include <thread>
+
+#include "meshes/child.h"
 
 namespace springproof::calculix {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::atomic<pid_t> child_under_way = 0;
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "springproof-ccx-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-      throw std::runtime_error(fmt::format("cannot make {}: {}", name, std::strerror(errno)));
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  fs::path path;
-};
-
-struct Outcome {
-  int status = 0;
-  bool in_time = true;
-  double seconds = 0;
-};
-
-pid_t start(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& folder) {
-  std::vector<char*> argv = {const_cast<char*>(file.c_str())};
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-  argv.push_back(nullptr);
-  const pid_t child = fork();
-  if (child < 0)
-    throw std::runtime_error(fmt::format("cannot start {}: {}", file.string(), std::strerror(errno)));
-  if (child > 0) return child;
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (chdir(folder.c_str()) != 0) _exit(127);
-  const int log = open("log", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  dup2(log, STDOUT_FILENO);
-  dup2(log, STDERR_FILENO);
-  execv(file.c_str(), argv.data());
-  _exit(127);
-}
-
-Outcome run_in(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& folder,
-               double time_limit) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  const pid_t child = start(file, arguments, folder);
-  child_under_way = child;
-  Outcome outcome;
-  rusage used{};
-  pid_t ended;
-  while ((ended = wait4(child, &outcome.status, WNOHANG, &used)) == 0) {
-    if (outcome.in_time && std::chrono::duration<double>(Clock::now() - begin).count() > time_limit) {
-      outcome.in_time = false;
-      kill(child, SIGKILL);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  child_under_way = 0;
-  if (ended < 0) throw std::runtime_error(fmt::format("lost {}: {}", file.string(), std::strerror(errno)));
-  outcome.seconds = double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-                    1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-  return outcome;
-}
-
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+ChildEnd run_in(const fs::path& file, const std::vector<std::string>& arguments, const fs::path& folder,
+                double time_limit) {
+  return run_child({file, arguments, folder, folder / "log", folder / "log", time_limit});
 }
 
 /// The first line with *ERROR and the one after it.
@@ -168,7 +95,7 @@ std::string version() {
   if (file.empty()) return {};
   const TemporaryFolder folder;
   run_in(file, {"-v"}, folder.path, 10);
-  const std::string text = read_text(folder.path / "log");
+  const std::string text = text_of_file(folder.path / "log");
   const auto at = text.find("Version ");
   return at == std::string::npos ? "of an unknown version"
                                  : text.substr(at + 8, text.find_first_of(" \n", at + 8) - at - 8);
@@ -210,14 +137,12 @@ Solution solve(const Deck& deck, double time_limit) {
   write(deck, out);
   out.close();
   if (!out) throw std::runtime_error(fmt::format("cannot write into {}", folder.path.string()));
-  const Outcome outcome = run_in(file, {"-i", "case"}, folder.path, time_limit);
+  const ChildEnd end = run_in(file, {"-i", "case"}, folder.path, time_limit);
   Solution solution;
-  solution.seconds = outcome.seconds;
-  const std::string log = read_text(folder.path / "log"), error = error_in(log);
-  if (!outcome.in_time)
-    solution.message = fmt::format("ccx took longer than {:g} s and was ended", time_limit);
-  else if (WIFSIGNALED(outcome.status))
-    solution.message = fmt::format("ccx was killed by signal {}", WTERMSIG(outcome.status));
+  solution.seconds = end.seconds;
+  const std::string log = text_of_file(folder.path / "log"), error = error_in(log);
+  if (end.kind != ChildEnd::exited)
+    solution.message = "ccx " + words_for(end, time_limit);
   else if (!error.empty())
     solution.message = "ccx: " + error;
   else if (log.find("using the iterative solver") != std::string::npos)
@@ -237,7 +162,7 @@ Solution solve(const Deck& deck, double time_limit) {
 }
 
 void interrupt() {
-  if (const pid_t child = child_under_way; child > 0) kill(child, SIGKILL);
+  interrupt_children();
 }
 
 }  // namespace springproof::calculix

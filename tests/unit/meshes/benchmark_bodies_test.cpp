@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 #include "support/tolerances.h"
 
 namespace springproof {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "meshes/gmsh_io.h"
+#include "meshes/mesher.h"
 #include "meshes/volume.h"
 #include "support/tolerances.h"
 

@@ -10,6 +10,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "meshes/mesher.h"
 #include "meshes/outer_facets.h"
 #include "meshes/scan_lines.h"
 #include "meshes/volume.h"

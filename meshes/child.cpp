@@ -1,0 +1,161 @@
+#include "meshes/child.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The programs under way, for interrupt_children().
+std::array<std::atomic<pid_t>, 64> children;
+
+class ChildSlot {
+ public:
+  explicit ChildSlot(pid_t child) {
+    for (auto& c : children)
+      if (pid_t free = 0; c.compare_exchange_strong(free, child)) {
+        slot_ = &c;
+        return;
+      }
+  }
+  ~ChildSlot() {
+    if (slot_) *slot_ = 0;
+  }
+  ChildSlot(const ChildSlot&) = delete;
+  ChildSlot& operator=(const ChildSlot&) = delete;
+
+ private:
+  std::atomic<pid_t>* slot_ = nullptr;
+};
+
+// Between fork and exec only calls that a signal handler may make: other threads may hold any lock.
+[[noreturn]] void become(const Child& child, char** argv, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer of a caller that is gone
+  if (getppid() != parent) _exit(not_started);
+  const auto redirect = [](const fs::path& to, int stream) {
+    if (!to.empty()) dup2(open(to.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), stream);
+  };
+  if (!child.folder.empty() && chdir(child.folder.c_str()) != 0) _exit(not_started);
+  redirect(child.output, STDOUT_FILENO);
+  redirect(child.errors, STDERR_FILENO);
+  execv(child.program.c_str(), argv);
+  _exit(not_started);
+}
+
+pid_t start(const Child& child) {
+  std::vector<char*> argv = {const_cast<char*>(child.program.c_str())};
+  for (const std::string& a : child.arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  const pid_t parent = getpid(), pid = fork();
+  if (pid < 0)
+    throw std::runtime_error(fmt::format("cannot start {}: {}", child.program.string(), std::strerror(errno)));
+  if (pid == 0) become(child, argv.data(), parent);
+  return pid;
+}
+
+// Waits without reaping, so that its number is not another's while interrupt_children() may use it.
+bool has_ended(pid_t pid, bool wait) {
+  siginfo_t info{};
+  while (waitid(P_PID, pid, &info, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG)) < 0)
+    if (errno != EINTR) return true;
+  return info.si_pid == pid;
+}
+
+/// False: it had to be killed.
+bool wait_for(pid_t pid, double time_limit) {
+  if (!(time_limit > 0)) return has_ended(pid, true);
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  while (!has_ended(pid, false)) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (seconds > time_limit) {
+      kill(pid, SIGKILL);
+      has_ended(pid, true);
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(seconds < 1 ? 1 : 10));
+  }
+  return true;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "springproof-XXXXXX").string();
+  if (!mkdtemp(name.data())) throw std::runtime_error(fmt::format("cannot make {}: {}", name, std::strerror(errno)));
+  path = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
+}
+
+ChildEnd run_child(const Child& child) {
+  const pid_t pid = start(child);
+  bool in_time;
+  {
+    const ChildSlot slot(pid);
+    in_time = wait_for(pid, child.time_limit);
+  }
+  int status = 0;
+  rusage used{};
+  while (wait4(pid, &status, 0, &used) < 0)
+    if (errno != EINTR)
+      throw std::runtime_error(fmt::format("lost {}: {}", child.program.string(), std::strerror(errno)));
+  ChildEnd end;
+  end.kind = !in_time ? ChildEnd::out_of_time : WIFSIGNALED(status) ? ChildEnd::killed : ChildEnd::exited;
+  end.status = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+  end.seconds = double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  return end;
+}
+
+void interrupt_children() {
+  for (const auto& c : children)
+    if (const pid_t child = c; child > 0) kill(child, SIGTERM);
+}
+
+std::string words_for(const ChildEnd& end, double time_limit) {
+  switch (end.kind) {
+    case ChildEnd::out_of_time: return fmt::format("took longer than {:g} s and was ended", time_limit);
+    case ChildEnd::killed: return fmt::format("was killed by signal {} ({})", end.status, strsignal(end.status));
+    default: return end.status == not_started ? "could not be started" : fmt::format("failed with status {}", end.status);
+  }
+}
+
+fs::path find_program(const std::string& name, const char* variable) {
+  if (const char* given = std::getenv(variable); given && access(given, X_OK) == 0) return given;
+  std::error_code ignored;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / name;
+  return access(beside.c_str(), X_OK) == 0 ? beside : fs::path();
+}
+
+std::string text_of_file(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text;
+  for (char buffer[1 << 16]; in.read(buffer, sizeof buffer), in.gcount() > 0;) text.append(buffer, in.gcount());
+  return text;
+}
+
+std::string trimmed(std::string text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  return text;
+}
+
+}  // namespace springproof

@@ -1,0 +1,38 @@
+// Each kind of file as a meshed body.  A gmsh session of its own each; not thread-safe.
+#pragma once
+
+#include "meshes/gmsh/session.h"
+#include "meshes/mesher.h"
+#include "meshes/surface.h"
+
+namespace springproof {
+
+/// Any of the kinds below, by the file's extension, scaled.
+/// @throws InputError when gmsh fails, or no body comes out.
+MeshedBody mesh_file(const MeshRequest& request);
+
+/// A script: structured (no edge), or tetrahedra with the parameter `edge`.
+MeshedBody mesh_script(const MeshRequest& request);
+
+/// A mesh file: its cells, or its triangles as a surface.
+MeshedBody mesh_msh(const MeshRequest& request);
+
+/// STEP or BREP by OpenCASCADE.
+MeshedBody mesh_solid(const MeshRequest& request);
+
+/// A closed surface.
+MeshedBody mesh_stl(const MeshRequest& request);
+
+/// Fills a surface, as read, with tetrahedra: checked, remeshed if its facets do not suit the edge.
+MeshedBody fill_surface(const MeshRequest& request, const Surface& raw);
+
+/// Meshes the model's volumes with tetrahedra and reads them.
+Mesh fill_with_tetrahedra(const std::filesystem::path& file, const GmshSession& session);
+
+/// Tells gmsh to make edges of this length, in the file's units.
+void want_edge(double edge);
+
+/// @throws InputError when a body of this volume [m^3] would have too many cells.
+void refuse_too_many(const MeshRequest& request, double volume);
+
+}  // namespace springproof

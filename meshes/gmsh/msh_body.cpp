@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "meshes/gmsh/bodies.h"
+#include "meshes/gmsh/read_mesh.h"
+
+namespace springproof {
+namespace {
+
+/// "12 'Tetrahedron 4', 3 'Prism 6'".
+std::string counts(const std::vector<ElementBlock>& blocks) {
+  std::string words;
+  for (const ElementBlock& b : blocks) words += fmt::format("{}{} '{}'", words.empty() ? "" : ", ", b.count(), b.name);
+  return words;
+}
+
+/// All cells by their corners, each once (a file lists a cell once for each physical volume it is in).
+ElementBlock corners_of(const std::vector<ElementBlock>& blocks) {
+  ElementBlock all = blocks[0];
+  all.nodes = all.corners;
+  all.order = 1;
+  all.node_tags.clear();
+  std::set<std::vector<std::size_t>> seen;
+  for (const ElementBlock& b : blocks)
+    for (std::size_t i = 0; i < b.node_tags.size(); i += b.nodes) {
+      std::vector<std::size_t> cell(b.node_tags.begin() + i, b.node_tags.begin() + i + b.corners);
+      all.node_tags.insert(all.node_tags.end(), cell.begin(), cell.end());
+      std::sort(cell.begin(), cell.end());
+      if (!seen.insert(std::move(cell)).second) all.node_tags.resize(all.node_tags.size() - b.corners);
+    }
+  return all;
+}
+
+std::vector<int> entities(int dimension) {
+  gmsh::vectorpair pairs;
+  gmsh::model::getEntities(pairs, dimension);
+  std::vector<int> tags;
+  for (const auto& [d, tag] : pairs) tags.push_back(tag);
+  return tags;
+}
+
+MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blocks) {
+  const std::size_t corners = blocks[0].corners;
+  for (const ElementBlock& b : blocks)
+    if (b.corners != corners || (corners != 4 && corners != 8))
+      refuse(r.file, fmt::format("mixed or unknown cells: {} (allowed: only tetrahedra or only hexahedra)", counts(blocks)));
+  MeshedBody body;
+  if (std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.order > 1; }))
+    body.notes.push_back(fmt::format("the cells of higher order ({}) are taken by their corners, with straight edges",
+                                     counts(blocks)));
+  if (r.edge > 0) body.notes.push_back("the cells of the file are used as they are");
+  body.mesh = read_mesh(r.file, corners_of(blocks));
+  return body;
+}
+
+/// The triangles of the model.
+Surface surface_of(const MeshRequest& r) {
+  const auto blocks = elements(2, entities(2));
+  if (blocks.empty()) refuse(r.file, "no cells and no surface in it (allowed: tetrahedra, hexahedra, or a closed surface of triangles)");
+  std::vector<std::size_t> tags;
+  std::vector<double> coordinates, parametric;
+  gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
+  std::map<std::size_t, int> number;
+  Surface surface;
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    number[tags[i]] = static_cast<int>(i);
+    surface.points.emplace_back(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
+  }
+  for (const ElementBlock& b : blocks) {
+    if (b.corners != 3) refuse(r.file, fmt::format("no cells, and a surface of {} (allowed: triangles)", counts(blocks)));
+    for (std::size_t i = 0; i < b.node_tags.size(); i += b.nodes)
+      surface.triangles.push_back(
+          {number.at(b.node_tags[i]), number.at(b.node_tags[i + 1]), number.at(b.node_tags[i + 2])});
+  }
+  return surface;
+}
+
+}  // namespace
+
+MeshedBody mesh_msh(const MeshRequest& r) {
+  Surface surface;
+  std::vector<std::string> notes;
+  {
+    GmshSession session({});
+    gmsh::open(r.file.string());
+    session.stop_on_error(r.file);
+    gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
+    if (const auto blocks = volume_elements(); !blocks.empty()) return read_cells(r, blocks);
+    surface = surface_of(r);
+    if (r.edge == 0)
+      refuse(r.file, "edge: the file holds a surface and no cells; the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
+    if (!physical_surfaces().empty()) notes = {"the physical surfaces of a file without cells are not kept"};
+  }
+  MeshedBody body = fill_surface(r, surface);
+  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  return body;
+}
+
+}  // namespace springproof

@@ -1,0 +1,221 @@
+#include "meshes/gmsh/read_mesh.h"
+
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "meshes/volume.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where gmsh's 27 nodes (corners, edges, faces, middle) stand when counted x fastest.
+constexpr std::array<int, 27> place_of_27 = {0,  2,  8,  6,  18, 20, 26, 24, 1,  3,  9,  5,  11, 7,
+                                             17, 15, 19, 21, 23, 25, 4,  10, 12, 14, 16, 22, 13};
+
+/// gmsh's nodes by their tags.
+struct Nodes {
+  std::vector<Vec3> position;
+  std::vector<int> number;  ///< in our mesh, -1: not in it
+};
+
+Nodes read_nodes() {
+  std::vector<std::size_t> tags;
+  std::vector<double> coordinates, parametric;
+  gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
+  const std::size_t last = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+  Nodes nodes{std::vector<Vec3>(last + 1), std::vector<int>(last + 1, -1)};
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    nodes.position[tags[i]] = Vec3(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
+  return nodes;
+}
+
+/// Numbers the corners of the cells by ascending tag.
+Mesh read_cells(const ElementBlock& cells, Nodes& nodes) {
+  for (std::size_t i = 0; i < cells.node_tags.size(); i += cells.nodes)
+    for (std::size_t c = 0; c < cells.corners; ++c) nodes.number.at(cells.node_tags[i + c]) = 0;
+  int count = 0;
+  for (int& number : nodes.number)
+    if (number == 0) number = count++;
+
+  Mesh mesh;
+  mesh.nodes.resize(count, 3);
+  for (std::size_t tag = 0; tag < nodes.number.size(); ++tag)
+    if (nodes.number[tag] >= 0) mesh.nodes.row(nodes.number[tag]) = nodes.position[tag];
+  for (std::size_t i = 0; i < cells.node_tags.size(); i += cells.nodes) {
+    const auto corner = [&](int c) { return nodes.number[cells.node_tags[i + c]]; };
+    if (cells.corners == 4)
+      mesh.tetrahedra.push_back({corner(0), corner(1), corner(2), corner(3)});
+    else
+      mesh.hexahedra.push_back({corner(0), corner(1), corner(2), corner(3), corner(4), corner(5), corner(6), corner(7)});
+  }
+  if (cells.nodes == 27) {
+    mesh.curved.resize(static_cast<Eigen::Index>(cells.node_tags.size()), 3);
+    for (std::size_t i = 0; i < cells.node_tags.size(); ++i)
+      mesh.curved.row(static_cast<Eigen::Index>(i / 27 * 27 + place_of_27[i % 27])) = nodes.position.at(cells.node_tags[i]);
+  }
+  return mesh;
+}
+
+/// gmsh turns mirrored cells round itself; what is still negative somewhere is twisted.
+void refuse_inverted_cells(const fs::path& file, const Mesh& mesh) {
+  const auto refuse_cell = [&](int node) {
+    const Vec3 at = mesh.nodes.row(node);
+    refuse(file, fmt::format("the mesh has an inverted or flat cell near ({}, {}, {}) m", at.x(), at.y(), at.z()));
+  };
+  for (const Hexahedron& cell : mesh.hexahedra) {
+    const auto jacobians = corner_jacobians(cell, mesh.nodes);
+    if (!(*std::min_element(jacobians.begin(), jacobians.end()) > 0)) refuse_cell(cell[0]);
+  }
+  for (const Tetrahedron& cell : mesh.tetrahedra) {
+    Eigen::Matrix<double, 4, 3> x;
+    for (int c = 0; c < 4; ++c) x.row(c) = mesh.nodes.row(cell[c]);
+    if (!(tetrahedron_volume(x) > 0)) refuse_cell(cell[0]);
+  }
+}
+
+/// Each cell that is an axis-aligned box with its lowest corner first; others are left as they are.
+std::vector<Hexahedron> boxes_lowest_corner_first(const Mesh& mesh) {
+  std::vector<Hexahedron> cells = mesh.hexahedra;
+  for (Hexahedron& cell : cells) {
+    Vec3 middle = Vec3::Zero();
+    for (const int n : cell) middle += mesh.nodes.row(n).transpose() / 8;
+    Hexahedron sorted;
+    sorted.fill(-1);
+    for (const int n : cell)
+      for (int corner = 0; corner < 8; ++corner) {
+        bool here = true;
+        for (int c = 0; c < 3; ++c)
+          here &= (mesh.nodes(n, c) > middle[c]) == (hexahedron_corners[corner][c] == 1);
+        if (here) sorted[corner] = n;
+      }
+    if (std::find(sorted.begin(), sorted.end(), -1) == sorted.end()) cell = sorted;
+  }
+  return cells;
+}
+
+template <class T>
+std::vector<T> reordered(const std::vector<T>& values, const std::vector<int>& order) {
+  std::vector<T> result;
+  for (const int i : order) result.push_back(values[i]);
+  return result;
+}
+
+/// If the cells are boxes of one lattice: sets the grid, numbers nodes and cells x fastest and moves the
+/// nodes onto the lattice (gmsh places them to about 1e-12).  `new_number` maps the old node numbers.
+void use_grid(Mesh& mesh, std::vector<int>& new_number) {
+  Mesh candidate = mesh;
+  candidate.hexahedra = boxes_lowest_corner_first(mesh);
+  std::optional<Grid> grid = mesh.tetrahedra.empty() ? detect_grid(candidate) : std::nullopt;
+  if (!grid) return;
+
+  std::vector<int> order(candidate.hexahedra.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const auto &p = grid->cell_index[a], &q = grid->cell_index[b];
+    return std::tie(p[2], p[1], p[0]) < std::tie(q[2], q[1], q[0]);
+  });
+  mesh.hexahedra = reordered(candidate.hexahedra, order);
+  mesh.curved.resize(0, 3);  // boxes have straight edges
+  grid->cell_index = reordered(grid->cell_index, order);
+
+  std::vector<std::array<int, 3>> lattice_point(mesh.nodes.rows());
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h)
+    for (int corner = 0; corner < 8; ++corner)
+      for (int c = 0; c < 3; ++c)
+        lattice_point[mesh.hexahedra[h][corner]][c] = grid->cell_index[h][c] + hexahedron_corners[corner][c];
+  std::vector<int> old_number(lattice_point.size());
+  std::iota(old_number.begin(), old_number.end(), 0);
+  std::sort(old_number.begin(), old_number.end(), [&](int a, int b) {
+    const auto &p = lattice_point[a], &q = lattice_point[b];
+    return std::tie(p[2], p[1], p[0]) < std::tie(q[2], q[1], q[0]);
+  });
+  for (std::size_t n = 0; n < old_number.size(); ++n) {
+    new_number[old_number[n]] = static_cast<int>(n);
+    for (int c = 0; c < 3; ++c)
+      mesh.nodes(n, c) = grid->origin[c] + grid->spacing[c] * lattice_point[old_number[n]][c];
+  }
+  for (Hexahedron& cell : mesh.hexahedra)
+    for (int& n : cell) n = new_number[n];
+  mesh.grid = std::move(grid);
+}
+
+std::array<int, 4> sorted(std::array<int, 4> facet) {
+  std::sort(facet.begin(), facet.end());
+  return facet;
+}
+
+using FacetPatches = std::map<std::array<int, 4>, std::vector<int>>;  ///< patches by the facet's nodes, sorted
+
+/// The physical surfaces' names as patches without facets, and where their facets are wanted.
+FacetPatches wanted_facets(const fs::path& file, const Nodes& nodes, std::vector<Patch>& patches) {
+  FacetPatches wanted;
+  for (const PhysicalSurface& surface : physical_surfaces()) {
+    for (const ElementBlock& block : surface.facets)
+      for (std::size_t i = 0; i < block.node_tags.size(); i += block.nodes) {
+        std::array<int, 4> facet = {-1, -1, -1, -1};
+        for (std::size_t c = 0; c < std::min<std::size_t>(block.corners, 4); ++c) {
+          facet[c] = nodes.number.at(block.node_tags[i + c]);
+          if (facet[c] < 0) refuse(file, fmt::format("physical surface '{}' is not on the surface of the body", surface.name));
+        }
+        std::vector<int>& names = wanted[sorted(facet)];
+        if (names.empty() || names.back() != static_cast<int>(patches.size())) names.push_back(static_cast<int>(patches.size()));
+      }
+    patches.push_back({surface.name, {}});
+  }
+  return wanted;
+}
+
+/// The physical surfaces as faces of the cells, which makes every facet outward whatever gmsh's orientation is.
+std::vector<Patch> read_patches(const fs::path& file, const Mesh& mesh, const Nodes& nodes) {
+  std::vector<Patch> patches;
+  const FacetPatches wanted = wanted_facets(file, nodes, patches);
+  std::vector<bool> on_patch(mesh.nodes.rows(), false);  // most facets are off: no search for them
+  for (const auto& [facet, names] : wanted)
+    for (const int n : facet)
+      if (n >= 0) on_patch[n] = true;
+  std::map<std::array<int, 4>, int> times_seen;
+  const auto visit = [&](const std::array<int, 4>& facet) {
+    for (const int n : facet)
+      if (n >= 0 && !on_patch[n]) return;
+    const std::array<int, 4> key = sorted(facet);
+    const auto found = wanted.find(key);
+    if (found == wanted.end()) return;
+    ++times_seen[key];
+    for (const int p : found->second) patches[p].facets.push_back(facet);
+  };
+  for (const Hexahedron& cell : mesh.hexahedra)
+    for (int f = 0; f < 6; ++f) visit(face_of(cell, f));
+  for (const auto& [a, b, c, d] : mesh.tetrahedra)
+    for (const std::array<int, 4>& facet : {std::array{a, c, b, -1}, {a, b, d, -1}, {b, c, d, -1}, {a, d, c, -1}}) visit(facet);
+  for (const auto& [facet, names] : wanted)
+    if (const auto it = times_seen.find(facet); it == times_seen.end() || it->second != 1)
+      refuse(file, fmt::format("physical surface '{}' is not on the surface of the body", patches[names[0]].name));
+  return patches;
+}
+
+}  // namespace
+
+Mesh read_mesh(const fs::path& file, const ElementBlock& cells) {
+  Nodes nodes = read_nodes();
+  Mesh mesh = read_cells(cells, nodes);
+  refuse_inverted_cells(file, mesh);
+  if (const int parts = separate_parts(mesh); parts > 1)
+    refuse(file, fmt::format("the mesh has {} parts that share no node (allowed: one body; join them with BooleanUnion or "
+                             "BooleanFragments, or Coherence)", parts));
+  std::vector<int> new_number(mesh.nodes.rows());
+  std::iota(new_number.begin(), new_number.end(), 0);
+  use_grid(mesh, new_number);
+  for (int& number : nodes.number)
+    if (number >= 0) number = new_number[number];
+  mesh.patches = read_patches(file, mesh, nodes);
+  return mesh;
+}
+
+}  // namespace springproof

@@ -1,0 +1,51 @@
+// gmsh under our rules: silent, its errors collected, its elements by type.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "problem/experiment.h"
+
+namespace springproof {
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& message);
+
+/// gmsh, started with the parameters of a .geo; stopped at the end of the scope.
+class GmshSession {
+ public:
+  explicit GmshSession(const std::vector<std::pair<std::string, double>>& parameters);
+  ~GmshSession();
+  GmshSession(const GmshSession&) = delete;
+  GmshSession& operator=(const GmshSession&) = delete;
+
+  /// @throws InputError with the first error since the start, if there is one.
+  void stop_on_error(const std::filesystem::path& file) const;
+};
+
+/// Elements of one type.
+struct ElementBlock {
+  int type;                            ///< gmsh's number
+  std::string name;                    ///< gmsh's, "Tetrahedron 10"
+  int order;
+  std::size_t nodes, corners;          ///< of one element; corners come first
+  std::vector<std::size_t> node_tags;  ///< one element after the other
+
+  std::size_t count() const { return node_tags.size() / nodes; }
+};
+
+/// The elements of one dimension in these entities, by type.
+std::vector<ElementBlock> elements(int dimension, const std::vector<int>& entities);
+
+/// Elements of the physical volumes, each once; of the whole model if there are none.
+std::vector<ElementBlock> volume_elements();
+
+struct PhysicalSurface {
+  std::string name;  ///< its number if it has none
+  std::vector<ElementBlock> facets;
+};
+
+std::vector<PhysicalSurface> physical_surfaces();
+
+}  // namespace springproof

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "meshes/gmsh/bodies.h"
+#include "meshes/stl.h"
+#include "meshes/surface_check.h"
+
+namespace springproof {
+namespace {
+
+/// Whether most facets have edges of about this length.
+bool suits(const Surface& surface, double edge) {
+  double sum = 0;
+  std::size_t far_off = 0;
+  for (const auto& t : surface.triangles) {
+    bool off = false;
+    for (int i = 0; i < 3; ++i) {
+      const double length = (surface.points[t[i]] - surface.points[t[(i + 1) % 3]]).norm();
+      sum += length;
+      off |= length > 2 * edge || length < edge / 2;
+    }
+    far_off += off;
+  }
+  const double mean = sum / (3 * double(surface.triangles.size()));
+  return mean < 1.5 * edge && mean > edge / 1.5 && double(far_off) < 0.05 * double(surface.triangles.size());
+}
+
+Mesh fill(const MeshRequest& r, const Surface& surface) {
+  GmshSession session({});
+  want_edge(r.edge / r.scale);
+  gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);  // the inside follows `edge`, not the facets
+  gmsh::model::addDiscreteEntity(2, 1);
+  std::vector<std::size_t> node_tags(surface.points.size()), corners;
+  std::iota(node_tags.begin(), node_tags.end(), 1);
+  std::vector<double> coordinates;
+  for (const Vec3& p : surface.points) coordinates.insert(coordinates.end(), p.begin(), p.end());
+  for (const auto& t : surface.triangles)
+    for (const int n : t) corners.push_back(n + 1);
+  gmsh::model::mesh::addNodes(2, 1, node_tags, coordinates);
+  gmsh::model::mesh::addElementsByType(1, 2, {}, corners);
+  gmsh::model::geo::addSurfaceLoop({1}, 1);
+  gmsh::model::geo::addVolume({1}, 1);
+  gmsh::model::geo::synchronize();
+  gmsh::model::setPhysicalName(2, gmsh::model::addPhysicalGroup(2, {1}), "surface");
+  session.stop_on_error(r.file);
+  return fill_with_tetrahedra(r.file, session);
+}
+
+}  // namespace
+
+MeshedBody fill_surface(const MeshRequest& r, const Surface& raw) {
+  const auto [surface, mended] = check_surface(raw, r.file.string());
+  const double inside = volume(surface);
+  MeshedBody body{{}, mended};
+  refuse_too_many(r, inside * std::pow(r.scale, 3));
+  if (!suits(surface, r.edge / r.scale)) try {
+      const Surface even = remesh(surface, r.edge / r.scale);
+      body.mesh = fill(r, even);
+      body.notes.push_back(fmt::format("{} facets remeshed to {}; the volume changed by {:.2g} %", surface.triangles.size(),
+                                       even.triangles.size(), 100 * (volume(even) / inside - 1)));
+      return body;
+    } catch (const std::runtime_error& e) {
+      body.notes.push_back(fmt::format("the facets of the file are kept, as remeshing them failed: {}", e.what()));
+    }
+  body.mesh = fill(r, surface);
+  return body;
+}
+
+MeshedBody mesh_stl(const MeshRequest& r) {
+  return fill_surface(r, read_stl(r.file));
+}
+
+}  // namespace springproof

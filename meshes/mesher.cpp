@@ -1,0 +1,106 @@
+#include "meshes/mesher.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "meshes/child.h"
+#include "meshes/mesher_exchange.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& message) {
+  throw InputError(SourceLocation{file.string(), 0, 0}, message);
+}
+
+double time_limit() {
+  const char* given = std::getenv("SPRINGPROOF_MESH_SECONDS");
+  if (!given) return 120;
+  char* end = nullptr;
+  const double seconds = std::strtod(given, &end);
+  if (end == given || *end != '\0' || !(seconds > 0) || !std::isfinite(seconds))
+    throw InputError(fmt::format("SPRINGPROOF_MESH_SECONDS: '{}' is no time limit (allowed: seconds > 0)", given));
+  return seconds;
+}
+
+void check(const MeshRequest& r) {
+  const auto& extensions = mesh_file_extensions();
+  const std::string extension = extension_of(r.file);
+  if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+    refuse(r.file, fmt::format("cannot read a body from a '{}' file (allowed: {})", extension, fmt::join(extensions, ", ")));
+  std::error_code ignored;
+  if (!fs::is_regular_file(r.file, ignored)) refuse(r.file, "no such file");
+  if (!r.size.isZero() && !(r.size.allFinite() && r.size.minCoeff() > 0))
+    refuse(r.file, "size_m: three positive lengths are needed");
+  if (r.cells != Cells{0, 0, 0} && *std::min_element(r.cells.begin(), r.cells.end()) < 1)
+    refuse(r.file, "cells: three counts >= 1 are needed");
+  if (!(r.edge >= 0) || !std::isfinite(r.edge)) refuse(r.file, fmt::format("edge: {} m is no length (allowed: > 0)", r.edge));
+  if (!(r.scale > 0) || !std::isfinite(r.scale)) refuse(r.file, fmt::format("scale: {} is no factor (allowed: > 0)", r.scale));
+  if (r.edge == 0 && extension != ".geo" && extension != ".msh")
+    refuse(r.file, "edge: the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
+}
+
+std::string list_of_bodies(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".geo") names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+fs::path find_geo(const Body& body, const fs::path& case_file) {
+  const fs::path built_in = SPRINGPROOF_GEO_DIR;
+  for (const fs::path& candidate : {case_file.parent_path() / body.geo, built_in / body.geo}) {
+    std::error_code ignored;
+    if (!body.geo.empty() && fs::is_regular_file(candidate, ignored)) return candidate;
+  }
+  throw InputError(body.where,
+                   fmt::format("body.geo: no file '{}' beside the case file or among the built-in "
+                               "bodies (allowed: {})",
+                               body.geo, list_of_bodies(built_in)));
+}
+
+const std::vector<std::string>& mesh_file_extensions() {
+  static const std::vector<std::string> extensions = {".geo", ".stl", ".msh", ".step", ".stp", ".brep"};
+  return extensions;
+}
+
+MeshedBody mesh_body(const MeshRequest& request) {
+  check(request);
+  const double seconds = time_limit();
+  const TemporaryFolder folder;
+  const fs::path question = folder.path / "request.json", answer = folder.path / "answer.cbor",
+                 log = folder.path / "log";
+  std::ofstream(question) << to_json(request);
+  const fs::path program = find_program("springproof-mesh", "SPRINGPROOF_MESH_PROGRAM");
+  if (program.empty())
+    throw std::runtime_error(
+        "the program springproof-mesh is neither beside this one nor named by SPRINGPROOF_MESH_PROGRAM");
+  const ChildEnd end = run_child({program, {question.string(), answer.string()}, {}, log, log, seconds});
+  if (end.kind == ChildEnd::out_of_time)
+    refuse(request.file, fmt::format("meshing {} (choose a longer edge, or set SPRINGPROOF_MESH_SECONDS)",
+                                     words_for(end, seconds)));
+  if (!end.ok())
+    refuse(request.file, fmt::format("the mesher {} {}", words_for(end), trimmed(text_of_file(log))));
+  return answer_from_cbor(text_of_file(answer));
+}
+
+Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKind kind) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(geo, ignored)) refuse(geo, "no such file");
+  if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
+  if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
+  return mesh_body({geo, size, cells, kind, 0, 1}).mesh;
+}
+
+}  // namespace springproof

@@ -1,0 +1,92 @@
+#include "meshes/child.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+Child shell(const std::string& command, double time_limit = 0) {
+  return {"/bin/sh", {"-c", command}, {}, {}, {}, time_limit};
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+TEST(Child, TellsStatusSignalAndTimeOutApart) {
+  EXPECT_TRUE(run_child(shell("exit 0")).ok());
+  const ChildEnd failed = run_child(shell("exit 3"));
+  EXPECT_EQ(failed.kind, ChildEnd::exited);
+  EXPECT_EQ(failed.status, 3);
+  EXPECT_EQ(words_for(failed), "failed with status 3");
+  const ChildEnd killed = run_child(shell("kill -SEGV $$"));
+  EXPECT_EQ(killed.kind, ChildEnd::killed);
+  EXPECT_EQ(killed.status, SIGSEGV);
+  EXPECT_EQ(words_for(killed), "was killed by signal 11 (Segmentation fault)");
+  const auto begin = std::chrono::steady_clock::now();
+  const ChildEnd late = run_child(shell("exec sleep 60", 0.2));
+  EXPECT_EQ(late.kind, ChildEnd::out_of_time);
+  EXPECT_FALSE(late.ok());
+  EXPECT_EQ(words_for(late, 0.2), "took longer than 0.2 s and was ended");
+  EXPECT_GE(seconds_since(begin), 0.2);
+  EXPECT_LT(seconds_since(begin), 10);
+}
+
+TEST(Child, IgnoresNoTimeLimitItMeets) {
+  EXPECT_TRUE(run_child(shell("exit 0", 60)).ok());
+  EXPECT_EQ(run_child(shell("exit 5", 60)).status, 5);
+}
+
+TEST(Child, WritesWhereItIsTold) {
+  const TemporaryFolder folder;
+  const fs::path both = folder.path / "both";
+  EXPECT_TRUE(run_child({"/bin/sh", {"-c", "echo one; echo two >&2; pwd"}, folder.path, both, both}).ok());
+  EXPECT_EQ(trimmed(text_of_file(both)), "one\ntwo\n" + fs::canonical(folder.path).string());
+  EXPECT_EQ(text_of_file(folder.path / "none"), "");
+}
+
+TEST(Child, ThatIsNotThereSaysSo) {
+  const ChildEnd end = run_child({"/nowhere/program", {}, {}, {}, {}});
+  EXPECT_EQ(end.status, not_started);
+  EXPECT_EQ(words_for(end), "could not be started");
+}
+
+TEST(Child, IsInterrupted) {
+  std::jthread other([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    interrupt_children();
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const ChildEnd end = run_child(shell("exec sleep 60"));
+  EXPECT_EQ(end.kind, ChildEnd::killed);
+  EXPECT_EQ(end.status, SIGTERM);
+  EXPECT_LT(seconds_since(begin), 30);
+}
+
+TEST(Child, UsesProcessorTimeThatIsCounted) {
+  const ChildEnd end = run_child(shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done"));
+  EXPECT_GT(end.seconds, 0.001);
+  EXPECT_LT(end.seconds, 60);
+}
+
+TEST(TemporaryFolder, IsGoneAfterwards) {
+  fs::path path;
+  {
+    const TemporaryFolder folder;
+    path = folder.path;
+    std::ofstream(path / "file") << "text";
+    EXPECT_EQ(text_of_file(path / "file"), "text");
+  }
+  EXPECT_FALSE(fs::exists(path));
+}
+
+}  // namespace
+}  // namespace springproof

@@ -1,0 +1,235 @@
+// Any file a user brings through springproof-mesh.  Files are written by gmsh itself where it can write them.
+#include "meshes/mesher.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+
+#include "meshes/child.h"
+#include "meshes/outer_facets.h"
+#include "meshes/volume.h"
+#include "support/tolerances.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Mesher : public testing::Test {
+ protected:
+  void TearDown() override {
+    unsetenv("SPRINGPROOF_MESH_PROGRAM");
+    unsetenv("SPRINGPROOF_MESH_SECONDS");
+  }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_.path / name) << text;
+    return folder_.path / name;
+  }
+
+  /// The file that gmsh saves of a script.
+  fs::path saved(const std::string& name, const std::string& script) const {
+    const fs::path file = folder_.path / name;
+    const fs::path geo = write("make.geo", script + "\nSave \"" + file.string() + "\";\n");
+    try {
+      mesh_body({.file = geo, .edge = 1});
+    } catch (const InputError&) {  // not meshed itself
+    }
+    EXPECT_TRUE(fs::is_regular_file(file)) << file;
+    return file;
+  }
+
+  void use_program(const std::string& script) const {
+    const fs::path file = write("program", "#!/bin/sh\n" + script + "\n");
+    chmod(file.c_str(), 0700);
+    setenv("SPRINGPROOF_MESH_PROGRAM", file.c_str(), 1);
+  }
+
+  static std::string message_of(const MeshRequest& request) {
+    try {
+      mesh_body(request);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "accepted";
+  }
+
+  TemporaryFolder folder_;
+};
+
+#define EXPECT_SAYS(message, words) EXPECT_NE((message).find(words), std::string::npos) << (message)
+
+double volume_of(const Mesh& mesh) {
+  return volume(mesh, mesh.nodes);
+}
+
+Vec3 extent(const Mesh& mesh) {
+  return mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff();
+}
+
+std::size_t facets_in_patches(const Mesh& mesh) {
+  std::size_t count = 0;
+  for (const Patch& p : mesh.patches) count += p.facets.size();
+  return count;
+}
+
+constexpr const char* box_solid = "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 2, 3};\n";
+constexpr const char* hexahedra =
+    "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 2, 3};\n"
+    "Transfinite Curve \"*\" = 3; Transfinite Surface \"*\"; Recombine Surface \"*\"; Transfinite Volume \"*\";\n";
+
+TEST_F(Mesher, ScriptWithAnEdge) {
+  const fs::path geo = find_geo({"sphere.geo", {}, {}, {}}, "case.toml");
+  const MeshedBody body = mesh_body({.file = geo, .size = {2, 2, 2}, .edge = 0.2});
+  EXPECT_NEAR(volume_of(body.mesh), 4 * std::numbers::pi / 3, 0.03 * 4.19);
+  EXPECT_EQ(body.mesh.patches.size(), 1u);
+  EXPECT_EQ(facets_in_patches(body.mesh), outer_facets(body.mesh).size());
+  ASSERT_EQ(body.notes.size(), 1u);
+  EXPECT_SAYS(body.notes[0], "tetrahedra, mean edge 0.");
+}
+
+TEST_F(Mesher, StructuredScriptsFollowTheEdgeToo) {
+  const fs::path geo = find_geo({"block.geo", {}, {}, {}}, "case.toml");
+  const Mesh mesh = mesh_body({.file = geo, .size = {1, 2, 3}, .edge = 0.5}).mesh;
+  EXPECT_GE(mesh.tetrahedra.size(), 2u * 4 * 6 * 5);
+  EXPECT_NEAR(volume_of(mesh), 6, test::round_off * 6);
+}
+
+TEST_F(Mesher, ScaleMultipliesTheCoordinatesAndNotTheEdge) {
+  const fs::path geo = write("box.geo", box_solid);
+  const Mesh metres = mesh_body({.file = geo, .edge = 0.5}).mesh;
+  const Mesh millimetres = mesh_body({.file = geo, .edge = 0.5e-3, .scale = 1e-3}).mesh;
+  EXPECT_EQ(metres.tetrahedra, millimetres.tetrahedra);
+  EXPECT_LE((metres.nodes * 1e-3 - millimetres.nodes).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_F(Mesher, MeshFilesOfBothVersionsAndBothKinds) {
+  for (const std::string version : {"2.2", "4.1"})
+    for (const bool tetrahedra : {true, false}) {
+      SCOPED_TRACE(version + (tetrahedra ? " tetrahedra" : " hexahedra"));
+      const fs::path file = saved("box.msh", std::string(tetrahedra ? box_solid : hexahedra) +
+                                                 "Physical Surface(\"x_min\") = {1};\nPhysical Surface(17) = {2};\n"
+                                                 "Physical Volume(\"body\") = {1};\nMesh.MshFileVersion = " + version +
+                                                 ";\nMesh.MeshSizeMax = 1;\nMesh 3;");
+      const Mesh mesh = mesh_body({.file = file}).mesh;
+      EXPECT_EQ(mesh.tetrahedra.empty(), !tetrahedra);
+      EXPECT_EQ(mesh.hexahedra.size(), tetrahedra ? 0u : 8u);
+      EXPECT_NEAR(volume_of(mesh), 6, 1e-9);
+      ASSERT_EQ(mesh.patches.size(), 2u);
+      EXPECT_EQ(patch(mesh, "x_min").name, "x_min");
+      EXPECT_NEAR(nodal_areas(mesh, patch(mesh, "17")).sum(), 6, 1e-9) << "x_max, by its number";
+      EXPECT_EQ(mesh.grid.has_value(), !tetrahedra);
+    }
+}
+
+TEST_F(Mesher, SecondOrderCellsAreTakenByTheirCorners) {
+  const fs::path file = saved("box.msh", std::string(box_solid) + "Mesh.ElementOrder = 2; Mesh.MeshSizeMax = 1; Mesh 3;");
+  const MeshedBody body = mesh_body({.file = file});
+  EXPECT_NEAR(volume_of(body.mesh), 6, 1e-9);
+  ASSERT_EQ(body.notes.size(), 1u);
+  EXPECT_SAYS(body.notes[0], "'Tetrahedron 10'");
+}
+
+TEST_F(Mesher, MixedCellsAreRefusedWithTheirCounts) {
+  const fs::path file = write("mixed.msh",
+                              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n"
+                              "6 1 0 1\n7 1 1 1\n8 0 1 1\n9 2 0 0\n$EndNodes\n$Elements\n2\n1 5 2 1 1 1 2 3 4 5 6 7 8\n"
+                              "2 4 2 1 1 2 9 3 6\n$EndElements\n");
+  const std::string message = message_of({.file = file});
+  EXPECT_SAYS(message, "mixed or unknown cells");
+  EXPECT_SAYS(message, "1 'Tetrahedron 4'");
+  EXPECT_SAYS(message, "1 'Hexahedron 8'");
+}
+
+TEST_F(Mesher, ASurfaceMeshIsFilled) {
+  const fs::path file = saved("skin.msh", std::string(box_solid) + "Mesh.MeshSizeMax = 0.5; Mesh 2;");
+  const MeshedBody body = mesh_body({.file = file, .edge = 0.5});
+  EXPECT_NEAR(volume_of(body.mesh), 6, 1e-9);
+  EXPECT_EQ(patch(body.mesh, "surface").facets.size(), outer_facets(body.mesh).size());
+  EXPECT_SAYS(message_of({.file = file}), "edge: the file holds a surface and no cells");
+}
+
+TEST_F(Mesher, StlIsFilledAtAnyEdge) {
+  const fs::path file = saved("sphere.stl", "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\nMesh.MeshSizeMax = 0.1; Mesh 2;");
+  for (const double edge : {0.1, 0.3}) {
+    const MeshedBody body = mesh_body({.file = file, .edge = edge});
+    EXPECT_NEAR(volume_of(body.mesh), 4 * std::numbers::pi / 3, (edge > 0.2 ? 0.02 : 0.006) * 4.19) << edge;
+    EXPECT_EQ(patch(body.mesh, "surface").facets.size(), outer_facets(body.mesh).size());
+    EXPECT_GT(cell_volumes(body.mesh, body.mesh.nodes).minCoeff(), 0);
+    const double regular = std::pow(edge, 3) / (6 * std::sqrt(2));
+    EXPECT_NEAR(volume_of(body.mesh) / double(body.mesh.tetrahedra.size()) / regular, 1, 0.5) << edge;
+  }
+}
+
+TEST_F(Mesher, StepComesOutInMetresAndNamesItsFaces) {
+  // gmsh writes millimetres without saying so: a box of 1 x 2 x 3 is one of millimetres.
+  const fs::path file = saved("box.step", box_solid);
+  const Mesh mesh = mesh_body({.file = file, .edge = 0.5e-3}).mesh;
+  EXPECT_LE((extent(mesh) - Vec3(1e-3, 2e-3, 3e-3)).norm(), 1e-9);
+  EXPECT_EQ(mesh.patches.size(), 6u);
+  EXPECT_NO_THROW(patch(mesh, "surface_6"));
+  EXPECT_EQ(facets_in_patches(mesh), outer_facets(mesh).size());
+  const Mesh scaled = mesh_body({.file = file, .edge = 0.5, .scale = 1000}).mesh;
+  EXPECT_NEAR(volume_of(scaled), 6, 1e-6);
+}
+
+TEST_F(Mesher, BrepHasNoUnit) {
+  const Mesh mesh = mesh_body({.file = saved("box.brep", box_solid), .edge = 0.5}).mesh;
+  EXPECT_NEAR(volume_of(mesh), 6, 1e-9);
+  EXPECT_EQ(mesh.patches.size(), 6u);
+}
+
+TEST_F(Mesher, SeveralSolidsAreRefused) {
+  const fs::path file = saved("two.brep", std::string(box_solid) + "Box(2) = {5, 0, 0, 1, 1, 1};");
+  EXPECT_SAYS(message_of({.file = file, .edge = 0.5}), "2 parts that share no node");
+}
+
+TEST_F(Mesher, BadFilesOfEachKindAreRefusedByName) {
+  for (const std::string name : {"bad.geo", "bad.stl", "bad.msh", "bad.step", "bad.stp", "bad.brep"}) {
+    SCOPED_TRACE(name);
+    for (const std::string text : {std::string(), std::string("not a body\n"), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16)}) {
+      const std::string message = message_of({.file = write(name, text), .edge = 0.1});
+      EXPECT_NE(message, "accepted");
+      EXPECT_EQ(message.rfind((folder_.path / name).string(), 0), 0u) << message;
+      EXPECT_SAYS(message_of({.file = folder_.path / ("none" + name), .edge = 0.1}), "no such file");
+    }
+  }
+  EXPECT_SAYS(message_of({.file = write("cut.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9"), .edge = 0.1}), "cut.msh");
+}
+
+TEST_F(Mesher, RefusesWhatItCannotRead) {
+  const std::string message = message_of({.file = write("body.obj", "v 0 0 0\n"), .edge = 0.1});
+  EXPECT_SAYS(message, "cannot read a body from a '.obj' file (allowed: .geo, .stl, .msh, .step, .stp, .brep)");
+  const fs::path geo = write("box.geo", box_solid), stl = write("body.stl", "");
+  EXPECT_SAYS(message_of({.file = geo, .edge = -1}), "edge: -1 m is no length");
+  EXPECT_SAYS(message_of({.file = geo, .edge = std::nan("")}), "is no length");
+  EXPECT_SAYS(message_of({.file = geo, .edge = 1, .scale = 0}), "scale: 0 is no factor");
+  EXPECT_SAYS(message_of({.file = stl}), "edge: the length of the tetrahedra's edges is needed");
+  EXPECT_SAYS(message_of({.file = geo, .size = {1, 1, 1}, .edge = 1e-4}), "tetrahedra (allowed: 2e+07)");
+}
+
+TEST_F(Mesher, AScriptThatDoesNotEndIsEnded) {
+  const fs::path geo = write("loop.geo", "For i In {0 : 1e12}\n  a = Sin(i);\nEndFor\n");
+  setenv("SPRINGPROOF_MESH_SECONDS", "1", 1);
+  EXPECT_SAYS(message_of({.file = geo, .edge = 1}), "loop.geo: meshing took longer than 1 s and was ended");
+  setenv("SPRINGPROOF_MESH_SECONDS", "soon", 1);
+  EXPECT_SAYS(message_of({.file = geo, .edge = 1}), "SPRINGPROOF_MESH_SECONDS: 'soon' is no time limit");
+}
+
+TEST_F(Mesher, AMesherThatCrashesIsAnInputError) {
+  const fs::path geo = write("box.geo", box_solid);
+  use_program("echo 'out of luck' >&2; kill -ABRT $$");
+  EXPECT_SAYS(message_of({.file = geo, .edge = 1}), "box.geo: the mesher was killed by signal 6 (Aborted) out of luck");
+  use_program("exit 4");
+  EXPECT_SAYS(message_of({.file = geo, .edge = 1}), "box.geo: the mesher failed with status 4");
+  use_program("echo nonsense > \"$2\"");
+  EXPECT_THROW(mesh_body({.file = geo, .edge = 1}), std::runtime_error);
+  use_program("exit 0");
+  EXPECT_THROW(mesh_body({.file = geo, .edge = 1}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace springproof
