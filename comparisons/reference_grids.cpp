@@ -106,7 +106,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
     out.peers.assign(at, solutions.end());
     return out;
   } catch (const std::runtime_error& e) {
-    return {{}, {}, e.what()};
+    return {{}, {}, {}, e.what()};
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "comparisons/case_run.h"
+#include "meshes/field.h"
 
 namespace springproof {
 

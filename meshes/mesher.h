@@ -27,8 +27,9 @@ struct MeshKind {
 ///   .geo                gmsh script with the parameters size_x size_y size_z [m] and `edge` [m] (tetrahedra), or nx ny nz
 ///                       and tetrahedra = 0 or 1; physical surfaces name the patches
 ///   .stl                closed surface; one patch, "surface"
-///   .msh                gmsh 2.2 or 4.1: hexahedra or tetrahedra as they are, physical surfaces = patches (one without a
-///                       name: its number); without cells a closed surface, as .stl
+///   .msh                gmsh 2.2 or 4.1: hexahedra or tetrahedra, physical surfaces = patches (one without a name: its
+///                       number); as they are, or filled anew within their surface where tetrahedra are asked for;
+///                       without cells a closed surface, as .stl
 ///   .step .stp .brep    solid; patches "surface_1", "surface_2", ...; STEP comes out in metres whatever its unit, a
 ///                       .brep has no unit and is taken as metres
 struct MeshRequest {
@@ -37,12 +38,14 @@ struct MeshRequest {
   Cells cells = {0, 0, 0};   ///< of a .geo cut into nx x ny x nz cells; zero: by `edge`
   MeshKind kind{};
   double edge = 0;   ///< [m] > 0: tetrahedra with edges of about this length
+  int tetrahedra = 0;  ///< > 0 and no edge: about so many tetrahedra
   double scale = 1;  ///< multiplies the coordinates of the file
 };
 
 struct MeshedBody {
   Mesh mesh;
   std::vector<std::string> notes;  ///< what was mended, what quality came out: for the report
+  double edge = 0;                 ///< that the tetrahedra were made with [m]; 0: the cells are the file's own
 };
 
 /// Extensions of the files that can be read: ".geo", ...

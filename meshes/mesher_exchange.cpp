@@ -33,6 +33,7 @@ json to_json(const MeshRequest& r) {
           {"tetrahedra", r.kind.tetrahedra},
           {"second_order", r.kind.second_order},
           {"edge", r.edge},
+          {"about", r.tetrahedra},
           {"scale", r.scale}};
 }
 
@@ -43,12 +44,13 @@ MeshRequest mesh_request_from_json(const json& j) {
   r.cells = j.at("cells");
   r.kind = {j.at("tetrahedra"), j.at("second_order")};
   r.edge = j.at("edge");
+  r.tetrahedra = j.at("about");
   r.scale = j.at("scale");
   return r;
 }
 
 std::string to_cbor(const MeshedBody& body) {
-  return cbor({{"mesh", to_json(body.mesh)}, {"notes", body.notes}});
+  return cbor({{"mesh", to_json(body.mesh)}, {"notes", body.notes}, {"edge", body.edge}});
 }
 
 std::string refusal_to_cbor(const std::string& message) {
@@ -63,7 +65,7 @@ MeshedBody answer_from_cbor(const std::string& bytes) {
     throw std::runtime_error(std::string("springproof-mesh gave no answer: ") + e.what());
   }
   if (j.contains("refused")) throw InputError(j.at("refused").get<std::string>());
-  return {mesh_from_json(j.at("mesh")), j.at("notes")};
+  return {mesh_from_json(j.at("mesh")), j.at("notes"), j.at("edge")};
 }
 
 std::string extension_of(const std::filesystem::path& file) {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "meshes/facet_tree.h"
 #include "meshes/scan_lines.h"
+#include "meshes/transfer_patches.h"
 
 namespace springproof {
 namespace {
@@ -211,32 +211,6 @@ class CubeMesh {
   Mesh mesh_;
 };
 
-/// (key of a facet, number of a patch that holds it), ascending.
-std::vector<std::pair<std::array<int, 4>, std::size_t>> patches_by_facet(const Mesh& body) {
-  std::vector<std::pair<std::array<int, 4>, std::size_t>> list;
-  for (std::size_t p = 0; p < body.patches.size(); ++p)
-    for (std::array<int, 4> facet : body.patches[p].facets) {
-      std::sort(facet.begin(), facet.end());
-      list.emplace_back(facet, p);
-    }
-  std::sort(list.begin(), list.end());
-  return list;
-}
-
-void add_patches(const Mesh& body, const std::vector<OuterFacet>& facets, Mesh& mesh) {
-  if (body.patches.empty()) return;
-  for (const Patch& p : body.patches) mesh.patches.push_back({p.name, {}});
-  const auto patches = patches_by_facet(body);
-  const FacetTree tree(body, facets);
-  for (const OuterFacet& facet : outer_facets(mesh)) {
-    Vec3 middle = Vec3::Zero();
-    for (const int n : facet.nodes) middle += mesh.nodes.row(n).transpose() / 4;
-    const auto& key = facets[tree.nearest(middle).facet].key;
-    for (auto it = std::lower_bound(patches.begin(), patches.end(), std::pair(key, std::size_t{0})); it != patches.end() && it->first == key; ++it)
-      mesh.patches[it->second].facets.push_back(facet.nodes);
-  }
-}
-
 }  // namespace
 
 VoxelGrid voxel_grid(const Mesh& body, double edge) {
@@ -261,7 +235,7 @@ Voxels voxelise(const VoxelGrid& grid, const Mesh& body) {
   Voxels voxels;
   keep_one_piece(runs, grid, voxels.notes);
   voxels.mesh = CubeMesh(grid, runs).build();
-  add_patches(body, facets, voxels.mesh);
+  transfer_patches(body, facets, voxels.mesh);
   return voxels;
 }
 

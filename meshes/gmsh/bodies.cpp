@@ -9,6 +9,9 @@
 #include "meshes/gmsh/quality.h"
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/mesher_exchange.h"
+#include "meshes/stl.h"
+#include "meshes/surface_check.h"
+#include "meshes/volume.h"
 
 namespace springproof {
 namespace {
@@ -93,11 +96,14 @@ Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session) {
     const auto blocks = volume_elements();
     return read_mesh(file, only_block(file, blocks, tetrahedron, "tetrahedra"));
   };
-  const Mesh mesh = read();
-  if (quality_of(mesh).worst > sliver) return mesh;
-  gmsh::model::mesh::optimize("Netgen", true);
-  session.stop_on_error(file);
-  return read();
+  Mesh mesh = read();
+  for (const char* method : {"", "Relocate3D"}) {
+    if (quality_of(mesh).worst > sliver) break;
+    gmsh::model::mesh::optimize(method, true);
+    session.stop_on_error(file);
+    mesh = read();
+  }
+  return mesh;
 }
 
 MeshedBody mesh_script(const MeshRequest& r) {
@@ -108,8 +114,8 @@ MeshedBody mesh_script(const MeshRequest& r) {
   }
   gmsh::open(r.file.string());
   session.stop_on_error(r.file);
-  if (r.edge > 0) return {fill_with_tetrahedra(r.file, session), {}};
-  return {mesh_structured(r, session), {}};
+  if (r.edge > 0) return {fill_with_tetrahedra(r.file, session), {}, 0};
+  return {mesh_structured(r, session), {}, 0};
 }
 
 MeshedBody mesh_solid(const MeshRequest& r) {
@@ -136,20 +142,57 @@ MeshedBody mesh_solid(const MeshRequest& r) {
     gmsh::model::setPhysicalName(2, group, fmt::format("surface_{}", ++number));
   }
   want_edge(r.edge / r.scale);
-  return {fill_with_tetrahedra(r.file, session), {}};
+  return {fill_with_tetrahedra(r.file, session), {}, 0};
 }
 
-MeshedBody mesh_file(const MeshRequest& r) try {
+namespace {
+
+/// Edge with which a body has about so many tetrahedra; gmsh's fill as much as regular ones of 0.95 of the edge.
+double edge_for(int tetrahedra, double volume) {
+  return std::cbrt(6 * std::sqrt(2) * volume / tetrahedra) / 0.95;
+}
+
+/// Edge for a first mesh, from which the volume is known.
+double first_edge(const MeshRequest& r) {
+  const std::string extension = extension_of(r.file);
+  if (extension == ".geo") {
+    if (r.size.isZero()) refuse(r.file, "size: needed to choose the length of the tetrahedra's edges");
+    return std::cbrt(r.size.prod() / 4000);
+  }
+  GmshSession session({});
+  if (extension == ".step" || extension == ".stp" || extension == ".brep") gmsh::option::setString("Geometry.OCCTargetUnit", "M");
+  gmsh::open(r.file.string());
+  session.stop_on_error(r.file);
+  double low[3], high[3];
+  gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
+  return r.scale * std::cbrt((high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) / 4000);
+}
+
+double chosen_edge(MeshRequest r) {
+  if (extension_of(r.file) == ".stl") return edge_for(r.tetrahedra, std::pow(r.scale, 3) * volume(check_surface(read_stl(r.file), r.file.string()).surface));
+  const int wanted = r.tetrahedra;
+  r.tetrahedra = 0;
+  r.edge = first_edge(r);
+  const Mesh mesh = mesh_file(r).mesh;
+  return edge_for(wanted, volume(mesh, mesh.nodes));
+}
+
+}  // namespace
+
+MeshedBody mesh_file(const MeshRequest& request) try {
+  MeshRequest r = request;
+  if (r.tetrahedra > 0 && r.edge == 0) r.edge = chosen_edge(r);
   const std::string extension = extension_of(r.file);
   MeshedBody body = extension == ".geo"   ? mesh_script(r)
                     : extension == ".msh" ? mesh_msh(r)
                     : extension == ".stl" ? mesh_stl(r)
                                           : mesh_solid(r);
   if (r.scale != 1) scale(body.mesh, r.scale);
+  body.edge = r.edge;
   if (r.edge > 0 && !body.mesh.tetrahedra.empty()) body.notes.push_back(words_for(body.mesh, quality_of(body.mesh)));
   return body;
 } catch (const std::string& message) {
-  refuse(r.file, "gmsh: " + message);
+  refuse(request.file, "gmsh: " + message);
 }
 
 }  // namespace springproof

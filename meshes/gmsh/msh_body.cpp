@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/read_mesh.h"
+#include "meshes/transfer_patches.h"
 
 namespace springproof {
 namespace {
@@ -52,8 +54,29 @@ MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blo
   if (std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.order > 1; }))
     body.notes.push_back(fmt::format("the cells of higher order ({}) are taken by their corners, with straight edges",
                                      counts(blocks)));
-  if (r.edge > 0) body.notes.push_back("the cells of the file are used as they are");
   body.mesh = read_mesh(r.file, corners_of(blocks));
+  return body;
+}
+
+/// The outer facets of a mesh, quadrilaterals cut into two triangles.
+Surface outside_of(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
+  Surface surface;
+  for (const auto& X : mesh.nodes.rowwise()) surface.points.push_back(X.transpose());
+  for (const OuterFacet& f : facets) {
+    surface.triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
+    if (f.nodes[3] >= 0) surface.triangles.push_back({f.nodes[0], f.nodes[2], f.nodes[3]});
+  }
+  return surface;
+}
+
+/// The body of the file's cells, filled anew.
+MeshedBody filled_anew(const MeshRequest& r, const MeshedBody& own) {
+  const std::vector<OuterFacet> facets = outer_facets(own.mesh);
+  MeshedBody body = fill_surface(r, outside_of(own.mesh, facets));
+  body.mesh.patches.clear();
+  transfer_patches(own.mesh, facets, body.mesh);
+  body.notes.insert(body.notes.begin(), own.notes.begin(), own.notes.end());
+  body.notes.push_back("the body is the surface of the file's cells, filled with tetrahedra of the length asked for");
   return body;
 }
 
@@ -84,17 +107,23 @@ Surface surface_of(const MeshRequest& r) {
 MeshedBody mesh_msh(const MeshRequest& r) {
   Surface surface;
   std::vector<std::string> notes;
+  std::optional<MeshedBody> own;
   {
     GmshSession session({});
     gmsh::open(r.file.string());
     session.stop_on_error(r.file);
     gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
-    if (const auto blocks = volume_elements(); !blocks.empty()) return read_cells(r, blocks);
-    surface = surface_of(r);
+    if (const auto blocks = volume_elements(); !blocks.empty()) {
+      own = read_cells(r, blocks);
+      if (r.edge == 0) return *own;
+    } else {
+      surface = surface_of(r);
+    }
     if (r.edge == 0)
       refuse(r.file, "edge: the file holds a surface and no cells; the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
-    if (!physical_surfaces().empty()) notes = {"the physical surfaces of a file without cells are not kept"};
+    if (!own && !physical_surfaces().empty()) notes = {"the physical surfaces of a file without cells are not kept"};
   }
+  if (own) return filled_anew(r, *own);
   MeshedBody body = fill_surface(r, surface);
   body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
   return body;

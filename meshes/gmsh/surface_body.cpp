@@ -55,7 +55,7 @@ Mesh fill(const MeshRequest& r, const Surface& surface) {
 MeshedBody fill_surface(const MeshRequest& r, const Surface& raw) {
   const auto [surface, mended] = check_surface(raw, r.file.string());
   const double inside = volume(surface);
-  MeshedBody body{{}, mended};
+  MeshedBody body{{}, mended, 0};
   refuse_too_many(r, inside * std::pow(r.scale, 3));
   if (!suits(surface, r.edge / r.scale)) try {
       const Surface even = remesh(surface, r.edge / r.scale);
