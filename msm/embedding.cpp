@@ -95,14 +95,15 @@ double distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   return inside ? std::abs(n.dot(p - a)) : std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
 }
 
-/// Network nodes within `grip` of a patch.
-std::vector<int> held_by(const Patch& patch, const Mesh& mesh, const Network& network, const Neighbourhood& neighbourhood, double grip) {
+/// Network nodes within `grip` of a patch, whose corners are at point(number).
+template <class Point>
+std::vector<int> held_by(const Patch& patch, const Point& point, const Network& network, const Neighbourhood& neighbourhood, double grip) {
   std::vector<char> held(network.nodes(), 0);
   for (const auto& facet : patch.facets) {
     const int corners = facet[3] < 0 ? 3 : 4;
     std::array<Vec3, 4> x;
     Vec3 middle = Vec3::Zero();
-    for (int i = 0; i < corners; ++i) middle += (x[i] = mesh.nodes.row(facet[i]).transpose()) / corners;
+    for (int i = 0; i < corners; ++i) middle += (x[i] = point(facet[i])) / corners;
     double radius = 0;
     for (int i = 0; i < corners; ++i) radius = std::max(radius, (x[i] - middle).norm());
     for (int n : neighbourhood.near(middle, radius + grip)) {
@@ -126,7 +127,7 @@ Embedding nodes_of_mesh(const Mesh& mesh) {
   return e;
 }
 
-Embedding embed(const Mesh& mesh, const Network& network, double grip) {
+Embedding embed(const Mesh& mesh, const Network& network, double grip, const Region* region) {
   const Vec3 extent = (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()).transpose();
   const bool flat = extent[2] <= 1e-9 * extent.maxCoeff();
   const double spacing = flat ? std::sqrt(extent[0] * extent[1] / network.nodes()) : std::cbrt(network.volume.sum() / network.nodes());
@@ -149,7 +150,11 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip) {
   e.weights.resize(mesh.nodes.rows(), network.nodes());
   e.weights.setFromTriplets(entries.begin(), entries.end());
   const double slack = grip + 1e-9 * extent.maxCoeff();
-  for (const Patch& p : mesh.patches) e.held[p.name] = held_by(p, mesh, network, neighbourhood, slack);
+  const auto node = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
+  const auto surface_point = [&](int n) -> Vec3 { return region->surface_points[n]; };
+  for (const Patch& p : mesh.patches) e.held[p.name] = held_by(p, node, network, neighbourhood, slack);
+  if (region)
+    for (const Patch& p : region->patches) e.held[p.name] = held_by(p, surface_point, network, neighbourhood, slack);
   return e;
 }
 

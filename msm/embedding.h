@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "msm/network.h"
+#include "msm/topology/region.h"
 
 namespace springproof {
 
@@ -21,9 +22,9 @@ struct Embedding {
 Embedding nodes_of_mesh(const Mesh& mesh);
 
 /// Of any other: moving least squares with linear fields over the nearest network nodes that springs join to the nearest of
-/// them (not across a gap in the body), and each patch holds the nodes
-/// within `grip` [m] of it (none, if there is none so near).
+/// them (not across a gap in the body), and each patch holds the nodes within `grip` [m] of it (none, if there is none so
+/// near).  Patches are those of `region` where the network fills that and the mesh is only nearly the body.
 /// @throws std::invalid_argument if the nodes span no volume (no area, for a network in a plane z = const).
-Embedding embed(const Mesh& mesh, const Network& network, double grip);
+Embedding embed(const Mesh& mesh, const Network& network, double grip, const Region* region = nullptr);
 
 }  // namespace springproof

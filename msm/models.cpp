@@ -130,7 +130,7 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   EmbeddedModel built;
   MassSpringModel& model = built.model;
   model.network = network_of(p, mesh, region);
-  built.embedding = p.row.topology == cells ? nodes_of_mesh(mesh) : embed(mesh, model.network, grip_of(p, mesh));
+  built.embedding = p.row.topology == cells ? nodes_of_mesh(mesh) : embed(mesh, model.network, grip_of(p, mesh), p.row.topology == random ? region : nullptr);
   calibrate_network(p, material, region && p.row.topology == random ? region->volume : volume(mesh, mesh.nodes), model.network);
   model.laws.push_back(Springs{});
   if (p.has(volume_correction)) model.laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});

@@ -40,6 +40,11 @@ void add_surface(const Mesh& mesh, Region& region) {
     add_triangle(f.nodes[0], f.nodes[1], f.nodes[2], f.cell_centre);
     if (f.nodes[3] >= 0) add_triangle(f.nodes[0], f.nodes[2], f.nodes[3], f.cell_centre);
   }
+  for (const Patch& p : mesh.patches) {
+    region.patches.push_back({p.name, {}});
+    for (const auto& f : p.facets)
+      region.patches.back().facets.push_back({point(f[0]), point(f[1]), point(f[2]), f[3] < 0 ? -1 : point(f[3])});
+  }
 }
 
 std::function<bool(const Vec3&)> inside_grid(const Grid& grid, double tolerance) {
