@@ -113,8 +113,10 @@ Surface remesh(const Surface& surface, double edge) {
   pmp::detect_sharp_edges(mesh, 40, sharp);
   unmark_short_lines(mesh, sharp, 8 * edge);
   mark_bends(mesh, sharp, bends, 60);
-  const auto options = CGAL::parameters::number_of_iterations(5).edge_is_constrained_map(sharp).vertex_is_constrained_map(bends);
-  pmp::isotropic_remeshing(mesh.faces(), edge, mesh, options);
+  pmp::isotropic_remeshing(mesh.faces(), edge, mesh,
+                           CGAL::parameters::number_of_iterations(5)
+                               .edge_is_constrained_map(sharp)
+                               .vertex_is_constrained_map(bends));
 
   const Surface result = from_cgal(mesh);
   const double before = volume(surface), change = std::abs(volume(result) - before) / before;
