@@ -68,7 +68,8 @@ Surface read_binary(const fs::path& file, std::string_view bytes) {
     std::array<float, 12> numbers;
     std::memcpy(numbers.data(), bytes.data() + header_bytes + facet_bytes * f, sizeof numbers);
     if (!std::all_of(numbers.begin() + 3, numbers.end(), [](float x) { return std::isfinite(x); }))
-      refuse(file, fmt::format("facet {}: a coordinate is not a finite number (corners ({}, {}, {}), ({}, {}, {}), ({}, {}, {}))",
+      refuse(file, fmt::format("facet {}: a coordinate is not a finite number (corners ({}, {}, {}), "
+                               "({}, {}, {}), ({}, {}, {}))",
                                f + 1, numbers[3], numbers[4], numbers[5], numbers[6], numbers[7], numbers[8], numbers[9],
                                numbers[10], numbers[11]));
     const auto corner = [&](int c) { return Vec3(numbers[3 * c + 3], numbers[3 * c + 4], numbers[3 * c + 5]); };
@@ -197,7 +198,8 @@ bool is_binary_by_size(std::string_view bytes) {
 }
 
 bool is_text(std::string_view bytes) {
-  return std::none_of(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 1024)), [](char c) {
+  const std::string_view first = bytes.substr(0, 1024);
+  return std::none_of(first.begin(), first.end(), [](char c) {
     return static_cast<unsigned char>(c) < ' ' && !(c >= '\t' && c <= '\r');
   });
 }
@@ -219,14 +221,16 @@ constexpr Signature signatures[] = {
     if (bytes.starts_with(signature.bytes)) refuse(file, fmt::format("is no STL file but {}", signature.kind));
   if (is_text(bytes)) {
     Words words(bytes);
-    refuse(file, fmt::format("is no STL file: its first word is '{}' (ASCII STL begins with 'solid')", words.next().substr(0, 40)));
+    refuse(file, fmt::format("is no STL file: its first word is '{}' (ASCII STL begins with 'solid')",
+                             words.next().substr(0, 40)));
   }
   if (bytes.size() < header_bytes)
-    refuse(file, fmt::format("is no STL file: {} bytes (binary STL has {} and {} per facet)", bytes.size(), header_bytes, facet_bytes));
+    refuse(file, fmt::format("is no STL file: {} bytes (binary STL has {} and {} per facet)", bytes.size(), header_bytes,
+                             facet_bytes));
   const std::size_t rest = bytes.size() - header_bytes;
   const std::string extra = rest % facet_bytes ? fmt::format(" and {} bytes", rest % facet_bytes) : "";
-  refuse(file, fmt::format("the header of the binary STL says {} facets, but the file's size is that of {} facets{}: it is cut off or "
-                           "no STL file; write it again",
+  refuse(file, fmt::format("the header of the binary STL says {} facets, but the file's size is that of {} facets{}: it is cut "
+                           "off or no STL file; write it again",
                            facet_count(bytes), rest / facet_bytes, extra));
 }
 

@@ -84,7 +84,8 @@ void unmark_short_lines(const SurfaceMesh& mesh, EdgeMarks& marked, double lengt
 void mark_bends(const SurfaceMesh& mesh, const EdgeMarks& marked, VertexMarks& bends, double degrees) {
   for (const auto v : mesh.vertices()) {
     const auto ends = along(mesh, marked, v);
-    if (ends.size() == 2) bends[v] = CGAL::approximate_angle(mesh.point(ends[0]), mesh.point(v), mesh.point(ends[1])) < 180 - degrees;
+    if (ends.size() != 2) continue;
+    bends[v] = CGAL::approximate_angle(mesh.point(ends[0]), mesh.point(v), mesh.point(ends[1])) < 180 - degrees;
   }
 }
 
@@ -103,16 +104,19 @@ std::vector<std::pair<int, int>> intersecting_facets(const Surface& surface, uns
 Surface remesh(const Surface& surface, double edge) {
   if (!(edge > 0)) throw std::runtime_error("remesh: edge must be positive");
   const double facets = area(surface) / (std::sqrt(3.0) / 4 * edge * edge);
-  if (!(facets < 4e6)) throw std::runtime_error(fmt::format("edges of {:.3g} would make {:.2g} facets (allowed: 4e6)", edge, facets));
+  if (!(facets < 4e6))
+    throw std::runtime_error(fmt::format("edges of {:.3g} would make {:.2g} facets (allowed: 4e6)", edge, facets));
 
   SurfaceMesh mesh = to_cgal(surface);
   EdgeMarks sharp = mesh.add_property_map<SurfaceMesh::Edge_index, bool>("e:sharp", false).first;
   VertexMarks bends = mesh.add_property_map<SurfaceMesh::Vertex_index, bool>("v:bend", false).first;
   pmp::detect_sharp_edges(mesh, 40, sharp);
-  unmark_short_lines(mesh, sharp, 4 * edge);
+  unmark_short_lines(mesh, sharp, 8 * edge);
   mark_bends(mesh, sharp, bends, 60);
   pmp::isotropic_remeshing(mesh.faces(), edge, mesh,
-                           CGAL::parameters::number_of_iterations(5).edge_is_constrained_map(sharp).vertex_is_constrained_map(bends));
+                           CGAL::parameters::number_of_iterations(5)
+                               .edge_is_constrained_map(sharp)
+                               .vertex_is_constrained_map(bends));
 
   const Surface result = from_cgal(mesh);
   const double before = volume(surface), change = std::abs(volume(result) - before) / before;

@@ -47,7 +47,8 @@ void check_coordinates(Check& check, const Surface& raw) {
   check.diagonal = (box.high - box.low).stableNorm();
   if (check.diagonal == 0) check.refuse("all facets are one point");
   if (!(check.diagonal >= least_extent && check.diagonal <= most_extent))
-    check.refuse(fmt::format("the diagonal of its bounding box is {:.3g} (allowed: {} to {})", check.diagonal, least_extent, most_extent));
+    check.refuse(fmt::format("the diagonal of its bounding box is {:.3g} (allowed: {} to {})", check.diagonal, least_extent,
+                             most_extent));
   if (const double distance = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff(); distance > most_distance * check.diagonal)
     check.refuse(fmt::format("lies {:.3g} times its diagonal away from the origin (allowed: {:.0e}): move it to the origin",
                              distance / check.diagonal, most_distance));
@@ -84,7 +85,8 @@ CoarserWeld closing_weld(const Surface& raw, double diagonal) {
   std::size_t edges = 0;
   for (const Hole& hole : found) edges += hole.edges;
   const Hole& first = found.front();
-  check.refuse(fmt::format("the surface is open: {} round {}; the first, of {}, is at {} and spans {} to {}: close the {} in a mesh editor",
+  check.refuse(fmt::format("the surface is open: {} round {}; the first, of {}, is at {} and spans {} to {}: "
+                           "close the {} in a mesh editor",
                            count_of(edges, "open edge", "open edges"), count_of(found.size(), "hole", "holes"),
                            count_of(first.edges, "edge", "edges"), at(first.start), at(first.box.low), at(first.box.high),
                            found.size() == 1 ? "hole" : "holes"));
@@ -99,8 +101,8 @@ void weld_points(Check& check, const Surface& raw) {
     CoarserWeld coarser = closing_weld(raw, check.diagonal);
     const std::size_t lost = coarser.welded.without_area.size() + coarser.welded.twice.size();
     if (coarser.tolerance > 0 && lost > welded.without_area.size() + welded.twice.size())
-      check.refuse(fmt::format("the surface is open, {}; it would close if points up to {:.3g} apart were welded, but {} smaller than "
-                               "that would be lost: weld the points in a mesh editor",
+      check.refuse(fmt::format("the surface is open, {}; it would close if points up to {:.3g} apart were welded, but {} "
+                               "smaller than that would be lost: weld the points in a mesh editor",
                                count_of(edges_with(check.sides, is_open), "open edge", "open edges"), coarser.tolerance,
                                facets(lost - welded.without_area.size() - welded.twice.size())));
     if (coarser.tolerance > 0) {
@@ -123,8 +125,8 @@ void weld_points(Check& check, const Surface& raw) {
 void check_edges(const Check& check) {
   int point = 0;
   if (const std::size_t crowded = edges_with(check.sides, is_crowded, &point))
-    check.refuse(fmt::format("{} of more than two facets, the first at {}: remove inner walls, or join parts that touch along an edge "
-                             "with a Boolean union",
+    check.refuse(fmt::format("{} of more than two facets, the first at {}: remove inner walls, or join parts that touch along "
+                             "an edge with a Boolean union",
                              count_of(crowded, "edge", "edges"), at(check.surface.points[point])));
   if (edges_with(check.sides, is_open) > 0) refuse_holes(check);
 }
@@ -134,7 +136,8 @@ void orient_facets(Check& check) {
   const auto turned = orient(check.surface, check.sides, check.neighbours);
   if (!turned) check.refuse("the surface has only one side (as a Klein bottle): it bounds no body");
   if (!turned->empty())
-    check.notes.push_back(fmt::format("{} turned that faced the other way than {} neighbours (the first at {})", facets(turned->size()),
+    check.notes.push_back(fmt::format("{} turned that faced the other way than {} neighbours (the first at {})",
+                                      facets(turned->size()),
                                       turned->size() == 1 ? "its" : "their",
                                       at(check.surface.points[check.surface.triangles[turned->front()][0]])));
   // orient() swaps two corners: sides and neighbours are those of the old order.
@@ -145,7 +148,8 @@ void orient_facets(Check& check) {
 void check_points(const Check& check) {
   const std::vector<int> pinched = pinched_points(check.surface, check.neighbours);
   if (!pinched.empty())
-    check.refuse(fmt::format("{} where parts of the surface only touch, the first at {}: move the parts apart or join them in a mesh editor",
+    check.refuse(fmt::format("{} where parts of the surface only touch, the first at {}: "
+                             "move the parts apart or join them in a mesh editor",
                              count_of(pinched.size(), "point", "points"), at(check.surface.points[pinched[0]])));
 }
 
@@ -153,10 +157,12 @@ void flatten(Check& check) {
   const double height = weld_tolerance * check.diagonal;
   const Flattened flat = remove_flat_facets(check.surface, check.neighbours, height);
   if (!flat.left.empty())
-    check.refuse(fmt::format("{} lower than {:.3g}, the first at {}: remove degenerate facets in a mesh editor", facets(flat.left.size()),
+    check.refuse(fmt::format("{} lower than {:.3g}, the first at {}: remove degenerate facets in a mesh editor",
+                             facets(flat.left.size()),
                              height, at(flat.left[0])));
   if (!flat.removed.empty())
-    check.notes.push_back(fmt::format("{} without area removed (three corners on a line, the first at {})", facets(flat.removed.size()),
+    check.notes.push_back(fmt::format("{} without area removed (three corners on a line, the first at {})",
+                                      facets(flat.removed.size()),
                                       at(flat.removed[0])));
 }
 
@@ -173,10 +179,13 @@ Vec3 middle_of_the_smaller(const Surface& surface, const std::pair<int, int>& pa
 void check_intersections(const Check& check, const std::vector<int>& shell) {
   const auto pairs = intersecting_facets(check.surface, most_intersections);
   if (pairs.empty()) return;
-  const auto between = std::count_if(pairs.begin(), pairs.end(), [&](const auto& p) { return shell[p.first] != shell[p.second]; });
+  const auto is_between = [&](const auto& p) { return shell[p.first] != shell[p.second]; };
+  const bool is_overlap = std::any_of(pairs.begin(), pairs.end(), is_between);
   const Vec3 place = middle_of_the_smaller(check.surface, pairs[0]);
-  const std::string cure = between ? "parts overlap: join them with a Boolean union" : "remove the self-intersections in a mesh editor";
-  check.refuse(fmt::format("{}{} of facets cut each other, the first at {}: {}", pairs.size() == most_intersections ? "at least " : "",
+  const std::string cure =
+      is_overlap ? "parts overlap: join them with a Boolean union" : "remove the self-intersections in a mesh editor";
+  const std::string at_least = pairs.size() >= most_intersections ? "at least " : "";
+  check.refuse(fmt::format("{}{} of facets cut each other, the first at {}: {}", at_least,
                            count_of(pairs.size(), "pair", "pairs"), at(place), cure));
 }
 
@@ -197,7 +206,8 @@ std::vector<Surface> parts(const Surface& surface, const std::vector<int>& shell
     }
     part.triangles.push_back(corners);
   }
-  std::sort(result.begin(), result.end(), [](const Surface& a, const Surface& b) { return std::abs(volume(a)) > std::abs(volume(b)); });
+  const auto is_larger = [](const Surface& a, const Surface& b) { return std::abs(volume(a)) > std::abs(volume(b)); };
+  std::sort(result.begin(), result.end(), is_larger);
   return result;
 }
 
@@ -206,12 +216,12 @@ void check_shells(const Check& check, const std::vector<int>& shell) {
   const std::vector<Surface> all = parts(check.surface, shell);
   const auto is_inside = [&](const Surface& part) { return std::abs(winding_number(all[0], part.points[0])) > 0.5; };
   if (std::all_of(all.begin() + 1, all.end(), is_inside))
-    check.refuse(fmt::format("{} inside the body, the first at {} with {}: bodies with cavities are not meshed; remove the inner shells or "
-                             "open them to the outside",
+    check.refuse(fmt::format("{} inside the body, the first at {} with {}: bodies with cavities are not meshed; remove the "
+                             "inner shells or open them to the outside",
                              count_of(all.size() - 1, "closed shell lies", "closed shells lie"), at(all[1].points[0]),
                              facets(all[1].triangles.size())));
-  check.refuse(fmt::format("{} shells that do not touch (allowed: one body): the largest has {} of {}, the next, at {}, has {}: keep one, or "
-                           "join them with a Boolean union",
+  check.refuse(fmt::format("{} shells that do not touch (allowed: one body): the largest has {} of {}, the next, at {}, has "
+                           "{}: keep one, or join them with a Boolean union",
                            all.size(), all[0].triangles.size(), facets(check.surface.triangles.size()), at(all[1].points[0]),
                            all[1].triangles.size()));
 }

@@ -14,6 +14,7 @@
 
 #include "meshes/stl.h"
 #include "meshes/surface_cgal.h"
+#include "meshes/surface_repair.h"
 #include "meshes/surface_topology.h"
 #include "problem/experiment.h"
 #include "support/surfaces.h"
@@ -252,6 +253,18 @@ TEST(CheckSurface, FacetsWithoutAreaGoWithoutAHole) {
   EXPECT_NEAR(volume(mended.surface), 1, round_off);
   EXPECT_NEAR(area(mended.surface), 6, round_off);
   EXPECT_EQ(outcome(mended.surface), "clean");
+}
+
+TEST(CheckSurface, EdgesAreDrawnAnewWithTheRightNeighbours) {
+  Surface s = sphere(1, 2);
+  for (std::size_t f = 0; f < s.triangles.size(); f += 7) {  // a corner of every seventh facet moves into its opposite edge
+    const auto& [a, b, c] = s.triangles[f];
+    s.points[c] = (s.points[a] + s.points[b]) / 2;
+  }
+  Neighbours neighbours = neighbours_of(sides_by_edge(s), s.triangles.size());
+  const Flattened flat = remove_flat_facets(s, neighbours, 1e-6);
+  EXPECT_GT(flat.removed.size(), 20u);
+  EXPECT_EQ(neighbours, neighbours_of(sides_by_edge(s), s.triangles.size()));
 }
 
 TEST(CheckSurface, CoarserWeldingMovesLittleAndLosesNoFacet) {
