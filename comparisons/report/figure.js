@@ -47,7 +47,7 @@ function onPaper(work) {
 
 function newCanvas(width, height) {
   const canvas = el('canvas', {width: Math.round(width * paperScale), height: Math.round(height * paperScale)});
-  const ctx = canvas.getContext('2d');
+  const ctx = canvas.getContext('2d', {willReadFrequently: true});   // kept in memory, where its pixels are wanted
   ctx.scale(paperScale, paperScale);
   ctx.fillStyle = '#fff';
   ctx.fillRect(0, 0, width, height);
@@ -79,6 +79,7 @@ function paper(picture, width, height, caption, notes) {
   head.forEach((line, i) => ctx.fillText(line, margin, margin + 14 + 22 * i));
   const top = margin + 22 * head.length + 4;
   ctx.drawImage(picture, margin, top, width, height);
+  if (!hasInk(ctx, margin, top, width, height)) throw new Error('nothing was drawn');
   ctx.font = below;
   ctx.fillStyle = '#4a5362';
   foot.forEach((line, i) => ctx.fillText(line, margin, top + height + 22 + 18 * i));
@@ -117,9 +118,17 @@ function pngButton(sheet, name) {
     }, 'image/png')}, 'PNG');
 }
 
-/// Instead of the page: every drawing of a case as <pre data-name>, base64 of a PNG.  (springproof pictures)
-function writePictures(result, sections) {
-  const drawings = sections.flatMap(section => section.drawings ? section.drawings(result) : []);
+/// Whether anything but white is in a box of a sheet.
+function hasInk(ctx, left, top, width, height) {
+  const box = [left, top, width, height].map(x => Math.round(x * paperScale));
+  const pixels = new Uint32Array(ctx.getImageData(...box).data.buffer);
+  return pixels.some(pixel => pixel !== 0xffffffff);
+}
+
+/// Instead of the page: the drawings of a case, or those with `only` in their name, as <pre data-name>, base64 of a PNG.
+/// What cannot be drawn is said in <p class="png-failed">.  (springproof pictures)
+function writePictures(result, sections, only = '') {
+  const drawings = sections.flatMap(section => section.drawings ? section.drawings(result) : []).filter(({name}) => name.includes(only));
   const items = drawings.map(drawing => {
     try {
       const sheet = drawing.sheet ? drawing.sheet() : chartPaper(drawing);
@@ -129,5 +138,5 @@ function writePictures(result, sections) {
     }
   });
   document.head.replaceChildren();
-  document.body.replaceChildren(...items, el('p', {id: 'png-done'}, String(drawings.length)));
+  document.body.replaceChildren(...items, el('p', {class: 'png-done'}, String(items.length)));
 }

@@ -96,8 +96,8 @@ function start() {
     {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
   ]));
   build('about', aboutSection);
-  const wanted = /^#png=(\d+)$/.exec(location.hash);
-  if (wanted) return writePictures(allCases[Number(wanted[1])], [poisson, convergence, splits, shapes, line]);
+  const wanted = /^#png=(\d+)(?:&only=(.*))?$/.exec(location.hash);
+  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, splits, line], decodeURIComponent(wanted[2] || ''));
   preparePrinting();
   window.addEventListener('hashchange', followHash);
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);

@@ -8,7 +8,7 @@ function roundAmplification(x) {
   return decade * (x / decade >= 5 ? 5 : x / decade >= 2 ? 2 : 1);
 }
 
-const surfaceNames = {smooth: 'smooth surface', cells: 'cells'};
+const surfaceNames = {smooth: 'the true surface', cells: 'the cells'};
 const lengthText = x => { const {factor: f, unit} = lengthUnit(Math.abs(x)); return `${number(x * f, 4)} ${unit}`; };
 const valueText = (colouring, x) => colouring.signed ? `${signed(x, number(100 * x, 3))} %` : lengthText(x);
 
@@ -77,7 +77,8 @@ function panelWords({picture, shape, rest}, colouring, node = null) {
 }
 
 function shapesCaption(result, {nu, cells, surface}) {
-  return `${result.name}: deformed shapes, ν = ${nuText(Number(nu))}, ${/tets/.test(cells) ? cells : cells + ' cells'}, ${surfaceNames[surface]}`;
+  return `${result.name}: deformed shapes, ν = ${nuText(Number(nu))}, ${/tets/.test(cells) ? cells : cells + ' cells'}` +
+    (surface === 'smooth' ? ', the true surface carried along' : '');
 }
 
 function shapesNotes(colouring, amplification, ghost) {
@@ -93,14 +94,12 @@ function shapesSheet(viewer, panels, colouring, top, caption, notes, aspect) {
   const columns = panels.length <= 4 ? panels.length : Math.min(5, Math.ceil(Math.sqrt(1.4 * panels.length)));
   const rows = Math.ceil(panels.length / columns), label = 42;
   const width = Math.max(300, Math.min(420, Math.floor(paperWidth / columns))), height = Math.round(width / aspect);
-  const bodies = viewer.snapshot(panels, columns, width, height);
   const total = {width: columns * width, height: rows * (height + label) + 66};
   const {canvas, ctx} = newCanvas(total.width, total.height);
+  ctx.drawImage(viewer.snapshot(panels, {columns, width, height, above: label}), 0, 0, columns * width, rows * (height + label));
   panels.forEach((panel, i) => {
-    const left = i % columns * width, row = Math.floor(i / columns), y = row * (height + label);
-    const words = panelWords(panel, colouring);
-    ctx.drawImage(bodies, left * paperScale, row * height * paperScale, width * paperScale, height * paperScale,
-                  left, y + label, width, height);
+    const left = i % columns * width, y = Math.floor(i / columns) * (height + label), words = panelWords(panel, colouring);
+    if (!hasInk(ctx, left, y + label, width, height)) throw new Error(`nothing was drawn for ${words.title}`);
     ctx.fillStyle = '#1d2430';
     ctx.font = `600 14px ${paperFont}`;
     ctx.fillText(words.title, left + 8, y + 16);

@@ -121,12 +121,14 @@ class Viewer {
     this.draw(views, frame.width, frame.height, Math.min(2, window.devicePixelRatio || 1), cssColor('--paper'));
   }
 
-  /// The same panels in rows of so many on white, each of the given size: the canvas, good until the next drawing.
-  snapshot(panels, columns, width, height) {
+  /// The same panels in rows of so many on white, each of the given size with room above: the canvas, good until the next
+  /// drawing.
+  snapshot(panels, {columns, width, height, above}) {
     const rows = Math.ceil(panels.length / columns);
-    const views = panels.map((panel, i) => ({panel, box: [i % columns * width, (rows - 1 - Math.floor(i / columns)) * height, width, height]}));
+    const views = panels.map((panel, i) =>
+      ({panel, box: [i % columns * width, (rows - 1 - Math.floor(i / columns)) * (above + height), width, height]}));
     if (!this.ready()) throw new Error('WebGL is not there');
-    this.draw(views, columns * width, rows * height, paperScale, '#ffffff');
+    this.draw(views, columns * width, rows * (above + height), paperScale, '#ffffff');
     this.request();
     return this.canvas;
   }
