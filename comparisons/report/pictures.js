@@ -133,7 +133,8 @@ function boundsOf(positions) {
 
 const mostGhostLines = 2000;
 
-/// The body at rest: its sharp edges, or where these are too many (steps of voxels) or none, a veil.
+/// The body at rest: its sharp edges, or where these are too many (steps of voxels) or none, its pale
+/// silhouette behind.
 function ghostOf(shape) {
   const {sharp, triangles} = shape.surface, lines = sharp.attributes.position.count / 2;
   if (lines > 0 && lines <= mostGhostLines)
@@ -141,8 +142,8 @@ function ghostOf(shape) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(shape.rest, 3));
   geometry.setIndex(triangles);
-  const veil = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0x7788a0, transparent: true, opacity: 0.22, depthWrite: false}));
-  veil.renderOrder = 1;
+  const veil = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0xd9dee6, side: THREE.DoubleSide, depthWrite: false}));
+  veil.renderOrder = -1;   // the body covers it
   return veil;
 }
 

@@ -51,11 +51,12 @@ function paintPanels(panels, colouring, amplification) {
   return top;
 }
 
-/// A box round all bodies as drawn.
-function boundsOfPanels(panels, amplification) {
-  const box = boundsOf(panels[0].shape.rest);
-  for (const {shape} of panels) box.union(boundsOf(shape.rest.map((x, i) => x + amplification * shape.displacement[i])));
-  return box;
+/// Points the viewer at all bodies as drawn, and at rest.
+function aimAtPanels(viewer, panels, amplification) {
+  const clouds = [panels[0].shape.rest, ...panels.map(({shape}) => shape.rest.map((x, i) => x + amplification * shape.displacement[i]))];
+  const box = boundsOf(clouds[0]);
+  for (const points of clouds) box.union(boundsOf(points));
+  viewer.aim(box, clouds);
 }
 
 /// Drawn displacements of about a seventh of the body where strains are small; large ones as they are.
@@ -133,7 +134,7 @@ function shapesDrawings(result) {
       sheet() {
         const amplification = fittingAmplification(result, make()), top = paintPanels(panels, colouring, amplification);
         viewer.forgetDirection();
-        viewer.aim(boundsOfPanels(panels, amplification));
+        aimAtPanels(viewer, panels, amplification);
         const sheet = shapesSheet(viewer, panels, colouring, top, shapesCaption(result, view), shapesNotes(colouring, amplification, true), 1.25);
         if (i === named.length - 1) {
           dispose(panels);
@@ -202,7 +203,7 @@ function shapesSection(section) {
     viewer.newCase = false;
   }
   function aimAtAll() {
-    viewer.aim(boundsOfPanels(panels, amplification()));
+    aimAtPanels(viewer, panels, amplification());
   }
   function paint() {
     top = paintPanels(panels, colouring(), amplification());

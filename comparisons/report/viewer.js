@@ -67,18 +67,18 @@ class Viewer {
     this.aimed = false;
   }
 
-  /// Looks at a box from the front right; keeps the direction if there is one already.
-  aim(box) {
-    this.pending = box;
+  /// Looks at points (arrays of xyz) in a box from the front right; keeps the direction if there is one already.
+  aim(box, clouds) {
+    this.pending = {box, clouds};
     this.request();
   }
 
   applyAim() {
     if (!this.pending) return;
-    const centre = this.pending.getCenter(new THREE.Vector3());
+    const centre = this.pending.box.getCenter(new THREE.Vector3());
     const direction = this.aimed ? this.camera.position.clone().sub(this.controls.target).normalize()
       : new THREE.Vector3(0.62, -1, 0.5).normalize();
-    const distance = 1.06 * this.fittingDistance(this.pending, centre, direction);
+    const distance = 1.06 * this.fittingDistance(this.pending.clouds, centre, direction);
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(direction, distance);
     this.camera.near = distance / 100;
@@ -88,16 +88,19 @@ class Viewer {
     this.controls.update();
   }
 
-  /// Distance from `centre`, seen from `direction`, at which every corner of the box is inside the panel.
-  fittingDistance(box, centre, direction) {
+  /// Distance from `centre`, seen from `direction`, at which every point is inside the panel.
+  fittingDistance(clouds, centre, direction) {
     const right = this.camera.up.clone().cross(direction).normalize();
     const up = direction.clone().cross(right);
     const high = Math.tan(Math.PI * this.camera.fov / 360), wide = high * this.camera.aspect;
-    const {min, max} = box;
-    const corners = [min.x, max.x].flatMap(x => [min.y, max.y].flatMap(y => [min.z, max.z].map(z =>
-      new THREE.Vector3(x, y, z).sub(centre))));
-    return Math.max(1e-9, ...corners.map(c => c.dot(direction) +
-      Math.max(Math.abs(c.dot(right)) / wide, Math.abs(c.dot(up)) / high)));
+    let distance = 1e-9;
+    const c = new THREE.Vector3();
+    for (const points of clouds)
+      for (let i = 0; i < points.length; i += 3) {
+        c.fromArray(points, i).sub(centre);
+        distance = Math.max(distance, c.dot(direction) + Math.max(Math.abs(c.dot(right)) / wide, Math.abs(c.dot(up)) / high));
+      }
+    return distance;
   }
 
   request() {
