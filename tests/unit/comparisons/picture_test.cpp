@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
-#include <set>
 
 #include "comparisons/thin_surface.h"
 
