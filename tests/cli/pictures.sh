@@ -47,7 +47,7 @@ expect 1 "no picture has 'nothing like it'" "$program" pictures "$out" --only "n
 expect 1 "not finished after 0.01 s" "$program" pictures "$out" --time-limit 0.01
 expect 0 "4 pictures in" "$program" pictures "$out" --only shapes
 for name in displacement-nu0.25 displacement-nu0.4 volume_change-nu0.25 volume_change-nu0.4; do
-  file="$out/png/case_one-shapes-$name.png"
+  file=$(echo "$out"/png/*-case_one-shapes-$name.png)   # after the folder of the case
   [ -s "$file" ] || fail "$file is not there"
   [ "$(head -c 4 "$file" | tail -c 3)" = PNG ] || fail "$file is no PNG"
 done
