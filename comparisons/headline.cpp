@@ -11,6 +11,8 @@
 #include <set>
 #include <tuple>
 
+#include "comparisons/results.h"
+
 namespace springproof {
 namespace {
 
@@ -51,10 +53,12 @@ const Json& list_of(const Json& object, const char* key) {
   return found != object.end() && found->is_array() ? *found : none;
 }
 
-double cell_count(const Json& item) {
-  double count = 1;
-  for (const Json& n : list_of(item, "cells")) count *= n.is_number() ? n.get<double>() : 0;
-  return count;
+Cells cells_of(const Json& item) {
+  const Json& list = list_of(item, "cells");
+  Cells cells = {0, 0, 0};
+  for (std::size_t d = 0; d < 3 && d < list.size(); ++d)
+    if (list[d].is_number()) cells[d] = list[d].get<int>();
+  return cells;
 }
 
 // ---- words
@@ -75,15 +79,20 @@ std::string percent(double fraction) {
   return x >= 99.5 ? fmt::format("{:.0f}", x) : fmt::format("{:.2g}", x);
 }
 
-std::string cells_text(const Json& item) {
-  std::vector<std::string> parts;
-  for (const Json& n : list_of(item, "cells")) parts.push_back(n.dump());
-  return fmt::format("{}", fmt::join(parts, "×"));
+/// At most six significant digits: 0.499975.
+std::string nu_text(std::optional<double> nu) {
+  return nu ? minus(fmt::format("{:.6g}", *nu)) : "nothing";
+}
+
+/// "10×10×10 cells" or "812 tets".
+std::string cells_words(const Json& item) {
+  const Cells cells = cells_of(item);
+  return cells_text(cells, "×") + (is_tetrahedra(cells) ? "" : " cells");
 }
 
 std::string range_text(double from, double to) {
-  return from == to ? fmt::format("at ν = {}", number_text(from))
-                    : fmt::format("for ν from {} to {}", number_text(from), number_text(to));
+  return from == to ? fmt::format("at ν = {}", nu_text(from))
+                    : fmt::format("for ν from {} to {}", nu_text(from), nu_text(to));
 }
 
 /// The listed Poisson's ratios at which the error stays within `limit`: "for ν from 0 to 0.4 and at ν =
@@ -123,7 +132,7 @@ std::string sentence(const ModelErrors& errors) {
   std::string out =
       fmt::format("displacement within {} % of FEM {} (worst: {} at ν = {}", percent(worst.error),
                   range_text(errors.displacement.begin()->first, errors.displacement.rbegin()->first),
-                  worst.case_name, number_text(nu));
+                  worst.case_name, nu_text(nu));
   if (worst.error <= worst.uncertainty)
     out += fmt::format(", below the {} % uncertainty of the reference", percent(worst.uncertainty));
   out += ")";
@@ -143,16 +152,16 @@ std::string expected_text(const Json& check) {
 std::string check_line(const std::string& case_name, const Json& check) {
   const std::string where = string_of(check, "where");
   return fmt::format(
-      "{}: {}, {} at ν = {}, {} cells: computed {}, expected {} ({}{}{})", case_name,
-      string_of(check, "model"), string_of(check, "measure"), number_text(number_of(check, "poisson_ratio")),
-      cells_text(check), number_text(number_of(check, "computed")), expected_text(check),
+      "{}: {}, {} at ν = {}, {}: computed {}, expected {} ({}{}{})", case_name,
+      string_of(check, "model"), string_of(check, "measure"), nu_text(number_of(check, "poisson_ratio")),
+      cells_words(check), number_text(number_of(check, "computed")), expected_text(check),
       string_of(check, "source"), where.empty() ? "" : ", ", where);
 }
 
 std::string run_line(const std::string& case_name, const Json& run) {
   const std::string message = string_of(run, "message");
-  return fmt::format("{}: {} at ν = {}, {} cells: {}", case_name, string_of(run, "model"),
-                     number_text(number_of(run, "poisson_ratio")), cells_text(run),
+  return fmt::format("{}: {} at ν = {}, {}: {}", case_name, string_of(run, "model"),
+                     nu_text(number_of(run, "poisson_ratio")), cells_words(run),
                      message.empty() ? "no reason given" : message);
 }
 
@@ -197,10 +206,10 @@ class Collector {
     std::map<std::string, double> finest;
     for (const Json& row : list_of(result, "rows")) {
       double& cells = finest[string_of(row, "model")];
-      cells = std::max(cells, cell_count(row));
+      cells = std::max(cells, cell_count(cells_of(row)));
     }
     for (const Json& row : list_of(result, "rows"))
-      if (cell_count(row) == finest[string_of(row, "model")]) add_row(row);
+      if (cell_count(cells_of(row)) == finest[string_of(row, "model")]) add_row(row);
   }
 
   Headline take() {

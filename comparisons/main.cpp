@@ -7,6 +7,7 @@
 #include "comparisons/calculix_command.h"
 #include "comparisons/homogenise_command.h"
 #include "comparisons/material_command.h"
+#include "comparisons/pictures_command.h"
 #include "comparisons/suite.h"
 #include "fem_reference/reference.h"
 #include "msm/models.h"
@@ -83,6 +84,10 @@ int main(int argc, char** argv) try {
       "cross-check", "The same case by CalculiX and by our FEM reference, with both uncertainties");
   second_opinion.add_options(*cross_check_command);
 
+  PicturesCommand pictures;
+  CLI::App* pictures_command = app.add_subcommand("pictures", "The figures and bodies of a report as PNG files, without a display");
+  pictures.add_options(*pictures_command);
+
   std::string bench_of;
   std::vector<std::string> bench_arguments = {"--bench"};
   CLI::App* bench_command = app.add_subcommand("bench", "Measure the solvers: ratios of runs on this machine");
@@ -110,6 +115,7 @@ int main(int argc, char** argv) try {
   if (*bench_command) return fem::run_program(bench_arguments);
   if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();
+  if (*pictures_command) return pictures.run();
   if (*cross_check_command) return second_opinion.run();
   return material.run();
 } catch (const springproof::InputError& e) {

@@ -27,8 +27,13 @@ set(report_assets
     template_html=${report_dir}/report/template.html
     style_css=${report_dir}/report/style.css
     report_js=${report_dir}/report/data.js
+    report_js=${report_dir}/report/figure.js
     report_js=${report_dir}/report/charts.js
     report_js=${report_dir}/report/line.js
+    report_js=${report_dir}/report/splits.js
+    report_js=${report_dir}/report/colours.js
+    report_js=${report_dir}/report/pictures.js
+    report_js=${report_dir}/report/viewer.js
     report_js=${report_dir}/report/shapes.js
     report_js=${report_dir}/report/pages.js
     report_js=${report_dir}/report/verification.js

@@ -340,10 +340,11 @@ Json quads_json(const std::vector<int>& quads, std::size_t nodes) {
 void check_sizes(const Picture& p) {
   const auto nodes = p.rest.size() / 3;
   if (p.rest.size() % 3 != 0 || p.displacement.size() != p.rest.size() || p.quads.size() % 4 != 0 ||
-      (!p.difference.empty() && p.difference.size() != nodes))
+      (!p.difference.empty() && p.difference.size() != nodes) ||
+      (!p.volume_change.empty() && p.volume_change.size() != nodes))
     throw std::invalid_argument(
-        fmt::format("picture of {}: {} rest, {} displacement, {} difference, {} facet numbers", p.model,
-                    p.rest.size(), p.displacement.size(), p.difference.size(), p.quads.size()));
+        fmt::format("picture of {}: {} rest, {} displacement, {} difference, {} volume changes, {} facet numbers", p.model,
+                    p.rest.size(), p.displacement.size(), p.difference.size(), p.volume_change.size(), p.quads.size()));
 }
 
 // ---- CSV
@@ -380,6 +381,16 @@ std::string to_string(Verdict verdict) {
   throw std::invalid_argument("no such verdict");
 }
 
+bool is_tetrahedra(const Cells& cells) { return cells[0] > 0 && cells[1] == 0 && cells[2] == 0; }
+
+std::string cells_text(const Cells& cells, std::string_view times) {
+  return is_tetrahedra(cells) ? fmt::format("{} tets", cells[0]) : fmt::format("{}", fmt::join(cells, times));
+}
+
+double cell_count(const Cells& cells) {
+  return is_tetrahedra(cells) ? cells[0] : double(cells[0]) * cells[1] * cells[2];
+}
+
 std::string describe(const Load& load) {
   return std::visit([](const auto& l) { return sentence(l); }, load);
 }
@@ -410,9 +421,11 @@ Json pictures_to_json(const CaseResult& result) {
     pictures.push_back({{"model", p.model},
                         {"poisson_ratio", number(p.poisson_ratio)},
                         {"cells", p.cells},
+                        {"surface", p.surface},
                         {"mesh", mesh},
                         {"displacement", shorts_json(p.displacement)},
-                        {"difference", shorts_json(p.difference)}});
+                        {"difference", shorts_json(p.difference)},
+                        {"volume_change", shorts_json(p.volume_change)}});
   }
   return {{"case", result.experiment.name},
           {"folder", result.experiment.folder},
@@ -425,9 +438,9 @@ std::string to_csv(const std::vector<CaseResult>& results) {
       "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error,samples,spread\n";
   for (const CaseResult& result : results)
     for (const Row& r : result.rows)
-      out += fmt::format("{},{},{},{},{}x{}x{},{},{},{},{},{},{},{},{}\n", quoted(r.case_name),
-                         quoted(r.kinematics), quoted(r.model), csv_number(r.poisson_ratio), r.cells[0],
-                         r.cells[1], r.cells[2], quoted(r.measure), csv_number(r.value), quoted(r.unit),
+      out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.case_name),
+                         quoted(r.kinematics), quoted(r.model), csv_number(r.poisson_ratio), cells_text(r.cells),
+                         quoted(r.measure), csv_number(r.value), quoted(r.unit),
                          csv_number(r.reference), csv_number(r.reference_uncertainty), csv_number(r.error), r.samples, csv_number(r.spread));
   return out;
 }

@@ -117,7 +117,9 @@ struct Picture {
   std::vector<float> rest;             ///< surface nodes, xyz xyz ... [m]
   std::vector<float> displacement;     ///< same length [m]
   std::vector<float> difference;       ///< |u - u_fem| per surface node [m]; empty for "fem"
-  std::vector<int> quads;              ///< 4 surface-node numbers per facet
+  std::vector<int> quads;              ///< 4 surface-node numbers per facet; of a triangle the last is -1
+  std::vector<float> volume_change;    ///< V'/V - 1, mean over the cells at each surface node [1]
+  std::string surface = "cells";       ///< "cells": outer facets of the mesh; "smooth": the true surface, carried by voxels
 };
 
 /// xx yy zz xy yz xz at each point of a line, one point after the other.
@@ -147,6 +149,15 @@ struct CaseResult {
   std::vector<ErrorSplit> splits;
   std::vector<std::string> notes;  ///< what was mended or left out of the body
 };
+
+/// {812, 0, 0} stands for 812 tetrahedra, which form no grid.
+bool is_tetrahedra(const Cells& cells);
+
+/// "10x10x10" or "812 tets".
+std::string cells_text(const Cells& cells, std::string_view times = "x");
+
+/// Hexahedra or tetrahedra of which there are so many.
+double cell_count(const Cells& cells);
 
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".
 std::string describe(const Load& load);

@@ -1,24 +1,5 @@
 'use strict';
-// The two figures: error against Poisson's ratio, error against cell size (or time).
-
-const cssColor = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-const charts = [];   // functions that draw again, for a change of colours
-
-/// A canvas with its chart; draw(configuration) replaces what it shows.
-function figure() {
-  const canvas = el('canvas', {role: 'img'});
-  const note = el('p', {class: 'note'});
-  const node = el('div', {class: 'figure'}, el('div', {class: 'canvas'}, canvas), note);
-  let chart = null;
-  function draw(configuration, label, notes) {
-    if (chart) chart.destroy();
-    chart = new Chart(canvas, configuration);
-    canvas.setAttribute('aria-label', label);
-    note.replaceChildren(...notes.map(text => el('span', {}, text)));
-  }
-  return {node, draw};
-}
+// Error against Poisson's ratio, error against cell size (or time).
 
 function colors() {
   return {ink: cssColor('--ink'), soft: cssColor('--soft'), grid: cssColor('--line'),
@@ -140,7 +121,7 @@ function poissonTooltip(unit) {
     callbacks: {
       title: items => items.length ? 'ν = ' + nuText(items[0].raw.row.poisson_ratio) : '',
       label: item => `${item.dataset.label}: ${number(item.raw.y, 3)} ${unit}`,
-      afterLabel: ({raw}) => [`${raw.result.name}, ${cellsText(raw.row.cells)} cells`,
+      afterLabel: ({raw}) => [`${raw.result.name}, ${cellsWords(raw.row.cells)}`,
         raw.uncertainty === null ? 'reference without uncertainty'
           : `uncertainty of the reference: ${number(raw.uncertainty, 2)} ${unit}`],
     },
@@ -151,7 +132,7 @@ function missingNotes(chosen, resolution) {
   const failed = chosen.flatMap(result => result.runs.filter(run => !run.ok &&
     (['finest', 'coarsest'].includes(resolution) || cellsText(run.cells) === resolution)).map(run => [result, run]));
   return failed.slice(0, 4).map(([result, run]) => `No result: ${run.model} at ν = ${nuText(run.poisson_ratio)}, ` +
-    `${result.name}, ${cellsText(run.cells)} cells (${run.message || 'no reason given'}).`)
+    `${result.name}, ${cellsWords(run.cells)} (${run.message || 'no reason given'}).`)
     .concat(failed.length > 4 ? [`${failed.length - 4} more runs without a result.`] : []);
 }
 
@@ -188,6 +169,19 @@ function poissonChart(chosen, measure, resolution, even) {
 
 const mostLines = 6;   // spring models drawn at first
 
+function poissonDrawing(chosen, measure, resolution, even) {
+  const one = chosen.length === 1;
+  return {
+    name: `${one ? chosen[0].key : 'all'}-error-${measure}`,
+    caption: `${one ? chosen[0].name : `Largest of ${chosen.length} cases`}: error of the ${measureText(measure)} against Poisson’s ratio, ` +
+      `${['finest', 'coarsest'].includes(resolution) ? resolution + ' cells' : resolution}`,
+    notes: ['Below the shaded band a difference cannot be told from the uncertainty of the reference; such points are hollow.',
+            ...(springCount(chosen) > mostLines ? ['Models struck out in the legend are hidden: click to show them.'] : []),
+            ...missingNotes(chosen, resolution)],
+    make: () => poissonChart(chosen, measure, resolution, even),
+  };
+}
+
 function poissonSection(section) {
   const plot = figure(), volumePlot = figure();
   const empty = notice('No error of this case is known.');
@@ -199,7 +193,7 @@ function poissonSection(section) {
   function update() {
     const chosen = chosenCases(caseChoice.value);
     replaceOptions(measureChoice, measureChoices(chosen));
-    const listed = chosen.length === 1 ? chosen[0].cells.map(cells => [cellsText(cells), cellsText(cells) + ' cells']) : [];
+    const listed = chosen.length === 1 ? chosen[0].cells.map(cells => [cellsText(cells), cellsWords(cells)]) : [];
     replaceOptions(resolutionChoice, [['finest', 'finest'], ['coarsest', 'coarsest'], ...listed]);
     draw();
   }
@@ -208,24 +202,20 @@ function poissonSection(section) {
     plot.node.hidden = !measureChoice.value;
     empty.hidden = !plot.node.hidden;
     if (!measureChoice.value) return;
-    const notes = ['Below the shaded band a difference cannot be told from the uncertainty of the reference; ' +
-      'such points are hollow.', ...(springCount(chosen) > mostLines ? ['Models struck out in the legend are hidden: click to show them.'] : []),
-      ...missingNotes(chosen, resolutionChoice.value)];
-    plot.draw(poissonChart(chosen, measureChoice.value, resolutionChoice.value, axisChoice.value === 'even'),
-              'Error against Poisson’s ratio, one line per model; the numbers are in the case pages', notes);
+    const drawing = measure => poissonDrawing(chosen, measure, resolutionChoice.value, axisChoice.value === 'even');
+    plot.draw(drawing(measureChoice.value));
     // The two errors that the question is about stand together.
     const together = measureChoice.value === 'displacement_error' && measureChoices(chosen).some(([m]) => m === 'volume_change');
     volumePlot.node.hidden = !together;
-    if (together)
-      volumePlot.draw(poissonChart(chosen, 'volume_change', resolutionChoice.value, axisChoice.value === 'even'),
-                      'Error of the volume change, the same runs', []);
+    if (together) volumePlot.draw({...drawing('volume_change'), notes: []});
   }
   section.append(el('p', {class: 'lead'}, 'How far each model is from the finite element reference.'),
                  el('div', {class: 'choices'}, caseChoice.node, measureChoice.node, resolutionChoice.node, axisChoice.node),
                  empty, plot.node, volumePlot.node);
   update();
   charts.push(draw);
-  return {show(id) { caseChoice.value = id; update(); }};
+  return {show(id) { caseChoice.value = id; update(); },
+          drawings: result => measureChoices([result]).filter(([m]) => !result.minor.has(m)).map(([m]) => allShown(poissonDrawing([result], m, 'finest', true)))};
 }
 
 // ---- convergence
@@ -334,7 +324,7 @@ function convergenceTooltip(unit) {
     filter: item => item.raw && item.raw.row,
     callbacks: {
       title: items => items.length ? `${items[0].raw.row.model}, ν = ${nuText(items[0].raw.row.poisson_ratio)}` : '',
-      label: ({raw}) => `${number(raw.y, 3)} ${unit} with ${cellsText(raw.row.cells)} cells`,
+      label: ({raw}) => `${number(raw.y, 3)} ${unit} with ${cellsWords(raw.row.cells)}`,
       afterLabel: ({raw}) => raw.run ? `${seconds(raw.run.seconds)}, ${number(raw.run.unknowns, 6)} unknowns` : '',
     },
   };
@@ -358,6 +348,29 @@ function convergenceChart(result, choice, measure, against) {
   return {type: 'line', data: {datasets: [...datasets, ...guides, ...band]}, options, plugins: [guideLabels]};
 }
 
+/// Null where there is nothing to draw.
+function convergenceDrawing(result, choice, measure, against) {
+  const make = () => convergenceChart(result, choice, measure, against);
+  if (make() === null) return null;
+  const [kind, which] = [choice.slice(0, choice.indexOf(':')), choice.slice(choice.indexOf(':') + 1)];
+  const single = result.cells.length < 2 ? ['Only one resolution was run: no order can be observed.'] : [];
+  return {
+    name: `${result.key}-convergence-${measure}-${kind === 'nu' ? 'nu' + nuDigits(Number(which)) : which}`,
+    caption: `${result.name}: error of the ${measureText(measure)} against ${against === 'size' ? 'cell size' : 'time'}, ` +
+      (kind === 'nu' ? `ν = ${nuText(Number(which))}` : which),
+    notes: [...single, 'The order is the slope of a least-squares line through all resolutions. ' +
+      'Block cases have singular edges at clamped faces, where order 2 cannot be expected.'],
+    make,
+  };
+}
+
+/// Every measure at every nu, where there is more than one resolution.
+function convergenceDrawings(result) {
+  if (result.cells.length < 2) return [];
+  const measures = measureChoices([result]).map(([measure]) => measure).filter(measure => !result.minor.has(measure));
+  return measures.flatMap(measure => result.nus.map(nu => convergenceDrawing(result, 'nu:' + nu, measure, 'size'))).filter(Boolean);
+}
+
 function convergenceSection(section) {
   const plot = figure();
   const caseChoice = select('Case', cases.map(c => [c.id, c.name]), update);
@@ -375,14 +388,11 @@ function convergenceSection(section) {
   }
   function draw() {
     const result = chosen(), measure = measureChoice.value;
-    const configuration = measure ? convergenceChart(result, lineChoice.value, measure, axisChoice.value) : null;
-    plot.node.hidden = !configuration;
-    empty.hidden = Boolean(configuration);
+    const drawing = measure ? convergenceDrawing(result, lineChoice.value, measure, axisChoice.value) : null;
+    plot.node.hidden = !drawing;
+    empty.hidden = Boolean(drawing);
     empty.textContent = 'There is no error to draw for this choice.';
-    const single = result.cells.length < 2 ? ['Only one resolution was run: no order can be observed.'] : [];
-    if (configuration) plot.draw(configuration, 'Error against cell size, one line per model', [...single,
-      'The order is the slope of a least-squares line through all resolutions. ' +
-      'Block cases have singular edges at clamped faces, where order 2 cannot be expected.']);
+    if (drawing) plot.draw(drawing);
   }
   section.append(
     el('p', {class: 'lead'}, 'How fast the error falls as the cells get smaller, and what that costs.'),
@@ -392,9 +402,5 @@ function convergenceSection(section) {
   const middle = chosen().nus.includes(0.25) ? 'nu:0.25' : null;
   if (middle) { lineChoice.value = middle; draw(); }
   charts.push(draw);
-  return {show(id) { caseChoice.value = id; update(); }};
-}
-
-function notice(text) {
-  return el('p', {class: 'notice'}, text);
+  return {show(id) { caseChoice.value = id; update(); }, drawings: convergenceDrawings};
 }

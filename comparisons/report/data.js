@@ -83,7 +83,9 @@ function number(x, digits = 4) {
   return grouped(x.toLocaleString('en', {maximumFractionDigits: decimals, useGrouping: size >= 1e4}));
 }
 
-const nuText = nu => isNumber(nu) ? minus(String(nu)) : '–';
+/// Poisson's ratio with at most six significant digits.
+const nuDigits = nu => String(Number(nu.toPrecision(6)));
+const nuText = nu => isNumber(nu) ? minus(nuDigits(nu)) : '–';
 
 const grouped = text => minus(text.replace(/,/g, '\u202f'));
 
@@ -143,8 +145,11 @@ function lengthUnit(size) {
 
 // ---- cells and measures
 
-const cellCount = cells => (cells || []).reduce((product, n) => product * n, 1);
-const cellsText = cells => (cells || []).join('×');
+/// [812, 0, 0] stands for 812 tetrahedra, which form no grid.
+const isTetrahedra = ([n, ...rest]) => n > 0 && rest.length === 2 && rest.every(m => m === 0);
+const cellCount = cells => isTetrahedra(cells || []) ? cells[0] : (cells || []).reduce((product, n) => product * n, 1);
+const cellsText = cells => isTetrahedra(cells || []) ? `${cells[0]} tets` : (cells || []).join('×');
+const cellsWords = cells => cellsText(cells) + (isTetrahedra(cells || []) ? '' : ' cells');
 const bySize = (a, b) => cellCount(a) - cellCount(b);
 
 const measureNames = {
@@ -196,18 +201,20 @@ function unpack({columns, values}) {
 
 function prepareCase(data) {
   const experiment = data.experiment || {};
+  const key = [experiment.folder, experiment.name].filter(Boolean).join('-').replace(/[^\w-]/g, '_');
   const result = {
     experiment,
     name: experiment.name || '?',
-    id: 'case-' + [experiment.folder, experiment.name].filter(Boolean).join('-').replace(/[^\w-]/g, '_'),
+    key, id: 'case-' + key,
     linear: experiment.kinematics === 'linear',
     verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
     checks: data.checks || [], published: data.published || [], lines: data.lines || [],
+    splits: data.splits || [],
   };
-  const key = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;
-  result.runAt = new Map(result.runs.map(run => [key(run), run]));
-  result.rowAt = new Map(result.rows.map(row => [row.measure + '|' + key(row), row]));
+  const at = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;
+  result.runAt = new Map(result.runs.map(run => [at(run), run]));
+  result.rowAt = new Map(result.rows.map(row => [row.measure + '|' + at(row), row]));
   result.referenceAt = new Map(result.rows.map(row => [`${row.measure}|${row.poisson_ratio}`, row.reference]));
   const named = distinct(result.rows.map(row => row.measure));
   const leads = measure => isDistance(measure) ? 0 : measure.startsWith('volume') ? 1 : 2;
@@ -330,7 +337,7 @@ function worstOf(result, rows) {
   return worst;
 }
 
-// ---- models and their colours (Okabe & Ito's palette, told apart by marker too)
+// ---- models and their colours (the first eight of Okabe & Ito's palette, told apart by marker too; then dashed)
 
 function orderModels() {
   const all = distinct(cases.flatMap(result => result.models));
@@ -341,13 +348,16 @@ function isFem(model) {
   return model.startsWith('fem') || cases.some(c => c.runs.some(run => run.model === model && run.kind === 'fem'));
 }
 
-const palette = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c6d31', '#6b5b95'];
-const markers = ['circle', 'triangle', 'rect', 'rectRot', 'star', 'crossRot'];
+const palette = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c6d31', '#6b5b95',
+                 '#a80038', '#3b3bd6', '#7fb800', '#00b3a6', '#ff6f91', '#5a3a1a', '#b64ee0', '#556b2f'];
+const markers = ['circle', 'triangle', 'rect', 'rectRot', 'star', 'crossRot', 'rectRounded', 'cross'];
+const dashes = [[], [7, 4], [2, 3]];
 
 function modelStyle(model) {
   if (isFem(model)) return {color: '#8a8f98', marker: 'rectRot', dash: [6, 4]};
   const index = Math.max(0, models.indexOf(model));
-  return {color: palette[index % palette.length], marker: markers[index % markers.length], dash: []};
+  return {color: palette[index % palette.length], marker: markers[index % markers.length],
+          dash: dashes[Math.min(2, Math.floor(index / markers.length))]};
 }
 
 function modelName(model) {

@@ -38,6 +38,20 @@ function lineChart(records, quantityName, component, unit) {
   return {type: 'line', data: {datasets}, options};
 }
 
+function lineDrawing(result, quantityName, component) {
+  const finest = Math.max(...result.lines.map(record => cellCount(record.cells)));
+  const records = result.lines.filter(record => cellCount(record.cells) === finest);
+  return {
+    name: `${result.key}-line-${quantityName}-${lineComponents[component]}-nu${nuDigits(records[0].poisson_ratio)}`,
+    caption: `${result.name}: ${quantityName} ${lineComponents[component]} along the line, ν = ${nuText(records[0].poisson_ratio)}`,
+    notes: [`Deviations are means over the points ${records[0].first} to ${records[0].last}; of several disordered networks the first is drawn.`],
+    make: () => lineChart(records, quantityName, component, quantityName === 'stress' ? ' [Pa]' : ''),
+  };
+}
+
+const lineDrawings = result => result.lines.length === 0 ? [] :
+  ['strain', 'stress'].flatMap(quantityName => lineComponents.map((_, i) => lineDrawing(result, quantityName, i)));
+
 function lineSection(section) {
   const having = cases.filter(result => result.lines.length > 0).sort((a, b) => b.models.length - a.models.length);
   if (having.length === 0) return leaveOut(section);
@@ -48,16 +62,12 @@ function lineSection(section) {
 
   function draw() {
     const result = having.find(c => c.id === caseChoice.value), component = Number(componentChoice.value);
-    const finest = Math.max(...result.lines.map(record => cellCount(record.cells)));
-    const records = result.lines.filter(record => cellCount(record.cells) === finest);
-    const [first, last] = [records[0].first, records[0].last];
-    const notes = [`Deviations are means over the points ${first} to ${last}; of several disordered networks the first is drawn.`];
-    strain.draw(lineChart(records, 'strain', component, ''), 'Strain along the line, one curve per model and Kelvin’s', []);
-    stress.draw(lineChart(records, 'stress', component, ' [Pa]'), 'Stress along the line, one curve per model and Kelvin’s', notes);
+    strain.draw({...lineDrawing(result, 'strain', component), notes: []});
+    stress.draw(lineDrawing(result, 'stress', component));
   }
   section.append(el('p', {class: 'lead'}, 'Strain and stress inside the models beside Kelvin’s solution, from the point force (0) to the end of the line (100).'),
     el('div', {class: 'choices'}, caseChoice.node, componentChoice.node), strain.node, stress.node);
   draw();
   charts.push(draw);
-  return {show(id) { caseChoice.value = id; draw(); }, has: id => having.some(c => c.id === id)};
+  return {show(id) { caseChoice.value = id; draw(); }, has: id => having.some(c => c.id === id), drawings: lineDrawings};
 }

@@ -36,7 +36,7 @@ function aboutSection(section) {
   const facts = [...flatten(program), ['generated', generated || '–'], ...flatten(host)];
   section.append(el('dl', {}, facts.flatMap(([term, value]) => definition(term.replace(/_/g, ' '), value))),
     el('p', {class: 'note'}, 'The page loads nothing from the network. The same numbers are in results.json and results.csv. ' +
-       'Charts: Chart.js 3.9; shapes: three.js r111 (both MIT licence); colours: viridis, Okabe and Ito.'));
+       'Charts: Chart.js 3.9; shapes: three.js r111 (both MIT licence); colours: viridis, Moreland, Okabe and Ito.'));
 }
 
 function decorateHead() {
@@ -83,6 +83,7 @@ function start() {
   const compared = id => cases.some(result => result.id === id);
   const poisson = build('poisson', needsCases(poissonSection));
   const convergence = build('convergence', needsCases(convergenceSection));
+  const splits = build('splits', splitsSection);
   const shapes = build('shapes', shapesSection);
   const line = build('line', lineSection);
   build('verification', verificationSection);
@@ -90,10 +91,13 @@ function start() {
   build('pages', section => pagesSection(section, [
     {text: 'Error against ν', go: jumpTo('poisson', poisson), has: compared},
     {text: 'Convergence', go: jumpTo('convergence', convergence), has: compared},
+    {text: 'Parts of the error', go: jumpTo('splits', splits), has: id => splits.has(id)},
     {text: 'Along the line', go: jumpTo('line', line), has: id => line.has(id)},
     {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
   ]));
   build('about', aboutSection);
+  const wanted = /^#png=(\d+)(?:&only=(.*))?$/.exec(location.hash);
+  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, splits, line], decodeURIComponent(wanted[2] || ''));
   preparePrinting();
   window.addEventListener('hashchange', followHash);
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);

@@ -50,6 +50,18 @@ TEST(Headline, TakesTheWorstOfAllCasesAtTheFinestCells) {
             "from 0 to 0.4, in 2 linear cases.");
 }
 
+TEST(Headline, TetrahedraAndLongPoissonsRatiosAreReadable) {
+  CaseResult c = with_errors("hand", "hybmss", {{0.4999750012499375, 10, 0.5}});
+  c.runs[0].ok = false;
+  c.runs[0].cells = {812, 0, 0};
+  c.rows[0].cells = {812, 0, 0};
+  c.rows.push_back({"hand", "linear", "hybmss", 0.4999750012499375, {100, 0, 0}, "displacement_error", 0.7, "1", {}, 1e-4, 0.7});
+  const Headline h = headline_of({c});
+  EXPECT_EQ(h.failed_runs.at(0), "hand: hybmss at ν = 0.499975, 812 tets: no reason given");
+  EXPECT_EQ(h.models[0].sentence, "displacement within 50 % of FEM at ν = 0.499975 (worst: hand at ν = 0.499975).")
+      << "the finer mesh counts";
+}
+
 TEST(Headline, ACaseWithoutModelsIsJudgedByItsExpectationsAlone) {
   CaseResult c = with_errors("plate", "fem_p1", {{0, 10, 0.5}});
   c.experiment.models.clear();

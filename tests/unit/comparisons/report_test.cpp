@@ -6,8 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
 
+#include "comparisons/png_page.h"
 #include "unit/comparisons/sample_case.h"
 
 namespace springproof {
@@ -161,6 +163,9 @@ class ReportInBrowser : public Report {
   /// The page as the browser holds it after the scripts have run, and its console.
   std::string open(const std::vector<CaseResult>& cases, const std::string& fragment = "") {
     write(cases);
+    return visit(fragment);
+  }
+  std::string visit(const std::string& fragment) {
     return output_of(
         "timeout 120 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
         "--enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking "
@@ -183,7 +188,7 @@ TEST_F(ReportInBrowser, ShowsTheCase) {
   expect_no_complaint(dom);
   const std::string body = dom.substr(dom.find("<main>"), dom.find("</main>") - dom.find("<main>"));
   EXPECT_EQ(count(body, "<canvas"), 4u) << "three figures and the deformed shapes";
-  EXPECT_EQ(count(body, "class=\"panel\""), 2u) << "FEM and hybmss";
+  EXPECT_EQ(count(body, "class=\"panel\""), 3u) << "undeformed, FEM and hybmss";
   EXPECT_NE(body.find("<td class=\"number tint2\">2.0 %<small>ν = 0.4</small>"), std::string::npos)
       << "table of cases";
   EXPECT_NE(body.find("z_max: moved by -0.05 m in z"), std::string::npos) << "problem";
@@ -195,6 +200,124 @@ TEST_F(ReportInBrowser, ShowsTheCase) {
       << "both x components, z of z_min, magnitude and z of z_max";
   EXPECT_NE(body.find("510.00<small>+2.0 %</small>"), std::string::npos) << "value and its error";
   EXPECT_NE(body.find("explicit run, not settled"), std::string::npos) << "published value";
+}
+
+/// The sample with a smooth surface, tetrahedra, and the parts of its errors.
+CaseResult embedded_case() {
+  CaseResult c = sample_case();
+  for (const char* model : {"fem", "hybmss"}) {
+    Picture p = sample_picture(model, 0.4);
+    p.surface = "smooth";
+    p.quads = {0, 1, 2, -1, 0, 2, 3, -1};
+    c.pictures.push_back(p);
+  }
+  c.rows.push_back({"compress", "linear", "fem_p1", 0.4, {812, 0, 0}, "displacement_error", 0.01, "1", {}, 0.001, 0.01});
+  return c;
+}
+
+Json some_splits() {
+  Json splits = Json::array();
+  for (double nu : {0.25, 0.4})
+    for (int n : {1, 2})
+      splits.push_back({{"model", "hybmss"}, {"poisson_ratio", nu}, {"cells", {n, n, n}}, {"measure", "volume_change"}, {"unit", "1"},
+                        {"total", 0.03 / n}, {"model_error", -0.01 / n}, {"discretisation_error", 0.025 / n},
+                        {"geometry_error", 0.015 / n}, {"uncertainty", 0.001}, {"voxel_edge_m", 1.0 / n}});
+  return splits;
+}
+
+class FiguresInBrowser : public ReportInBrowser {
+ protected:
+  /// The page of embedded_case() with the parts of its errors and a script that runs after its own.
+  std::string open_with(const std::string& script, const std::string& fragment = "") {
+    Json results = document({embedded_case()});
+    results["cases"][0]["splits"] = some_splits();
+    write_report(file, results, pictures({embedded_case()}));
+    std::string page = slurp(file);
+    page.insert(page.rfind("</body>"), "<script>" + script + "</script>");
+    std::ofstream(file, std::ios::binary) << page;
+    return visit(fragment);
+  }
+};
+
+// Colours of a canvas of the page, of any kind, as numbers; and what a test wants to say.
+const std::string tools = R"js(
+  const pixelsOf = canvas => {
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const ctx = copy.getContext('2d');
+    ctx.drawImage(canvas, 0, 0);
+    return new Uint32Array(ctx.getImageData(0, 0, copy.width, copy.height).data.buffer);
+  };
+  const coloursOf = canvas => canvas.width * canvas.height === 0 ? 0 : new Set(pixelsOf(canvas)).size;
+  const say = text => document.body.append(Object.assign(document.createElement('p'), {className: 'said', textContent: text}));
+)js";
+
+TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
+  const std::string dom = open_with(tools + R"js(
+    setTimeout(() => document.querySelectorAll('section:not([hidden]) canvas').forEach(canvas =>
+      say(canvas.closest('section').id + (coloursOf(canvas) > 20 ? ' drawn' : ' blank'))), 2000);
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_EQ(count(dom, "<p class=\"said\">poisson drawn"), 2u);
+  EXPECT_EQ(count(dom, "<p class=\"said\">convergence drawn"), 1u);
+  EXPECT_EQ(count(dom, "<p class=\"said\">splits drawn"), 2u) << "against nu, against the voxel edge";
+  EXPECT_EQ(count(dom, "<p class=\"said\">shapes drawn"), 1u);
+  EXPECT_EQ(count(dom, " blank</p>"), 0u);
+  EXPECT_EQ(count(dom, "<button type=\"button\" class=\"png\""), 6u) << "one per figure";
+  EXPECT_NE(dom.find("<option value=\"812 tets\">812 tets</option>"), std::string::npos);
+  EXPECT_NE(dom.find("the springs against finite elements (eight-node bricks) on the same voxels"), std::string::npos);
+  EXPECT_NE(dom.find("<b>1.5000</b>"), std::string::npos) << "total of the finer cells in percent, in the table";
+}
+
+TEST_F(FiguresInBrowser, OneDragTurnsAllBodies) {
+  const std::string dom = open_with(tools + R"js(
+    const viewer = document.querySelector('.viewer'), canvas = viewer.querySelector('canvas');
+    const panels = () => [...viewer.querySelectorAll('.panel')].map(panel => {
+      const all = viewer.getBoundingClientRect(), box = panel.getBoundingClientRect(), scale = canvas.width / all.width;
+      const copy = document.createElement('canvas');
+      [copy.width, copy.height] = [box.width * scale, (box.height - 46) * scale];
+      const ctx = copy.getContext('2d');
+      ctx.drawImage(canvas, -(box.left - all.left) * scale, -(box.top + 46 - all.top) * scale);
+      return ctx.getImageData(0, 0, copy.width, copy.height).data.join();
+    });
+    const mouse = (target, type, x) => target.dispatchEvent(new MouseEvent(type, {bubbles: true, button: 0, clientX: x, clientY: 300}));
+    setTimeout(() => {
+      const before = panels();
+      mouse(viewer, 'mousedown', 300);
+      mouse(document, 'mousemove', 380);
+      mouse(document, 'mouseup', 380);
+      setTimeout(() => panels().forEach((now, i) => say('panel ' + (now === before[i] ? 'still' : 'turned'))), 500);
+    }, 2000);
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_EQ(count(dom, "<p class=\"said\">panel turned"), 3u);
+  EXPECT_EQ(count(dom, "<p class=\"said\">panel still"), 0u);
+}
+
+TEST_F(FiguresInBrowser, PicturesShowEverySurfaceAndColouring) {
+  const PngPage page = png_page(open_with("", "#png=0&only=shapes"));
+  EXPECT_EQ(page.failed, std::vector<std::string>());
+  std::set<std::string> names;
+  for (const PngFile& f : page.files) {
+    names.insert(f.name);
+    EXPECT_GT(f.bytes.size(), 10'000u) << f.name;
+  }
+  std::set<std::string> expected;
+  for (const char* view : {"nu0.25", "nu0.4", "smooth-nu0.4"})
+    for (const char* colouring : {"displacement", "difference", "volume_change"})
+      expected.insert(std::string("golec_2019-compress-shapes-") + colouring + "-" + view + ".png");
+  EXPECT_EQ(names, expected);
+}
+
+TEST_F(FiguresInBrowser, PicturesShowThePartsOfTheErrors) {
+  const PngPage page = png_page(open_with("", "#png=0&only=split"));
+  EXPECT_EQ(page.failed, std::vector<std::string>());
+  std::set<std::string> names;
+  for (const PngFile& f : page.files) names.insert(f.name);
+  const std::string stem = "golec_2019-compress-split-";
+  EXPECT_EQ(names, (std::set<std::string>{stem + "volume_change-hybmss.png", stem + "volume_change-nu0.25.png",
+                                          stem + "volume_change-nu0.4.png", stem + "edge-volume_change-hybmss-nu0.25.png",
+                                          stem + "edge-volume_change-hybmss-nu0.4.png"}));
 }
 
 TEST_F(ReportInBrowser, HostileTextIsOnlyText) {
@@ -257,7 +380,7 @@ TEST_F(ReportInBrowser, VerificationAloneIsAReport) {
   const std::string dom = open({verification_case()}, "#case-verification-plate");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("Orders of convergence"), std::string::npos);
-  EXPECT_EQ(count(dom, "class=\"panel\""), 1u) << "the body";
+  EXPECT_EQ(count(dom, "class=\"panel\""), 2u) << "the body at rest and deformed";
   for (const char* section : {"cases", "poisson", "convergence"})
     EXPECT_NE(dom.find(std::string("<section id=\"") + section + "\" hidden"), std::string::npos) << section << " has nothing to say";
   EXPECT_EQ(dom.find("<section id=\"shapes\" hidden"), std::string::npos);

@@ -53,6 +53,17 @@ TEST(ResultsCsv, NumbersThatAreNotFiniteAreEmpty) {
   EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,m,0.25,1x1x1,x,,N,,,,1,");
 }
 
+TEST(CellsText, GridsAndTetrahedra) {
+  EXPECT_EQ(cells_text({24, 4, 4}), "24x4x4");
+  EXPECT_EQ(cells_text({24, 4, 4}, "×"), "24×4×4");
+  EXPECT_EQ(cells_text({812, 0, 0}), "812 tets");
+  EXPECT_EQ(cell_count({812, 0, 0}), 812);
+  EXPECT_EQ(cell_count({24, 4, 4}), 384);
+  CaseResult c;
+  c.rows.push_back({"a", "linear", "fem_p1", 0.25, {812, 0, 0}, "x", 1, "N", {}, {}, {}});
+  EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,fem_p1,0.25,812 tets,x,1,N,,,,1,");
+}
+
 TEST(DescribeLoad, PrescribedDisplacement) {
   EXPECT_EQ(describe(PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}), "x_min: held");
   EXPECT_EQ(describe(PrescribedDisplacement{"x_max", {0.12, 0.0, {}}}),
@@ -144,6 +155,20 @@ TEST(PicturesJson, DisplacementIsScaledToItsLargestComponent) {
   EXPECT_EQ(u.at("base64").get<std::string>().substr(0, 8), "AYAAAAAA");  // 0180 0000 0000: -32767, 0, 0
 }
 
+TEST(PicturesJson, VolumeChangeAndSurfaceAreTold) {
+  CaseResult c;
+  c.pictures = {sample_picture("fem", 0.25), sample_picture("fem", 0.25)};
+  c.pictures[0].volume_change = {0, -0.5f, 0.5f, 0};
+  c.pictures[0].surface = "smooth";
+  c.pictures[1].volume_change.clear();
+  const Json pictures = pictures_to_json(c).at("pictures");
+  EXPECT_EQ(pictures.at(0).at("surface"), "smooth");
+  EXPECT_DOUBLE_EQ(pictures.at(0).at("volume_change").at("scale"), 0.5 / 32767);
+  EXPECT_EQ(pictures.at(0).at("volume_change").at("base64"), "AAABgP9/AAA=");  // 0, -32767, 32767, 0
+  EXPECT_EQ(pictures.at(1).at("surface"), "cells");
+  EXPECT_EQ(pictures.at(1).at("volume_change").at("base64"), "");
+}
+
 TEST(PicturesJson, EqualSurfacesAreStoredOnce) {
   CaseResult c;
   c.pictures = {sample_picture("hybmss", 0.25), sample_picture("fem", 0.25), sample_picture("hybmss", 0.4)};
@@ -165,6 +190,7 @@ TEST(PicturesJson, TrianglesRepeatTheirLastCorner) {
 TEST(PicturesJson, ManyNodesNeedWiderNumbers) {
   CaseResult c;
   c.pictures = {sample_picture("fem", 0.25)};
+  c.pictures[0].volume_change.clear();
   c.pictures[0].rest.resize(3 * 65537);
   c.pictures[0].displacement.resize(3 * 65537);
   c.pictures[0].quads = {65536, 0, 0, 0};
@@ -183,6 +209,9 @@ TEST(PicturesJson, ArraysThatDoNotFitAreRefused) {
   EXPECT_THROW(pictures_to_json(c), std::invalid_argument);
   c.pictures = {sample_picture("hybmss", 0.25)};
   c.pictures[0].difference.pop_back();
+  EXPECT_THROW(pictures_to_json(c), std::invalid_argument);
+  c.pictures = {sample_picture("hybmss", 0.25)};
+  c.pictures[0].volume_change = {0};
   EXPECT_THROW(pictures_to_json(c), std::invalid_argument);
 }
 

@@ -35,6 +35,7 @@ inline Picture sample_picture(const std::string& model, double poisson_ratio) {
   p.rest = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   p.displacement = {0.1f, 0, 0, 0.1f, 0, 0, 0.1f, 0, 0, 0.1f, 0, 0};
   if (model != "fem") p.difference = {0, 0.001f, 0.002f, 0.003f};
+  p.volume_change = {-0.01f, 0, 0.01f, 0.02f};
   p.quads = {0, 1, 2, 3};
   return p;
 }
