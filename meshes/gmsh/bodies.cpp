@@ -95,7 +95,8 @@ Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session) {
   };
   const Mesh mesh = read();
   if (quality_of(mesh).worst > sliver) return mesh;
-  gmsh::model::mesh::optimize("Netgen", true);
+  gmsh::model::mesh::optimize("", true, 3);
+  gmsh::model::mesh::optimize("Relocate3D", true);
   session.stop_on_error(file);
   return read();
 }
