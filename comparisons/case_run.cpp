@@ -194,8 +194,12 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   const auto& reference = run.reference[lattice];
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
   const Cells& cells = run.experiment().body.cells[lattice];
-  if (lattice == 0)
-    run.part.pictures.push_back(picture(model, run.material.poisson_ratio, cells, field, model == "fem" ? nullptr : truth));
+  if (lattice == 0) {
+    const NodalVectors* difference_to = model == "fem" ? nullptr : truth;
+    run.part.pictures.push_back(picture(model, run.material.poisson_ratio, cells, field, difference_to));
+    if (run.experiment().body.is_voxels())
+      run.part.pictures.push_back(smooth_picture(model, run.material.poisson_ratio, cells, field, *run.prepared.tetrahedra.back(), difference_to));
+  }
   if (run.vtu_folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);

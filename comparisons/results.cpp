@@ -222,8 +222,8 @@ Json json_of(const ErrorSplit& s) {
           {"model_error", number(s.model_error)},
           {"discretisation_error", number(s.discretisation_error)},
           {"geometry_error", number(s.geometry_error)},
-          {"voxel_uncertainty", number(s.voxel_uncertainty)},
-          {"body_uncertainty", number(s.body_uncertainty)}};
+          {"uncertainty", number(s.body_uncertainty)},
+          {"voxel_uncertainty", number(s.voxel_uncertainty)}};
 }
 
 Json json_of(const PublishedRow& p) {

@@ -105,8 +105,8 @@ struct ErrorSplit {
   double model_error = 0;          ///< model - eight-node elements on the same voxels
   double discretisation_error = 0; ///< those - the limit of refined elements on the same voxels
   double geometry_error = 0;       ///< that limit - body-fitted limit
+  double body_uncertainty = 0;     ///< of the body-fitted limit, and so of the total
   double voxel_uncertainty = 0;    ///< of the limit on the voxels
-  double body_uncertainty = 0;     ///< of the body-fitted limit
 };
 
 /// The deformed surface of one run, for the report's 3D view.

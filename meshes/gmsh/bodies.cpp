@@ -96,14 +96,12 @@ Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session) {
     const auto blocks = volume_elements();
     return read_mesh(file, only_block(file, blocks, tetrahedron, "tetrahedra"));
   };
-  Mesh mesh = read();
-  for (const char* method : {"", "Relocate3D"}) {
-    if (quality_of(mesh).worst > sliver) break;
-    gmsh::model::mesh::optimize(method, true);
-    session.stop_on_error(file);
-    mesh = read();
-  }
-  return mesh;
+  const Mesh mesh = read();
+  if (quality_of(mesh).worst > sliver) return mesh;
+  gmsh::model::mesh::optimize("", true, 3);
+  gmsh::model::mesh::optimize("Relocate3D", true);
+  session.stop_on_error(file);
+  return read();
 }
 
 MeshedBody mesh_script(const MeshRequest& r) {

@@ -57,15 +57,22 @@ MeshedBody fill_surface(const MeshRequest& r, const Surface& raw) {
   const double inside = volume(surface);
   MeshedBody body{{}, mended, 0};
   refuse_too_many(r, inside * std::pow(r.scale, 3));
-  if (!suits(surface, r.edge / r.scale)) try {
-      const Surface even = remesh(surface, r.edge / r.scale);
+  if (suits(surface, r.edge / r.scale)) {
+    body.mesh = fill(r, surface);
+    return body;
+  }
+  std::string failure;
+  for (const double shorter : {1.0, 0.7, 0.5}) try {  // a body may be too thin or too round for its edge
+      const Surface even = remesh(surface, shorter * r.edge / r.scale);
       body.mesh = fill(r, even);
-      body.notes.push_back(fmt::format("{} facets remeshed to {}; the volume changed by {:.2g} %", surface.triangles.size(),
-                                       even.triangles.size(), 100 * (volume(even) / inside - 1)));
+      body.notes.push_back(fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %",
+                                       surface.triangles.size(), even.triangles.size(), shorter * r.edge,
+                                       100 * (volume(even) / inside - 1)));
       return body;
     } catch (const std::runtime_error& e) {
-      body.notes.push_back(fmt::format("the facets of the file are kept, as remeshing them failed: {}", e.what()));
+      if (failure.empty()) failure = e.what();
     }
+  body.notes.push_back(fmt::format("the facets of the file are kept, as remeshing them failed: {}", failure));
   body.mesh = fill(r, surface);
   return body;
 }

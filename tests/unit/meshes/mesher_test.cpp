@@ -160,7 +160,9 @@ TEST_F(Mesher, StlIsFilledAtAnyEdge) {
     EXPECT_EQ(patch(body.mesh, "surface").facets.size(), outer_facets(body.mesh).size());
     EXPECT_GT(cell_volumes(body.mesh, body.mesh.nodes).minCoeff(), 0);
     const double regular = std::pow(edge, 3) / (6 * std::sqrt(2));
-    EXPECT_NEAR(volume_of(body.mesh) / double(body.mesh.tetrahedra.size()) / regular, 1, 0.5) << edge;
+    const double mean = volume_of(body.mesh) / double(body.mesh.tetrahedra.size());
+    EXPECT_GT(mean, 0.35 * regular) << edge;  // the file's facets of 0.1 kept would give 0.2
+    EXPECT_LT(mean, 2.5 * regular) << edge;
   }
 }
 
