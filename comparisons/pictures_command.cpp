@@ -52,7 +52,7 @@ void PicturesCommand::add_options(CLI::App& command) {
   command.footer(
       "Writes FOLDER/png/CASE-FIGURE-nu....png: every chart, and every 3D view in every colouring, at every Poisson's ratio.\n"
       "Needs Chromium (apt-get install chromium), no display.  It draws in software, which is slow: on two busy cores a hundred charts\n"
-      "took two minutes, a hundred rows of twelve bodies ten to fifteen.  --only makes it shorter, --time-limit longer.\n"
+      "come to about two minutes, a hundred rows of twelve bodies to ten or fifteen.  --only makes it shorter, --time-limit longer.\n"
       "Exit status: 0 all are written, 1 some could not be drawn, 2 the input is unusable or Chromium is not here.");
 }
 
