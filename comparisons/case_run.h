@@ -21,9 +21,6 @@ struct BodySample {
   int within = -1;   ///< as far behind the surface as the node is in front of it; -1: the node itself is in the body
 };
 
-/// Edges of one mesh of tetrahedra over those of the next finer one.
-inline constexpr double mesh_ratio = 1.5;
-
 /// An experiment made ready: meshed, its models resolved, its loads tried on the mesh.
 struct PreparedCase {
   Experiment experiment;

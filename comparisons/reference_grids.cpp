@@ -143,7 +143,12 @@ NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   return u;
 }
 
-double grid_ratio(const Experiment& experiment) { return experiment.body.is_voxels() ? mesh_ratio : 2; }
+GridRatios ratios_of(const ElementGrids& e) {
+  const auto is_count = [](const fem::Solution& s) { return s.grid.cells[1] == 0; };   // {n, 0, 0}: n tetrahedra
+  if (!std::all_of(e.grids.begin(), e.grids.end(), is_count)) return {};
+  const auto ratio = [&](int coarse, int fine) { return std::cbrt(double(e.grids[fine].grid.cells[0]) / e.grids[coarse].grid.cells[0]); };
+  return {ratio(0, 1), ratio(1, 2)};
+}
 
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   std::vector<std::map<std::string, double>> values;
@@ -154,7 +159,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
   for (const auto& [measure, fine] : values[2])
     limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
                                   noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
-                                  trusted_order(measure, e.element, experiment.reference.smooth), grid_ratio(experiment));
+                                  trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
   return limits;
 }
 

@@ -47,8 +47,8 @@ bool comparable(const PreparedCase& prepared, const std::string& measure);
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
 
-/// By which the cell sizes of the three grids fall.
-double grid_ratio(const Experiment& experiment);
+/// By which the cell sizes of the three grids fall; of tetrahedra as their number grows.
+GridRatios ratios_of(const ElementGrids& e);
 
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);

@@ -30,11 +30,16 @@ struct TrustedOrder {
 /// degree + 1 and stresses with degree, at nodes with up to 2 degree; all else as with clamped edges.
 TrustedOrder trusted_order(const std::string& measure, const std::string& element, bool smooth);
 
-/// Limit of a quantity computed on three grids (coarse to fine; the last three of more), cell sizes falling by `ratio`.
+/// Cell sizes of the first grid over the second's, and of the second over the third's.
+struct GridRatios {
+  double coarse = 2, fine = 2;
+};
+
+/// Limit of a quantity computed on three grids (coarse to fine; the last three of more).
 /// Monotone with an order p of 1/2 or more: Richardson extrapolation, uncertainty Fs |f3 - f2| / (ratio^p - 1), p taken as
 /// at most `trusted.highest`; where it shows more than `trusted.suspicious` the uncertainty is Fs |f3 - f2|.
 /// Otherwise the finest value, uncertainty Fs times the spread.  `noise`: round-off of the values.
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted = {}, double ratio = 2);
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted = {}, const GridRatios& ratios = {});
 
 /// Limit from grids of cell sizes h and h/2 alone, first order being assumed (edges of cubes and of supports are singular):
 /// 2 f2 - f1, uncertainty 3 |f2 - f1| (Roache's safety factor for two grids).
@@ -49,7 +54,7 @@ struct ReferenceField {
   std::optional<double> observed_order;
   std::string note;
 };
-ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, double ratio = 2);
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, const GridRatios& ratios = {});
 
 /// Weighted L2 norm of a nodal field: sqrt(sum w |u|^2 / sum w).
 double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights);

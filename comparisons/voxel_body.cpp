@@ -16,34 +16,24 @@ namespace {
 
 // Of the finest mesh: quadratic ones are 140,000 unknowns, some ten seconds of one core.
 constexpr int finest_tetrahedra = 30000;
-
-std::shared_ptr<const Mesh> tetrahedra(PreparedCase& prepared, MeshRequest request, double& edge) {
-  const Experiment& e = prepared.experiment;
-  request.file = prepared.geo;
-  request.size = e.body.size;
-  request.scale = e.body.scale;
-  MeshedBody body = mesh_body(request);
-  for (const std::string& note : body.notes)
-    if (std::find(prepared.notes.begin(), prepared.notes.end(), note) == prepared.notes.end()) prepared.notes.push_back(note);
-  select_patches(e.patches, body.mesh);
-  edge = body.edge;
-  return std::make_shared<Mesh>(std::move(body.mesh));
-}
+constexpr double mesh_ratio = 1.5;  // edges of one mesh over those of the next finer one
 
 void mesh_the_body(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
-  double edge = 0, ignored;
-  MeshRequest finest;
-  finest.edge = e.reference.edge;
-  finest.tetrahedra = finest_tetrahedra;
-  const auto true_body = tetrahedra(prepared, finest, edge);
-  if (!e.reference.elements.empty())
-    for (const double coarser : {mesh_ratio * mesh_ratio, mesh_ratio}) {
-      MeshRequest request;
-      request.edge = coarser * edge;
-      prepared.tetrahedra.push_back(tetrahedra(prepared, request, ignored));
-    }
-  prepared.tetrahedra.push_back(true_body);
+  MeshRequest request;
+  request.file = prepared.geo;
+  request.size = e.body.size;
+  request.scale = e.body.scale;
+  request.edge = e.reference.edge;
+  request.tetrahedra = finest_tetrahedra;
+  if (!e.reference.elements.empty()) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
+  MeshedBody body = mesh_body(request);
+  prepared.notes = body.notes;
+  body.coarser.push_back(std::move(body.mesh));
+  for (Mesh& mesh : body.coarser) {
+    select_patches(e.patches, mesh);
+    prepared.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
+  }
 }
 
 std::vector<double> voxel_edges(const Body& body, double volume) {

@@ -19,6 +19,8 @@ namespace springproof::fem {
 
 using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
+using LevelVector = dealii::LinearAlgebra::distributed::Vector<float>;   ///< on a level of the matrix-free multigrid
+
 /// Zero on every degree of freedom, with room for those of other processes on the cells of this one and around them.
 inline DofVector zero_vector(const dealii::DoFHandler<3>& dof_handler) {
   dealii::IndexSet relevant;
@@ -49,6 +51,8 @@ struct ElasticSystem {
   double tolerance;   ///< relative residual
   bool wide_vectors;  ///< where the processor has them
   bool plain_gamg;    ///< with matrices: no level of linear elements
+  std::function<void(LevelVector& x, const LevelVector& r)> below = {};  ///< a correction of the coarsest level by something coarser;
+                                                                        ///  empty: nothing is
 };
 
 struct ElasticAnswer {

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "fem_reference/processes.h"
+#include "meshes/tetrahedron_locator.h"
 #include "problem/experiment.h"
 
 namespace springproof::fem {
@@ -21,6 +22,8 @@ double distance_outside_unit_cell(const dealii::Point<3>& unit, bool tetrahedron
   if (tetrahedron) return std::max({0.0, -unit[0], -unit[1], -unit[2], unit[0] + unit[1] + unit[2] - 1});
   return unit.distance(dealii::GeometryInfo<3>::project_to_unit_cell(unit));
 }
+
+constexpr double furthest_outside = 0.5;  // of a cell's size: a point this far outside is no longer taken
 
 [[noreturn]] void throw_outside(const dealii::Point<3>& X) {
   throw InputError(fmt::format("the point ({}, {}, {}) is outside the body", X[0], X[1], X[2]));
@@ -32,7 +35,7 @@ Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii
   const auto& mapping = cache.get_mapping();
   const unsigned int vertex = dealii::GridTools::find_closest_vertex(mapping, triangulation, X);
   Location best;
-  double least = 0.5;
+  double least = furthest_outside;
   bool found = false;
   for (const auto& cell : cache.get_vertex_to_cell_map()[vertex]) {
     if (cell->is_artificial()) continue;
@@ -117,11 +120,31 @@ std::vector<Location> locate_among_processes(const Body3& body, const dealii::Gr
   return places;
 }
 
+// Every cell of the mesh is an active one, with its number.
+std::vector<Location> locate_in_tetrahedra(const Body3& body, const NodalVectors& points) {
+  const auto& vertices = body.triangulation.get_vertices();
+  NodalVectors X(vertices.size(), 3);
+  for (std::size_t v = 0; v < vertices.size(); ++v) X.row(v) << vertices[v][0], vertices[v][1], vertices[v][2];
+  std::vector<Tetrahedron> cells;
+  for (const auto& cell : body.triangulation.active_cell_iterators())
+    cells.push_back({int(cell->vertex_index(0)), int(cell->vertex_index(1)), int(cell->vertex_index(2)), int(cell->vertex_index(3))});
+  const TetrahedronLocator locator(X, cells);
+  std::vector<Location> places;
+  for (const auto& p : points.rowwise()) {
+    const TetrahedronLocator::Place place = locator(p.transpose());
+    if (place.weights.minCoeff() < -furthest_outside) throw_outside({p[0], p[1], p[2]});
+    places.push_back({dealii::Triangulation<3>::active_cell_iterator(&body.triangulation, 0, int(place.cell)),
+                      dealii::Point<3>(place.weights[1], place.weights[2], place.weights[3])});
+  }
+  return places;
+}
+
 }  // namespace
 
 std::vector<Location> locate(const Body3& body, const NodalVectors& points) {
   std::vector<Location> places(points.rows());
   if (places.empty()) return places;
+  if (body.has_tetrahedra() && process_count() == 1) return locate_in_tetrahedra(body, points);
   const dealii::GridTools::Cache<3> cache(body.triangulation, *body.mapping);
   std::vector<dealii::Point<3>> X;
   for (const auto& p : points.rowwise()) X.emplace_back(p[0], p[1], p[2]);

@@ -8,7 +8,9 @@
 #include <ctime>
 
 #include "fem_reference/boundary_conditions.h"
+#include "fem_reference/coarsest_level.h"
 #include "fem_reference/elastic_system.h"
+#include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
 #include "fem_reference/triangulate.h"
 
@@ -67,13 +69,19 @@ double peak_memory_MiB() {
   return usage.ru_maxrss / 1024.0;
 }
 
-// Multigrid without a matrix needs cells that come from refining few, or cubes, of which all are alike; algebraic
-// multigrid takes the rest.
+// Multigrid without a matrix needs cells that come from refining few; algebraic multigrid takes the rest.
 constexpr unsigned int largest_coarse_grid = 1000;  // cells
+
+bool is_large(const Body3& body) { return body.triangulation.n_cells(0) > largest_coarse_grid; }
+
+// A coarsest level of many cubes needs linear elements below it, which are there for small strain and one process.
+bool can_go_below(const GridProblem& problem, const Body3& body) {
+  return is_large(body) && problem.coarse.grid && problem.law == "linear" && process_count() == 1;
+}
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
   return problem.method == Method::automatic && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
-         (problem.coarse.grid || body.triangulation.n_cells(0) <= largest_coarse_grid);
+         (!is_large(body) || can_go_below(problem, body));
 }
 
 std::string element_name(const ElasticSystem& system) {
@@ -96,13 +104,16 @@ struct Discrete {
                lame_lambda(problem.material),
                problem.tolerance,
                problem.wide_vectors,
-               problem.method == Method::assembled_gamg} {
+               problem.method == Method::assembled_gamg,
+               {}} {
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
     const dealii::IndexSet& owned = dof_handler.locally_owned_dofs();
     held.erase(std::remove_if(held.begin(), held.end(), [&](const auto& p) { return !owned.is_element(p.dof); }),
                held.end());
     check_held(held, dof_handler.get_communicator());
-    if (dof_handler.has_level_dofs()) system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
+    if (!dof_handler.has_level_dofs()) return;
+    system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
+    if (is_large(body)) put_linear_elements_below(problem.coarse, problem.place, system);
   }
 
   std::vector<Prescribed> held;  // and owned

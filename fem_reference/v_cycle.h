@@ -21,7 +21,7 @@ class VCycle {
   using Smoother = dealii::PreconditionChebyshev<Level, Vector<float>>;
 
   VCycle(const ElasticSystem& system, const Coefficients<float>& coefficients)
-      : dof_handler_(system.dof_handler) {
+      : dof_handler_(system.dof_handler), below_(system.below) {
     const unsigned int n_levels = dof_handler_.get_triangulation().n_global_levels();
     constrained_dofs_.initialize(dof_handler_);
     for (unsigned int l = 0; l < n_levels; ++l)
@@ -59,10 +59,10 @@ class VCycle {
  private:
   typename Smoother::AdditionalData smoother_data(unsigned int level) const {
     typename Smoother::AdditionalData data;
-    const bool solves = level == 0 && levels_[0]->m() < largest_coarse_system;
+    const bool solves = level == 0 && !below_ && levels_[0]->m() < largest_coarse_system;
     data.degree = solves ? dealii::numbers::invalid_unsigned_int : 5;
     data.smoothing_range = solves ? 1e-2 : 15;
-    data.eig_cg_n_iterations = solves ? std::min(levels_[0]->m(), most_eigenvalue_steps) : 12;
+    data.eig_cg_n_iterations = solves ? levels_[0]->m() : 12;
     data.preconditioner =
         std::make_shared<dealii::DiagonalMatrix<Vector<float>>>(levels_[level]->inverse_diagonal());
     return data;
@@ -71,26 +71,32 @@ class VCycle {
   // x_[l] from b_[l]
   void cycle(unsigned int l) const {
     smoothers_[l]->vmult(x_[l], b_[l]);
-    if (l == 0) return;
+    if (l == 0 && !below_) return;
     levels_[l]->vmult(t_[l], x_[l]);
     t_[l].sadd(-1, 1, b_[l]);
-    b_[l - 1] = 0;
-    transfer_.restrict_and_add(l, b_[l - 1], t_[l]);
-    cycle(l - 1);
-    transfer_.prolongate(l, t_[l], x_[l - 1]);
+    if (l == 0) {
+      correction_ = t_[0];
+      below_(t_[0], correction_);
+    } else {
+      b_[l - 1] = 0;
+      transfer_.restrict_and_add(l, b_[l - 1], t_[l]);
+      cycle(l - 1);
+      transfer_.prolongate(l, t_[l], x_[l - 1]);
+    }
     x_[l] += t_[l];
     smoothers_[l]->step(x_[l], b_[l]);
   }
 
-  // Up to which the coarsest level is solved by Chebyshev's iteration; the cubes of a body of voxels are that level.
-  static constexpr dealii::types::global_dof_index largest_coarse_system = 1000000, most_eigenvalue_steps = 1000;
+  static constexpr unsigned int largest_coarse_system = 30000;
 
   const dealii::DoFHandler<3>& dof_handler_;
+  std::function<void(LevelVector&, const LevelVector&)> below_;
   dealii::MGConstrainedDoFs constrained_dofs_;
   dealii::MGTransferMatrixFree<3, float> transfer_;
   std::vector<std::unique_ptr<Level>> levels_;
   std::vector<std::unique_ptr<Smoother>> smoothers_;
   mutable dealii::MGLevelObject<Vector<float>> x_, b_, t_;
+  mutable Vector<float> correction_;
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

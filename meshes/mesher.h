@@ -37,15 +37,17 @@ struct MeshRequest {
   Vec3 size = Vec3::Zero();  ///< of a .geo [m]; zero: the script's own
   Cells cells = {0, 0, 0};   ///< of a .geo cut into nx x ny x nz cells; zero: by `edge`
   MeshKind kind{};
+  double scale = 1;  ///< multiplies the coordinates of the file
   double edge = 0;   ///< [m] > 0: tetrahedra with edges of about this length
   int tetrahedra = 0;  ///< > 0 and no edge: about so many tetrahedra
-  double scale = 1;  ///< multiplies the coordinates of the file
+  std::vector<double> coarser = {};  ///< factors > 1: also meshes with edges longer by these
 };
 
 struct MeshedBody {
   Mesh mesh;
   std::vector<std::string> notes;  ///< what was mended, what quality came out: for the report
   double edge = 0;                 ///< that the tetrahedra were made with [m]; 0: the cells are the file's own
+  std::vector<Mesh> coarser;       ///< one per factor of the request
 };
 
 /// Extensions of the files that can be read: ".geo", ...

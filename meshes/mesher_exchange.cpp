@@ -34,6 +34,7 @@ json to_json(const MeshRequest& r) {
           {"second_order", r.kind.second_order},
           {"edge", r.edge},
           {"about", r.tetrahedra},
+          {"coarser", r.coarser},
           {"scale", r.scale}};
 }
 
@@ -45,12 +46,15 @@ MeshRequest mesh_request_from_json(const json& j) {
   r.kind = {j.at("tetrahedra"), j.at("second_order")};
   r.edge = j.at("edge");
   r.tetrahedra = j.at("about");
+  r.coarser = j.at("coarser").get<std::vector<double>>();
   r.scale = j.at("scale");
   return r;
 }
 
 std::string to_cbor(const MeshedBody& body) {
-  return cbor({{"mesh", to_json(body.mesh)}, {"notes", body.notes}, {"edge", body.edge}});
+  json coarser = json::array();
+  for (const Mesh& mesh : body.coarser) coarser.push_back(to_json(mesh));
+  return cbor({{"mesh", to_json(body.mesh)}, {"notes", body.notes}, {"edge", body.edge}, {"coarser", coarser}});
 }
 
 std::string refusal_to_cbor(const std::string& message) {
@@ -65,7 +69,9 @@ MeshedBody answer_from_cbor(const std::string& bytes) {
     throw std::runtime_error(std::string("springproof-mesh gave no answer: ") + e.what());
   }
   if (j.contains("refused")) throw InputError(j.at("refused").get<std::string>());
-  return {mesh_from_json(j.at("mesh")), j.at("notes"), j.at("edge")};
+  MeshedBody body{mesh_from_json(j.at("mesh")), j.at("notes"), j.at("edge"), {}};
+  for (const json& mesh : j.at("coarser")) body.coarser.push_back(mesh_from_json(mesh));
+  return body;
 }
 
 std::string extension_of(const std::filesystem::path& file) {

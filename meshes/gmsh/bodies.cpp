@@ -9,9 +9,6 @@
 #include "meshes/gmsh/quality.h"
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/mesher_exchange.h"
-#include "meshes/stl.h"
-#include "meshes/surface_check.h"
-#include "meshes/volume.h"
 
 namespace springproof {
 namespace {
@@ -85,6 +82,8 @@ void refuse_too_many(const MeshRequest& r, double volume) {
                                double(most_cells)));
 }
 
+double edge_for(int tetrahedra, double volume) { return 0.88 * std::cbrt(6 * std::sqrt(2) * volume / tetrahedra); }
+
 void want_edge(double edge) {
   gmsh::option::setNumber("Mesh.MeshSizeMin", edge);
   gmsh::option::setNumber("Mesh.MeshSizeMax", edge);
@@ -104,19 +103,82 @@ Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session) {
   return read();
 }
 
-MeshedBody mesh_script(const MeshRequest& r) {
-  GmshSession session(parameters_of(r));
-  if (r.edge > 0) {
-    if (!r.size.isZero()) refuse_too_many(r, r.size.prod() * std::pow(r.scale, 3));
-    gmsh::option::setNumber("Mesh.MeshSizeMax", r.edge / r.scale);  // unless the script says otherwise
+namespace {
+
+/// Of OpenCASCADE's volumes, in the file's units; 0: there are none.
+double model_volume() try {
+  gmsh::vectorpair volumes;
+  gmsh::model::getEntities(volumes, 3);
+  double sum = 0;
+  for (const auto& [dimension, tag] : volumes) {
+    double v = 0;
+    gmsh::model::occ::getMass(dimension, tag, v);
+    sum += std::abs(v);
   }
-  gmsh::open(r.file.string());
-  session.stop_on_error(r.file);
-  if (r.edge > 0) return {fill_with_tetrahedra(r.file, session), {}, 0};
-  return {mesh_structured(r, session), {}, 0};
+  return sum;
+} catch (const std::string&) {
+  return 0;
 }
 
-MeshedBody mesh_solid(const MeshRequest& r) {
+/// The finest mesh and the coarser ones of one model, made with an edge of `drawn` [m]; all lengths scale together, those for
+/// round parts too.  A coarser mesh that gmsh cannot make is made with half the step.
+MeshedBody mesh_at_factors(const MeshRequest& r, const GmshSession& session, double drawn) {
+  MeshedBody body;
+  body.edge = r.edge;
+  const auto at = [&](double factor) {
+    gmsh::model::mesh::clear();
+    gmsh::option::setNumber("Mesh.MeshSizeFactor", factor * r.edge / drawn);
+    return fill_with_tetrahedra(r.file, session);
+  };
+  body.mesh = at(1);
+  for (const double factor : r.coarser) try {
+      body.coarser.push_back(at(factor));
+    } catch (const InputError&) {
+      body.coarser.push_back(at(std::sqrt(factor)));
+    }
+  return body;
+}
+
+}  // namespace
+
+MeshedBody mesh_script(const MeshRequest& request) {
+  MeshRequest r = request;
+  const bool by_edge = r.edge > 0 || r.tetrahedra > 0;
+  if (!by_edge) {
+    GmshSession session(parameters_of(r));
+    gmsh::open(r.file.string());
+    session.stop_on_error(r.file);
+    return {mesh_structured(r, session), {}, 0, {}};
+  }
+  const double box = r.size.prod() * std::pow(r.scale, 3);
+  if (r.edge == 0 && box == 0) refuse(r.file, "size: needed to choose the length of the tetrahedra's edges");
+  const double drawn = r.edge > 0 ? r.edge : edge_for(r.tetrahedra, 0.4 * box);
+  r.edge = drawn;
+  if (box > 0) refuse_too_many(r, box);
+  MeshedBody body;
+  {
+    GmshSession session(parameters_of(r));
+    gmsh::option::setNumber("Mesh.MeshSizeMax", r.edge / r.scale);  // unless the script says otherwise
+    gmsh::open(r.file.string());
+    session.stop_on_error(r.file);
+    const double volume = std::pow(r.scale, 3) * model_volume();
+    if (request.edge == 0 && volume > 0) r.edge = edge_for(r.tetrahedra, volume);
+    body = mesh_at_factors(r, session, drawn);
+  }
+  const auto as_fine = [&](const Mesh& mesh) { return mesh.tetrahedra.size() == body.mesh.tetrahedra.size(); };
+  if (std::none_of(body.coarser.begin(), body.coarser.end(), as_fine)) return body;
+  // A structured script, whose layers know nothing of factors.
+  for (std::size_t i = 0; i < r.coarser.size(); ++i) {
+    MeshRequest own = request;
+    own.coarser.clear();
+    own.edge = r.coarser[i] * r.edge;
+    body.coarser[i] = mesh_script(own).mesh;
+  }
+  return body;
+}
+
+MeshedBody mesh_solid(const MeshRequest& request) {
+  MeshRequest r = request;
   GmshSession session({});
   gmsh::option::setString("Geometry.OCCTargetUnit", "M");
   gmsh::vectorpair shapes;
@@ -126,12 +188,8 @@ MeshedBody mesh_solid(const MeshRequest& r) {
   gmsh::vectorpair volumes, surfaces;
   gmsh::model::getEntities(volumes, 3);
   if (volumes.empty()) refuse(r.file, "no solid in it (allowed: one solid; make one of its surfaces in a CAD program)");
-  double volume = 0;
-  for (const auto& [dimension, tag] : volumes) {
-    double v;
-    gmsh::model::occ::getMass(dimension, tag, v);
-    volume += std::abs(v);
-  }
+  const double volume = model_volume();
+  if (r.edge == 0) r.edge = r.scale * edge_for(r.tetrahedra, volume);
   refuse_too_many(r, volume * std::pow(r.scale, 3));
   gmsh::model::getBoundary(volumes, surfaces, true, false, false);
   int number = 0;
@@ -140,57 +198,38 @@ MeshedBody mesh_solid(const MeshRequest& r) {
     gmsh::model::setPhysicalName(2, group, fmt::format("surface_{}", ++number));
   }
   want_edge(r.edge / r.scale);
-  return {fill_with_tetrahedra(r.file, session), {}, 0};
+  return mesh_at_factors(r, session, r.edge);
 }
 
 namespace {
 
-/// Edge with which a body has about so many tetrahedra; gmsh's fill as much as regular ones of 0.95 of the edge.
-double edge_for(int tetrahedra, double volume) {
-  return std::cbrt(6 * std::sqrt(2) * volume / tetrahedra) / 0.95;
-}
-
-/// Edge for a first mesh, from which the volume is known.
-double first_edge(const MeshRequest& r) {
-  const std::string extension = extension_of(r.file);
-  if (extension == ".geo") {
-    if (r.size.isZero()) refuse(r.file, "size: needed to choose the length of the tetrahedra's edges");
-    return std::cbrt(r.size.prod() / 4000);
+/// Of STL and mesh files, one edge after the other.
+MeshedBody mesh_one_by_one(const MeshRequest& request) {
+  const auto mesh = [&](const MeshRequest& r) { return extension_of(r.file) == ".stl" ? mesh_stl(r) : mesh_msh(r); };
+  MeshedBody body = mesh(request);
+  MeshRequest coarser = request;
+  coarser.coarser.clear();
+  for (const double factor : request.coarser) {
+    coarser.edge = factor * body.edge;
+    body.coarser.push_back(mesh(coarser).mesh);
   }
-  GmshSession session({});
-  if (extension == ".step" || extension == ".stp" || extension == ".brep") gmsh::option::setString("Geometry.OCCTargetUnit", "M");
-  gmsh::open(r.file.string());
-  session.stop_on_error(r.file);
-  double low[3], high[3];
-  gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
-  return r.scale * std::cbrt((high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) / 4000);
-}
-
-double chosen_edge(MeshRequest r) {
-  if (extension_of(r.file) == ".stl") return edge_for(r.tetrahedra, std::pow(r.scale, 3) * volume(check_surface(read_stl(r.file), r.file.string()).surface));
-  const int wanted = r.tetrahedra;
-  r.tetrahedra = 0;
-  r.edge = first_edge(r);
-  const Mesh mesh = mesh_file(r).mesh;
-  return edge_for(wanted, volume(mesh, mesh.nodes));
+  return body;
 }
 
 }  // namespace
 
-MeshedBody mesh_file(const MeshRequest& request) try {
-  MeshRequest r = request;
-  if (r.tetrahedra > 0 && r.edge == 0) r.edge = chosen_edge(r);
+MeshedBody mesh_file(const MeshRequest& r) try {
   const std::string extension = extension_of(r.file);
-  MeshedBody body = extension == ".geo"   ? mesh_script(r)
-                    : extension == ".msh" ? mesh_msh(r)
-                    : extension == ".stl" ? mesh_stl(r)
-                                          : mesh_solid(r);
+  MeshedBody body = extension == ".geo"                            ? mesh_script(r)
+                    : extension == ".stl" || extension == ".msh" ? mesh_one_by_one(r)
+                                                                   : mesh_solid(r);
   if (r.scale != 1) scale(body.mesh, r.scale);
-  body.edge = r.edge;
-  if (r.edge > 0 && !body.mesh.tetrahedra.empty()) body.notes.push_back(words_for(body.mesh, quality_of(body.mesh)));
+  for (Mesh& mesh : body.coarser)
+    if (r.scale != 1) scale(mesh, r.scale);
+  if (body.edge > 0) body.notes.push_back(words_for(body.mesh, quality_of(body.mesh)));
   return body;
 } catch (const std::string& message) {
-  refuse(request.file, "gmsh: " + message);
+  refuse(r.file, "gmsh: " + message);
 }
 
 }  // namespace springproof

@@ -29,6 +29,9 @@ MeshedBody fill_surface(const MeshRequest& request, const Surface& raw);
 /// Meshes the model's volumes with tetrahedra and reads them.
 Mesh fill_with_tetrahedra(const std::filesystem::path& file, const GmshSession& session);
 
+/// Edge with which a body of this volume has about so many tetrahedra.
+double edge_for(int tetrahedra, double volume);
+
 /// Tells gmsh to make edges of this length, in the file's units.
 void want_edge(double edge);
 

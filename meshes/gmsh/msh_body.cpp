@@ -115,11 +115,11 @@ MeshedBody mesh_msh(const MeshRequest& r) {
     gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
     if (const auto blocks = volume_elements(); !blocks.empty()) {
       own = read_cells(r, blocks);
-      if (r.edge == 0) return *own;
+      if (r.edge == 0 && r.tetrahedra == 0) return *own;
     } else {
       surface = surface_of(r);
     }
-    if (r.edge == 0)
+    if (!own && r.edge == 0 && r.tetrahedra == 0)
       refuse(r.file, "edge: the file holds a surface and no cells; the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
     if (!own && !physical_surfaces().empty()) notes = {"the physical surfaces of a file without cells are not kept"};
   }

@@ -52,10 +52,12 @@ Mesh fill(const MeshRequest& r, const Surface& surface) {
 
 }  // namespace
 
-MeshedBody fill_surface(const MeshRequest& r, const Surface& raw) {
-  const auto [surface, mended] = check_surface(raw, r.file.string());
+MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
+  const auto [surface, mended] = check_surface(raw, request.file.string());
   const double inside = volume(surface);
-  MeshedBody body{{}, mended, 0};
+  MeshRequest r = request;
+  if (r.edge == 0) r.edge = r.scale * edge_for(r.tetrahedra, inside);
+  MeshedBody body{{}, mended, r.edge, {}};
   refuse_too_many(r, inside * std::pow(r.scale, 3));
   if (suits(surface, r.edge / r.scale)) {
     body.mesh = fill(r, surface);

@@ -1,0 +1,99 @@
+#include "fem_reference/coarsest_level.h"
+
+#include <algorithm>
+
+#include "fem_reference/assembled_operator.h"
+#include "fem_reference/processes.h"
+
+namespace springproof::fem {
+namespace {
+
+using dealii::types::global_dof_index;
+
+/// Values of degrees of freedom of a level from those of linear elements: a row of weights each, none where prescribed.
+struct Interpolation {
+  std::vector<std::size_t> start;
+  std::vector<global_dof_index> column;
+  std::vector<float> weight;
+};
+
+class LinearElements {
+ public:
+  LinearElements(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place, const ElasticSystem& fine)
+      : body_(triangulate(coarse, 0, place)), handler_(body_->triangulation) {
+    handler_.distribute_dofs(*displacement_element(*body_, 1));
+    interpolate_to(fine);
+    // What multigrid works on: of the mixed form the shear alone.
+    const bool mixed = fine.form == Form::mixed;
+    system_.emplace(ElasticSystem{*body_, handler_, held_, {}, 1, mixed ? Form::pointwise : fine.form, fine.mu, mixed ? 0 : fine.lambda,
+                                  fine.tolerance, false, false, {}});
+    operator_.emplace(*system_, std::nullopt);
+    r_ = z_ = operator_->vector();
+  }
+
+  // x = P (one cycle for P^T b)
+  void cycle(LevelVector& x, const LevelVector& b) {
+    r_.u = 0;
+    for (std::size_t i = 0; i + 1 < p_.start.size(); ++i)
+      for (std::size_t k = p_.start[i]; k < p_.start[i + 1]; ++k) r_.u(p_.column[k]) += p_.weight[k] * b(i);
+    operator_->precondition(z_, r_);
+    for (std::size_t i = 0; i + 1 < p_.start.size(); ++i) {
+      double sum = 0;
+      for (std::size_t k = p_.start[i]; k < p_.start[i + 1]; ++k) sum += p_.weight[k] * z_.u(p_.column[k]);
+      x(i) = float(sum);
+    }
+  }
+
+ private:
+  void interpolate_to(const ElasticSystem& fine) {
+    const auto &fe = fine.dof_handler.get_fe(), &linear = handler_.get_fe();
+    const dealii::IndexSet& prescribed = fine.level_constrained[0];
+    std::vector<std::vector<std::pair<global_dof_index, float>>> rows(fine.dof_handler.n_dofs(0));
+    std::vector<char> held(handler_.n_dofs(), 0);
+    std::vector<global_dof_index> own(linear.n_dofs_per_cell()), on_level(fe.n_dofs_per_cell());
+    for (const auto& cell : handler_.active_cell_iterators()) {
+      const dealii::DoFHandler<3>::level_cell_iterator same(&fine.body.triangulation, 0, cell->index(), &fine.dof_handler);
+      cell->get_dof_indices(own);
+      same->get_mg_dof_indices(on_level);
+      // Corners are the first degrees of freedom of a cell in every element.
+      for (std::size_t j = 0; j < own.size(); ++j) held[own[j]] |= char(prescribed.is_element(on_level[j]));
+      for (unsigned int i = 0; i < on_level.size(); ++i) {
+        auto& row = rows[on_level[i]];
+        if (!row.empty()) continue;
+        for (unsigned int j = 0; j < own.size(); ++j)
+          if (linear.system_to_component_index(j).first == fe.system_to_component_index(i).first)
+            if (const double w = linear.shape_value(j, fe.unit_support_point(i)); std::abs(w) > 1e-12) row.emplace_back(own[j], float(w));
+      }
+    }
+    for (std::size_t j = 0; j < held.size(); ++j)
+      if (held[j]) held_.push_back(unsigned(j));
+    p_.start.push_back(0);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!prescribed.is_element(i))
+        for (const auto& [column, weight] : rows[i])
+          if (!held[column]) {
+            p_.column.push_back(column);
+            p_.weight.push_back(weight);
+          }
+      p_.start.push_back(p_.column.size());
+    }
+  }
+
+  std::unique_ptr<Body3> body_;
+  dealii::DoFHandler<3> handler_;
+  Interpolation p_;
+  std::vector<unsigned int> held_;
+  std::optional<ElasticSystem> system_;
+  std::optional<assembled::AssembledOperator> operator_;
+  assembled::MixedVector r_, z_;
+};
+
+}  // namespace
+
+void put_linear_elements_below(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place, ElasticSystem& system) {
+  start_mpi();
+  const auto below = std::make_shared<LinearElements>(coarse, place, system);
+  system.below = [below](LevelVector& x, const LevelVector& b) { below->cycle(x, b); };
+}
+
+}  // namespace springproof::fem

@@ -1,0 +1,44 @@
+// Which tetrahedron holds a point.
+#pragma once
+
+#include <vector>
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+/// Locates many points in tetrahedra by lists of those that reach into each box of a lattice.
+class TetrahedronLocator {
+ public:
+  /// `corners`: rest positions [m].
+  /// @throws std::invalid_argument if there are no tetrahedra.
+  TetrahedronLocator(const NodalVectors& corners, const std::vector<Tetrahedron>& cells);
+
+  struct Place {
+    std::size_t cell;
+    Eigen::Vector4d weights;  ///< barycentric coordinates; they sum to 1
+    double outside;           ///< how far it is beyond one of the cell's faces [m]; 0: inside
+  };
+
+  /// The cell that holds the point (of several the first), or one that it is least outside of (beyond its faces' planes, in the
+  /// boxes nearest to the point).
+  Place operator()(const Vec3& point) const;
+
+ private:
+  struct Cell {
+    Vec3 origin;
+    Eigen::Matrix3d to_weights;  ///< of corners 1 2 3, from X - origin
+    Eigen::Vector4d height;      ///< over the face that lies across from each corner [m]
+  };
+  std::array<int, 3> box_of(const Vec3& point) const;
+  Place place_in(std::size_t cell, const Vec3& point) const;
+
+  std::vector<Cell> cells_;
+  Vec3 low_;
+  double edge_;
+  std::array<int, 3> count_;
+  std::vector<std::size_t> start_;  ///< of each box in list_
+  std::vector<int> list_;
+};
+
+}  // namespace springproof

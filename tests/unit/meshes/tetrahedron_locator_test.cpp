@@ -1,0 +1,49 @@
+#include "meshes/tetrahedron_locator.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "meshes/mesher.h"
+
+namespace springproof {
+namespace {
+
+Mesh tetrahedral_block() { return mesh_geo(find_geo({"block.geo", {}, {}, {}}, "case.toml"), {1, 2, 3}, {4, 5, 6}, {.tetrahedra = true}); }
+
+Vec3 at(const Mesh& mesh, const TetrahedronLocator::Place& place) {
+  Vec3 x = Vec3::Zero();
+  for (int i = 0; i < 4; ++i) x += place.weights[i] * mesh.nodes.row(mesh.tetrahedra[place.cell][i]).transpose();
+  return x;
+}
+
+TEST(TetrahedronLocator, PointsInsideHaveWeightsOfTheirCell) {
+  const Mesh mesh = tetrahedral_block();
+  const TetrahedronLocator locate(mesh.nodes, mesh.tetrahedra);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> x(0, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(x(random), 2 * x(random), 3 * x(random));
+    const auto place = locate(p);
+    EXPECT_EQ(place.outside, 0);
+    EXPECT_GE(place.weights.minCoeff(), -1e-8);
+    EXPECT_LT((at(mesh, place) - p).norm(), 1e-13);
+  }
+  for (const auto& node : mesh.nodes.rowwise()) EXPECT_EQ(locate(node.transpose()).outside, 0);
+}
+
+TEST(TetrahedronLocator, PointsOutsideGetACellThatTheyAreNear) {
+  const Mesh mesh = tetrahedral_block();
+  const TetrahedronLocator locate(mesh.nodes, mesh.tetrahedra);
+  const auto above = locate({0.3, 0.7, 3.2});
+  EXPECT_NEAR(above.outside, 0.2, 1e-12);
+  EXPECT_LT((at(mesh, above) - Vec3(0.3, 0.7, 3.2)).norm(), 1e-12);   // continued linearly
+  EXPECT_NEAR(locate({-5, 1, 1}).outside, 5, 1e-12);
+}
+
+TEST(TetrahedronLocator, NeedsTetrahedra) {
+  EXPECT_THROW(TetrahedronLocator(NodalVectors(0, 3), {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace springproof
