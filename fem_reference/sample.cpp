@@ -23,7 +23,8 @@ double distance_outside_unit_cell(const dealii::Point<3>& unit, bool tetrahedron
   return unit.distance(dealii::GeometryInfo<3>::project_to_unit_cell(unit));
 }
 
-constexpr double furthest_outside = 0.5;  // of a cell's size: a point this far outside is no longer taken
+// A point this far outside is no longer taken: of the cell next to it (hexahedra), of the body's extent (tetrahedra).
+constexpr double furthest_outside_cell = 0.5, furthest_outside = 0.05;
 
 [[noreturn]] void throw_outside(const dealii::Point<3>& X) {
   throw InputError(fmt::format("the point ({}, {}, {}) is outside the body", X[0], X[1], X[2]));
@@ -35,7 +36,7 @@ Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii
   const auto& mapping = cache.get_mapping();
   const unsigned int vertex = dealii::GridTools::find_closest_vertex(mapping, triangulation, X);
   Location best;
-  double least = furthest_outside;
+  double least = furthest_outside_cell;
   bool found = false;
   for (const auto& cell : cache.get_vertex_to_cell_map()[vertex]) {
     if (cell->is_artificial()) continue;
@@ -129,10 +130,16 @@ std::vector<Location> locate_in_tetrahedra(const Body3& body, const NodalVectors
   for (const auto& cell : body.triangulation.active_cell_iterators())
     cells.push_back({int(cell->vertex_index(0)), int(cell->vertex_index(1)), int(cell->vertex_index(2)), int(cell->vertex_index(3))});
   const TetrahedronLocator locator(X, cells);
+  const double extent = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
   std::vector<Location> places;
   for (const auto& p : points.rowwise()) {
-    const TetrahedronLocator::Place place = locator(p.transpose());
-    if (place.weights.minCoeff() < -furthest_outside) throw_outside({p[0], p[1], p[2]});
+    TetrahedronLocator::Place place = locator(p.transpose());
+    if (place.outside > furthest_outside * extent) throw_outside({p[0], p[1], p[2]});
+    // Far outside a cell that is small, as where a coarse mesh cuts off a tip, quadratic functions are not continued.
+    if (place.weights.minCoeff() < -0.5) {
+      place.weights = place.weights.cwiseMax(0.0);
+      place.weights /= place.weights.sum();
+    }
     places.push_back({dealii::Triangulation<3>::active_cell_iterator(&body.triangulation, 0, int(place.cell)),
                       dealii::Point<3>(place.weights[1], place.weights[2], place.weights[3])});
   }
