@@ -43,7 +43,7 @@ void check(const MeshRequest& r) {
     refuse(r.file, "cells: three counts >= 1 are needed");
   if (!(r.edge >= 0) || !std::isfinite(r.edge)) refuse(r.file, fmt::format("edge: {} m is no length (allowed: > 0)", r.edge));
   if (!(r.scale > 0) || !std::isfinite(r.scale)) refuse(r.file, fmt::format("scale: {} is no factor (allowed: > 0)", r.scale));
-  if (r.edge == 0 && extension != ".geo" && extension != ".msh")
+  if (r.edge == 0 && r.tetrahedra == 0 && extension != ".geo" && extension != ".msh")
     refuse(r.file, "edge: the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
 }
 
@@ -100,7 +100,7 @@ Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKin
   if (!fs::is_regular_file(geo, ignored)) refuse(geo, "no such file");
   if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
   if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
-  return mesh_body({geo, size, cells, kind, 0, 1}).mesh;
+  return mesh_body({.file = geo, .size = size, .cells = cells, .kind = kind}).mesh;
 }
 
 }  // namespace springproof
