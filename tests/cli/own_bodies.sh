@@ -81,8 +81,8 @@ body torus torus.stl "" -0.4 0.4 0.3
 body trefoil trefoil.stl "" -0.9 0.9 0.3
 body noisy_sphere noisy_sphere.stl "" -0.6 0.6 0.2
 body scan scan.stl "" -0.9 0.9 0.4
-body_with_fem torus torus.stl "" -0.4 0.4 0.3
-body_with_fem scan scan.stl "" -0.9 0.9 0.4
+body_with_fem torus torus.stl "" -0.4 0.4 0.4
+body_with_fem scan scan.stl "" -0.9 0.9 0.5
 
 # The same body as gmsh saves it, in every form.
 cat >"$work/make.geo" <<GEO
@@ -105,7 +105,7 @@ for form in form_2.msh form_4.msh form.step form.brep; do
   [ $form = form.step ] && scale="scale = 1000"  # gmsh's STEP is in millimetres
   body ${form/./_} $form "$scale" 0.3 2.7 0.3
 done
-body_with_fem form_step form.step "scale = 1000" 0.3 2.7 0.3
+body_with_fem form_step form.step "scale = 1000" 0.3 2.7 0.4
 
 # Broken files: mended with a note in the report, or refused in one line that names the file.
 while IFS=$'\t' read -r name fate said; do
