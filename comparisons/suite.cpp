@@ -94,6 +94,17 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
   return tasks;
 }
 
+/// Those before an interrupt, which ends the mesher too.
+std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases) {
+  std::vector<PreparedCase> prepared;
+  for (const fs::path& file : cases) try {
+      if (!interrupted) prepared.push_back(prepare(read_experiment(file)));
+    } catch (const std::runtime_error&) {
+      if (!interrupted) throw;
+    }
+  return prepared;
+}
+
 /// Counts and prints finished parts; safe from several workers.
 class Progress {
  public:
@@ -241,8 +252,13 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 }
 
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
-  std::vector<PreparedCase> prepared;
-  for (const fs::path& file : cases) prepared.push_back(prepare(read_experiment(file)));
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  const std::vector<PreparedCase> prepared = prepare_all(cases);
+  if (interrupted) {
+    fmt::print(stderr, "interrupted before any part was run\n");
+    return 130;
+  }
   for (std::size_t i = 0; i < cases.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (key_of(cases[i]) == key_of(cases[j]))
@@ -252,8 +268,6 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<Task> tasks = make_tasks(prepared, options);
   if (!fem::available())
     fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
   run_tasks(tasks, options);
   if (interrupted) {
     const auto done = std::count_if(tasks.begin(), tasks.end(), [](const Task& t) { return t.done; });

@@ -43,6 +43,14 @@ std::vector<double> voxel_edges(const Body& body, double volume) {
   return edges;
 }
 
+/// @throws std::invalid_argument if the cubes fill more than twice or less than half of the body's volume.
+void compare_volumes(double cubes, double edge, double body, std::vector<std::string>& notes) {
+  const double share = cubes * std::pow(edge, 3) / body;
+  const std::string says = fmt::format("{} cubes of {:.6g} m fill {:.4g} times the volume of the body", cubes, edge, share);
+  if (share > 2 || share < 0.5) throw std::invalid_argument("voxels: " + says + " (allowed: 0.5 to 2); take smaller voxels");
+  if (std::abs(share - 1) > 0.1) notes.push_back(says + ": its thin parts are not resolved");
+}
+
 void cut_lattices(PreparedCase& prepared) {
   Body& body = prepared.experiment.body;
   const Mesh& true_body = *prepared.tetrahedra.back();
@@ -52,6 +60,7 @@ void cut_lattices(PreparedCase& prepared) {
     const VoxelGrid grid = voxel_grid(true_body, edge);
     Voxels voxels = voxelise(grid, true_body);
     for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
+    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);
     body.cells.push_back(grid.cells);
     prepared.voxel_edges.push_back(edge);
     prepared.meshes.push_back(std::make_shared<Mesh>(std::move(voxels.mesh)));

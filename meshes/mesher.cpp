@@ -100,7 +100,7 @@ Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKin
   if (!fs::is_regular_file(geo, ignored)) refuse(geo, "no such file");
   if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
   if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
-  return mesh_body({geo, size, cells, kind}).mesh;
+  return mesh_body({.file = geo, .size = size, .cells = cells, .kind = kind}).mesh;
 }
 
 }  // namespace springproof

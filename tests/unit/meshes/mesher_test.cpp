@@ -192,7 +192,7 @@ TEST_F(Mesher, SeveralSolidsAreRefused) {
 TEST_F(Mesher, BadFilesOfEachKindAreRefusedByName) {
   for (const std::string name : {"bad.geo", "bad.stl", "bad.msh", "bad.step", "bad.stp", "bad.brep"}) {
     SCOPED_TRACE(name);
-    for (const std::string text : {std::string(), std::string("not a body\n"), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16)}) {
+    for (const std::string& text : {std::string(), std::string("not a body\n"), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16)}) {
       const std::string message = message_of({.file = write(name, text), .edge = 0.1});
       EXPECT_NE(message, "accepted");
       EXPECT_EQ(message.rfind((folder_.path / name).string(), 0), 0u) << message;

@@ -1,0 +1,130 @@
+#!/usr/bin/env bash
+# Bodies of a user's own through the command line: good files run, broken ones are refused.
+#   own_bodies.sh PROGRAM WRITE_BODIES
+set -u
+program=$1 write_bodies=$2
+fem=${SPRINGPROOF_FEM_PROGRAM:-$(dirname "$program")/springproof-fem}
+[ -x "$fem" ] || fem=
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+fail() {
+  echo "FAILED: $1"
+  [ $# -gt 1 ] && tail -n 20 "$2"
+  failures=$((failures + 1))
+}
+
+# case_file FILE SCALE LOW HIGH VOXELS REFERENCE: held below z = LOW, pulled above z = HIGH
+case_file() {
+  cat <<TOML
+[body]
+geo = "$1"
+$2
+voxels = $5
+[[patch]]
+name = "held"
+beyond = { point_m = [0, 0, $3], normal = [0, 0, -1] }
+[[patch]]
+name = "pulled"
+beyond = { point_m = [0, 0, $4], normal = [0, 0, 1] }
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+[[load]]
+on = "held"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "pulled"
+force_N = [3, 0, 1]
+[compare]
+models = ["hybmss", "emsm", "emsm_random", "msm_18"]
+measures = ["displacement_error", "volume_change", "reaction"]
+[reference]
+$6
+TOML
+}
+
+
+# runs NAME RUNS: the case NAME.toml runs and leaves RUNS runs, all with a result; the supports bear the load
+runs() {
+  local out="$work/out-$1" start=$SECONDS
+  "$program" compare "$work/$1.toml" --jobs 1 --no-vtu --out "$out" >"$work/stdout" 2>"$work/stderr" || { fail "$1: status $?" "$work/stderr"; return; }
+  [ -s "$out/report.html" ] && [ -s "$out/results.json" ] && [ -s "$out/results.csv" ] || fail "$1: no report"
+  local ok
+  ok=$(grep -c '"ok": true' "$out/results.json")
+  [ "$ok" -eq "$2" ] || fail "$1: $ok runs with a result, not $2" "$work/stdout"
+  grep -q '"ok": false' "$out/results.json" && fail "$1: a run without a result" "$work/stdout"
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "measure") m = i; if ($i == "value") v = i }; next }
+           $m == "force.held.x" { ++n; if ($v < -3.000001 || $v > -2.999999) bad = 1 }
+           $m == "force.held.z" { ++n; if ($v < -1.000001 || $v > -0.999999) bad = 1 }
+           END { exit bad || n < 8 }' "$out/results.csv" || fail "$1: the supports do not bear the load" "$out/results.csv"
+  echo "$1: $((SECONDS - start)) s"
+}
+
+"$write_bodies" "$work" || { fail "write_bodies"; exit 1; }
+
+# Each form of body: springs alone, and beside finite elements.  Runs: 4 models; 3 tetrahedral meshes, 3 grids of cubes.
+body() {
+  local name=$1 file=$2 scale=$3 low=$4 high=$5 edge=$6
+  case_file "$file" "$scale" "$low" "$high" 800 "elements = []
+edge_m = $edge" >"$work/$name.toml"
+  runs "$name" 4
+}
+body_with_fem() {
+  local name=$1 file=$2 scale=$3 low=$4 high=$5 edge=$6
+  [ -n "$fem" ] || return
+  case_file "$file" "$scale" "$low" "$high" 800 "edge_m = $edge" >"$work/$name-fem.toml"
+  runs "$name-fem" 10
+}
+
+body torus torus.stl "" -0.4 0.4 0.3
+body trefoil trefoil.stl "" -0.9 0.9 0.3
+body noisy_sphere noisy_sphere.stl "" -0.6 0.6 0.2
+body scan scan.stl "" -0.9 0.9 0.4
+body_with_fem torus torus.stl "" -0.4 0.4 0.4
+body_with_fem scan scan.stl "" -0.9 0.9 0.5
+
+# The same body as gmsh saves it, in every form.
+cat >"$work/make.geo" <<GEO
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 2};
+Cylinder(2) = {0.5, 0.5, 2, 0, 0, 1, 0.4};
+BooleanUnion(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
+Mesh.MeshSizeMax = 0.25;
+Mesh 3;
+Mesh.MshFileVersion = 2.2; Save "$work/form_2.msh";
+Mesh.MshFileVersion = 4.1; Save "$work/form_4.msh";
+Save "$work/form.step";
+Save "$work/form.brep";
+GEO
+sed 's/^geo.*/&\nsize_m = [1, 1, 1]/' <(case_file make.geo "" 0.3 2.7 800 "elements = []") >"$work/make.toml"
+"$program" compare "$work/make.toml" --out "$work/out" >/dev/null 2>&1  # for the files that it saves
+for form in form_2.msh form_4.msh form.step form.brep; do
+  [ -s "$work/$form" ] || fail "gmsh saved no $form"
+  scale=
+  [ $form = form.step ] && scale="scale = 1000"  # gmsh's STEP is in millimetres
+  body ${form/./_} $form "$scale" 0.3 2.7 0.3
+done
+body_with_fem form_step form.step "scale = 1000" 0.3 2.7 0.4
+
+# Broken files: mended with a note in the report, or refused in one line that names the file.
+while IFS=$'\t' read -r name fate said; do
+  case_file "broken/$name.stl" "" -0.5 0.5 200 "elements = []
+edge_m = 0.4" >"$work/$name.toml"
+  [ "$name" = without_area ] && sed -i 's/-0\.5\]/0.2]/; s/, 0\.5\]/, 0.8]/' "$work/$name.toml"  # a cube from 0 to 1
+  rm -rf "$work/out"
+  start=$SECONDS
+  "$program" compare "$work/$name.toml" --jobs 1 --no-vtu --out "$work/out" >"$work/stdout" 2>"$work/stderr"
+  status=$?
+  [ $((SECONDS - start)) -le 10 ] || fail "$name took $((SECONDS - start)) s"
+  if [ "$fate" = refused ]; then
+    [ $status -eq 2 ] && [ "$(wc -l <"$work/stderr")" -eq 1 ] && grep -qF "$name.stl" "$work/stderr" && grep -qF -- "$said" "$work/stderr" && [ ! -e "$work/out" ] ||
+      fail "$name: status $status" "$work/stderr"
+  else
+    [ $status -eq 0 ] && grep -qF -- "$said" "$work/out/results.json" || fail "$name: status $status, not '$said'" "$work/stderr"
+  fi
+done <"$work/broken.txt"
+
+[ -n "$fem" ] || echo "without finite elements: no springproof-fem"
+[ $failures -eq 0 ] && echo "every body ran or was refused as it should be"
+exit $((failures > 0))
