@@ -2,7 +2,7 @@
 # Installs what is missing (Debian 12), builds, and runs the main job:   ./quickstart.sh
 # or the tests:                                                          ./quickstart.sh test
 # Arguments of `./quickstart.sh` are passed on to `springproof compare`; without any it runs the experiments of
-# Golec et al. (2019) in the linear regime.  Repeating either command only does what is still to be done.
+# Golec et al. (2019) in the linear regime, and a rabbit.  Repeating either command only does what is still to be done.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -39,7 +39,7 @@ if [ "${1:-}" = test ]; then
   shift
   ctest --test-dir build/release --output-on-failure -j "$(nproc)" "$@"
 else
-  [ $# -gt 0 ] || set -- golec_2019
+  [ $# -gt 0 ] || set -- golec_2019 bodies/rabbit
   build/release/springproof compare --out springproof-report "$@"
   echo "open springproof-report/report.html in a browser"
 fi

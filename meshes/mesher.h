@@ -37,8 +37,8 @@ struct MeshRequest {
   Vec3 size = Vec3::Zero();  ///< of a .geo [m]; zero: the script's own
   Cells cells = {0, 0, 0};   ///< of a .geo cut into nx x ny x nz cells; zero: by `edge`
   MeshKind kind{};
-  double scale = 1;  ///< multiplies the coordinates of the file
   double edge = 0;   ///< [m] > 0: tetrahedra with edges of about this length
+  double scale = 1;  ///< multiplies the coordinates of the file
   int tetrahedra = 0;  ///< > 0 and no edge: about so many tetrahedra
   std::vector<double> coarser = {};  ///< factors > 1: also meshes with edges longer by these
 };

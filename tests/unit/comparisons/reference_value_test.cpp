@@ -22,6 +22,25 @@ TEST(ReferenceValue, RecoversLimitAndOrder) {
   }
 }
 
+TEST(ReferenceValue, RecoversLimitAndOrderOnGridsOfAnyRatios) {
+  for (const GridRatios r : {GridRatios{1.5, 1.5}, GridRatios{1.3, 1.7}, GridRatios{2, 1.2}}) {
+    const double p = 1.6, h3 = 0.1, h2 = r.fine * h3, h1 = r.coarse * h2;
+    const auto f = [&](double h) { return 7.5 - 3 * std::pow(h, p); };
+    const ReferenceValue v = extrapolate({f(h1), f(h2), f(h3)}, 1e-12, {}, r);
+    ASSERT_TRUE(v.observed_order);
+    EXPECT_NEAR(*v.observed_order, p, 1e-9);
+    EXPECT_NEAR(v.value, 7.5, 1e-9);
+    EXPECT_NEAR(v.uncertainty, 1.25 * 3 * std::pow(h3, p), 1e-9);
+  }
+}
+
+TEST(ReferenceValue, TwoGridsAreOfFirstOrder) {
+  const ReferenceValue v = extrapolate_two(1 + 0.4, 1 + 0.2);
+  EXPECT_NEAR(v.value, 1, 1e-15);
+  EXPECT_NEAR(v.uncertainty, 3 * 0.2, 1e-15);
+  EXPECT_FALSE(v.observed_order);
+}
+
 TEST(ReferenceValue, DoesNotTrustHighOrders) {
   // Two grids that happen to agree look like a high order: torsion at nu = 0.499 showed 5.4 on grids up to 8^3, and was
   // off by 27 times an uncertainty that believed it.

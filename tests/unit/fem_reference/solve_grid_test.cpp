@@ -62,6 +62,17 @@ TEST_P(FemReactions, CarryAPointForceInsideACell) {
   expect_balance(problem, f, at.cross(f));
 }
 
+TEST_P(FemReactions, CarryTheWrenchThatLoadsCarry) {
+  const Wrench w{{1, -2, 3}, {0.2, 0.1, -0.4}, {0.5, 0.2, 1.1}};
+  const Vec3 about_origin = w.moment + w.about.cross(w.force);
+  for (const Load& load : {Load(Traction{"z_max", {1, 2, 3}, w}), Load(Pressure{"y_max", 5, w}), Load(PatchForce{"x_max", {1, -2, 3}, w}),
+                           Load(Gravity{{0, 0, -1e-3}, w})}) {
+    fem::GridProblem loaded = problem;
+    loaded.loads.push_back(load);
+    expect_balance(loaded, w.force, about_origin);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Forms, FemReactions,
                          testing::Values(std::pair(1, -0.4), std::pair(2, 0.3), std::pair(1, 0.499),
                                          std::pair(2, 0.499)));
