@@ -290,6 +290,8 @@ void check_expectations(const Experiment& experiment) {
 
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
+  if (!e.patches.empty())
+    throw InputError(e.patches.front().where, "patch: is for bodies of voxels (allowed for hexahedra: the physical surfaces of the .geo)");
   prepared.reference_cells = reference_cells(e);
   for (int n : prepared.reference_cells)
     if (n % 4 != 0 && n != 1)
@@ -315,7 +317,7 @@ void try_lattice(PreparedCase& prepared, std::size_t lattice) {
     if (p.row.topology == Topology::cells || lattice == 0) try_model(e, p, mesh, prepared.regions[lattice].get());
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);
-  interpolate(mesh, u, points_of(e.probes));
+  interpolate(mesh, u, points_of(e.probes), reach_of(prepared, lattice));
 }
 
 /// The finite elements' results at the nodes of one lattice.

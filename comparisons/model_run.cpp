@@ -65,7 +65,7 @@ Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const Model
   if (!sample.state.ok) return sample;
   sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, kinematics);
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes));
+  const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes), reach_of(prepared, lattice));
   sample.scalars = scalar_measures(sample.field, e.probes, probes);
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {

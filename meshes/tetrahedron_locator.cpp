@@ -6,8 +6,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "meshes/outer_facets.h"
+
 namespace springproof {
 namespace {
+
+constexpr double tolerance = 1e-9;  // of the weights: a point this far outside is inside
 
 struct Extent {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -28,12 +32,11 @@ TetrahedronLocator::TetrahedronLocator(const NodalVectors& X, const std::vector<
     for (const int n : cells[c]) extents[c].add(X.row(n).transpose());
     all.add(extents[c].low);
     all.add(extents[c].high);
-    Cell cell{X.row(cells[c][0]).transpose(), {}, {}};
+    Cell cell;
+    for (int i = 0; i < 4; ++i) cell.corners[i] = X.row(cells[c][i]).transpose();
     Eigen::Matrix3d edges;
-    for (int i = 0; i < 3; ++i) edges.col(i) = X.row(cells[c][i + 1]).transpose() - cell.origin;
+    for (int i = 0; i < 3; ++i) edges.col(i) = cell.corners[i + 1] - cell.corners[0];
     cell.to_weights = edges.inverse();
-    for (int i = 0; i < 3; ++i) cell.height[i + 1] = 1 / cell.to_weights.row(i).norm();
-    cell.height[0] = 1 / cell.to_weights.colwise().sum().norm();
     cells_.push_back(cell);
   }
   low_ = all.low;
@@ -65,10 +68,15 @@ std::array<int, 3> TetrahedronLocator::box_of(const Vec3& p) const {
 
 TetrahedronLocator::Place TetrahedronLocator::place_in(std::size_t c, const Vec3& p) const {
   const Cell& cell = cells_[c];
-  const Vec3 w = cell.to_weights * (p - cell.origin);
+  const Vec3 w = cell.to_weights * (p - cell.corners[0]);
   Place place{c, {1 - w.sum(), w[0], w[1], w[2]}, 0};
-  const double beyond = (-place.weights.cwiseProduct(cell.height)).maxCoeff();
-  if (beyond > 1e-9 * cell.height.maxCoeff()) place.outside = beyond;
+  if (place.weights.minCoeff() >= -tolerance) return place;
+  place.outside = std::numeric_limits<double>::infinity();
+  for (int across = 0; across < 4; ++across) {
+    if (place.weights[across] >= 0) continue;
+    const Vec3 &x = cell.corners[(across + 1) % 4], &y = cell.corners[(across + 2) % 4], &z = cell.corners[(across + 3) % 4];
+    place.outside = std::min(place.outside, (closest_point(p, x, y, z) - p).norm());
+  }
   return place;
 }
 

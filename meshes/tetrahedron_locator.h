@@ -17,18 +17,16 @@ class TetrahedronLocator {
   struct Place {
     std::size_t cell;
     Eigen::Vector4d weights;  ///< barycentric coordinates; they sum to 1
-    double outside;           ///< how far it is beyond one of the cell's faces [m]; 0: inside
+    double outside;           ///< distance from the cell [m]; 0: inside
   };
 
-  /// The cell that holds the point (of several the first), or one that it is least outside of (beyond its faces' planes, in the
-  /// boxes nearest to the point).
+  /// The cell that holds the point (of several the first), or the nearest of those in the boxes nearest to the point.
   Place operator()(const Vec3& point) const;
 
  private:
   struct Cell {
-    Vec3 origin;
-    Eigen::Matrix3d to_weights;  ///< of corners 1 2 3, from X - origin
-    Eigen::Vector4d height;      ///< over the face that lies across from each corner [m]
+    std::array<Vec3, 4> corners;
+    Eigen::Matrix3d to_weights;  ///< of corners 1 2 3, from X - corner 0
   };
   std::array<int, 3> box_of(const Vec3& point) const;
   Place place_in(std::size_t cell, const Vec3& point) const;

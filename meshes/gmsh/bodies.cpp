@@ -106,9 +106,9 @@ Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session) {
 namespace {
 
 /// Of OpenCASCADE's volumes, in the file's units; 0: there are none.
-double model_volume() try {
+double model_volume() {
   gmsh::vectorpair volumes;
-  gmsh::model::getEntities(volumes, 3);
+  gmsh::model::occ::getEntities(volumes, 3);
   double sum = 0;
   for (const auto& [dimension, tag] : volumes) {
     double v = 0;
@@ -116,8 +116,6 @@ double model_volume() try {
     sum += std::abs(v);
   }
   return sum;
-} catch (const std::string&) {
-  return 0;
 }
 
 /// The finest mesh and the coarser ones of one model, made with an edge of `drawn` [m]; all lengths scale together, those for

@@ -50,7 +50,7 @@ TEST_P(CarriedWrench, PassesThroughADisorderedNetwork) {
 
 INSTANTIATE_TEST_SUITE_P(Loads, CarriedWrench,
                          testing::Values(Load(Traction{"z_max", {1, 2, 3}, carried}), Load(Pressure{"x_max", 5, carried}),
-                                         Load(PatchForce{"y_min", {1, -2, 3}, carried}), Load(Gravity{{0, 0, -9.81}, carried})));
+                                         Load(PatchForce{"y_min", {1, -2, 3}, carried}), Load(Gravity{{0, 0, -1e-3}, carried})));
 
 TEST(Wrenchless, ALoadWithoutOneIsLeftAlone) {
   const Mesh mesh = block_mesh({1, 1, 1}, {2, 2, 2});
