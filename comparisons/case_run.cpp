@@ -55,12 +55,6 @@ struct PartRun {
   const Experiment& experiment() const { return prepared.experiment; }
 };
 
-NodalVectors points_of(const std::vector<Probe>& probes) {
-  NodalVectors points(static_cast<Eigen::Index>(probes.size()), 3);
-  for (std::size_t i = 0; i < probes.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = probes[i].at.transpose();
-  return points;
-}
-
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
   return {model,   "fem", run.material.poisson_ratio, s.grid.cells, s.law.empty() ? run.experiment().kinematics : s.law,
           s.ok,    s.message, s.form,                 s.iterations, s.residual,
@@ -317,7 +311,7 @@ void try_lattice(PreparedCase& prepared, std::size_t lattice) {
     if (p.row.topology == Topology::cells || lattice == 0) try_model(e, p, mesh, prepared.regions[lattice].get());
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);
-  interpolate(mesh, u, points_of(e.probes), reach_of(prepared, lattice));
+  at_probes(prepared, lattice, u);
 }
 
 /// The finite elements' results at the nodes of one lattice.

@@ -37,12 +37,6 @@ struct PreparedCase {
   std::filesystem::path geo;                        ///< the body's gmsh script
 };
 
-/// How far outside its cubes the field of a body of voxels is continued [m]: to the true surface, which is less than their edge away.
-/// Zero for other bodies.
-inline double reach_of(const PreparedCase& prepared, std::size_t lattice) {
-  return prepared.voxel_edges.empty() ? 0 : prepared.voxel_edges[lattice];
-}
-
 /// @throws InputError for everything a user can get wrong, before any long work starts.
 PreparedCase prepare(const Experiment& experiment);
 

@@ -111,29 +111,14 @@ double section_axis_distance(const Mesh& mesh, const Section& section, const Nod
   return sum / static_cast<double>(nodes.size());
 }
 
-namespace {
-
-/// How far [m] a point is outside the box around a cell.
-double distance_from(const Mesh& mesh, const Hexahedron& cell, const Vec3& p) {
-  Vec3 low = mesh.nodes.row(cell[0]).transpose(), high = low;
-  for (const int n : cell) {
-    low = low.cwiseMin(mesh.nodes.row(n).transpose());
-    high = high.cwiseMax(mesh.nodes.row(n).transpose());
-  }
-  return (low - p).cwiseMax(p - high).cwiseMax(0.0).norm();
-}
-
-}  // namespace
-
-NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points, double reach) {
+NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points) {
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);
   const Locator locator(mesh);
   for (int i = 0; i < points.rows(); ++i) {
-    const Vec3 p = points.row(i).transpose();
-    std::optional<Location> at = locator.find(p);
-    if (!at && reach > 0)
-      if (const Location near = locator(p); distance_from(mesh, mesh.hexahedra[near.cell], p) <= reach) at = near;
-    if (!at) throw InputError(fmt::format("at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body", p[0], p[1], p[2]));
+    const std::optional<Location> at = locator.find(points.row(i).transpose());
+    if (!at)
+      throw InputError(fmt::format("at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body", points(i, 0),
+                                   points(i, 1), points(i, 2)));
     for (int n = 0; n < 8; ++n) out.row(i) += at->shape[n] * displacement.row(mesh.hexahedra[at->cell][n]);
   }
   return out;

@@ -49,8 +49,7 @@ double section_distance(const Mesh& mesh, const Section& section, const NodalVec
 double section_axis_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v);
 
 /// Displacement of a hexahedral mesh at rest points, by trilinear interpolation, m x 3.
-/// Up to `reach` [m] outside the field of the nearest cell is continued.
-/// @throws InputError naming the point that lies further outside.
-NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points, double reach = 0);
+/// @throws InputError naming the point that lies outside.
+NodalVectors interpolate(const Mesh& mesh, const NodalVectors& displacement, const NodalVectors& points);
 
 }  // namespace springproof

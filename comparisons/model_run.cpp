@@ -40,12 +40,6 @@ void add_moduli(const Experiment& e, const MassSpringModel& model, const NodalVe
   out["moduli.affine_youngs_modulus"] = 2.5 * affine_shear_modulus(model.network);
 }
 
-NodalVectors points_of(const std::vector<Probe>& probes) {
-  NodalVectors points(static_cast<Eigen::Index>(probes.size()), 3);
-  for (std::size_t i = 0; i < probes.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = probes[i].at.transpose();
-  return points;
-}
-
 /// One network of the model, solved and measured.
 Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
                   const IsotropicMaterial& material) {
@@ -65,7 +59,7 @@ Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const Model
   if (!sample.state.ok) return sample;
   sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, kinematics);
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  const NodalVectors probes = interpolate(*mesh, sample.field.displacement, points_of(e.probes), reach_of(prepared, lattice));
+  const NodalVectors probes = at_probes(prepared, lattice, sample.field.displacement);
   sample.scalars = scalar_measures(sample.field, e.probes, probes);
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
+#include "comparisons/measures.h"
+#include "comparisons/reference_grids.h"
 #include "meshes/facet_tree.h"
+#include "meshes/locate.h"
 #include "meshes/mesher.h"
 #include "meshes/select_patches.h"
 #include "meshes/volume.h"
@@ -137,6 +141,20 @@ void place_samples(PreparedCase& prepared) {
   for (std::size_t i = 0; i < points.size(); ++i) prepared.body_points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
 }
 
+/// @throws InputError naming a probe that is further outside than half a cube: facets lie inside curved surfaces.
+void check_probes(const PreparedCase& prepared) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  const std::vector<OuterFacet> facets = outer_facets(body);
+  const FacetTree tree(body, facets);
+  const double slack = *std::min_element(prepared.voxel_edges.begin(), prepared.voxel_edges.end()) / 2;
+  for (const Probe& p : prepared.experiment.probes) {
+    const double distance = (tree.nearest(p.at).point - p.at).norm();
+    if (!prepared.regions.front()->inside(p.at) && distance > slack)
+      throw InputError(fmt::format("probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface",
+                                   p.name, p.at[0], p.at[1], p.at[2], distance));
+  }
+}
+
 }  // namespace
 
 void prepare_voxel_body(PreparedCase& prepared) try {
@@ -147,6 +165,7 @@ void prepare_voxel_body(PreparedCase& prepared) try {
   check_patches(e, patches);
   cut_lattices(prepared);
   set_wrenches(prepared);
+  check_probes(prepared);
   if (!e.reference.elements.empty()) place_samples(prepared);
 } catch (const std::invalid_argument& e) {
   throw InputError(prepared.experiment.body.where, e.what());
@@ -158,6 +177,20 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
     const BodySample& s = prepared.body_samples[n];
     const auto row = static_cast<Eigen::Index>(n);
     out.row(row) = s.within < 0 ? Eigen::RowVector3d(u.row(s.at)) : 2 * u.row(s.at) - u.row(s.within);
+  }
+  return out;
+}
+
+NodalVectors at_probes(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& displacement) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *prepared.meshes[lattice];
+  const NodalVectors points = probe_points(e);
+  if (!e.body.is_voxels()) return interpolate(mesh, displacement, points);
+  const Locator locator(mesh);
+  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Location at = locator(points.row(i).transpose());
+    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * displacement.row(mesh.hexahedra[at.cell][n]);
   }
   return out;
 }

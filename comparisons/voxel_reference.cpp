@@ -60,7 +60,7 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     s.reactions = about_true_patches(prepared, *mesh, s.reactions);
-    const NodalVectors probes = interpolate(*mesh, s.displacement, probe_points(e), reach_of(prepared, lattice));
+    const NodalVectors probes = at_probes(prepared, lattice, s.displacement);
     NodalVectors all = NodalVectors::Zero(nodes + probes.rows(), 3);
     all.middleRows(first, mesh->nodes.rows()) = s.displacement;
     all.bottomRows(probes.rows()) = probes;

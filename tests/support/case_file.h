@@ -22,7 +22,7 @@ on = "z_min"
 displacement_m = [0, 0, 0]
 )";
 
-/// Every key there is.
+/// Every key of a body of hexahedra.
 inline constexpr const char* full_case = R"(cite = "Golec et al. (2019), \"Table 3\""
 what = "A beam with everything done to it."
 kinematics = "hencky"
@@ -31,16 +31,6 @@ kinematics = "hencky"
 geo = "beam.geo"
 size_m = [2.4, 0.4, 0.4]
 cells = [[24, 4, 4], [48, 8, 8]]
-
-[[patch]]
-name = "middle"
-box_m = [[1, 0, 0], [1.4, 0.4, 0.45]]
-facing = { direction = [0, 0.6, 0.8], within_deg = 36.9 }
-
-[[patch]]
-name = "end"
-beyond = { point_m = [2.3, 0.1, 0], normal = [1, 1, 0] }
-near = { point_m = [2.5, 0.2, 0.1], radius_m = 0.3 }
 
 [material]
 shear_modulus_Pa = 4e3

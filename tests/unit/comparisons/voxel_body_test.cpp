@@ -183,7 +183,7 @@ const Mistake mistakes[] = {
     {"no_voxel", "voxels = 100", "voxels = 1", "ball.toml:*"},
     {"own_file_is_missing", "geo = \"sphere.geo\"\nsize_m = [0.2, 0.2, 0.2]", "geo = \"mine.stl\"", "ball.toml:2:*mine.stl"},
     {"size_of_a_file", "geo = \"sphere.geo\"", "geo = \"mine.stl\"", "ball.toml:3:*body.size_m"},
-    {"probe_outside", "at_m = [0.1, 0.1, 0.19]", "at_m = [0.1, 0.1, 0.3]", "ball.toml:*(0.1, 0.1, 0.3) m lies outside the body"},
+    {"probe_outside", "at_m = [0.1, 0.1, 0.19]", "at_m = [0.1, 0.1, 0.3]", "ball.toml:*probe 'top': at_m: the point (0.1, 0.1, 0.3) m lies outside the body, 0.1 m from its surface"},
     {"not_held", "displacement_m = [0, 0, 0]", "displacement_m = [\"free\", \"free\", 0]", "ball.toml:*not held"},
     {"edge_too_long", "edge_m = 0.03", "edge_m = -3", "ball.toml:*edge_m"},
 };

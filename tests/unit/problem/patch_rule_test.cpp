@@ -9,7 +9,14 @@
 namespace springproof {
 namespace {
 
-const std::string patch_case = std::string(test::small_case) + R"(
+/// Rules are for bodies of voxels.
+std::string voxel_case() {
+  std::string text = test::small_case;
+  const std::string cells = "cells = [2, 2, 5]";
+  return text.replace(text.find(cells), cells.size(), "voxels = 100");
+}
+
+const std::string patch_case = voxel_case() + R"(
 [[patch]]
 name = "wrist"
 box_m = [[0, 0, 0], [1, 2, 3]]
@@ -52,6 +59,11 @@ TEST(PatchRules, AreRead) {
 TEST(PatchRules, ReadBackAsWritten) {
   const Experiment e = parse_experiment(patch_case, "case.toml");
   test::expect_same(e, parse_experiment(to_toml(e), "case.toml"));
+}
+
+TEST(PatchRules, AreForBodiesOfVoxels) {
+  EXPECT_EQ(message_of(std::string(test::small_case) + "[[patch]]\nname = \"low\"\nfacing = { direction = [0, 0, -1], within_deg = 10 }\n")
+                .find("case.toml:13:1: patch: is for bodies of voxels"), 0u);
 }
 
 TEST(PatchRules, NoneIsTheUsualCase) { EXPECT_TRUE(parse_experiment(test::small_case, "case.toml").patches.empty()); }
