@@ -37,7 +37,8 @@ void prescribe(const Load& load, int number, const std::vector<int>& held, const
 void add_point_force(const PointForce& load, const Mesh& mesh, NodalVectors& external) {
   const std::optional<Location> at = locate(mesh, load.at);
   if (!at)
-    throw InputError(fmt::format("at_m: the point force at ({:.6g}, {:.6g}, {:.6g}) m lies outside the body",
+    throw InputError(fmt::format("at_m: the point force at ({:.6g}, {:.6g}, {:.6g}) m lies outside the body (of voxels: outside its cubes, "
+                                 "which may end half a cube below the surface)",
                                  load.at[0], load.at[1], load.at[2]));
   for (int n = 0; n < 8; ++n) external.row(mesh.hexahedra[at->cell][n]) += at->shape[n] * load.force.transpose();
 }
