@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 double time_limit() {
   const char* given = std::getenv("SPRINGPROOF_MESH_SECONDS");
-  if (!given) return 120;
+  if (!given) return 300;
   char* end = nullptr;
   const double seconds = std::strtod(given, &end);
   if (end == given || *end != '\0' || !(seconds > 0) || !std::isfinite(seconds))

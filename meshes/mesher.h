@@ -53,7 +53,7 @@ struct MeshedBody {
 /// Extensions of the files that can be read: ".geo", ...
 const std::vector<std::string>& mesh_file_extensions();
 
-/// Meshes a body under a time limit: 120 s, or $SPRINGPROOF_MESH_SECONDS.  Thread-safe.
+/// Meshes a body under a time limit: 300 s, or $SPRINGPROOF_MESH_SECONDS.  Thread-safe.
 /// @throws InputError "FILE: ..." when the file cannot be meshed: unreadable, no body, several parts, mixed or inverted
 /// cells, a mesher that crashed or took too long.
 /// @throws std::runtime_error if the program cannot be run.
