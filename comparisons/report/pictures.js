@@ -133,11 +133,11 @@ function boundsOf(positions) {
 
 const mostGhostLines = 2000;
 
-/// The body at rest: its sharp edges, or where these are too many (steps of voxels) or none, its pale
-/// silhouette behind.
+/// The body at rest: its sharp edges, or where these are too many (steps of voxels), or on a round body few, its
+/// pale silhouette behind.
 function ghostOf(shape) {
-  const {sharp, triangles} = shape.surface, lines = sharp.attributes.position.count / 2;
-  if (lines > 0 && lines <= mostGhostLines)
+  const {smooth, sharp, triangles} = shape.surface, lines = sharp.attributes.position.count / 2;
+  if (!smooth && lines > 0 && lines <= mostGhostLines)
     return new THREE.LineSegments(sharp, new THREE.LineBasicMaterial({color: 0x888888, transparent: true, opacity: 0.8}));
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(shape.rest, 3));

@@ -35,7 +35,9 @@ bool DirectSolver::factor_lower(const Eigen::SparseMatrix<double>& L) {
     negative_ = -1;
     return false;
   }
-  negative_ = static_cast<int>((ldlt_.vectorD().array() <= 0).count());
+  // A pivot of round-off is a mechanism: what it would give is no equilibrium.
+  const double round_off = 1e-14 * ldlt_.vectorD().maxCoeff();
+  negative_ = static_cast<int>((ldlt_.vectorD().array() <= round_off).count());
   return negative_ == 0;
 }
 
