@@ -24,7 +24,7 @@ double distance_outside_unit_cell(const dealii::Point<3>& unit, bool tetrahedron
 }
 
 // A point this far outside is no longer taken: of the cell next to it (hexahedra), of the body's extent (tetrahedra).
-constexpr double furthest_outside_cell = 0.5, furthest_outside = 0.05;
+constexpr double furthest_outside_cell = 0.5, furthest_outside = 0.2;
 
 [[noreturn]] void throw_outside(const dealii::Point<3>& X) {
   throw InputError(fmt::format("the point ({}, {}, {}) is outside the body", X[0], X[1], X[2]));

@@ -71,17 +71,17 @@ double peak_memory_MiB() {
 
 // Multigrid without a matrix needs cells that come from refining few; algebraic multigrid takes the rest.
 constexpr unsigned int largest_coarse_grid = 1000;  // cells
+// A coarsest level of cubes gets linear elements below it, from where these cost less than to solve on it by iteration.
+constexpr unsigned int smallest_grid_to_go_below = 300;
 
-bool is_large(const Body3& body) { return body.triangulation.n_cells(0) > largest_coarse_grid; }
-
-// A coarsest level of many cubes needs linear elements below it, which are there for small strain and one process.
-bool can_go_below(const GridProblem& problem, const Body3& body) {
-  return is_large(body) && problem.coarse.grid && problem.law == "linear" && process_count() == 1;
+// Linear elements below are there for small strain and one process.
+bool goes_below(const GridProblem& problem, const Body3& body) {
+  return body.triangulation.n_cells(0) > smallest_grid_to_go_below && problem.coarse.grid && problem.law == "linear" && process_count() == 1;
 }
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
   return problem.method == Method::automatic && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
-         (!is_large(body) || can_go_below(problem, body));
+         (body.triangulation.n_cells(0) <= largest_coarse_grid || goes_below(problem, body));
 }
 
 std::string element_name(const ElasticSystem& system) {
@@ -113,7 +113,7 @@ struct Discrete {
     check_held(held, dof_handler.get_communicator());
     if (!dof_handler.has_level_dofs()) return;
     system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
-    if (is_large(body)) put_linear_elements_below(problem.coarse, problem.place, system);
+    if (goes_below(problem, body)) put_linear_elements_below(problem.coarse, problem.place, system);
   }
 
   std::vector<Prescribed> held;  // and owned
