@@ -208,6 +208,7 @@ CaseResult embedded_case() {
   for (const char* model : {"fem", "hybmss"}) {
     Picture p = sample_picture(model, 0.4);
     p.surface = "smooth";
+    p.displacement = {0, 0, 0, 0.1f, 0, 0, 0.1f, 0.05f, 0, 0, 0, 0.02f};   // many colours
     p.quads = {0, 1, 2, -1, 0, 2, 3, -1};
     c.pictures.push_back(p);
   }
