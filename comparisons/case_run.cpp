@@ -284,8 +284,6 @@ void check_expectations(const Experiment& experiment) {
 
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
-  if (!e.patches.empty())
-    throw InputError(e.patches.front().where, "patch: is for bodies of voxels (allowed for hexahedra: the physical surfaces of the .geo)");
   prepared.reference_cells = reference_cells(e);
   for (int n : prepared.reference_cells)
     if (n % 4 != 0 && n != 1)

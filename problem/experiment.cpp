@@ -231,6 +231,8 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
     experiment.kinematics = as_choice(*name, kinematics_names);
   experiment.body = read_body(document.at("body"));
   experiment.patches = read_patch_rules(document);
+  if (!experiment.patches.empty() && !experiment.body.is_voxels())
+    throw InputError(experiment.patches.front().where, "patch: is for bodies of voxels (allowed for hexahedra: the physical surfaces of the .geo)");
   experiment.materials = read_materials(document.at("material"));
   for (const TomlValue& value : document.tables("load"))
     for (const Load& load : read_load(value)) {
