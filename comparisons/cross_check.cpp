@@ -330,14 +330,15 @@ const IsotropicMaterial& material_of(const Experiment& experiment, std::optional
 int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options) {
   const Experiment experiment = read_experiment(file);
   calculix::require_counterpart(experiment);
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
   const PreparedCase prepared = prepare(experiment);
   std::vector<IsotropicMaterial> materials = experiment.materials;
   if (options.poisson_ratio) materials = {material_of(experiment, options.poisson_ratio)};
   std::vector<Question> questions;
   for (const IsotropicMaterial& m : materials) questions.push_back(question(prepared, m, options));
   if (!programs_are_there()) return no_program;
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  if (interrupted) return cross_check_interrupted;
   int differing = 0;
   for (const Question& q : questions) {
     differing += check_material(q);
