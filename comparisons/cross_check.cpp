@@ -327,7 +327,7 @@ const IsotropicMaterial& material_of(const Experiment& experiment, std::optional
       fmt::format("--poisson-ratio: {} is none of the case's ({})", *poisson_ratio, fmt::join(known, ", ")));
 }
 
-int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options) {
+int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options) try {
   const Experiment experiment = read_experiment(file);
   calculix::require_counterpart(experiment);
   std::signal(SIGINT, on_interrupt);
@@ -350,6 +350,9 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
     fmt::print("\n{} row{} beyond the two uncertainties, or without an answer\n", differing,
                differing == 1 ? "" : "s");
   return differing == 0 ? all_agree : some_differ;
+} catch (const std::runtime_error&) {
+  if (interrupted) return cross_check_interrupted;  // the mesher was stopped by the same signal
+  throw;
 }
 
 }  // namespace springproof
