@@ -11,6 +11,7 @@
 #include "comparisons/calculix/run.h"
 #include "comparisons/case_run.h"
 #include "comparisons/measures.h"
+#include "comparisons/reference_grids.h"
 #include "fem_reference/reference.h"
 #include "meshes/mesher.h"
 
@@ -98,13 +99,6 @@ void grade(double exponent, Mesh& mesh) {
   mesh.grid.reset();
 }
 
-NodalVectors points_of(const std::vector<Probe>& probes) {
-  NodalVectors points(static_cast<Eigen::Index>(probes.size()), 3);
-  for (std::size_t i = 0; i < probes.size(); ++i)
-    points.row(static_cast<Eigen::Index>(i)) = probes[i].at.transpose();
-  return points;
-}
-
 /// Rows of `field` at the nodes of a mesh that are those of a coarser one too.
 NodalVectors at_common_nodes(const Mesh& coarse, const Mesh& mesh, const NodalVectors& field) {
   NodalVectors out(coarse.nodes.rows(), 3);
@@ -186,7 +180,7 @@ Noise our_noise(const Question& q, const Answer& finest) {
 
 std::optional<Opinion> ask_fem(const Question& q) {
   const NodalVectors& nodes = q.meshes[0].nodes;
-  const NodalVectors probes = points_of(q.experiment().probes);
+  const NodalVectors probes = probe_points(q.experiment());
   NodalVectors points(nodes.rows() + probes.rows(), 3);
   points << nodes, probes;
   fem::Request request{q.experiment(), q.material, {}, points, NodalVectors(0, 3), 1e-8};

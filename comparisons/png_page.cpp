@@ -1,21 +1,15 @@
 #include "comparisons/png_page.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
+
+#include "meshes/child.h"
 
 namespace springproof {
 namespace {
@@ -64,58 +58,6 @@ std::string url_of(const fs::path& path) {
   return out;
 }
 
-class ProfileFolder {
- public:
-  ProfileFolder() {
-    std::string name = (fs::temp_directory_path() / "springproof-png-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error(fmt::format("cannot make {}: {}", name, std::strerror(errno)));
-    path = name;
-  }
-  ~ProfileFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  ProfileFolder(const ProfileFolder&) = delete;
-  ProfileFolder& operator=(const ProfileFolder&) = delete;
-
-  fs::path path;
-};
-
-/// Starts a program as the leader of its own process group, with its output in a file.
-pid_t start(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& output) {
-  std::vector<char*> argv = {const_cast<char*>(program.c_str())};
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-  argv.push_back(nullptr);
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error(fmt::format("cannot start {}: {}", program.string(), std::strerror(errno)));
-  if (child > 0) return child;
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const int out = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), none = open("/dev/null", O_RDWR);
-  dup2(none, STDIN_FILENO);
-  dup2(out, STDOUT_FILENO);
-  dup2(none, STDERR_FILENO);
-  execv(program.c_str(), argv.data());
-  _exit(127);
-}
-
-/// Exit status of a child; -1: it was still running after `time_limit` seconds, and was ended with its own children.
-int wait_for(pid_t child, double time_limit) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  bool in_time = true;
-  int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (in_time && std::chrono::duration<double>(Clock::now() - begin).count() > time_limit) {
-      in_time = false;
-      kill(-child, SIGKILL);
-      kill(child, SIGKILL);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return in_time ? status : -1;
-}
-
 }  // namespace
 
 PngPage png_page(const std::string& dom) {
@@ -143,20 +85,19 @@ fs::path find_chromium() {
 }
 
 std::string dump_dom(const fs::path& chromium, const fs::path& page, const std::string& fragment, double time_limit) {
-  const ProfileFolder folder;
+  const TemporaryFolder folder;
   const fs::path output = folder.path / "dom.html";
-  const int status = wait_for(start(chromium,
-                                    {"--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-                                     "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-                                     "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                                     "--user-data-dir=" + (folder.path / "profile").string(), "--dump-dom",
-                                     url_of(page) + fragment},
-                                    output),
-                              time_limit);
-  if (status < 0) throw std::runtime_error(fmt::format("not finished after {:g} s; allow more with --time-limit", time_limit));
-  if (status != 0) throw std::runtime_error(fmt::format("{} failed (status {})", chromium.string(), status));
-  std::ifstream in(output, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  const ChildEnd end = run_child({chromium,
+                                  {"--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+                                   "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+                                   "--disable-background-networking", "--disable-component-update", "--disable-sync",
+                                   "--user-data-dir=" + (folder.path / "profile").string(), "--dump-dom",
+                                   url_of(page) + fragment},
+                                  {}, output, "/dev/null", time_limit, true});
+  if (end.kind == ChildEnd::out_of_time)
+    throw std::runtime_error(fmt::format("not finished after {:g} s; allow more with --time-limit", time_limit));
+  if (!end.ok()) throw std::runtime_error(fmt::format("{} {}", chromium.string(), words_for(end)));
+  return text_of_file(output);
 }
 
 }  // namespace springproof

@@ -110,10 +110,14 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   }
 }
 
-NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples) {
+Eigen::Index first_node(const PreparedCase& prepared, std::size_t lattice) {
   Eigen::Index at = 0;
   for (std::size_t i = 0; i < lattice; ++i) at += prepared.meshes[i]->nodes.rows();
-  return samples.middleRows(at, prepared.meshes[lattice]->nodes.rows());
+  return at;
+}
+
+NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples) {
+  return samples.middleRows(first_node(prepared, lattice), prepared.meshes[lattice]->nodes.rows());
 }
 
 Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem::Solution& s) {

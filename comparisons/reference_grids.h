@@ -30,6 +30,9 @@ struct ReferenceGrids {
 /// Displacements are asked for at the nodes of every lattice and at the probes, stresses at the probes if the case measures them.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
+/// Row of Solution::displacement that the nodes of a lattice begin at; of the one past the last, that of the probes.
+Eigen::Index first_node(const PreparedCase& prepared, std::size_t lattice);
+
 /// The part of Solution::displacement that belongs to the nodes of one lattice.
 NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples);
 

@@ -52,11 +52,7 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t
     request.grids.push_back({{2 * cells[0], 2 * cells[1], 2 * cells[2]}, "q2", 1.0, 0, 1});
   }
   std::vector<fem::Solution> solutions = fem::solve(request);
-  Eigen::Index nodes = 0, first = 0;
-  for (std::size_t i = 0; i < prepared.meshes.size(); ++i) {
-    if (i == lattice) first = nodes;
-    nodes += prepared.meshes[i]->nodes.rows();
-  }
+  const Eigen::Index nodes = first_node(prepared, prepared.meshes.size()), first = first_node(prepared, lattice);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     s.reactions = about_true_patches(prepared, *mesh, s.reactions);

@@ -153,25 +153,21 @@ template <typename Region, typename Force>
 void complete(const Region& region, const Force& force, const std::optional<Wrench>& wrench, MPI_Comm comm, DofVector& load) {
   if (!wrench) return;
   RegionMoments moments;
-  Wrench missing = *wrench;
+  Wrench own{Vec3::Zero(), Vec3::Zero(), wrench->about};
   region([&](const auto&, const auto& values) {
     for (const unsigned int q : values.quadrature_point_indices()) {
       const Vec3 X = vec(values.quadrature_point(q)), f = values.JxW(q) * force(values, q);
       moments.add(values.JxW(q), X);
-      missing.force -= f;
-      missing.moment -= (X - wrench->about).cross(f);
+      own.force += f;
+      own.moment += (X - own.about).cross(f);
     }
   });
-  // The wrench counts once, not once per process.
-  missing.force -= wrench->force;
-  missing.moment -= wrench->moment;
   moments.measure = dealii::Utilities::MPI::sum(moments.measure, comm);
   sum_over_processes(moments.first, comm);
   sum_over_processes(moments.second, comm);
-  sum_over_processes(missing.force, comm);
-  sum_over_processes(missing.moment, comm);
-  missing.force += wrench->force;
-  missing.moment += wrench->moment;
+  sum_over_processes(own.force, comm);
+  sum_over_processes(own.moment, comm);
+  const Wrench missing{wrench->force - own.force, wrench->moment - own.moment, wrench->about};
   const RigidField field = rigid_field(moments, missing);
   add_force(region, [&](const auto& values, unsigned int q) { return field.at(vec(values.quadrature_point(q))); }, load);
 }

@@ -45,6 +45,7 @@ class ChildSlot {
 
 // Between fork and exec only calls that a signal handler may make: other threads may hold any lock.
 [[noreturn]] void become(const Child& child, char** argv, pid_t parent) {
+  if (child.group) setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer of a caller that is gone
   if (getppid() != parent) _exit(not_started);
   const auto redirect = [](const fs::path& to, int stream) {
@@ -77,13 +78,14 @@ bool has_ended(pid_t pid, bool wait) {
 }
 
 /// False: it had to be killed.
-bool wait_for(pid_t pid, double time_limit) {
-  if (!(time_limit > 0)) return has_ended(pid, true);
+bool wait_for(pid_t pid, const Child& child) {
+  if (!(child.time_limit > 0)) return has_ended(pid, true);
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   while (!has_ended(pid, false)) {
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    if (seconds > time_limit) {
+    if (seconds > child.time_limit) {
+      if (child.group) kill(-pid, SIGKILL);
       kill(pid, SIGKILL);
       has_ended(pid, true);
       return false;
@@ -111,7 +113,7 @@ ChildEnd run_child(const Child& child) {
   bool in_time;
   {
     const ChildSlot slot(pid);
-    in_time = wait_for(pid, child.time_limit);
+    in_time = wait_for(pid, child);
   }
   int status = 0;
   rusage used{};

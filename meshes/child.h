@@ -26,6 +26,7 @@ struct Child {
   std::filesystem::path folder;           ///< to run in
   std::filesystem::path output, errors;   ///< files for standard output and standard error; may be the same
   double time_limit = 0;                  ///< wall time [s]; 0: none
+  bool group = false;                     ///< the limit ends also what it started itself (a process group of its own)
 };
 
 /// How it ended.

@@ -264,7 +264,8 @@ InputError::InputError(const SourceLocation& where, const std::string& message)
     : std::runtime_error(located(where, message)) {}
 
 bool Body::is_script() const {
-  const std::string extension = std::filesystem::path(geo).extension();
+  std::string extension = std::filesystem::path(geo).extension();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
   return extension != ".stl" && extension != ".msh" && extension != ".step" && extension != ".stp" && extension != ".brep";
 }
 

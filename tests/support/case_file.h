@@ -7,6 +7,16 @@
 
 namespace springproof::test {
 
+/// What the reader says against a case, or "accepted".
+inline std::string message_of(const std::string& text) {
+  try {
+    parse_experiment(text, "case.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
 /// Nothing but what is required.
 inline constexpr const char* small_case = R"([body]
 geo = "block.geo"

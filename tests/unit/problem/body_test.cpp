@@ -7,6 +7,8 @@
 namespace springproof {
 namespace {
 
+using test::message_of;
+
 std::string case_with(const std::string& body, const std::string& reference = "") {
   return "[body]\n" + body + R"(
 [material]
@@ -24,20 +26,12 @@ models = ["hybmss"]
 
 Body body_of(const std::string& body) { return parse_experiment(case_with(body), "case.toml").body; }
 
-std::string message_of(const std::string& text) {
-  try {
-    parse_experiment(text, "case.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(VoxelBody, CountsAndEdgesAreRead) {
   const Body counts = body_of("geo = \"liver.stl\"\nscale = 0.001\nvoxels = [700, 5000]");
   EXPECT_EQ(counts.voxel_counts, (std::vector<int>{700, 5000}));
   EXPECT_EQ(counts.scale, 0.001);
   EXPECT_TRUE(counts.is_voxels());
+  EXPECT_FALSE(body_of("geo = \"LIVER.STL\"\nvoxels = 700").is_script());
   const Body edges = body_of("geo = \"rabbit.geo\"\nsize_m = [1, 2, 3]\nvoxel_edge_m = 0.1");
   EXPECT_EQ(edges.voxel_edges, (std::vector<double>{0.1}));
   EXPECT_EQ(edges.size, Vec3(1, 2, 3));

@@ -13,17 +13,10 @@
 namespace springproof {
 namespace {
 
+using test::message_of;
+
 using test::full_case;
 using test::small_case;
-
-std::string message_of(const std::string& text) {
-  try {
-    parse_experiment(text, "case.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 TEST(CaseFile, EmptyIsOneClearMessage) {
   for (const char* text : {"", "\n\n", "# only a comment\n", "\xef\xbb\xbf"})

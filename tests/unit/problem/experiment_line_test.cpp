@@ -8,6 +8,8 @@
 namespace springproof {
 namespace {
 
+using test::message_of;
+
 const std::string line_case = R"([body]
 geo = "sphere.geo"
 size_m = [2, 2, 2]
@@ -44,15 +46,6 @@ std::string edited(const std::string& old, const std::string& with) {
   const std::size_t at = text.find(old);
   EXPECT_NE(at, std::string::npos) << old;
   return text.replace(at, old.size(), with);
-}
-
-std::string message_of(const std::string& text) {
-  try {
-    parse_experiment(text, "case.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 TEST(LineCase, IsRead) {

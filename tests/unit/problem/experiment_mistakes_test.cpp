@@ -8,18 +8,11 @@
 namespace springproof {
 namespace {
 
+using test::message_of;
+
 using test::full_case;
 using test::small_case;
 using test::verification_case;
-
-std::string message_of(const std::string& text) {
-  try {
-    parse_experiment(text, "case.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 /// One edit of a valid case and what must be in the message.
 struct Mistake {

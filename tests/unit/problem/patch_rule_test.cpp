@@ -9,6 +9,8 @@
 namespace springproof {
 namespace {
 
+using test::message_of;
+
 /// Rules are for bodies of voxels.
 std::string voxel_case() {
   std::string text = test::small_case;
@@ -28,15 +30,6 @@ near = { point_m = [1, 2, 3], radius_m = 0.5 }
 name = "thumb"
 near = { point_m = [4, 5, 6], radius_m = 1 }
 )";
-
-std::string message_of(const std::string& text) {
-  try {
-    parse_experiment(text, "case.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 TEST(PatchRules, AreRead) {
   const Experiment e = parse_experiment(patch_case, "case.toml");
