@@ -1,0 +1,1 @@
+#include "msm/kernels/simd.h"

@@ -1,0 +1,21 @@
+// Kernels are compiled once per instruction set (msm/CMakeLists.txt); the processor is asked at run time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace springproof {
+
+enum class InstructionSet { portable, avx2, avx512 };
+
+std::string name_of(InstructionSet set);
+
+/// Those that this program has kernels for and this processor runs, the widest last.
+const std::vector<InstructionSet>& usable_instruction_sets();
+
+/// The one that kernels run with: the widest usable, or what SPRINGPROOF_INSTRUCTION_SET names ("portable", "avx2",
+/// "avx512").
+/// @throws std::runtime_error if it names one that is not usable here.
+InstructionSet instruction_set();
+
+}  // namespace springproof

@@ -1,0 +1,29 @@
+// What a kernel may include besides plain structs.  Kernels are compiled with instructions that other processors lack, so
+// they must not bring inline functions of Eigen or the standard containers into the program (tests/cli/kernels.sh).
+#pragma once
+
+#include <experimental/simd>
+
+// Each instruction set has its own copy of a kernel, in this namespace.
+#ifndef SPRINGPROOF_KERNEL_NAMESPACE
+#error "kernels are compiled by msm_kernels() in msm/CMakeLists.txt"
+#endif
+
+namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
+
+namespace stdx = std::experimental;
+
+template <class Real>
+using Lanes = stdx::native_simd<Real>;  ///< 2, 4, 8 doubles; 4, 8, 16 floats
+
+template <class Real>
+inline Lanes<Real> load(const Real* p) {
+  return Lanes<Real>(p, stdx::element_aligned);
+}
+
+template <class Real>
+inline void store(const Lanes<Real>& v, Real* p) {
+  v.copy_to(p, stdx::element_aligned);
+}
+
+}  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE
