@@ -3,26 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <tuple>
 
 namespace springproof {
 
 std::vector<Spring> merge_springs(std::vector<Spring> springs) {
-  for (Spring& s : springs)
+  int nodes = 0;
+  for (Spring& s : springs) {
     if (s.i > s.j) std::swap(s.i, s.j);
-  std::sort(springs.begin(), springs.end(),
-            [](const Spring& a, const Spring& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
-  std::vector<Spring> merged;
-  for (const Spring& s : springs) {
-    if (merged.empty() || merged.back().i != s.i || merged.back().j != s.j) {
-      merged.push_back(s);
-      continue;
-    }
-    if (std::abs(merged.back().rest_length - s.rest_length) > 1e-9 * s.rest_length)
-      throw std::invalid_argument("springs between the same two nodes differ in rest length");
-    merged.back().stiffness += s.stiffness;
+    nodes = std::max(nodes, s.i + 1);
   }
-  return merged;
+  // By first node in linear time; the few springs of a node by comparison.
+  std::vector<std::size_t> end(nodes + 1, 0);
+  for (const Spring& s : springs) ++end[s.i + 1];
+  for (int i = 0; i < nodes; ++i) end[i + 1] += end[i];
+  std::vector<Spring> sorted(springs.size());
+  for (const Spring& s : springs) sorted[end[s.i]++] = s;
+  springs.clear();
+  for (std::size_t begin = 0, i = 0; i < static_cast<std::size_t>(nodes); begin = end[i++]) {
+    std::stable_sort(sorted.begin() + begin, sorted.begin() + end[i], [](const Spring& a, const Spring& b) { return a.j < b.j; });
+    for (std::size_t s = begin; s < end[i]; ++s) {
+      if (s == begin || springs.back().j != sorted[s].j) {
+        springs.push_back(sorted[s]);
+        continue;
+      }
+      if (std::abs(springs.back().rest_length - sorted[s].rest_length) > 1e-9 * sorted[s].rest_length)
+        throw std::invalid_argument("springs between the same two nodes differ in rest length");
+      springs.back().stiffness += sorted[s].stiffness;
+    }
+  }
+  springs.shrink_to_fit();
+  return springs;
 }
 
 Eigen::VectorXd masses(const Network& network, double density) { return density * network.volume; }

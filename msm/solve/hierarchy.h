@@ -1,39 +1,62 @@
-// Coarser and coarser lattices over the cells of a network, and how displacements pass between them.
+// Coarser and coarser lattices over the cells of a network, each in compact arrays: points and cells row by row.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "msm/kernels/cell_kernels.h"
 #include "msm/network.h"
 
 namespace springproof {
 
-/// One level: cells of edge 2^level times the finest, only where the body is.
+/// How the values of one row of finer points come from coarse ones: `count` rows of them, one, two or four.
+struct TransferRow {
+  long fine = 0;         ///< first finer point
+  int length = 0;        ///< finer points
+  bool odd = false;      ///< the first stands between two coarse points
+  int count = 1;
+  long coarse[4] = {};
+};
+
+/// One level: cells of edge 2^level times the finest, only where the body is.  Points and cells are numbered along x, then
+/// y, then z of the level's own axes; a nodal field is three arrays of `stride` values, one after the other.
 struct LatticeLevel {
-  int nodes = 0;
-  std::vector<Hexahedron> cells;
-  std::vector<double> fill;        ///< fraction of each cell that lies in the body, 0 < fill <= 1
-  std::vector<char> fixed;         ///< per unknown 3 * node + axis
+  std::array<int, 3> cells_per_side{};
+  std::vector<CellRow> rows;
+  std::vector<long> row_begin, cell_begin, point_begin;  ///< per plane z, then the end; planes of points: one more
+  std::vector<double> fill;        ///< fraction of each cell that lies in the body, 0 < fill <= 1; empty: 1
+  std::vector<int> fixed;          ///< places of fixed unknowns in a nodal field, ascending
   double edge_ratio = 1;           ///< cell edge / finest cell edge
 
   // Passage to the next finer level; empty on the finest.
+  std::vector<TransferRow> transfer;
   std::vector<int> parent;         ///< for each finer cell, the cell that holds it
-  std::vector<int> weight_begin;   ///< for each finer node, where its row starts; then the end
-  std::vector<int> weight_node;
-  std::vector<double> weight;      ///< trilinear
 
-  /// u_fine = P u (fixed unknowns of either level left out).
-  void prolongate(const Eigen::VectorXd& u, const std::vector<char>& fine_fixed, Eigen::VectorXd& u_fine) const;
-  /// r = P^T r_fine.
-  void restrict_to(const Eigen::VectorXd& r_fine, const std::vector<char>& fine_fixed, Eigen::VectorXd& r) const;
+  int planes() const { return static_cast<int>(row_begin.size()) - 1; }  ///< of cells
+  long cells() const { return cell_begin.back(); }
+  long points() const { return point_begin.back(); }
+  long stride() const { return points() + array_slack; }
+  /// Point of corner `c` (hexahedron_corners) of cell `i` of a row.
+  static long corner(const CellRow& row, int i, int c);
 };
 
-/// The levels of a lattice network, finest first, down to about `coarsest_unknowns` or a single cell per side.
-/// A coarse cell is there if any of its eight children is, with the mean of their fills; a coarse node is fixed where
-/// the node it coincides with is, or, outside the body, where a neighbouring fixed node is.
-/// `fill` is that of the network's cells, empty: 1.
+/// The levels of a lattice network, finest first, and where its nodes and cells stand on the finest.
+struct LatticeLevels {
+  std::vector<LatticeLevel> levels;
+  std::array<int, 3> axes{0, 1, 2};  ///< the network's axis that each of the levels' axes is
+  std::vector<int> point_of_node, cell_of_cell;
+
+  /// A nodal field of the finest level from the network's (3 values per node), and back.
+  void to_rows(const Eigen::VectorXd& nodal, Eigen::VectorXd& rows) const;
+  void from_rows(const Eigen::VectorXd& rows, Eigen::VectorXd& nodal) const;
+};
+
+/// Levels down to about `coarsest_unknowns` or a single cell per side.
+/// A coarse cell is there if any of its eight children is, with the mean of their fills; a coarse point is fixed where
+/// the point it coincides with is, or, outside the body, where a neighbouring fixed point is.
+/// `fixed`: per unknown 3 * node + axis.  `fill` is that of the network's cells, empty: 1.
 /// @throws std::invalid_argument if the network remembers no grid.
-std::vector<LatticeLevel> lattice_levels(const Network& network, const std::vector<char>& fixed,
-                                         int coarsest_unknowns = 900, const std::vector<double>& fill = {});
+LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fixed, int coarsest_unknowns = 900,
+                             const std::vector<double>& fill = {});
 
 }  // namespace springproof

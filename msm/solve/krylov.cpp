@@ -1,7 +1,6 @@
 #include "msm/solve/krylov.h"
 
 #include <Eigen/Dense>
-#include <vector>
 
 namespace springproof {
 
@@ -55,44 +54,44 @@ KrylovResult gmres(const Operator& A, const Operator& precondition, const Eigen:
   Eigen::VectorXd w(b.size()), z(b.size());
   A(x, w);
   Eigen::VectorXd r = b - w;
+  Eigen::MatrixXd V(b.size(), restart + 1);   // memory is taken as columns are written
+  Eigen::MatrixXf Z(b.size(), restart);
   while (r.norm() > tolerance * scale && result.iterations < max_iterations) {
     const double beta = r.norm();
-    std::vector<Eigen::VectorXd> basis = {r / beta};
+    V.col(0) = r / beta;
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(restart + 1, restart);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(restart + 1), cosine(restart), sine(restart);
     g[0] = beta;
     int k = 0;
     for (; k < restart && result.iterations < max_iterations; ++k) {
       ++result.iterations;
-      precondition(basis[k], z);
+      w = V.col(k);
+      precondition(w, z);
+      Z.col(k) = z.cast<float>();
+      z = Z.col(k).cast<double>();
       A(z, w);
-      for (int i = 0; i <= k; ++i) {
-        H(i, k) = w.dot(basis[i]);
-        w -= H(i, k) * basis[i];
-      }
-      H(k + 1, k) = w.norm();
-      if (H(k + 1, k) > 0) basis.push_back(w / H(k + 1, k));
+      H.col(k).head(k + 1).noalias() = V.leftCols(k + 1).transpose() * w;
+      w.noalias() -= V.leftCols(k + 1) * H.col(k).head(k + 1);
+      const double length = H(k + 1, k) = w.norm();
+      if (length > 0) V.col(k + 1) = w / length;
       for (int i = 0; i < k; ++i) {  // the Givens rotations so far
         const double h = cosine[i] * H(i, k) + sine[i] * H(i + 1, k);
         H(i + 1, k) = -sine[i] * H(i, k) + cosine[i] * H(i + 1, k);
         H(i, k) = h;
       }
-      const double length = std::hypot(H(k, k), H(k + 1, k));
-      cosine[k] = H(k, k) / length;
-      sine[k] = H(k + 1, k) / length;
-      H(k, k) = length;
+      const double diagonal = std::hypot(H(k, k), H(k + 1, k));
+      cosine[k] = H(k, k) / diagonal;
+      sine[k] = H(k + 1, k) / diagonal;
+      H(k, k) = diagonal;
       g[k + 1] = -sine[k] * g[k];
       g[k] *= cosine[k];
-      if (std::abs(g[k + 1]) <= tolerance * scale || static_cast<int>(basis.size()) == k + 1) {
+      if (std::abs(g[k + 1]) <= tolerance * scale || !(length > 0)) {
         ++k;
         break;
       }
     }
     const Eigen::VectorXd y = H.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(g.head(k));
-    w.setZero();
-    for (int i = 0; i < k; ++i) w += y[i] * basis[i];
-    precondition(w, z);
-    x += z;
+    for (int i = 0; i < k; ++i) x += y[i] * Z.col(i).cast<double>();
     A(x, w);
     const double before = r.norm();
     r = b - w;

@@ -19,7 +19,8 @@ struct KrylovResult {
 KrylovResult conjugate_gradients(const Operator& A, const Operator& precondition, const Eigen::VectorXd& b,
                                  double tolerance, int max_iterations, Eigen::VectorXd& x);
 
-/// Right-preconditioned restarted GMRES from x.
+/// Right-preconditioned restarted GMRES from x.  It is flexible: the preconditioner may be inexact, in single precision or
+/// itself an iteration; what it gives is kept, rounded to single precision.
 KrylovResult gmres(const Operator& A, const Operator& precondition, const Eigen::VectorXd& b, double tolerance,
                    int max_iterations, int restart, Eigen::VectorXd& x);
 

@@ -76,19 +76,16 @@ void solve_mixed(const LinearProblem& p, CellStiffness cell, double G, Equilibri
   cell.kappa /= G;
   cell.volume = 1;
   const int inner_steps = cell.kappa > 1000 ? 12 : 6;
-  const MixedMultigrid multigrid(lattice_levels(p.model.network, p.conditions.fixed), cell, 2, inner_steps);
-  const Eigen::Index n = p.prescribed.size(), cells = multigrid.unknowns() - n;
+  MixedMultigrid multigrid(lattice_levels(p.model.network, p.conditions.fixed), cell, 2, inner_steps);
   // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
-  Eigen::VectorXd f = p.external / unit - multigrid.force(p.prescribed, Eigen::VectorXd::Zero(cells));
+  const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.model.network.cells.size()));
+  Eigen::VectorXd f = p.external / unit - multigrid.force(p.prescribed, no_pressure), du, pressure;
   keep(p.conditions.fixed, false, f);
-  Eigen::VectorXd b(n + cells), x = Eigen::VectorXd::Zero(n + cells);
-  b << f, -multigrid.volume_change(p.prescribed);
-  const KrylovResult k = gmres([&](const auto& v, auto& y) { multigrid.multiply(v, y); },
-                               [&](const auto& v, auto& z) { multigrid.precondition(v, z); }, b, p.options.tolerance,
-                               p.options.max_iterations, 60, x);
+  const KrylovResult k = multigrid.solve(f, -multigrid.volume_change(p.prescribed), p.options.tolerance,
+                                         p.options.max_iterations, du, pressure);
   report(k, "GMRES + mixed multigrid", result);
-  const Eigen::VectorXd u = p.prescribed + x.head(n);
-  finish(p, u, unit * multigrid.force(u, x.tail(cells)), result);
+  const Eigen::VectorXd u = p.prescribed + du;
+  finish(p, u, unit * multigrid.force(u, pressure), result);
 }
 
 }  // namespace

@@ -5,178 +5,236 @@
 namespace springproof {
 namespace {
 
-constexpr double omega = 1.3;  // damping of the velocity block in a Braess-Sarazin sweep
+constexpr double omega = 1.3;  // damping of the displacement block in a Braess-Sarazin sweep
 
-void clear_fixed(const std::vector<char>& fixed, Eigen::VectorXd& u) {
-  for (std::size_t i = 0; i < fixed.size(); ++i)
-    if (fixed[i]) u[i] = 0;
+template <class Vector>
+void clear(const std::vector<int>& places, Vector& v) {
+  for (int i : places) v[i] = 0;
 }
+
+double corner_gradient(const CellStiffness& cell) { return cell.volume_gradient.cwiseAbs().maxCoeff(); }
 
 }  // namespace
 
-MixedMultigrid::MixedMultigrid(std::vector<LatticeLevel> levels, const CellStiffness& cell, int sweeps, int inner_steps)
-    : levels_(std::move(levels)), sweeps_(sweeps), inner_steps_(inner_steps) {
-  if (!(cell.kappa > 0)) throw std::invalid_argument("the mixed form needs kappa > 0 (nu > 1/4)");
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const LatticeLevel& level = levels_[l];
-    const double h = level.edge_ratio;
-    Level d;
-    d.springs = assemble(level, cell.without_volume);
-    d.gradient = h * h * cell.volume_gradient;
-    d.fill = Eigen::Map<const Eigen::VectorXd>(level.fill.data(), static_cast<Eigen::Index>(level.fill.size()));
-    d.compliance = h * h * h * cell.volume / cell.kappa * d.fill;
-    d.inverse_diagonal = (omega * d.springs.diagonal()).cwiseInverse();
-    clear_fixed(level.fixed, d.inverse_diagonal);
-    d.inverse_schur_diagonal = d.compliance;
-    for (std::size_t c = 0; c < level.cells.size(); ++c)
-      for (int n = 0; n < 8; ++n)
-        for (int a = 0; a < 3; ++a) {
-          const double b = d.fill[c] * d.gradient[3 * n + a];
-          d.inverse_schur_diagonal[c] += b * b * d.inverse_diagonal[3 * level.cells[c][n] + a];
-        }
-    d.inverse_schur_diagonal = d.inverse_schur_diagonal.cwiseInverse();
-    data_.push_back(std::move(d));
-    // Power iteration, with a margin since it approaches from below.
-    Eigen::VectorXd q(level.cells.size()), y;
-    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = 1 + 0.5 * ((i * 7919) % 13 - 6) / 6.0;
-    double bound = 1;
-    for (int k = 0; k < 20; ++k) {
-      q.normalize();
-      schur(l, q, y);
-      q = data_[l].inverse_schur_diagonal.cwiseProduct(y);
-      bound = q.norm();
-    }
-    data_[l].schur_bound = 1.15 * bound;
-  }
-  if (!coarsest_.factor(assemble(levels_.back(), cell.total), levels_.back().fixed))
+MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_network, int sweeps, int inner_steps)
+    : lattice_(std::move(levels)), sweeps_(sweeps), inner_steps_(inner_steps),
+      K_(lattice_.levels[0], reorder(of_network.without_volume, lattice_.axes), corner_gradient(of_network)) {
+  if (!(of_network.kappa > 0)) throw std::invalid_argument("the mixed form needs kappa > 0 (nu > 1/4)");
+  CellStiffness cell = of_network;
+  cell.total = reorder(of_network.total, lattice_.axes);
+  cell.without_volume = reorder(of_network.without_volume, lattice_.axes);
+  for (const LatticeLevel& level : lattice_.levels) levels_.push_back(make_level(level, cell));
+  for (Level& level : levels_) bound_schur(level);
+  compliance_ = levels_[0].compliance.cast<double>();
+  const LatticeLevel& finest = lattice_.levels[0];
+  for (long c = 0; c < finest.cells(); ++c) compliance_[c] = cell.volume / cell.kappa * (finest.fill.empty() ? 1 : finest.fill[c]);
+  if (!coarsest_.factor(assemble(lattice_.levels.back(), cell.total), fixed_by_point(lattice_.levels.back())))
     throw std::runtime_error("the coarsest lattice is singular: the body is not held, or the model has zero-energy modes");
 }
 
-void MixedMultigrid::divergence(std::size_t l, const Eigen::VectorXd& u, Eigen::VectorXd& p) const {
-  const LatticeLevel& level = levels_[l];
-  const Level& d = data_[l];
-  p.resize(level.cells.size());
-  for (std::size_t c = 0; c < level.cells.size(); ++c) {
-    double sum = 0;
-    for (int n = 0; n < 8; ++n) sum += d.gradient.segment<3>(3 * n).dot(u.segment<3>(3 * level.cells[c][n]));
-    p[c] = d.fill[c] * sum;
+MixedMultigrid::Level MixedMultigrid::make_level(const LatticeLevel& lattice, const CellStiffness& cell) const {
+  const double h = lattice.edge_ratio, gradient = corner_gradient(cell);
+  Level level{LatticeOperator<float>(lattice, cell.without_volume, gradient), {}, {}, {}, 1, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  const long stride = lattice.stride(), cells = lattice.cells() + array_slack;
+  const Eigen::VectorXd d = diagonal(lattice, cell.without_volume);
+  level.inverse_diagonal = (d.array() > 0).select(1 / (omega * d.array()), 0).cast<float>().matrix();
+  clear(lattice.fixed, level.inverse_diagonal);
+  level.compliance = level.inverse_schur_diagonal = Eigen::VectorXf::Zero(cells);
+  for (const CellRow& row : lattice.rows)
+    for (int i = 0; i < row.length; ++i) {
+      const double fill = lattice.fill.empty() ? 1 : lattice.fill[row.cell + i], b = fill * h * h * gradient;
+      const double compliance = fill * h * h * h * cell.volume / cell.kappa;
+      double sum = 0;
+      for (int n = 0; n < 8; ++n)
+        for (int a = 0; a < 3; ++a) sum += level.inverse_diagonal[a * stride + LatticeLevel::corner(row, i, n)];
+      level.compliance[row.cell + i] = static_cast<float>(compliance);
+      level.inverse_schur_diagonal[row.cell + i] = static_cast<float>(1 / (compliance + b * b * sum));
+    }
+  level.f = level.u = level.d = Eigen::VectorXf::Zero(3 * stride);
+  level.g = level.p = level.Bu = level.r = level.z = level.q = Eigen::VectorXf::Zero(cells);
+  return level;
+}
+
+/// Power iteration, with a margin since it approaches from below.
+void MixedMultigrid::bound_schur(Level& level) const {
+  const long cells = level.K.level().cells();
+  for (long i = 0; i < cells; ++i) level.z[i] = static_cast<float>(1 + 0.5 * ((i * 7919) % 13 - 6) / 6.0);
+  double bound = 1;
+  for (int k = 0; k < 20; ++k) {
+    level.z.normalize();
+    level.r.setZero();
+    schur_step(level, ChebyshevStep(0.0, -1.0));
+    bound = level.z.norm();
   }
+  level.schur_bound = 1.15 * bound;
+  level.q.setZero();
 }
 
-void MixedMultigrid::add_gradient(std::size_t l, const Eigen::VectorXd& p, Eigen::VectorXd& u) const {
-  const LatticeLevel& level = levels_[l];
-  const Level& d = data_[l];
-  for (std::size_t c = 0; c < level.cells.size(); ++c) {
-    const double w = d.fill[c] * p[c];
-    for (int n = 0; n < 8; ++n) u.segment<3>(3 * level.cells[c][n]) += w * d.gradient.segment<3>(3 * n);
+void MixedMultigrid::schur_step(Level& level, const ChebyshevStep& step) const {
+  LatticeOperator<float>& K = level.K;
+  const LatticeLevel& lattice = K.level();
+  const long stride = K.stride();
+  K.gradient_pass(level.z.data(), [&](int k, long begin, long n) {
+    for (int a = 0; a < 3; ++a)
+      Eigen::Map<Eigen::ArrayXf>(K.plane(k, a), n) *= level.inverse_diagonal.segment(a * stride + begin, n).array();
+    if (k == 0) return;
+    const long first = lattice.cell_begin[k - 1], cells = lattice.cell_begin[k] - first;
+    K.divergence_of_planes(k - 1, level.Bu.data());
+    K.kernels().schur_step(cells, level.Bu.data() + first, level.compliance.data() + first,
+                           level.inverse_schur_diagonal.data() + first, static_cast<float>(step.previous),
+                           static_cast<float>(step.step), level.r.data() + first, level.z.data() + first, level.q.data() + first);
+  });
+}
+
+/// q of S q = r, nearly; r is used up.
+void MixedMultigrid::solve_schur(Level& level) const {
+  const ChebyshevStep start(1, level.schur_bound);
+  level.z = static_cast<float>(start.step) * level.inverse_schur_diagonal.cwiseProduct(level.r);
+  level.q = level.z;
+  for (int k = 2; k <= inner_steps_; ++k) schur_step(level, ChebyshevStep(k, level.schur_bound));
+}
+
+void MixedMultigrid::sweep(Level& level, bool from_zero) const {
+  LatticeOperator<float>& K = level.K;
+  const long stride = K.stride();
+  if (from_zero) {
+    level.d = level.inverse_diagonal.cwiseProduct(level.f);
+    K.divergence(level.d.data(), level.r.data());
+    level.r -= level.g;
+  } else {
+    K.pass(level.u.data(), level.p.data(), level.Bu.data(), [&](int a, long begin, long n, const float* y) {
+      const long at = a * stride + begin;
+      level.d.segment(at, n) = level.inverse_diagonal.segment(at, n).cwiseProduct(level.f.segment(at, n) - Eigen::Map<const Eigen::VectorXf>(y, n));
+    });
+    K.divergence(level.d.data(), level.r.data());
+    level.r += level.Bu - level.g - level.compliance.cwiseProduct(level.p);
   }
+  solve_schur(level);
+  K.gradient_pass(level.q.data(), [&](int k, long begin, long n) {
+    for (int a = 0; a < 3; ++a) {
+      const long at = a * stride + begin;
+      level.u.segment(at, n) += level.d.segment(at, n) - level.inverse_diagonal.segment(at, n).cwiseProduct(Eigen::Map<const Eigen::VectorXf>(K.plane(k, a), n));
+    }
+  });
+  level.p += level.q;
 }
 
-void MixedMultigrid::schur(std::size_t l, const Eigen::VectorXd& q, Eigen::VectorXd& y) const {
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * levels_[l].nodes);
-  add_gradient(l, q, u);
-  u = u.cwiseProduct(data_[l].inverse_diagonal);
-  divergence(l, u, y);
-  y += data_[l].compliance.cwiseProduct(q);
+/// Eliminates p: (K_s + B^T C^-1 B) u = f + B^T C^-1 g, p = C^-1 (B u - g).
+void MixedMultigrid::solve_coarsest(Level& level) const {
+  LatticeOperator<float>& K = level.K;
+  const long cells = K.level().cells(), points = K.level().points(), stride = K.stride();
+  level.z.head(cells) = level.g.head(cells).cwiseQuotient(level.compliance.head(cells));
+  Eigen::VectorXd b(3 * points), x;
+  K.gradient_pass(level.z.data(), [&](int k, long begin, long n) {
+    for (int a = 0; a < 3; ++a)
+      for (long i = 0; i < n; ++i) b[3 * (begin + i) + a] = level.f[a * stride + begin + i] + K.plane(k, a)[i];
+  });
+  coarsest_.solve(b, x);
+  for (long n = 0; n < points; ++n)
+    for (int a = 0; a < 3; ++a) level.u[a * stride + n] = static_cast<float>(x[3 * n + a]);
+  K.divergence(level.u.data(), level.Bu.data());
+  level.p.head(cells) = (level.Bu.head(cells) - level.g.head(cells)).cwiseQuotient(level.compliance.head(cells));
 }
 
-void MixedMultigrid::solve_schur(std::size_t l, const Eigen::VectorXd& b, Eigen::VectorXd& q) const {
-  const Level& d = data_[l];
-  q.setZero(b.size());
-  Eigen::VectorXd r = b, z = Eigen::VectorXd::Zero(b.size()), Sz;
-  for (int k = 1; k <= inner_steps_; ++k) {  // fourth-kind Chebyshev
-    z = (2.0 * k - 3) / (2.0 * k + 1) * z +
-        (8.0 * k - 4) / ((2.0 * k + 1) * d.schur_bound) * d.inverse_schur_diagonal.cwiseProduct(r);
-    q += z;
-    if (k == inner_steps_) break;
-    schur(l, z, Sz);
-    r -= Sz;
-  }
-}
-
-void MixedMultigrid::residual(std::size_t l, const Pair& b, const Pair& x, Pair& r) const {
-  data_[l].springs.multiply(x.u, r.u);
-  add_gradient(l, x.p, r.u);
-  r.u = b.u - r.u;
-  clear_fixed(levels_[l].fixed, r.u);
-  divergence(l, x.u, r.p);
-  r.p = b.p - r.p + data_[l].compliance.cwiseProduct(x.p);
-}
-
-void MixedMultigrid::sweep(std::size_t l, const Pair& b, bool from_zero, Pair& x) const {
-  Pair r;
-  if (from_zero)
-    r = b;
-  else
-    residual(l, b, x, r);
-  const Eigen::VectorXd d = data_[l].inverse_diagonal.cwiseProduct(r.u);
-  Eigen::VectorXd rhs, q;
-  divergence(l, d, rhs);
-  rhs -= r.p;
-  solve_schur(l, rhs, q);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(d.size());
-  add_gradient(l, q, gradient);
-  x.u += d - data_[l].inverse_diagonal.cwiseProduct(gradient);
-  x.p += q;
-}
-
-void MixedMultigrid::cycle(std::size_t l, const Pair& b, Pair& x) const {
-  const LatticeLevel& level = levels_[l];
-  x.u.setZero(3 * level.nodes);
-  x.p.setZero(static_cast<Eigen::Index>(level.cells.size()));
+/// (u, p) of a level from its (f, g).
+void MixedMultigrid::cycle(std::size_t l) {
+  Level& level = levels_[l];
   if (l + 1 == levels_.size()) {
-    // Eliminate p: (K_s + B^T C^-1 B) u = f + B^T C^-1 g, p = C^-1 (B u - g).
-    const Eigen::VectorXd stiffness = data_[l].compliance.cwiseInverse();
-    Eigen::VectorXd rhs = b.u;
-    add_gradient(l, stiffness.cwiseProduct(b.p), rhs);
-    coarsest_.solve(rhs, x.u);
-    Eigen::VectorXd Bu;
-    divergence(l, x.u, Bu);
-    x.p = stiffness.cwiseProduct(Bu - b.p);
+    solve_coarsest(level);
     return;
   }
-  for (int s = 0; s < sweeps_; ++s) sweep(l, b, s == 0, x);
-  Pair r, coarse_r, coarse_x;
-  residual(l, b, x, r);
-  const LatticeLevel& below = levels_[l + 1];
-  below.restrict_to(r.u, level.fixed, coarse_r.u);
-  coarse_r.p.setZero(static_cast<Eigen::Index>(below.cells.size()));
-  for (std::size_t c = 0; c < level.cells.size(); ++c) coarse_r.p[below.parent[c]] += r.p[c];
-  cycle(l + 1, coarse_r, coarse_x);
-  Eigen::VectorXd correction;
-  below.prolongate(coarse_x.u, level.fixed, correction);
-  x.u += correction;
-  for (std::size_t c = 0; c < level.cells.size(); ++c) x.p[c] += coarse_x.p[below.parent[c]];
-  for (int s = 0; s < sweeps_; ++s) sweep(l, b, false, x);
+  level.u.setZero();
+  level.p.setZero();
+  for (int s = 0; s < sweeps_; ++s) sweep(level, s == 0);
+  LatticeOperator<float>& K = level.K;
+  const long stride = K.stride();
+  K.pass(level.u.data(), level.p.data(), level.Bu.data(), [&](int a, long begin, long n, const float* y) {
+    const long at = a * stride + begin;
+    level.d.segment(at, n) = level.f.segment(at, n) - Eigen::Map<const Eigen::VectorXf>(y, n);
+  });
+  clear(K.level().fixed, level.d);
+  level.r = level.g - level.Bu + level.compliance.cwiseProduct(level.p);
+  Level& below = levels_[l + 1];
+  const LatticeLevel& lattice = below.K.level();
+  below.f.setZero();
+  restrict_field(lattice, K.kernels(), stride, level.d.data(), below.f.data());
+  below.g.setZero();
+  const long cells = K.level().cells();
+  for (long c = 0; c < cells; ++c) below.g[lattice.parent[c]] += level.r[c];
+  cycle(l + 1);
+  prolongate_field(lattice, K.kernels(), below.u.data(), stride, level.d.data());
+  clear(K.level().fixed, level.d);
+  level.u += level.d;
+  for (long c = 0; c < cells; ++c) level.p[c] += below.p[lattice.parent[c]];
+  for (int s = 0; s < sweeps_; ++s) sweep(level, false);
 }
 
-void MixedMultigrid::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
-  const Eigen::Index n = 3 * levels_[0].nodes;
-  Pair zero{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(x.size() - n)}, r;
-  residual(0, zero, {x.head(n), x.tail(x.size() - n)}, r);
-  y.resize(x.size());
-  y << -r.u, -r.p;
+void MixedMultigrid::multiply_rows(const double* x, double* y) {
+  const long stride = K_.stride(), cells = lattice_.levels[0].cells();
+  const double* p = x + pressures();
+  double* Bu = y + pressures();
+  K_.pass(x, p, Bu, [&](int a, long begin, long n, const double* values) {
+    std::memcpy(y + a * stride + begin, values, n * sizeof(double));
+  });
+  for (long c = 0; c < cells; ++c) Bu[c] -= compliance_[c] * p[c];
+  for (int a = 0; a < 3; ++a) std::fill_n(y + (a + 1) * stride - array_slack, array_slack, 0.0);
+  std::fill_n(Bu + cells, array_slack, 0.0);
 }
 
-void MixedMultigrid::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
-  const Eigen::Index n = 3 * levels_[0].nodes;
-  Pair x;
-  cycle(0, {r.head(n), r.tail(r.size() - n)}, x);
-  z.resize(r.size());
-  z << x.u, x.p;
+void MixedMultigrid::cells_to_rows(const Eigen::VectorXd& cells, double* rows) const {
+  for (std::size_t c = 0; c < lattice_.cell_of_cell.size(); ++c) rows[lattice_.cell_of_cell[c]] = cells[static_cast<Eigen::Index>(c)];
 }
 
-Eigen::VectorXd MixedMultigrid::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) const {
-  Eigen::VectorXd f;
-  data_[0].springs.multiply(u, f);
-  add_gradient(0, p, f);
+Eigen::VectorXd MixedMultigrid::cells_from_rows(const double* rows) const {
+  Eigen::VectorXd cells(static_cast<Eigen::Index>(lattice_.cell_of_cell.size()));
+  for (std::size_t c = 0; c < lattice_.cell_of_cell.size(); ++c) cells[static_cast<Eigen::Index>(c)] = rows[lattice_.cell_of_cell[c]];
+  return cells;
+}
+
+KrylovResult MixedMultigrid::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
+                                   Eigen::VectorXd& u, Eigen::VectorXd& p) {
+  const std::vector<int>& fixed = lattice_.levels[0].fixed;
+  const Eigen::Index n = pressures(), m = size() - n;
+  Eigen::VectorXd f_rows, b = Eigen::VectorXd::Zero(size()), x = Eigen::VectorXd::Zero(size());
+  lattice_.to_rows(f, f_rows);
+  clear(fixed, f_rows);
+  b.head(n) = f_rows;
+  cells_to_rows(g, b.data() + n);
+  const Operator A = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
+    y.resize(v.size());
+    multiply_rows(v.data(), y.data());
+    clear(fixed, y);
+  };
+  const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    Level& finest = levels_[0];
+    finest.f = r.head(n).cast<float>();
+    finest.g = r.tail(m).cast<float>();
+    cycle(0);
+    z.resize(r.size());
+    z.head(n) = finest.u.cast<double>();
+    z.tail(m) = finest.p.cast<double>();
+  };
+  const KrylovResult result = gmres(A, condition, b, tolerance, max_iterations, 60, x);
+  lattice_.from_rows(x.head(n), u);
+  p = cells_from_rows(x.data() + n);
+  return result;
+}
+
+Eigen::VectorXd MixedMultigrid::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size()), y(size()), u_rows, f;
+  lattice_.to_rows(u, u_rows);
+  x.head(pressures()) = u_rows;
+  cells_to_rows(p, x.data() + pressures());
+  multiply_rows(x.data(), y.data());
+  lattice_.from_rows(y, f);
   return f;
 }
 
-Eigen::VectorXd MixedMultigrid::volume_change(const Eigen::VectorXd& u) const {
-  Eigen::VectorXd p;
-  divergence(0, u, p);
-  return p;
+Eigen::VectorXd MixedMultigrid::volume_change(const Eigen::VectorXd& u) {
+  Eigen::VectorXd u_rows, Bu(lattice_.levels[0].cells() + array_slack);
+  lattice_.to_rows(u, u_rows);
+  K_.divergence(u_rows.data(), Bu.data());
+  return cells_from_rows(Bu.data());
 }
 
 }  // namespace springproof

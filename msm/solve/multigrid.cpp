@@ -4,98 +4,168 @@
 #include <stdexcept>
 
 namespace springproof {
+namespace {
 
-BlockMatrix assemble(const LatticeLevel& level, const CellMatrix& cell) {
-  BlockMatrix K(coupled_nodes(level.nodes, level.cells));
-  for (std::size_t c = 0; c < level.cells.size(); ++c) {
-    const double scale = level.edge_ratio * level.fill[c];
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n)
-        K.add(level.cells[c][m], level.cells[c][n], scale * cell.block<3, 3>(3 * m, 3 * n));
-  }
-  return K;
+/// Largest eigenvalue of diag(K)^-1 K.
+double largest_scaled_eigenvalue(const CellMatrix& cell) {
+  const CellVector root = cell.diagonal().cwiseSqrt().cwiseInverse();
+  const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<CellMatrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[23];
 }
 
-void DirectSolver::number_free(const std::vector<char>& fixed) {
-  if (analysed_) return;
-  free_.clear();
-  number_.assign(fixed.size(), -1);
-  for (std::size_t i = 0; i < fixed.size(); ++i)
-    if (!fixed[i]) {
-      number_[i] = static_cast<int>(free_.size());
-      free_.push_back(static_cast<int>(i));
+template <class Vector>
+void clear(const std::vector<int>& places, Vector& v) {
+  for (int i : places) v[i] = 0;
+}
+
+}  // namespace
+
+std::vector<char> fixed_by_point(const LatticeLevel& level) {
+  std::vector<char> fixed(3 * level.points(), 0);
+  for (int place : level.fixed) fixed[3 * (place % level.stride()) + place / level.stride()] = 1;
+  return fixed;
+}
+
+void restrict_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, long fine_stride, const float* fine, float* field) {
+  for (const TransferRow& row : coarse.transfer)
+    for (int a = 0; a < 3; ++a)
+      for (int k = 0; k < row.count; ++k)
+        kernels.restrict_row(row.length, row.odd, 1.0f / static_cast<float>(row.count), fine + a * fine_stride + row.fine,
+                             field + a * coarse.stride() + row.coarse[k]);
+}
+
+void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, const float* field, long fine_stride, float* fine) {
+  for (const TransferRow& row : coarse.transfer)
+    for (int a = 0; a < 3; ++a) {
+      const float* from[4] = {};
+      for (int k = 0; k < row.count; ++k) from[k] = field + a * coarse.stride() + row.coarse[k];
+      kernels.prolongate_row(row.length, row.odd, 1.0f / static_cast<float>(row.count), from, row.count,
+                             fine + a * fine_stride + row.fine);
     }
 }
 
-bool DirectSolver::factor_lower(const Eigen::SparseMatrix<double>& L) {
-  if (!analysed_) ldlt_.analyzePattern(L);
-  analysed_ = true;
-  ldlt_.factorize(L);
-  if (ldlt_.info() != Eigen::Success) {
-    negative_ = -1;
-    return false;
+Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, int smoothing_degree, bool may_float)
+    : lattice_(std::move(levels)), degree_(smoothing_degree), K_(lattice_.levels[0], reorder(cell_of_network, lattice_.axes)) {
+  const CellMatrix cell = reorder(cell_of_network, lattice_.axes);
+  largest_eigenvalue_ = largest_scaled_eigenvalue(cell);
+  const double unit = cell.diagonal().mean();
+  unit_ = 1 / unit;
+  for (const LatticeLevel& level : lattice_.levels) {
+    const Eigen::VectorXd d = diagonal(level, cell);
+    if (levels_.empty()) largest_diagonal_ = d.maxCoeff();
+    levels_.push_back({LatticeOperator<float>(level, cell / unit), {}, {}, {}, {}});
+    Level& l = levels_.back();
+    l.inverse_diagonal = (d.array() > 0).select(unit / d.array(), 0).cast<float>().matrix();
+    clear(level.fixed, l.inverse_diagonal);
+    l.r = l.z = l.x = Eigen::VectorXf::Zero(3 * level.stride());
   }
-  // A pivot of round-off is a mechanism: what it would give is no equilibrium.
-  const double round_off = 1e-14 * ldlt_.vectorD().maxCoeff();
-  negative_ = static_cast<int>((ldlt_.vectorD().array() <= round_off).count());
-  return negative_ == 0;
-}
-
-void DirectSolver::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
-  Eigen::VectorXd reduced(unknowns());
-  for (int i = 0; i < unknowns(); ++i) reduced[i] = b[free_[i]];
-  const Eigen::VectorXd solution = ldlt_.solve(reduced);
-  x.setZero(b.size());
-  for (int i = 0; i < unknowns(); ++i) x[free_[i]] = solution[i];
-}
-
-Multigrid::Multigrid(std::vector<LatticeLevel> levels, const CellMatrix& cell, int smoothing_degree, bool may_float)
-    : levels_(std::move(levels)), degree_(smoothing_degree) {
-  const Eigen::VectorXd root = cell.diagonal().cwiseSqrt().cwiseInverse();
-  const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
-  largest_eigenvalue_ = Eigen::SelfAdjointEigenSolver<CellMatrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[23];
-  for (const LatticeLevel& level : levels_) {
-    matrix_.push_back(assemble(level, cell));
-    inverse_diagonal_.push_back(matrix_.back().diagonal().cwiseInverse());
-    for (std::size_t i = 0; i < level.fixed.size(); ++i)
-      if (level.fixed[i]) inverse_diagonal_.back()[i] = 0;
-  }
-  if (coarsest_.factor(matrix_.back(), levels_.back().fixed)) return;
+  const std::vector<char> fixed = fixed_by_point(lattice_.levels.back());
+  BlockMatrix K = assemble(lattice_.levels.back(), cell / unit);
+  if (coarsest_.factor(K, fixed)) return;
   if (!may_float)
     throw std::runtime_error("the coarsest lattice is singular: the body is not held, or the model has zero-energy modes");
-  const double anchor = 1e-3 * matrix_.back().diagonal().mean();
-  for (int n = 0; n < matrix_.back().nodes(); ++n) matrix_.back().add(n, n, anchor * Eigen::Matrix3d::Identity());
-  if (!coarsest_.factor(matrix_.back(), levels_.back().fixed)) throw std::runtime_error("the coarsest lattice is not positive definite");
+  const double anchor = 1e-3 * K.diagonal().mean();
+  for (int n = 0; n < K.nodes(); ++n) K.add(n, n, anchor * Eigen::Matrix3d::Identity());
+  if (!coarsest_.factor(K, fixed)) throw std::runtime_error("the coarsest lattice is not positive definite");
 }
 
-void Multigrid::smooth(std::size_t level, Eigen::VectorXd& r, Eigen::VectorXd& x, bool update_residual) const {
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(r.size()), Az;
-  for (int k = 1; k <= degree_; ++k) {
-    z = (2.0 * k - 3) / (2.0 * k + 1) * z +
-        (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue_) * inverse_diagonal_[level].cwiseProduct(r);
-    x += z;
-    if (k < degree_ || update_residual) {
-      matrix_[level].multiply(z, Az);
-      r -= Az;
-    }
+/// Steps `first` ... `last` of the smoother, each after the residual of the step before; step 0 takes the residual alone.
+void Multigrid::smooth(Level& level, int first, int last) {
+  const long stride = level.K.stride();
+  for (int k = first; k <= last; ++k) {
+    const ChebyshevStep step(k, largest_eigenvalue_);
+    level.K.pass(level.z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+      const long at = a * stride + begin;
+      level.K.kernels().chebyshev(n, y, level.inverse_diagonal.data() + at, static_cast<float>(step.previous),
+                                  static_cast<float>(step.step), level.r.data() + at, level.z.data() + at, level.x.data() + at);
+    });
   }
 }
 
-void Multigrid::cycle(std::size_t level, const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
-  if (level + 1 == levels_.size()) {
-    coarsest_.solve(b, x);
+void Multigrid::solve_coarsest(Level& level) {
+  const long points = level.K.level().points(), stride = level.K.stride();
+  Eigen::VectorXd b(3 * points), x;
+  for (long n = 0; n < points; ++n)
+    for (int a = 0; a < 3; ++a) b[3 * n + a] = level.r[a * stride + n];
+  coarsest_.solve(b, x);
+  for (long n = 0; n < points; ++n)
+    for (int a = 0; a < 3; ++a) level.x[a * stride + n] = static_cast<float>(x[3 * n + a]);
+}
+
+/// x = M^-1 r of a level; r is used up.
+void Multigrid::cycle(std::size_t l) {
+  Level& level = levels_[l];
+  if (l + 1 == levels_.size()) {
+    solve_coarsest(level);
     return;
   }
-  x.setZero(b.size());
-  Eigen::VectorXd r = b, coarse_r, coarse_x, correction, Ac;
-  smooth(level, r, x, true);
-  levels_[level + 1].restrict_to(r, levels_[level].fixed, coarse_r);
-  cycle(level + 1, coarse_r, coarse_x);
-  levels_[level + 1].prolongate(coarse_x, levels_[level].fixed, correction);
-  x += correction;
-  matrix_[level].multiply(correction, Ac);
-  r -= Ac;
-  smooth(level, r, x, false);
+  const long stride = level.K.stride();
+  const ChebyshevStep start(1, largest_eigenvalue_);
+  level.z = static_cast<float>(start.step) * level.inverse_diagonal.cwiseProduct(level.r);
+  level.x = level.z;
+  smooth(level, 2, degree_);
+  level.K.pass(level.z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+    level.r.segment(a * stride + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
+  });
+  clear(level.K.level().fixed, level.r);
+  Level& below = levels_[l + 1];
+  below.r.setZero();
+  restrict_field(below.K.level(), level.K.kernels(), stride, level.r.data(), below.r.data());
+  cycle(l + 1);
+  prolongate_field(below.K.level(), level.K.kernels(), below.x.data(), stride, level.z.data());
+  clear(level.K.level().fixed, level.z);
+  level.x += level.z;
+  smooth(level, 1, degree_);
+}
+
+void Multigrid::apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+  const double scale = r.cwiseAbs().maxCoeff();  // single precision has digits enough, not range
+  if (!(scale > 0)) {
+    z.setZero(r.size());
+    return;
+  }
+  levels_[0].r = (r / scale).cast<float>();
+  cycle(0);
+  z = (scale * unit_) * levels_[0].x.cast<double>();
+}
+
+void Multigrid::multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+  const long stride = K_.stride();
+  y.resize(x.size());
+  K_.pass(x.data(), nullptr, nullptr, [&](int a, long begin, long n, const double* values) {
+    std::memcpy(y.data() + a * stride + begin, values, n * sizeof(double));
+  });
+  for (int a = 0; a < 3; ++a) y.segment((a + 1) * stride - array_slack, array_slack).setZero();
+}
+
+void Multigrid::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+  Eigen::VectorXd x_rows, y_rows;
+  lattice_.to_rows(x, x_rows);
+  multiply_rows(x_rows, y_rows);
+  lattice_.from_rows(y_rows, y);
+}
+
+void Multigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+  Eigen::VectorXd r_rows, z_rows;
+  lattice_.to_rows(r, r_rows);
+  apply_rows(r_rows, z_rows);
+  lattice_.from_rows(z_rows, z);
+}
+
+KrylovResult Multigrid::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) {
+  const std::vector<int>& fixed = lattice_.levels[0].fixed;
+  Eigen::VectorXd b_rows, u_rows;
+  lattice_.to_rows(b, b_rows);
+  clear(fixed, b_rows);
+  u_rows.setZero(b_rows.size());
+  const Operator K = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+    multiply_rows(x, y);
+    clear(fixed, y);
+  };
+  const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { apply_rows(r, z); };
+  const KrylovResult result = conjugate_gradients(K, condition, b_rows, tolerance, max_iterations, u_rows);
+  lattice_.from_rows(u_rows, u);
+  return result;
 }
 
 }  // namespace springproof

@@ -1,65 +1,67 @@
 // Geometric multigrid on lattices: the displacement form, for Poisson's ratios away from 1/2.
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <memory>
 #include <vector>
 
-#include "msm/solve/block_matrix.h"
-#include "msm/solve/cell_stiffness.h"
-#include "msm/solve/hierarchy.h"
+#include "msm/solve/direct_solver.h"
+#include "msm/solve/krylov.h"
+#include "msm/solve/lattice_operator.h"
 
 namespace springproof {
 
-/// Assembles a level's matrix from one cell's stiffness: K(edge) is proportional to the edge; a cell filled in part
-/// counts in part.
-BlockMatrix assemble(const LatticeLevel& level, const CellMatrix& cell);
+/// Unknowns 3 * point + axis of a level that are fixed.
+std::vector<char> fixed_by_point(const LatticeLevel& level);
 
-/// Sparse Cholesky of the free unknowns of a matrix.
-class DirectSolver {
- public:
-  /// Of a BlockMatrix or a symmetric Tangent.
-  /// @return false if the matrix is not positive definite.
-  template <class Matrix>
-  bool factor(const Matrix& A, const std::vector<char>& fixed) {
-    number_free(fixed);
-    return factor_lower(A.lower_triangle(number_, unknowns()));
-  }
-  /// x = A^-1 b on the free unknowns, 0 on the fixed.
-  void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
-  int unknowns() const { return static_cast<int>(free_.size()); }
-  int negative_pivots() const { return negative_; }  ///< number of negative eigenvalues (Sylvester)
+/// Adds the restriction of a finer field to a coarse one, component by component.
+void restrict_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, long fine_stride, const float* fine, float* field);
+/// The finer field that a coarse one interpolates to.
+void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, const float* field, long fine_stride, float* fine);
 
- private:
-  void number_free(const std::vector<char>& fixed);
-  bool factor_lower(const Eigen::SparseMatrix<double>& L);
-
-  std::vector<int> free_;
-  std::vector<int> number_;
-  int negative_ = 0;
-  bool analysed_ = false;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt_;
+/// Coefficients of step k = 1, 2, ... of Chebyshev iteration of the fourth kind, z = previous z + step D r.
+struct ChebyshevStep {
+  double previous, step;
+  ChebyshevStep(int k, double largest_eigenvalue)
+      : ChebyshevStep{k > 1 ? (2.0 * k - 3) / (2.0 * k + 1) : 0, (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue)} {}
+  ChebyshevStep(double of_previous, double of_residual) : previous(of_previous), step(of_residual) {}
 };
 
-/// Symmetric V-cycle: Chebyshev (fourth kind) over Jacobi, trilinear transfer, lattices of doubled edge below.
+/// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; no matrix above the
+/// coarsest level.  The cycle works in single precision, what it preconditions in double.
 /// A lattice that `may_float` needs no hold of its own: its rigid motions are anchored softly.
 /// Its smoother's eigenvalue bound is the largest of diag(K_cell)^-1 K_cell, rigorous on every lattice of such cells.
+/// Vectors hold 3 values per node of the network.
 class Multigrid {
  public:
-  Multigrid(std::vector<LatticeLevel> levels, const CellMatrix& cell, int smoothing_degree = 3, bool may_float = false);
+  Multigrid(LatticeLevels levels, const CellMatrix& cell, int smoothing_degree = 3, bool may_float = false);
 
+  /// u = K^-1 b on the free unknowns, 0 on the fixed.
+  KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u);
+  /// y = K x, all unknowns.
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y);
   /// z = M^-1 r, symmetric positive definite.
-  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const { cycle(0, r, z); }
-  const BlockMatrix& finest() const { return matrix_.front(); }
+  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
+  double largest_diagonal() const { return largest_diagonal_; }
 
  private:
-  void cycle(std::size_t level, const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
-  void smooth(std::size_t level, Eigen::VectorXd& r, Eigen::VectorXd& x, bool update_residual) const;
+  struct Level {
+    LatticeOperator<float> K;
+    Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns
+    Eigen::VectorXf r, z, x;
+  };
 
-  std::vector<LatticeLevel> levels_;
-  std::vector<BlockMatrix> matrix_;
-  std::vector<Eigen::VectorXd> inverse_diagonal_;  ///< 0 on fixed unknowns
-  double largest_eigenvalue_ = 0;
-  int degree_ = 3;
+  void multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y);
+  void apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z);
+  void smooth(Level& level, int first, int last);
+  void cycle(std::size_t l);
+  void solve_coarsest(Level& level);
+
+  LatticeLevels lattice_;
+  double largest_eigenvalue_ = 0, largest_diagonal_ = 0;
+  double unit_ = 1;  ///< 1 / that of the stiffness: the cycle works with entries of order one
+  int degree_;
+  std::vector<Level> levels_;
+  LatticeOperator<double> K_;
   DirectSolver coarsest_;
 };
 

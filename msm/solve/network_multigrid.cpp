@@ -70,9 +70,9 @@ Auxiliary auxiliary_lattice(const Network& above, double edge) {
 }
 
 /// Trilinear weights from the lattice to the network's nodes.
-LatticeLevel passage(const Network& above, const Auxiliary& aux) {
-  LatticeLevel level;
-  level.nodes = aux.network.nodes();
+Passage passage(const Network& above, const Auxiliary& aux) {
+  Passage level;
+  level.points = aux.network.nodes();
   level.weight_begin = {0};
   for (int n = 0; n < above.nodes(); ++n) {
     const Hexahedron& cell = aux.network.cells[aux.cell_of[n]];
@@ -81,25 +81,25 @@ LatticeLevel passage(const Network& above, const Auxiliary& aux) {
       double weight = 1;
       for (int d = 0; d < 3; ++d) weight *= hexahedron_corners[c][d] ? xi[d] : 1 - xi[d];
       if (weight < 1e-12) continue;
-      level.weight_node.push_back(cell[c]);
+      level.weight_point.push_back(cell[c]);
       level.weight.push_back(weight);
     }
-    level.weight_begin.push_back(static_cast<int>(level.weight_node.size()));
+    level.weight_begin.push_back(static_cast<int>(level.weight_point.size()));
   }
   return level;
 }
 
 /// A lattice node is held where most of what it moves is held.
-void hold(const std::vector<char>& fixed, LatticeLevel& level) {
-  Eigen::VectorXd held = Eigen::VectorXd::Zero(3 * level.nodes), all = held;
+void hold(const std::vector<char>& fixed, Passage& level) {
+  Eigen::VectorXd held = Eigen::VectorXd::Zero(3 * level.points), all = held;
   for (std::size_t n = 0; n + 1 < level.weight_begin.size(); ++n)
     for (int e = level.weight_begin[n]; e < level.weight_begin[n + 1]; ++e)
       for (int d = 0; d < 3; ++d) {
-        all[3 * level.weight_node[e] + d] += level.weight[e];
-        if (fixed[3 * n + d]) held[3 * level.weight_node[e] + d] += level.weight[e];
+        all[3 * level.weight_point[e] + d] += level.weight[e];
+        if (fixed[3 * n + d]) held[3 * level.weight_point[e] + d] += level.weight[e];
       }
-  level.fixed.resize(3 * level.nodes);
-  for (int i = 0; i < 3 * level.nodes; ++i) level.fixed[i] = held[i] >= 0.5 * all[i];
+  level.fixed.resize(3 * level.points);
+  for (int i = 0; i < 3 * level.points; ++i) level.fixed[i] = held[i] >= 0.5 * all[i];
 }
 
 /// One HybMSS cell with the network's shear modulus and what dispersion adds to lambda.
@@ -115,6 +115,29 @@ CellMatrix auxiliary_cell(const MassSpringModel& model, double edge) {
 }
 
 }  // namespace
+
+void Passage::prolongate(const Eigen::VectorXd& u_lattice, const std::vector<char>& node_fixed, Eigen::VectorXd& u) const {
+  const int nodes = static_cast<int>(weight_begin.size()) - 1;
+  u.setZero(3 * nodes);
+  for (int n = 0; n < nodes; ++n)
+    for (int e = weight_begin[n]; e < weight_begin[n + 1]; ++e)
+      u.segment<3>(3 * n) += weight[e] * u_lattice.segment<3>(3 * weight_point[e]);
+  for (std::size_t i = 0; i < node_fixed.size(); ++i)
+    if (node_fixed[i]) u[i] = 0;
+}
+
+void Passage::restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed, Eigen::VectorXd& r_lattice) const {
+  const int nodes = static_cast<int>(weight_begin.size()) - 1;
+  r_lattice.setZero(3 * points);
+  for (int n = 0; n < nodes; ++n) {
+    Vec3 value = r.segment<3>(3 * n);
+    for (int d = 0; d < 3; ++d)
+      if (node_fixed[3 * n + d]) value[d] = 0;
+    for (int e = weight_begin[n]; e < weight_begin[n + 1]; ++e) r_lattice.segment<3>(3 * weight_point[e]) += weight[e] * value;
+  }
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (fixed[i]) r_lattice[i] = 0;
+}
 
 NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : fixed_(fixed), K_(tangent(model, model.network.X)) {

@@ -9,6 +9,20 @@
 
 namespace springproof {
 
+/// How the displacements of a lattice pass to the nodes of a network among its points.
+struct Passage {
+  int points = 0;                  ///< of the lattice
+  std::vector<char> fixed;         ///< per unknown 3 * point + axis
+  std::vector<int> weight_begin;   ///< for each node, where its row starts; then the end
+  std::vector<int> weight_point;
+  std::vector<double> weight;      ///< trilinear
+
+  /// u = P u_lattice (fixed unknowns of either left out).
+  void prolongate(const Eigen::VectorXd& u_lattice, const std::vector<char>& node_fixed, Eigen::VectorXd& u) const;
+  /// r_lattice = P^T r.
+  void restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed, Eigen::VectorXd& r_lattice) const;
+};
+
 /// Symmetric cycle for the rest state of a conservative model: Chebyshev (fourth kind) over the node blocks on the network
 /// itself, then one V-cycle of a lattice with cells of `spacings` mean node distances that fills the same body, with the
 /// network's affine shear modulus and the bulk modulus that momentum dispersion adds.
@@ -29,7 +43,7 @@ class NetworkMultigrid {
   Tangent K_;
   std::vector<Eigen::Matrix3d> inverse_block_;
   double largest_eigenvalue_ = 0;
-  LatticeLevel passage_;  ///< from the auxiliary lattice to the network
+  Passage passage_;  ///< from the auxiliary lattice to the network
   std::unique_ptr<Multigrid> lattice_;
 };
 

@@ -29,7 +29,7 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
 }
 
 bool TangentSolver::take(const NodalVectors& x) {
-  at_rest_ = lattice_ && x == model_.network.X;  // then the finest matrix of the multigrid is the tangent
+  at_rest_ = lattice_ && x == model_.network.X;  // then the multigrid has the tangent
   if (at_rest_) return true;
   if (K_.local.nodes() == 0) K_.local = BlockMatrix(coupled_nodes(model_.network));
   update_tangent(model_, x, K_);
@@ -54,16 +54,17 @@ void TangentSolver::clear_fixed(Eigen::VectorXd& v) const {
 KrylovResult TangentSolver::iterate(const Tangent& K, bool symmetric, const Eigen::VectorXd& b, double tolerance,
                                     int max_iterations, Eigen::VectorXd& u) const {
   const Operator apply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-    at_rest_ ? lattice_->finest().multiply(x, y) : K.multiply(x, y);
+    K.multiply(x, y);
     clear_fixed(y);
   };
   const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { precondition(r, z); };
   Eigen::VectorXd free = b;
   clear_fixed(free);
+  if (at_rest_) return lattice_->solve(free, tolerance, max_iterations, u);
   u.setZero(b.size());
   if (symmetric) {
     KrylovResult result = conjugate_gradients(apply, condition, free, tolerance, max_iterations, u);
-    if (result.converged || result.negative_curvature || at_rest_) return result;
+    if (result.converged || result.negative_curvature) return result;
     // Near nu = 1/2 forces cancel in the product, and no solution in these digits leaves a smaller residual.
     const double round_off = 64 * std::numeric_limits<double>::epsilon() * K.diagonal().cwiseProduct(u).norm() / free.norm();
     result.converged = result.residual <= round_off;
@@ -81,7 +82,7 @@ KrylovResult TangentSolver::solve(const Eigen::VectorXd& b, double tolerance, in
 }
 
 void TangentSolver::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
-  at_rest_ ? lattice_->finest().multiply(x, y) : K_.multiply(x, y);
+  at_rest_ ? lattice_->multiply(x, y) : K_.multiply(x, y);
 }
 
 bool TangentSolver::stable() const {
@@ -94,7 +95,7 @@ bool TangentSolver::stable() const {
 }
 
 double TangentSolver::largest_diagonal() const {
-  return (at_rest_ ? lattice_->finest().diagonal() : K_.diagonal()).maxCoeff();
+  return at_rest_ ? lattice_->largest_diagonal() : K_.diagonal().maxCoeff();
 }
 
 std::string TangentSolver::name() const {
