@@ -13,7 +13,7 @@ void DirectSolver::number_free(const std::vector<char>& fixed) {
     }
 }
 
-bool DirectSolver::factor_lower(const Eigen::SparseMatrix<double>& L) {
+bool DirectSolver::factor_lower(const Eigen::SparseMatrix<double>& L, double round_off) {
   if (!analysed_) ldlt_.analyzePattern(L);
   analysed_ = true;
   ldlt_.factorize(L);
@@ -21,9 +21,7 @@ bool DirectSolver::factor_lower(const Eigen::SparseMatrix<double>& L) {
     negative_ = -1;
     return false;
   }
-  // A pivot of round-off is a mechanism: what it would give is no equilibrium.
-  const double round_off = 1e-14 * ldlt_.vectorD().maxCoeff();
-  negative_ = static_cast<int>((ldlt_.vectorD().array() <= round_off).count());
+  negative_ = static_cast<int>((ldlt_.vectorD().array() <= round_off * ldlt_.vectorD().maxCoeff()).count());
   return negative_ == 0;
 }
 

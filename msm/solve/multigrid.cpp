@@ -6,6 +6,8 @@
 namespace springproof {
 namespace {
 
+constexpr int lanczos_steps = 10;
+
 /// Largest eigenvalue of diag(K)^-1 K.
 double largest_scaled_eigenvalue(const CellMatrix& cell) {
   const CellVector root = cell.diagonal().cwiseSqrt().cwiseInverse();
@@ -47,21 +49,23 @@ void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kern
 Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, int smoothing_degree, bool may_float)
     : lattice_(std::move(levels)), degree_(smoothing_degree), K_(lattice_.levels[0], reorder(cell_of_network, lattice_.axes)) {
   const CellMatrix cell = reorder(cell_of_network, lattice_.axes);
-  largest_eigenvalue_ = largest_scaled_eigenvalue(cell);
+  const double at_most = largest_scaled_eigenvalue(cell);
   const double unit = cell.diagonal().mean();
   unit_ = 1 / unit;
   for (const LatticeLevel& level : lattice_.levels) {
     const Eigen::VectorXd d = diagonal(level, cell);
     if (levels_.empty()) largest_diagonal_ = d.maxCoeff();
-    levels_.push_back({LatticeOperator<float>(level, cell / unit), {}, {}, {}, {}});
+    levels_.push_back({LatticeOperator<float>(level, cell / unit), {}, {}, {}, {}, 0});
     Level& l = levels_.back();
     l.inverse_diagonal = (d.array() > 0).select(unit / d.array(), 0).cast<float>().matrix();
     clear(level.fixed, l.inverse_diagonal);
     l.r = l.z = l.x = Eigen::VectorXf::Zero(3 * level.stride());
+    if (levels_.size() < lattice_.levels.size()) bound_eigenvalues(l, at_most);
   }
   const std::vector<char> fixed = fixed_by_point(lattice_.levels.back());
   BlockMatrix K = assemble(lattice_.levels.back(), cell / unit);
-  if (coarsest_.factor(K, fixed)) return;
+  // What a lattice's free motions would be given is all that single precision could hold.
+  if (coarsest_.factor(K, fixed, may_float ? 1e-7 : 1e-14)) return;
   if (!may_float)
     throw std::runtime_error("the coarsest lattice is singular: the body is not held, or the model has zero-energy modes");
   const double anchor = 1e-3 * K.diagonal().mean();
@@ -69,11 +73,50 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
   if (!coarsest_.factor(K, fixed)) throw std::runtime_error("the coarsest lattice is not positive definite");
 }
 
+/// Lanczos in the inner product of diag(K), from a rough vector.  The largest Ritz value and its residual are together
+/// seen to bound the spectrum from above (Zhou and Saad's bound for Chebyshev filters).
+void Multigrid::bound_eigenvalues(Level& level, double at_most) const {
+  const long stride = level.K.stride();
+  const Eigen::ArrayXf D = (level.inverse_diagonal.array() > 0).select(level.inverse_diagonal.array().inverse(), 0);
+  Eigen::VectorXf &v = level.z, &w = level.r, &before = level.x;
+  unsigned state = 1;
+  for (float& value : v) value = static_cast<float>(state = 1664525u * state + 1013904223u) / 4294967296.0f - 0.5f;
+  v.array() *= (D > 0).cast<float>();
+  v /= std::sqrt((v.array().square() * D).sum());
+  before.setZero();
+  Eigen::VectorXd alpha(lanczos_steps), beta(lanczos_steps);
+  for (int k = 0; k < lanczos_steps; ++k) {
+    if (k > 0)
+      w = static_cast<float>(-beta[k - 1]) * before;
+    else
+      w.setZero();
+    double curvature = 0;
+    level.K.pass(v.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+      const long at = a * stride + begin;
+      const Eigen::Map<const Eigen::VectorXf> Kv(y, n);
+      curvature += Kv.dot(v.segment(at, n));
+      w.segment(at, n) += level.inverse_diagonal.segment(at, n).cwiseProduct(Kv);
+      before.segment(at, n) = v.segment(at, n);
+    });
+    alpha[k] = curvature;
+    w -= static_cast<float>(curvature) * before;
+    beta[k] = std::sqrt(double((w.array().square() * D).sum()));
+    if (!(beta[k] > 1e-6)) return void(level.largest_eigenvalue = at_most);
+    v = w / static_cast<float>(beta[k]);
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
+  ritz.computeFromTridiagonal(alpha, beta.head(lanczos_steps - 1));
+  const double residual = beta[lanczos_steps - 1] * std::abs(ritz.eigenvectors()(lanczos_steps - 1, lanczos_steps - 1));
+  level.largest_eigenvalue = std::min(at_most, ritz.eigenvalues()[lanczos_steps - 1] + residual);
+  level.r.setZero();
+  level.z.setZero();
+}
+
 /// Steps `first` ... `last` of the smoother, each after the residual of the step before; step 0 takes the residual alone.
 void Multigrid::smooth(Level& level, int first, int last) {
   const long stride = level.K.stride();
   for (int k = first; k <= last; ++k) {
-    const ChebyshevStep step(k, largest_eigenvalue_);
+    const ChebyshevStep step(k, level.largest_eigenvalue);
     level.K.pass(level.z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
       const long at = a * stride + begin;
       level.K.kernels().chebyshev(n, y, level.inverse_diagonal.data() + at, static_cast<float>(step.previous),
@@ -100,7 +143,7 @@ void Multigrid::cycle(std::size_t l) {
     return;
   }
   const long stride = level.K.stride();
-  const ChebyshevStep start(1, largest_eigenvalue_);
+  const ChebyshevStep start(1, level.largest_eigenvalue);
   level.z = static_cast<float>(start.step) * level.inverse_diagonal.cwiseProduct(level.r);
   level.x = level.z;
   smooth(level, 2, degree_);

@@ -29,7 +29,8 @@ struct ChebyshevStep {
 /// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; no matrix above the
 /// coarsest level.  The cycle works in single precision, what it preconditions in double.
 /// A lattice that `may_float` needs no hold of its own: its rigid motions are anchored softly.
-/// Its smoother's eigenvalue bound is the largest of diag(K_cell)^-1 K_cell, rigorous on every lattice of such cells.
+/// Its smoother's eigenvalue bound comes from a few Lanczos steps on each level; it is at most the largest eigenvalue of
+/// diag(K_cell)^-1 K_cell, which bounds every lattice of such cells.
 /// Vectors hold 3 values per node of the network.
 class Multigrid {
  public:
@@ -48,16 +49,18 @@ class Multigrid {
     LatticeOperator<float> K;
     Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns
     Eigen::VectorXf r, z, x;
+    double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
   };
 
   void multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y);
   void apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z);
   void smooth(Level& level, int first, int last);
   void cycle(std::size_t l);
+  void bound_eigenvalues(Level& level, double at_most) const;
   void solve_coarsest(Level& level);
 
   LatticeLevels lattice_;
-  double largest_eigenvalue_ = 0, largest_diagonal_ = 0;
+  double largest_diagonal_ = 0;
   double unit_ = 1;  ///< 1 / that of the stiffness: the cycle works with entries of order one
   int degree_;
   std::vector<Level> levels_;
