@@ -82,8 +82,8 @@ Eigen::VectorXd diagonal(const LatticeLevel& level, const CellMatrix& cell) {
 }
 
 template <class Real>
-LatticeOperator<Real>::LatticeOperator(const LatticeLevel& level, const CellMatrix& cell, double gradient)
-    : level_(&level), blocks_(cell_blocks<Real>(level.edge_ratio * cell, level.edge_ratio * level.edge_ratio * gradient)), stride_(level.stride()) {
+LatticeOperator<Real>::LatticeOperator(const LatticeLevel& level, const CellMatrix& cell, double gradient, InstructionSet set)
+    : level_(&level), kernels_(&cell_kernels<Real>(set)), blocks_(cell_blocks<Real>(level.edge_ratio * cell, level.edge_ratio * level.edge_ratio * gradient)), stride_(level.stride()) {
   if (!level.fill.empty()) {
     fill_ = Vector::Zero(level.cells() + array_slack);
     for (long c = 0; c < level.cells(); ++c) fill_[c] = static_cast<Real>(level.fill[c]);

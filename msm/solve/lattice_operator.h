@@ -33,7 +33,7 @@ class LatticeOperator {
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
   /// `cell` in the level's axes, at edge 1; `gradient` = |dV/du| of a corner at edge 1, 0 if not wanted.
-  LatticeOperator(const LatticeLevel& level, const CellMatrix& cell, double gradient = 0);
+  LatticeOperator(const LatticeLevel& level, const CellMatrix& cell, double gradient = 0, InstructionSet set = instruction_set());
 
   long stride() const { return stride_; }
   const Vector& fill() const { return fill_; }  ///< empty: 1
@@ -63,7 +63,7 @@ class LatticeOperator {
   PlanePair<Real> pair(int k);
 
   const LatticeLevel* level_;
-  const CellKernels<Real>* kernels_ = &cell_kernels<Real>();
+  const CellKernels<Real>* kernels_;
   CellBlocks<Real> blocks_;
   Vector fill_;
   long stride_ = 0, plane_size_ = 0;

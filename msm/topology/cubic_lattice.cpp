@@ -25,6 +25,44 @@ double cube_edge(const Mesh& mesh) {
   return edge[0];
 }
 
+namespace {
+
+/// The springs of all cells, what they share merged: 13 slots per lattice point, one for each direction away from it.
+std::vector<Spring> superposed(const Network& network) {
+  const Grid& grid = *network.grid;
+  const std::array<int, 3> points = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
+  const auto point = [&](const std::array<int, 3>& p) { return (std::size_t(p[2]) * points[1] + p[1]) * points[0] + p[0]; };
+  struct Part {
+    std::size_t from;   ///< of the cell's lowest corner's point
+    int slot, i, j;
+    double stiffness, rest_length;
+  };
+  std::vector<Part> parts;
+  for (const Spring& s : network.cell_springs) {
+    std::array<int, 3> a = hexahedron_corners[s.i], b = hexahedron_corners[s.j];
+    int direction = (b[0] - a[0]) + 3 * (b[1] - a[1]) + 9 * (b[2] - a[2]);
+    if (direction < 0) std::swap(a, b), direction = -direction;
+    parts.push_back({point(a), direction - 1, s.i, s.j, s.stiffness, s.rest_length});
+  }
+  std::vector<int> spring_at(13 * point(points), -1);
+  std::vector<Spring> springs;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const std::size_t corner = point(grid.cell_index[c]);
+    for (const Part& part : parts) {
+      int& s = spring_at[13 * (corner + part.from) + part.slot];
+      if (s >= 0) {
+        springs[s].stiffness += part.stiffness;
+        continue;
+      }
+      s = static_cast<int>(springs.size());
+      springs.push_back({network.cells[c][part.i], network.cells[c][part.j], part.stiffness, part.rest_length});
+    }
+  }
+  return merge_springs(std::move(springs));
+}
+
+}  // namespace
+
 Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
   const double edge = cube_edge(mesh);
   Network network;
@@ -41,12 +79,7 @@ Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
       for (int d = 0; d < 3; ++d) axes += hexahedron_corners[a][d] != hexahedron_corners[b][d];
       if (share[axes] > 0) network.cell_springs.push_back({a, b, share[axes], edge * std::sqrt(double(axes))});
     }
-  std::vector<Spring> springs;
-  springs.reserve(network.cell_springs.size() * mesh.hexahedra.size());
-  for (const Hexahedron& cell : mesh.hexahedra)
-    for (const Spring& s : network.cell_springs)
-      springs.push_back({cell[s.i], cell[s.j], s.stiffness, s.rest_length});
-  network.springs = merge_springs(std::move(springs));
+  network.springs = superposed(network);
   return network;
 }
 
