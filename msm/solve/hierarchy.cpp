@@ -44,7 +44,6 @@ struct Numbering {
 /// What building the next level needs of one.
 struct Indexed {
   Numbering cells, points;
-  std::vector<Index> cell_index, point_index;
 };
 
 Index plus(const Index& a, const std::array<int, 3>& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
@@ -52,18 +51,18 @@ Index half(const Index& a) { return {a[0] / 2, a[1] / 2, a[2] / 2}; }
 
 /// Numbers the marked cells and their corners, and lays out the rows of a level.
 Indexed lay_out(Numbering cells, LatticeLevel& level) {
-  Indexed indexed{std::move(cells), Numbering({0, 0, 0}), {}, {}};
+  Indexed indexed{std::move(cells), Numbering({0, 0, 0})};
   level.cells_per_side = indexed.cells.size;
-  level.cell_begin = indexed.cells.number_marked([&](const Index& p) { indexed.cell_index.push_back(p); });
+  level.cell_begin = indexed.cells.number_marked([&](const Index& p) { level.cell_index.push_back(p); });
   indexed.points = Numbering(plus(level.cells_per_side, {1, 1, 1}));
-  for (const Index& cell : indexed.cell_index)
+  for (const Index& cell : level.cell_index)
     for (const auto& corner : hexahedron_corners) indexed.points.at(plus(cell, corner)) = 0;
-  level.point_begin = indexed.points.number_marked([&](const Index& p) { indexed.point_index.push_back(p); });
+  level.point_begin = indexed.points.number_marked([&](const Index& p) { level.point_index.push_back(p); });
   int plane = 0;
-  for (std::size_t c = 0; c < indexed.cell_index.size(); ++c) {
-    const Index& at = indexed.cell_index[c];
+  for (std::size_t c = 0; c < level.cell_index.size(); ++c) {
+    const Index& at = level.cell_index[c];
     for (; plane <= at[2]; ++plane) level.row_begin.push_back(static_cast<long>(level.rows.size()));
-    const bool goes_on = c > 0 && indexed.cell_index[c - 1] == Index{at[0] - 1, at[1], at[2]} && level.rows.back().length < longest_cell_row;
+    const bool goes_on = c > 0 && level.cell_index[c - 1] == Index{at[0] - 1, at[1], at[2]} && level.rows.back().length < longest_cell_row;
     if (!goes_on) {
       CellRow row;
       row.cell = static_cast<long>(c);
@@ -114,25 +113,25 @@ Indexed lay_out_finest(const Network& network, const std::vector<char>& fixed, c
   return indexed;
 }
 
-Numbering coarsen_cells(const Indexed& fine, const LatticeLevel& fine_level) {
+Numbering coarsen_cells(const LatticeLevel& fine) {
   Index size;
-  for (int d = 0; d < 3; ++d) size[d] = (fine_level.cells_per_side[d] + 1) / 2;
+  for (int d = 0; d < 3; ++d) size[d] = (fine.cells_per_side[d] + 1) / 2;
   Numbering cells(size);
   for (const Index& cell : fine.cell_index) cells.at(half(cell)) = 0;
   return cells;
 }
 
-void set_fill(const Indexed& fine, const LatticeLevel& fine_level, Indexed& indexed, LatticeLevel& coarse) {
+void set_fill(const LatticeLevel& fine, Indexed& indexed, LatticeLevel& coarse) {
   coarse.parent.resize(fine.cell_index.size());
-  coarse.fill.assign(indexed.cell_index.size(), 0);
+  coarse.fill.assign(coarse.cell_index.size(), 0);
   for (std::size_t c = 0; c < fine.cell_index.size(); ++c) {
     coarse.parent[c] = indexed.cells.at(half(fine.cell_index[c]));
-    coarse.fill[coarse.parent[c]] += (fine_level.fill.empty() ? 1 : fine_level.fill[c]) / 8;
+    coarse.fill[coarse.parent[c]] += (fine.fill.empty() ? 1 : fine.fill[c]) / 8;
   }
   if (std::all_of(coarse.fill.begin(), coarse.fill.end(), [](double f) { return f == 1; })) coarse.fill.clear();
 }
 
-void set_transfer(const Indexed& fine, Indexed& indexed, LatticeLevel& coarse) {
+void set_transfer(const LatticeLevel& fine, Indexed& indexed, LatticeLevel& coarse) {
   for (std::size_t n = 0; n < fine.point_index.size(); ++n) {
     const Index& at = fine.point_index[n];
     if (n > 0 && fine.point_index[n - 1] == Index{at[0] - 1, at[1], at[2]} && coarse.transfer.back().length < longest_cell_row) {
@@ -151,13 +150,13 @@ void set_transfer(const Indexed& fine, Indexed& indexed, LatticeLevel& coarse) {
   }
 }
 
-void set_fixed(const Indexed& fine, const LatticeLevel& fine_level, const Indexed& indexed, LatticeLevel& coarse) {
+void set_fixed(const Indexed& fine, const LatticeLevel& fine_level, LatticeLevel& coarse) {
   std::vector<char> fine_fixed(3 * fine_level.points(), 0);
   for (int place : fine_level.fixed) fine_fixed[place / fine_level.stride() * fine_level.points() + place % fine_level.stride()] = 1;
   std::vector<int> sources;
   std::vector<char> held(3 * coarse.points(), 0);
-  for (std::size_t n = 0; n < indexed.point_index.size(); ++n) {
-    const Index at = {2 * indexed.point_index[n][0], 2 * indexed.point_index[n][1], 2 * indexed.point_index[n][2]};
+  for (std::size_t n = 0; n < coarse.point_index.size(); ++n) {
+    const Index at = {2 * coarse.point_index[n][0], 2 * coarse.point_index[n][1], 2 * coarse.point_index[n][2]};
     sources.clear();
     if (const int same = fine.points.get(at); same >= 0) {
       sources.push_back(same);
@@ -205,10 +204,10 @@ LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fi
     const LatticeLevel& fine = all.levels.back();
     LatticeLevel coarse;
     coarse.edge_ratio = 2 * fine.edge_ratio;
-    Indexed coarse_indexed = lay_out(coarsen_cells(indexed, fine), coarse);
-    set_fill(indexed, fine, coarse_indexed, coarse);
-    set_transfer(indexed, coarse_indexed, coarse);
-    set_fixed(indexed, fine, coarse_indexed, coarse);
+    Indexed coarse_indexed = lay_out(coarsen_cells(fine), coarse);
+    set_fill(fine, coarse_indexed, coarse);
+    set_transfer(fine, coarse_indexed, coarse);
+    set_fixed(indexed, fine, coarse);
     all.levels.push_back(std::move(coarse));
     indexed = std::move(coarse_indexed);
   }

@@ -27,6 +27,7 @@ struct LatticeLevel {
   std::vector<double> fill;        ///< fraction of each cell that lies in the body, 0 < fill <= 1; empty: 1
   std::vector<int> fixed;          ///< places of fixed unknowns in a nodal field, ascending
   double edge_ratio = 1;           ///< cell edge / finest cell edge
+  std::vector<std::array<int, 3>> cell_index, point_index;  ///< (i,j,k) of each
 
   // Passage to the next finer level; empty on the finest.
   std::vector<TransferRow> transfer;

@@ -25,6 +25,10 @@ MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_net
   cell.without_volume = reorder(of_network.without_volume, lattice_.axes);
   for (const LatticeLevel& level : lattice_.levels) levels_.push_back(make_level(level, cell));
   for (Level& level : levels_) bound_schur(level);
+  for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
+    auto thin = std::make_unique<ThinParts>(lattice_.levels[l], cell.without_volume);
+    if (!thin->empty()) levels_[l].thin = std::move(thin);
+  }
   compliance_ = levels_[0].compliance.cast<double>();
   const LatticeLevel& finest = lattice_.levels[0];
   for (long c = 0; c < finest.cells(); ++c) compliance_[c] = cell.volume / cell.kappa * (finest.fill.empty() ? 1 : finest.fill[c]);
@@ -34,7 +38,7 @@ MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_net
 
 MixedMultigrid::Level MixedMultigrid::make_level(const LatticeLevel& lattice, const CellStiffness& cell) const {
   const double h = lattice.edge_ratio, gradient = corner_gradient(cell);
-  Level level{LatticeOperator<float>(lattice, cell.without_volume, gradient), {}, {}, {}, 1, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  Level level{LatticeOperator<float>(lattice, cell.without_volume, gradient), {}, {}, {}, 1, {}, {}, {}, {}, {}, {}, {}, {}, {}, nullptr};
   const long stride = lattice.stride(), cells = lattice.cells() + array_slack;
   const Eigen::VectorXd d = diagonal(lattice, cell.without_volume);
   level.inverse_diagonal = (d.array() > 0).select(1 / (omega * d.array()), 0).cast<float>().matrix();
@@ -136,6 +140,22 @@ void MixedMultigrid::solve_coarsest(Level& level) const {
   level.p.head(cells) = (level.Bu.head(cells) - level.g.head(cells)).cwiseQuotient(level.compliance.head(cells));
 }
 
+void MixedMultigrid::residual(Level& level) const {
+  const long stride = level.K.stride();
+  level.K.pass(level.u.data(), level.p.data(), level.Bu.data(), [&](int a, long begin, long n, const float* y) {
+    const long at = a * stride + begin;
+    level.d.segment(at, n) = level.f.segment(at, n) - Eigen::Map<const Eigen::VectorXf>(y, n);
+  });
+  clear(level.K.level().fixed, level.d);
+}
+
+/// Bending moves a thin part's middle without change of volume; what the sections must do with it is left to the sweeps.
+void MixedMultigrid::correct_thin_parts(Level& level) const {
+  Eigen::VectorXf motion = Eigen::VectorXf::Zero(level.u.size());
+  level.thin->correct(level.d.data(), motion.data());
+  level.u += motion;
+}
+
 /// (u, p) of a level from its (f, g).
 void MixedMultigrid::cycle(std::size_t l) {
   Level& level = levels_[l];
@@ -148,11 +168,11 @@ void MixedMultigrid::cycle(std::size_t l) {
   for (int s = 0; s < sweeps_; ++s) sweep(level, s == 0);
   LatticeOperator<float>& K = level.K;
   const long stride = K.stride();
-  K.pass(level.u.data(), level.p.data(), level.Bu.data(), [&](int a, long begin, long n, const float* y) {
-    const long at = a * stride + begin;
-    level.d.segment(at, n) = level.f.segment(at, n) - Eigen::Map<const Eigen::VectorXf>(y, n);
-  });
-  clear(K.level().fixed, level.d);
+  residual(level);
+  if (level.thin) {
+    correct_thin_parts(level);
+    residual(level);
+  }
   level.r = level.g - level.Bu + level.compliance.cwiseProduct(level.p);
   Level& below = levels_[l + 1];
   const LatticeLevel& lattice = below.K.level();
@@ -166,6 +186,10 @@ void MixedMultigrid::cycle(std::size_t l) {
   clear(K.level().fixed, level.d);
   level.u += level.d;
   for (long c = 0; c < cells; ++c) level.p[c] += below.p[lattice.parent[c]];
+  if (level.thin) {
+    residual(level);
+    correct_thin_parts(level);
+  }
   for (int s = 0; s < sweeps_; ++s) sweep(level, false);
 }
 

@@ -32,6 +32,7 @@ class MixedMultigrid {
     double schur_bound = 1;                   ///< largest eigenvalue of diag(S)^-1 S
     Eigen::VectorXf f, g, u, p;               ///< right-hand side and solution of a cycle
     Eigen::VectorXf d, Bu, r, z, q;           ///< work of a sweep
+    std::unique_ptr<ThinParts> thin;          ///< null: none
   };
 
   Level make_level(const LatticeLevel& lattice, const CellStiffness& cell) const;
@@ -39,6 +40,8 @@ class MixedMultigrid {
   void schur_step(Level& level, const ChebyshevStep& step) const;  ///< r -= S z; z = a z + b D r; q += z
   void solve_schur(Level& level) const;
   void sweep(Level& level, bool from_zero) const;
+  void residual(Level& level) const;                               ///< d = f - K_s u - B^T p, zero on fixed; B u
+  void correct_thin_parts(Level& level) const;
   void solve_coarsest(Level& level) const;
   void cycle(std::size_t l);
   void multiply_rows(const double* x, double* y);

@@ -55,12 +55,15 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
   for (const LatticeLevel& level : lattice_.levels) {
     const Eigen::VectorXd d = diagonal(level, cell);
     if (levels_.empty()) largest_diagonal_ = d.maxCoeff();
-    levels_.push_back({LatticeOperator<float>(level, cell / unit), {}, {}, {}, {}, 0});
+    levels_.push_back({LatticeOperator<float>(level, cell / unit), {}, {}, {}, {}, 0, nullptr});
     Level& l = levels_.back();
     l.inverse_diagonal = (d.array() > 0).select(unit / d.array(), 0).cast<float>().matrix();
     clear(level.fixed, l.inverse_diagonal);
     l.r = l.z = l.x = Eigen::VectorXf::Zero(3 * level.stride());
-    if (levels_.size() < lattice_.levels.size()) bound_eigenvalues(l, at_most);
+    if (levels_.size() == lattice_.levels.size()) break;
+    bound_eigenvalues(l, at_most);
+    l.thin = std::make_unique<ThinParts>(level, cell / unit);
+    if (l.thin->empty()) l.thin.reset();
   }
   const std::vector<char> fixed = fixed_by_point(lattice_.levels.back());
   BlockMatrix K = assemble(lattice_.levels.back(), cell / unit);
@@ -151,12 +154,22 @@ void Multigrid::cycle(std::size_t l) {
     level.r.segment(a * stride + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
   });
   clear(level.K.level().fixed, level.r);
+  if (level.thin) {
+    level.z.setZero();
+    level.thin->correct(level.r.data(), level.z.data());
+    level.x += level.z;
+    level.K.pass(level.z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+      level.r.segment(a * stride + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
+    });
+    clear(level.K.level().fixed, level.r);
+  }
   Level& below = levels_[l + 1];
   below.r.setZero();
   restrict_field(below.K.level(), level.K.kernels(), stride, level.r.data(), below.r.data());
   cycle(l + 1);
   prolongate_field(below.K.level(), level.K.kernels(), below.x.data(), stride, level.z.data());
   clear(level.K.level().fixed, level.z);
+  if (level.thin) level.thin->correct(level.r.data(), level.z.data());
   level.x += level.z;
   smooth(level, 1, degree_);
 }

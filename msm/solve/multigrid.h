@@ -7,6 +7,7 @@
 #include "msm/solve/direct_solver.h"
 #include "msm/solve/krylov.h"
 #include "msm/solve/lattice_operator.h"
+#include "msm/solve/thin_parts.h"
 
 namespace springproof {
 
@@ -31,6 +32,7 @@ struct ChebyshevStep {
 /// A lattice that `may_float` needs no hold of its own: its rigid motions are anchored softly.
 /// Its smoother's eigenvalue bound comes from a few Lanczos steps on each level; it is at most the largest eigenvalue of
 /// diag(K_cell)^-1 K_cell, which bounds every lattice of such cells.
+/// Thin parts of the body (msm/solve/thin_parts.h) are corrected on every level beside the next coarser lattice.
 /// Vectors hold 3 values per node of the network.
 class Multigrid {
  public:
@@ -50,6 +52,7 @@ class Multigrid {
     Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns
     Eigen::VectorXf r, z, x;
     double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
+    std::unique_ptr<ThinParts> thin;   ///< null: none
   };
 
   void multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y);

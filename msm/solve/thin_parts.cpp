@@ -1,0 +1,175 @@
+#include "msm/solve/thin_parts.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace springproof {
+namespace {
+
+using Index = std::array<int, 3>;
+
+constexpr int thickness = 4;     // cells: what holds a cube of so many is bulky
+constexpr int reach = 2;         // cells from bulk: staircases of a curved surface are no thin parts
+constexpr int overlap = 3;       // cells by which a thin part reaches into the bulk
+constexpr int block_points = 2;  // along each side
+constexpr double largest_part = 0.5;  // of the body's cells
+constexpr double regularisation = 1e-6;
+
+/// Marks in the box of a level's cells.
+struct Marks {
+  Index size;
+  std::vector<char> mark;
+
+  char& at(int i, int j, int k) { return mark[(std::size_t(k) * size[1] + j) * size[0] + i]; }
+
+  /// Along one axis: a mark becomes the least (erosion) or largest (dilation) of those from `low` to `high` away; none
+  /// beyond the box.
+  template <class Choose>
+  void filter(int axis, int low, int high, Choose choose) {
+    const std::size_t step = axis == 0 ? 1 : axis == 1 ? size[0] : std::size_t(size[0]) * size[1];
+    std::vector<char> line(size[axis]);
+    for (std::size_t start = 0; start < mark.size(); ++start) {
+      if ((start / step) % size[axis] != 0) continue;
+      for (int i = 0; i < size[axis]; ++i) {
+        char value = choose.start;
+        for (int d = low; d <= high; ++d) value = choose(value, i + d >= 0 && i + d < size[axis] ? mark[start + (i + d) * step] : char(0));
+        line[i] = value;
+      }
+      for (int i = 0; i < size[axis]; ++i) mark[start + i * step] = line[i];
+    }
+  }
+};
+
+struct Least {
+  char start = 1;
+  char operator()(char a, char b) const { return std::min(a, b); }
+};
+struct Largest {
+  char start = 0;
+  char operator()(char a, char b) const { return std::max(a, b); }
+};
+
+void dilate(Marks& marks, int by) {
+  for (int axis = 0; axis < 3; ++axis) marks.filter(axis, -by, by, Largest{});
+}
+
+/// The cells of thin parts; no marks if there are none.
+Marks thin_cells(const LatticeLevel& level) {
+  Marks body{level.cells_per_side, std::vector<char>(std::size_t(level.cells_per_side[0]) * level.cells_per_side[1] * level.cells_per_side[2], 0)};
+  for (const Index& c : level.cell_index) body.at(c[0], c[1], c[2]) = 1;
+  Marks bulk = body;
+  for (int axis = 0; axis < 3; ++axis) bulk.filter(axis, 0, thickness - 1, Least{});
+  for (int axis = 0; axis < 3; ++axis) bulk.filter(axis, 1 - thickness, 0, Largest{});
+  dilate(bulk, reach);
+  Marks thin = body;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < thin.mark.size(); ++i) count += thin.mark[i] = body.mark[i] && !bulk.mark[i];
+  if (count == 0 || count > largest_part * level.cell_index.size()) return {};
+  dilate(thin, overlap + reach);
+  for (std::size_t i = 0; i < thin.mark.size(); ++i) thin.mark[i] = thin.mark[i] && body.mark[i];
+  return thin;
+}
+
+/// The six rigid motions of a block at one of its points: columns are three shifts and three turns.
+Eigen::Matrix<double, 3, 6> rigid_motions(const Eigen::Vector3f& arm, const bool* free) {
+  Eigen::Matrix<double, 3, 6> Z;
+  Z << 1, 0, 0, 0, arm[2], -arm[1], 0, 1, 0, -arm[2], 0, arm[0], 0, 0, 1, arm[1], -arm[0], 0;
+  for (int a = 0; a < 3; ++a)
+    if (!free[a]) Z.row(a).setZero();
+  return Z;
+}
+
+}  // namespace
+
+ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride_(level.stride()) {
+  Marks thin = thin_cells(level);
+  if (thin.mark.empty()) return;
+  std::vector<int> number(level.points(), -1);  // in points_
+  std::unordered_map<long, int> block_at;
+  const auto add = [&](long p) {
+    if (number[p] >= 0) return;
+    const Index& at = level.point_index[p];
+    const Index b = {at[0] / block_points, at[1] / block_points, at[2] / block_points};
+    const long key = (long(b[2]) * (level.cells_per_side[1] + 1) + b[1]) * (level.cells_per_side[0] + 1) + b[0];
+    const int block = block_at.emplace(key, static_cast<int>(block_at.size())).first->second;
+    Point point{p, block, {}, {true, true, true}};
+    for (int a = 0; a < 3; ++a) point.arm[a] = static_cast<float>(at[a] - (b[a] * block_points + (block_points - 1) / 2.0));
+    number[p] = static_cast<int>(points_.size());
+    points_.push_back(point);
+  };
+  for (const CellRow& row : level.rows)
+    for (int i = 0; i < row.length; ++i) {
+      const Index& c = level.cell_index[row.cell + i];
+      if (!thin.at(c[0], c[1], c[2])) continue;
+      for (int n = 0; n < 8; ++n) add(LatticeLevel::corner(row, i, n));
+    }
+  blocks_ = static_cast<long>(block_at.size());
+  for (int place : level.fixed)
+    if (const int p = number[place % level.stride()]; p >= 0) points_[p].free[place / level.stride()] = false;
+
+  rows_ = std::make_unique<LatticeLevel>();
+  rows_->cells_per_side = level.cells_per_side;
+  rows_->point_begin = level.point_begin;
+  rows_->cell_begin = level.cell_begin;
+  rows_->fill = level.fill;
+  rows_->edge_ratio = level.edge_ratio;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int k = 0; k < level.planes(); ++k) {
+    rows_->row_begin.push_back(static_cast<long>(rows_->rows.size()));
+    for (long r = level.row_begin[k]; r < level.row_begin[k + 1]; ++r) {
+      const CellRow& row = level.rows[r];
+      bool used = false;
+      for (int i = 0; i < row.length; ++i) {
+        int local[8];
+        bool touches = false;
+        for (int n = 0; n < 8; ++n) touches |= (local[n] = number[LatticeLevel::corner(row, i, n)]) >= 0;
+        if (!touches) continue;
+        used = true;
+        const double scale = level.edge_ratio * (level.fill.empty() ? 1 : level.fill[row.cell + i]);
+        Eigen::Matrix<double, 24, 6> Z;
+        for (int m = 0; m < 8; ++m)
+          if (local[m] >= 0) Z.middleRows<3>(3 * m) = rigid_motions(points_[local[m]].arm, points_[local[m]].free);
+        for (int m = 0; m < 8; ++m)
+          for (int n = 0; n < 8; ++n) {
+            if (local[m] < 0 || local[n] < 0) continue;
+            const int bm = points_[local[m]].block, bn = points_[local[n]].block;
+            if (bm < bn) continue;
+            const Eigen::Matrix<double, 6, 6> part =
+                scale * Z.middleRows<3>(3 * m).transpose() * cell.block<3, 3>(3 * m, 3 * n) * Z.middleRows<3>(3 * n);
+            for (int s = 0; s < 6; ++s)
+              for (int t = 0; t < 6; ++t)
+                if (bm > bn || s >= t) entries.emplace_back(6 * bm + s, 6 * bn + t, part(s, t));
+          }
+      }
+      if (used) rows_->rows.push_back(row);
+    }
+  }
+  rows_->row_begin.push_back(static_cast<long>(rows_->rows.size()));
+  K_ = std::make_unique<LatticeOperator<float>>(*rows_, cell);
+  // A block of few points, or held ones, has motions that move nothing.
+  const double small = regularisation * level.edge_ratio * cell.diagonal().mean();
+  for (long i = 0; i < 6 * blocks_; ++i) entries.emplace_back(i, i, small);
+  Eigen::SparseMatrix<double> A(6 * blocks_, 6 * blocks_);
+  A.setFromTriplets(entries.begin(), entries.end());
+  factors_.compute(A);
+  residual_.resize(3 * stride_);
+}
+
+void ThinParts::correct(const float* r, float* z) {
+  K_->pass(z, nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+    const long at = a * stride_ + begin;
+    residual_.segment(at, n) = Eigen::Map<const Eigen::VectorXf>(r + at, n) - Eigen::Map<const Eigen::VectorXf>(y, n);
+  });
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(6 * blocks_);
+  for (const Point& p : points_) {
+    const Vec3 force(residual_[p.place], residual_[p.place + stride_], residual_[p.place + 2 * stride_]);
+    b.segment<6>(6 * p.block) += rigid_motions(p.arm, p.free).transpose() * force;
+  }
+  const Eigen::VectorXd q = factors_.solve(b);
+  for (const Point& p : points_) {
+    const Vec3 u = rigid_motions(p.arm, p.free) * q.segment<6>(6 * p.block);
+    for (int a = 0; a < 3; ++a) z[p.place + a * stride_] += static_cast<float>(u[a]);
+  }
+}
+
+}  // namespace springproof
