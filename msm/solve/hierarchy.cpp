@@ -199,8 +199,8 @@ LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fi
   if (!network.grid) throw std::invalid_argument("multigrid needs a network made from a lattice of cells");
   LatticeLevels all;
   Indexed indexed = lay_out_finest(network, fixed, fill, all);
-  const auto shortest = [](const LatticeLevel& l) { return *std::min_element(l.cells_per_side.begin(), l.cells_per_side.end()); };
-  while (3 * all.levels.back().points() > coarsest_unknowns && shortest(all.levels.back()) >= 2) {
+  const auto longest = [](const LatticeLevel& l) { return *std::max_element(l.cells_per_side.begin(), l.cells_per_side.end()); };
+  while (3 * all.levels.back().points() > coarsest_unknowns && longest(all.levels.back()) >= 2) {
     const LatticeLevel& fine = all.levels.back();
     LatticeLevel coarse;
     coarse.edge_ratio = 2 * fine.edge_ratio;

@@ -32,8 +32,7 @@ MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_net
   compliance_ = levels_[0].compliance.cast<double>();
   const LatticeLevel& finest = lattice_.levels[0];
   for (long c = 0; c < finest.cells(); ++c) compliance_[c] = cell.volume / cell.kappa * (finest.fill.empty() ? 1 : finest.fill[c]);
-  if (!coarsest_.factor(assemble(lattice_.levels.back(), cell.total), fixed_by_point(lattice_.levels.back())))
-    throw std::runtime_error("the coarsest lattice is singular: the body is not held, or the model has zero-energy modes");
+  factor_coarsest(assemble(lattice_.levels.back(), cell.total), lattice_, false, coarsest_);
 }
 
 MixedMultigrid::Level MixedMultigrid::make_level(const LatticeLevel& lattice, const CellStiffness& cell) const {

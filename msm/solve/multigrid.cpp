@@ -1,6 +1,8 @@
 #include "msm/solve/multigrid.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <stdexcept>
 
 namespace springproof {
@@ -15,6 +17,22 @@ double largest_scaled_eigenvalue(const CellMatrix& cell) {
   return Eigen::SelfAdjointEigenSolver<CellMatrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[23];
 }
 
+/// Whether the fixed unknowns of a level leave none of the six rigid motions.
+bool holds_rigid_motions(const LatticeLevel& level) {
+  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+  const double size = *std::max_element(level.cells_per_side.begin(), level.cells_per_side.end());
+  for (int place : level.fixed) {
+    const int a = static_cast<int>(place / level.stride());
+    const auto& at = level.point_index[place % level.stride()];
+    const Vec3 x = Vec3(at[0], at[1], at[2]) / size;
+    Eigen::Matrix<double, 6, 1> motion;  // a-component of three shifts and three turns at x
+    motion << Vec3::Unit(a), x.cross(Vec3::Unit(a));
+    sum += motion * motion.transpose();
+  }
+  const Eigen::Matrix<double, 6, 1> found = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(sum, Eigen::EigenvaluesOnly).eigenvalues();
+  return found[0] > 1e-12 * found[5];
+}
+
 template <class Vector>
 void clear(const std::vector<int>& places, Vector& v) {
   for (int i : places) v[i] = 0;
@@ -26,6 +44,19 @@ std::vector<char> fixed_by_point(const LatticeLevel& level) {
   std::vector<char> fixed(3 * level.points(), 0);
   for (int place : level.fixed) fixed[3 * (place % level.stride()) + place / level.stride()] = 1;
   return fixed;
+}
+
+void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float, DirectSolver& coarsest) {
+  const LatticeLevel& level = lattice.levels.back();
+  const std::vector<char> fixed = fixed_by_point(level);
+  const bool held = holds_rigid_motions(level);
+  if (!may_float && !holds_rigid_motions(lattice.levels[0])) throw std::runtime_error("the body is not held");
+  // What a lattice's free motions would be given is all that single precision could hold.
+  if (coarsest.factor(K, fixed, held ? 1e-14 : 1e-7)) return;
+  if (!may_float && held) throw std::runtime_error("the coarsest lattice is singular: the model has zero-energy modes");
+  const double anchor = 1e-3 * K.diagonal().mean();
+  for (int n = 0; n < K.nodes(); ++n) K.add(n, n, anchor * Eigen::Matrix3d::Identity());
+  if (!coarsest.factor(K, fixed)) throw std::runtime_error("the coarsest lattice is not positive definite");
 }
 
 void restrict_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, long fine_stride, const float* fine, float* field) {
@@ -65,15 +96,7 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
     l.thin = std::make_unique<ThinParts>(level, cell / unit);
     if (l.thin->empty()) l.thin.reset();
   }
-  const std::vector<char> fixed = fixed_by_point(lattice_.levels.back());
-  BlockMatrix K = assemble(lattice_.levels.back(), cell / unit);
-  // What a lattice's free motions would be given is all that single precision could hold.
-  if (coarsest_.factor(K, fixed, may_float ? 1e-7 : 1e-14)) return;
-  if (!may_float)
-    throw std::runtime_error("the coarsest lattice is singular: the body is not held, or the model has zero-energy modes");
-  const double anchor = 1e-3 * K.diagonal().mean();
-  for (int n = 0; n < K.nodes(); ++n) K.add(n, n, anchor * Eigen::Matrix3d::Identity());
-  if (!coarsest_.factor(K, fixed)) throw std::runtime_error("the coarsest lattice is not positive definite");
+  factor_coarsest(assemble(lattice_.levels.back(), cell / unit), lattice_, may_float, coarsest_);
 }
 
 /// Lanczos in the inner product of diag(K), from a rough vector.  The largest Ritz value and its residual are together

@@ -14,6 +14,11 @@ namespace springproof {
 /// Unknowns 3 * point + axis of a level that are fixed.
 std::vector<char> fixed_by_point(const LatticeLevel& level);
 
+/// Factors the matrix of the coarsest level.  Where it has lost the hold that the body has (a patch smaller than its cells),
+/// or if the lattice `may_float`, its rigid motions are anchored softly.
+/// @throws std::runtime_error if the body is not held, or the model has zero-energy modes.
+void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float, DirectSolver& coarsest);
+
 /// Adds the restriction of a finer field to a coarse one, component by component.
 void restrict_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, long fine_stride, const float* fine, float* field);
 /// The finer field that a coarse one interpolates to.
@@ -29,7 +34,7 @@ struct ChebyshevStep {
 
 /// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; no matrix above the
 /// coarsest level.  The cycle works in single precision, what it preconditions in double.
-/// A lattice that `may_float` needs no hold of its own: its rigid motions are anchored softly.
+/// A lattice that `may_float` needs no hold of its own.
 /// Its smoother's eigenvalue bound comes from a few Lanczos steps on each level; it is at most the largest eigenvalue of
 /// diag(K_cell)^-1 K_cell, which bounds every lattice of such cells.
 /// Thin parts of the body (msm/solve/thin_parts.h) are corrected on every level beside the next coarser lattice.

@@ -11,8 +11,8 @@ using Index = std::array<int, 3>;
 constexpr int thickness = 4;     // cells: what holds a cube of so many is bulky
 constexpr int reach = 2;         // cells from bulk: staircases of a curved surface are no thin parts
 constexpr int overlap = 3;       // cells by which a thin part reaches into the bulk
-constexpr int block_points = 2;  // along each side
-constexpr double largest_part = 0.5;  // of the body's cells
+constexpr int most_blocks = 1000;     // beyond it larger ones, of at most
+constexpr int largest_block = 4;      // points along each side
 constexpr double regularisation = 1e-6;
 
 /// Marks in the box of a level's cells.
@@ -64,7 +64,7 @@ Marks thin_cells(const LatticeLevel& level) {
   Marks thin = body;
   std::size_t count = 0;
   for (std::size_t i = 0; i < thin.mark.size(); ++i) count += thin.mark[i] = body.mark[i] && !bulk.mark[i];
-  if (count == 0 || count > largest_part * level.cell_index.size()) return {};
+  if (count == 0) return {};
   dilate(thin, overlap + reach);
   for (std::size_t i = 0; i < thin.mark.size(); ++i) thin.mark[i] = thin.mark[i] && body.mark[i];
   return thin;
@@ -81,29 +81,36 @@ Eigen::Matrix<double, 3, 6> rigid_motions(const Eigen::Vector3f& arm, const bool
 
 }  // namespace
 
+void ThinParts::form_blocks(const LatticeLevel& level) {
+  int side = 2;
+  while (side < largest_block && static_cast<long>(points_.size()) > most_blocks * side * side * side) ++side;
+  std::unordered_map<long, int> block_at;
+  for (Point& point : points_) {
+    const Index& at = level.point_index[point.place];
+    const Index b = {at[0] / side, at[1] / side, at[2] / side};
+    const long key = (long(b[2]) * (level.cells_per_side[1] + 1) + b[1]) * (level.cells_per_side[0] + 1) + b[0];
+    point.block = block_at.emplace(key, static_cast<int>(block_at.size())).first->second;
+    for (int a = 0; a < 3; ++a) point.arm[a] = static_cast<float>(at[a] - (b[a] * side + (side - 1) / 2.0));
+  }
+  blocks_ = static_cast<long>(block_at.size());
+}
+
 ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride_(level.stride()) {
   Marks thin = thin_cells(level);
   if (thin.mark.empty()) return;
   std::vector<int> number(level.points(), -1);  // in points_
-  std::unordered_map<long, int> block_at;
-  const auto add = [&](long p) {
-    if (number[p] >= 0) return;
-    const Index& at = level.point_index[p];
-    const Index b = {at[0] / block_points, at[1] / block_points, at[2] / block_points};
-    const long key = (long(b[2]) * (level.cells_per_side[1] + 1) + b[1]) * (level.cells_per_side[0] + 1) + b[0];
-    const int block = block_at.emplace(key, static_cast<int>(block_at.size())).first->second;
-    Point point{p, block, {}, {true, true, true}};
-    for (int a = 0; a < 3; ++a) point.arm[a] = static_cast<float>(at[a] - (b[a] * block_points + (block_points - 1) / 2.0));
-    number[p] = static_cast<int>(points_.size());
-    points_.push_back(point);
-  };
   for (const CellRow& row : level.rows)
     for (int i = 0; i < row.length; ++i) {
       const Index& c = level.cell_index[row.cell + i];
       if (!thin.at(c[0], c[1], c[2])) continue;
-      for (int n = 0; n < 8; ++n) add(LatticeLevel::corner(row, i, n));
+      for (int n = 0; n < 8; ++n) {
+        const long p = LatticeLevel::corner(row, i, n);
+        if (number[p] >= 0) continue;
+        number[p] = static_cast<int>(points_.size());
+        points_.emplace_back().place = p;
+      }
     }
-  blocks_ = static_cast<long>(block_at.size());
+  form_blocks(level);
   for (int place : level.fixed)
     if (const int p = number[place % level.stride()]; p >= 0) points_[p].free[place / level.stride()] = false;
 
@@ -113,7 +120,9 @@ ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride
   rows_->cell_begin = level.cell_begin;
   rows_->fill = level.fill;
   rows_->edge_ratio = level.edge_ratio;
-  std::vector<Eigen::Triplet<double>> entries;
+  using Coupling = Eigen::Matrix<double, 6, 6>;
+  std::unordered_map<long, Coupling> coupling;  // by pair of blocks, the later one first
+  std::array<Eigen::Matrix<double, 24, 6>, 8> Z, KZ;
   for (int k = 0; k < level.planes(); ++k) {
     rows_->row_begin.push_back(static_cast<long>(rows_->rows.size()));
     for (long r = level.row_begin[k]; r < level.row_begin[k + 1]; ++r) {
@@ -126,26 +135,33 @@ ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride
         if (!touches) continue;
         used = true;
         const double scale = level.edge_ratio * (level.fill.empty() ? 1 : level.fill[row.cell + i]);
-        Eigen::Matrix<double, 24, 6> Z;
+        int blocks[8], count = 0;  // the cell's
         for (int m = 0; m < 8; ++m)
-          if (local[m] >= 0) Z.middleRows<3>(3 * m) = rigid_motions(points_[local[m]].arm, points_[local[m]].free);
-        for (int m = 0; m < 8; ++m)
-          for (int n = 0; n < 8; ++n) {
-            if (local[m] < 0 || local[n] < 0) continue;
-            const int bm = points_[local[m]].block, bn = points_[local[n]].block;
-            if (bm < bn) continue;
-            const Eigen::Matrix<double, 6, 6> part =
-                scale * Z.middleRows<3>(3 * m).transpose() * cell.block<3, 3>(3 * m, 3 * n) * Z.middleRows<3>(3 * n);
-            for (int s = 0; s < 6; ++s)
-              for (int t = 0; t < 6; ++t)
-                if (bm > bn || s >= t) entries.emplace_back(6 * bm + s, 6 * bn + t, part(s, t));
-          }
+          if (local[m] >= 0 && std::find(blocks, blocks + count, points_[local[m]].block) == blocks + count)
+            blocks[count++] = points_[local[m]].block;
+        for (int s = 0; s < count; ++s) {
+          Z[s].setZero();
+          for (int m = 0; m < 8; ++m)
+            if (local[m] >= 0 && points_[local[m]].block == blocks[s])
+              Z[s].middleRows<3>(3 * m) = rigid_motions(points_[local[m]].arm, points_[local[m]].free);
+          KZ[s].noalias() = scale * cell * Z[s];
+        }
+        for (int s = 0; s < count; ++s)
+          for (int t = 0; t < count; ++t)
+            if (blocks[s] >= blocks[t])
+              coupling.try_emplace(blocks[s] * blocks_ + blocks[t], Coupling::Zero()).first->second += Z[s].transpose() * KZ[t];
       }
       if (used) rows_->rows.push_back(row);
     }
   }
   rows_->row_begin.push_back(static_cast<long>(rows_->rows.size()));
   K_ = std::make_unique<LatticeOperator<float>>(*rows_, cell);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [pair, part] : coupling) {
+    const long row = pair / blocks_, column = pair % blocks_;
+    for (int s = 0; s < 6; ++s)
+      for (int t = 0; t < (row == column ? s + 1 : 6); ++t) entries.emplace_back(6 * row + s, 6 * column + t, part(s, t));
+  }
   // A block of few points, or held ones, has motions that move nothing.
   const double small = regularisation * level.edge_ratio * cell.diagonal().mean();
   for (long i = 0; i < 6 * blocks_; ++i) entries.emplace_back(i, i, small);

@@ -8,8 +8,8 @@
 
 namespace springproof {
 
-/// A second coarse space for one level: the rigid motions of blocks of 2 x 2 x 2 points, where the body is less than four
-/// cells thick and some way beyond.  Bulky bodies, and bodies that are thin all over, have none.
+/// A second coarse space for one level: the rigid motions of blocks of 2 to 4 points a side, where the body is less than four
+/// cells thick and some way beyond.  Bulky bodies have none.
 class ThinParts {
  public:
   /// `level` with its cell_index and point_index, `cell` in the level's axes.
@@ -23,11 +23,13 @@ class ThinParts {
 
  private:
   struct Point {
-    long place;      ///< of its x component in a nodal field
-    int block;
-    Eigen::Vector3f arm;  ///< from the block's middle, in cell edges
-    bool free[3];
+    long place = 0;  ///< of its x component in a nodal field
+    int block = 0;
+    Eigen::Vector3f arm = Eigen::Vector3f::Zero();  ///< from the block's middle, in cell edges
+    bool free[3] = {true, true, true};
   };
+
+  void form_blocks(const LatticeLevel& level);
 
   long stride_ = 0;
   long blocks_ = 0;

@@ -211,5 +211,35 @@ TEST(LatticeMultigrid, IterationsOnBlocksStayFew) {
     }
 }
 
+/// A ball with two sheets of a cell or two standing on it: coarser cells bend less than these.
+Mesh ball_with_ears(int n, int thickness) {
+  return test::voxels_of(cubes(n, n, n), [=](int i, int j, int k) {
+    const Vec3 x = Vec3(i + 0.5, j + 0.5, k + 0.5) / n;
+    if ((x - Vec3(0.5, 0.5, 0.25)).norm() < 0.24) return true;
+    const bool ear = (j >= 4 * n / 10 && j < 4 * n / 10 + thickness) || (j >= 6 * n / 10 && j < 6 * n / 10 + thickness);
+    return ear && std::pow((x[0] - 0.5) / 0.1, 2) + std::pow((x[2] - 0.7) / 0.28, 2) < 1;
+  });
+}
+
+TEST(LatticeMultigrid, IterationsOnThinPartsStayFew) {
+  for (int n : {24, 48, 72})
+    for (int thickness : {1, 2})
+      for (double nu : {0.25, 0.499}) {
+        const Equilibrium e = solve(build_model(test::model("hybmss"), ball_with_ears(n, thickness), {1e4, nu, 1000}), 1e-8);
+        ASSERT_TRUE(e.ok) << e.message;
+        EXPECT_LE(e.iterations, 40) << n << ", " << thickness << ", " << nu;
+      }
+}
+
+TEST(LatticeMultigrid, PlatesAndRodsOfFewCells) {
+  for (const Mesh& mesh : {cubes(40, 1, 40), cubes(30, 30, 3), cubes(120, 2, 3)})
+    for (double nu : {0.25, 0.499}) {
+      const MassSpringModel model = build_model(test::model("hybmss"), mesh, {1e4, nu, 1000});
+      const Equilibrium e = solve(model, 1e-8, nu > 0.4 ? LinearSolver::mixed_multigrid : LinearSolver::multigrid);
+      ASSERT_TRUE(e.ok) << e.message;
+      EXPECT_LE(e.iterations, 40) << mesh.hexahedra.size() << ", " << nu;
+    }
+}
+
 }  // namespace
 }  // namespace springproof
