@@ -10,11 +10,14 @@ namespace {
 
 constexpr int lanczos_steps = 10;
 
-/// Largest eigenvalue of diag(K)^-1 K.
-double largest_scaled_eigenvalue(const CellMatrix& cell) {
-  const CellVector root = cell.diagonal().cwiseSqrt().cwiseInverse();
-  const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<CellMatrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[23];
+void solve_coarsest(const DirectSolver& factors, SmoothingLevel& level) {
+  const long points = level.K.level().points(), stride = level.K.stride();
+  Eigen::VectorXd b(3 * points), x;
+  for (long n = 0; n < points; ++n)
+    for (int a = 0; a < 3; ++a) b[3 * n + a] = level.r[a * stride + n];
+  factors.solve(b, x);
+  for (long n = 0; n < points; ++n)
+    for (int a = 0; a < 3; ++a) level.x[a * stride + n] = static_cast<float>(x[3 * n + a]);
 }
 
 /// Whether the fixed unknowns of a level leave none of the six rigid motions.
@@ -39,6 +42,12 @@ void clear(const std::vector<int>& places, Vector& v) {
 }
 
 }  // namespace
+
+double largest_scaled_eigenvalue(const CellMatrix& cell) {
+  const CellVector root = cell.diagonal().cwiseSqrt().cwiseInverse();
+  const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<CellMatrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[23];
+}
 
 std::vector<char> fixed_by_point(const LatticeLevel& level) {
   std::vector<char> fixed(3 * level.points(), 0);
@@ -83,28 +92,34 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
   const double at_most = largest_scaled_eigenvalue(cell);
   const double unit = cell.diagonal().mean();
   unit_ = 1 / unit;
+  largest_diagonal_ = diagonal(lattice_.levels[0], cell).maxCoeff();
   for (const LatticeLevel& level : lattice_.levels) {
-    const Eigen::VectorXd d = diagonal(level, cell);
-    if (levels_.empty()) largest_diagonal_ = d.maxCoeff();
-    levels_.push_back({LatticeOperator<float>(level, cell / unit), {}, {}, {}, {}, 0, nullptr});
-    Level& l = levels_.back();
-    l.inverse_diagonal = (d.array() > 0).select(unit / d.array(), 0).cast<float>().matrix();
-    clear(level.fixed, l.inverse_diagonal);
-    l.r = l.z = l.x = Eigen::VectorXf::Zero(3 * level.stride());
+    SmoothingLevel& l = levels_.emplace_back(level, cell / unit);
     if (levels_.size() == lattice_.levels.size()) break;
-    bound_eigenvalues(l, at_most);
-    l.thin = std::make_unique<ThinParts>(level, cell / unit);
-    if (l.thin->empty()) l.thin.reset();
+    l.bound_eigenvalues(at_most);
+    l.find_thin_parts(cell / unit);
   }
   factor_coarsest(assemble(lattice_.levels.back(), cell / unit), lattice_, may_float, coarsest_);
 }
 
+SmoothingLevel::SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell) : K(level, cell) {
+  const Eigen::VectorXd d = diagonal(level, cell);
+  inverse_diagonal = (d.array() > 0).select(1 / d.array(), 0).cast<float>().matrix();
+  clear(level.fixed, inverse_diagonal);
+  r = z = x = Eigen::VectorXf::Zero(3 * level.stride());
+}
+
+void SmoothingLevel::find_thin_parts(const CellMatrix& cell) {
+  thin = std::make_unique<ThinParts>(K.level(), cell);
+  if (thin->empty()) thin.reset();
+}
+
 /// Lanczos in the inner product of diag(K), from a rough vector.  The largest Ritz value and its residual are together
 /// seen to bound the spectrum from above (Zhou and Saad's bound for Chebyshev filters).
-void Multigrid::bound_eigenvalues(Level& level, double at_most) const {
-  const long stride = level.K.stride();
-  const Eigen::ArrayXf D = (level.inverse_diagonal.array() > 0).select(level.inverse_diagonal.array().inverse(), 0);
-  Eigen::VectorXf &v = level.z, &w = level.r, &before = level.x;
+void SmoothingLevel::bound_eigenvalues(double at_most) {
+  const long stride = K.stride();
+  const Eigen::ArrayXf D = (inverse_diagonal.array() > 0).select(inverse_diagonal.array().inverse(), 0);
+  Eigen::VectorXf &v = z, &w = r, &before = x;
   unsigned state = 1;
   for (float& value : v) value = static_cast<float>(state = 1664525u * state + 1013904223u) / 4294967296.0f - 0.5f;
   v.array() *= (D > 0).cast<float>();
@@ -117,84 +132,84 @@ void Multigrid::bound_eigenvalues(Level& level, double at_most) const {
     else
       w.setZero();
     double curvature = 0;
-    level.K.pass(v.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+    K.pass(v.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
       const long at = a * stride + begin;
       const Eigen::Map<const Eigen::VectorXf> Kv(y, n);
       curvature += Kv.dot(v.segment(at, n));
-      w.segment(at, n) += level.inverse_diagonal.segment(at, n).cwiseProduct(Kv);
+      w.segment(at, n) += inverse_diagonal.segment(at, n).cwiseProduct(Kv);
       before.segment(at, n) = v.segment(at, n);
     });
     alpha[k] = curvature;
     w -= static_cast<float>(curvature) * before;
     beta[k] = std::sqrt(double((w.array().square() * D).sum()));
-    if (!(beta[k] > 1e-6)) return void(level.largest_eigenvalue = at_most);
+    if (!(beta[k] > 1e-6)) return void(largest_eigenvalue = at_most);
     v = w / static_cast<float>(beta[k]);
   }
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
   ritz.computeFromTridiagonal(alpha, beta.head(lanczos_steps - 1));
   const double residual = beta[lanczos_steps - 1] * std::abs(ritz.eigenvectors()(lanczos_steps - 1, lanczos_steps - 1));
-  level.largest_eigenvalue = std::min(at_most, ritz.eigenvalues()[lanczos_steps - 1] + residual);
-  level.r.setZero();
-  level.z.setZero();
+  largest_eigenvalue = std::min(at_most, ritz.eigenvalues()[lanczos_steps - 1] + residual);
+  r.setZero();
+  z.setZero();
 }
 
-/// Steps `first` ... `last` of the smoother, each after the residual of the step before; step 0 takes the residual alone.
-void Multigrid::smooth(Level& level, int first, int last) {
-  const long stride = level.K.stride();
+/// Steps `first` ... `last`, each after the residual of the step before.
+void SmoothingLevel::smooth(int first, int last) {
+  const long stride = K.stride();
   for (int k = first; k <= last; ++k) {
-    const ChebyshevStep step(k, level.largest_eigenvalue);
-    level.K.pass(level.z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+    const ChebyshevStep step(k, largest_eigenvalue);
+    K.pass(z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
       const long at = a * stride + begin;
-      level.K.kernels().chebyshev(n, y, level.inverse_diagonal.data() + at, static_cast<float>(step.previous),
-                                  static_cast<float>(step.step), level.r.data() + at, level.z.data() + at, level.x.data() + at);
+      K.kernels().chebyshev(n, y, inverse_diagonal.data() + at, static_cast<float>(step.previous), static_cast<float>(step.step),
+                            r.data() + at, z.data() + at, x.data() + at);
     });
+    if (complete && k < last) complete(z);
   }
 }
 
-void Multigrid::solve_coarsest(Level& level) {
-  const long points = level.K.level().points(), stride = level.K.stride();
-  Eigen::VectorXd b(3 * points), x;
-  for (long n = 0; n < points; ++n)
-    for (int a = 0; a < 3; ++a) b[3 * n + a] = level.r[a * stride + n];
-  coarsest_.solve(b, x);
-  for (long n = 0; n < points; ++n)
-    for (int a = 0; a < 3; ++a) level.x[a * stride + n] = static_cast<float>(x[3 * n + a]);
+/// r -= K z.
+void SmoothingLevel::take_residual() {
+  if (complete) complete(z);
+  K.pass(z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
+    r.segment(a * K.stride() + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
+  });
+  if (complete) complete(r);
+  clear(K.level().fixed, r);
 }
 
-/// x = M^-1 r of a level; r is used up.
+void SmoothingLevel::before_coarse(int degree) {
+  z = static_cast<float>(ChebyshevStep(1, largest_eigenvalue).step) * inverse_diagonal.cwiseProduct(r);
+  x = z;
+  if (complete) complete(z);
+  smooth(2, degree);
+  take_residual();
+  if (!thin) return;
+  z.setZero();
+  thin->correct(r.data(), z.data());
+  x += z;
+  take_residual();
+}
+
+void SmoothingLevel::after_coarse(int degree) {
+  clear(K.level().fixed, z);
+  if (thin) thin->correct(r.data(), z.data());
+  x += z;
+  smooth(1, degree);
+}
+
 void Multigrid::cycle(std::size_t l) {
-  Level& level = levels_[l];
+  SmoothingLevel& level = levels_[l];
   if (l + 1 == levels_.size()) {
-    solve_coarsest(level);
+    solve_coarsest(coarsest_, level);
     return;
   }
-  const long stride = level.K.stride();
-  const ChebyshevStep start(1, level.largest_eigenvalue);
-  level.z = static_cast<float>(start.step) * level.inverse_diagonal.cwiseProduct(level.r);
-  level.x = level.z;
-  smooth(level, 2, degree_);
-  level.K.pass(level.z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
-    level.r.segment(a * stride + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
-  });
-  clear(level.K.level().fixed, level.r);
-  if (level.thin) {
-    level.z.setZero();
-    level.thin->correct(level.r.data(), level.z.data());
-    level.x += level.z;
-    level.K.pass(level.z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
-      level.r.segment(a * stride + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
-    });
-    clear(level.K.level().fixed, level.r);
-  }
-  Level& below = levels_[l + 1];
+  SmoothingLevel& below = levels_[l + 1];
+  level.before_coarse(degree_);
   below.r.setZero();
-  restrict_field(below.K.level(), level.K.kernels(), stride, level.r.data(), below.r.data());
+  restrict_field(below.K.level(), level.K.kernels(), level.K.stride(), level.r.data(), below.r.data());
   cycle(l + 1);
-  prolongate_field(below.K.level(), level.K.kernels(), below.x.data(), stride, level.z.data());
-  clear(level.K.level().fixed, level.z);
-  if (level.thin) level.thin->correct(level.r.data(), level.z.data());
-  level.x += level.z;
-  smooth(level, 1, degree_);
+  prolongate_field(below.K.level(), level.K.kernels(), below.x.data(), level.K.stride(), level.z.data());
+  level.after_coarse(degree_);
 }
 
 void Multigrid::apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z) {

@@ -1,6 +1,7 @@
 // Geometric multigrid on lattices: the displacement form, for Poisson's ratios away from 1/2.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,33 @@ struct ChebyshevStep {
   ChebyshevStep(double of_previous, double of_residual) : previous(of_previous), step(of_residual) {}
 };
 
+/// One level of the cycle for the displacement form: Chebyshev over Jacobi in single precision.
+struct SmoothingLevel {
+  /// `cell` in the level's axes and a unit in which its entries are of order one.
+  SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell);
+
+  void before_coarse(int degree);  ///< x = what smoothing makes of r; r becomes the residual, zero on fixed unknowns
+  void after_coarse(int degree);   ///< x, r on with z, the correction from the coarser level
+
+  /// Lanczos steps for largest_eigenvalue, at most `at_most`.
+  void bound_eigenvalues(double at_most);
+  void find_thin_parts(const CellMatrix& cell);
+
+  LatticeOperator<float> K;
+  Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns
+  Eigen::VectorXf r, z, x;           ///< nodal fields
+  double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
+  std::unique_ptr<ThinParts> thin;   ///< null: none
+  std::function<void(Eigen::VectorXf&)> complete;  ///< gives a field what other processes know of it; empty: they know nothing
+
+ private:
+  void smooth(int first, int last);
+  void take_residual();
+};
+
+/// Largest eigenvalue of diag(K)^-1 K of one cell: a bound for every lattice of such cells.
+double largest_scaled_eigenvalue(const CellMatrix& cell);
+
 /// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; no matrix above the
 /// coarsest level.  The cycle works in single precision, what it preconditions in double.
 /// A lattice that `may_float` needs no hold of its own.
@@ -51,27 +79,20 @@ class Multigrid {
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
   double largest_diagonal() const { return largest_diagonal_; }
 
- private:
-  struct Level {
-    LatticeOperator<float> K;
-    Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns
-    Eigen::VectorXf r, z, x;
-    double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
-    std::unique_ptr<ThinParts> thin;   ///< null: none
-  };
+  /// The finest level and the cycle on it, x of r, in units of `unit_cell`: for cycles that go on above it.
+  SmoothingLevel& finest() { return levels_[0]; }
+  void cycle() { cycle(0); }
 
+ private:
   void multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y);
   void apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z);
-  void smooth(Level& level, int first, int last);
   void cycle(std::size_t l);
-  void bound_eigenvalues(Level& level, double at_most) const;
-  void solve_coarsest(Level& level);
 
   LatticeLevels lattice_;
   double largest_diagonal_ = 0;
   double unit_ = 1;  ///< 1 / that of the stiffness: the cycle works with entries of order one
   int degree_;
-  std::vector<Level> levels_;
+  std::vector<SmoothingLevel> levels_;
   LatticeOperator<double> K_;
   DirectSolver coarsest_;
 };
