@@ -1,0 +1,223 @@
+// springproof-lattice: a block lattice of a case file on several processes, each with a slab of it.
+#include <fmt/format.h>
+#include <petsc.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "msm/boundary.h"
+#include "msm/models.h"
+#include "msm/parallel/slab_multigrid.h"
+#include "msm/solve/cost.h"
+#include "problem/experiment.h"
+#include "problem/input_error.h"
+
+namespace springproof {
+namespace {
+
+struct Options {
+  std::string case_file, model = "hybmss", json_file;
+  std::optional<std::array<int, 3>> cells;
+  std::optional<double> poisson_ratio;
+  double tolerance = 1e-10;
+};
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// This process' slab of the block, with one plane of its neighbour's cells below; its patches are those of the whole.
+Mesh slab_mesh(const Vec3& size, const std::array<int, 3>& cells, const LatticeLevel& slab) {
+  const double edge = size[2] / cells[2];
+  Mesh mesh = block_mesh({size[0], size[1], edge * slab.planes()}, {cells[0], cells[1], slab.planes()});
+  const int first = slab.first_cell[2];
+  mesh.nodes.col(2).array() += edge * first;
+  mesh.grid->origin[2] = edge * first;
+  for (Patch& p : mesh.patches)
+    if ((p.name == "z_min" && first > 0) || (p.name == "z_max" && first + slab.planes() < cells[2])) p.facets.clear();
+  return mesh;
+}
+
+void check_case(const Experiment& e, const std::array<int, 3>& cells) {
+  if (e.body.geo != "block.geo")
+    throw InputError(fmt::format("{}: geo = \"{}\": only block.geo can be shared out in slabs", e.file.string(), e.body.geo));
+  for (const Load& load : e.loads)
+    if (std::holds_alternative<PatchForce>(load) || std::holds_alternative<PointForce>(load))
+      throw InputError(fmt::format("{}: a force that is spread over a patch or acts at a point is not shared out (allowed: "
+                                   "displacements, rotations, traction_Pa, pressure_Pa, gravity_m_s2)", e.file.string()));
+  const Vec3 edge = e.body.size.cwiseQuotient(Vec3(cells[0], cells[1], cells[2]));
+  if ((edge.array() - edge[0]).abs().maxCoeff() > 1e-6 * edge[0])
+    throw InputError(fmt::format("{} x {} x {} cells of a block of {:.6g} x {:.6g} x {:.6g} m are no cubes", cells[0], cells[1], cells[2],
+                                 e.body.size[0], e.body.size[1], e.body.size[2]));
+}
+
+/// The stiffness of one cell of the model.
+CellMatrix one_cell(const ModelParameters& model, double edge, const IsotropicMaterial& material) {
+  if (model.row.topology != Topology::cells || model.has(Extension::momentum_dispersion))
+    throw InputError(fmt::format("model \"{}\" is no lattice of cells (allowed: hybmss and its variants, msm_14, msm_18, msm_26)", model.row.name));
+  return cell_stiffness(build_model(model, block_mesh(Vec3::Constant(edge), {1, 1, 1}), material)).total;
+}
+
+/// What one process finds wrong, all do.
+template <class Step>
+void agree(const std::string& file, MPI_Comm communicator, Step step) {
+  std::string message;
+  try {
+    step();
+  } catch (const InputError& e) {
+    message = e.what();
+  }
+  int rank, length = static_cast<int>(message.size());
+  MPI_Comm_rank(communicator, &rank);
+  struct {
+    int length, rank;
+  } own{length, rank}, worst;
+  MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MAXLOC, communicator);
+  if (worst.length == 0) return;
+  message.resize(worst.length);
+  MPI_Bcast(message.data(), worst.length, MPI_CHAR, worst.rank, communicator);
+  throw InputError(file + ": " + message);
+}
+
+struct Sum {
+  MPI_Comm communicator;
+  double operator()(double own) const {
+    MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_DOUBLE, MPI_SUM, communicator);
+    return own;
+  }
+  double largest(double own) const {
+    MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_DOUBLE, MPI_MAX, communicator);
+    return own;
+  }
+};
+
+nlohmann::json run(const Options& options, MPI_Comm communicator) {
+  const Experiment experiment = read_experiment(options.case_file);
+  const std::array<int, 3> cells = options.cells.value_or(experiment.body.cells.empty() ? Cells{0, 0, 0} : experiment.body.cells.back());
+  check_case(experiment, cells);
+  IsotropicMaterial material = experiment.materials.front();
+  if (options.poisson_ratio) material.poisson_ratio = *options.poisson_ratio;
+  ModelChoice choice;
+  choice.name = options.model;
+  const CellMatrix cell = one_cell(resolve(choice), experiment.body.size[0] / cells[0], material);
+
+  const double start = seconds();
+  const SlabPartition partition(cells, communicator);
+  const SlabLevel slab = partition.level(0, communicator);
+  const Mesh mesh = slab_mesh(experiment.body.size, cells, slab.lattice);
+  BoundaryConditions bc;
+  agree(options.case_file, communicator, [&] { bc = transfer(experiment.loads, mesh, material.density, Kinematics::linear); });
+  SlabMultigrid multigrid(partition, bc.fixed, cell, communicator);
+  const double set_up = seconds() - start;
+
+  const long stride = slab.lattice.stride(), points = slab.lattice.points();
+  Eigen::VectorXd prescribed = Eigen::VectorXd::Zero(3 * stride), external = prescribed, force, du;
+  for (long n = 0; n < points; ++n)
+    for (int a = 0; a < 3; ++a) {
+      prescribed[a * stride + n] = bc.prescribed(n, a);
+      external[a * stride + n] = bc.external(n, a);
+    }
+  multigrid.multiply(prescribed, force);
+  Eigen::VectorXd b = external - force;
+  multigrid.clear_fixed(b);
+  const double solve_start = seconds();
+  const KrylovResult k = multigrid.solve(b, options.tolerance, 1000, du);
+  const double solve = seconds() - solve_start;
+  Eigen::VectorXd u = prescribed + du;
+  multigrid.multiply(u, force);
+
+  const Sum sum{communicator};
+  std::vector<Vec3> support(experiment.loads.size(), Vec3::Zero());
+  double square = 0, fixed = 0;
+  for (long n = slab.own_first(); n < slab.own_first() + slab.own_points(); ++n)
+    for (int a = 0; a < 3; ++a) {
+      const long at = a * stride + n;
+      square += u[at] * u[at];
+      fixed += bc.fixed[3 * n + a];
+      if (const int owner = bc.owner[3 * n + a]; owner >= 0) support[owner][a] += force[at] - external[at];
+    }
+  int processes;
+  MPI_Comm_size(communicator, &processes);
+  const double unknowns = sum(3.0 * static_cast<double>(slab.own_points()) - fixed);
+  nlohmann::json result = {{"processes", processes}, {"cells", cells}, {"poisson_ratio", material.poisson_ratio}, {"model", options.model},
+                           {"converged", k.converged}, {"unknowns", unknowns}, {"iterations", k.iterations}, {"residual", k.residual},
+                           {"set_up_seconds", sum.largest(set_up)}, {"solve_seconds", sum.largest(solve)},
+                           {"MiB_per_process", sum.largest(peak_memory_MiB())},
+                           {"displacement_rms_m", std::sqrt(sum(square) / (unknowns + sum(fixed)))}};
+  for (std::size_t i = 0; i < support.size(); ++i) {
+    for (int a = 0; a < 3; ++a) support[i][a] = sum(support[i][a]);
+    if (prescribes_displacement(experiment.loads[i]))
+      result["support_N"].push_back({{"patch", *patch_of(experiment.loads[i])}, {"force", {support[i][0], support[i][1], support[i][2]}}});
+  }
+  return result;
+}
+
+void print(const nlohmann::json& r) {
+  fmt::print("{} on {} x {} x {} cells, nu = {}: {:.0f} unknowns, {} process{}\n", r["model"].get<std::string>(), r["cells"][0].get<int>(),
+             r["cells"][1].get<int>(), r["cells"][2].get<int>(), r["poisson_ratio"].get<double>(), r["unknowns"].get<double>(),
+             r["processes"].get<int>(), r["processes"] == 1 ? "" : "es");
+  fmt::print("{} iterations, residual {:.2e}{}\n", r["iterations"].get<int>(), r["residual"].get<double>(),
+             r["converged"].get<bool>() ? "" : ": NOT CONVERGED");
+  fmt::print("set-up {:.3f} s, solve {:.3f} s, {:.0f} MiB per process\n", r["set_up_seconds"].get<double>(), r["solve_seconds"].get<double>(),
+             r["MiB_per_process"].get<double>());
+  fmt::print("displacement, root mean square: {:.12e} m\n", r["displacement_rms_m"].get<double>());
+  for (const auto& s : r.value("support_N", nlohmann::json::array()))
+    fmt::print("force of {}: ({:.12e}, {:.12e}, {:.12e}) N\n", s["patch"].get<std::string>(), s["force"][0].get<double>(),
+               s["force"][1].get<double>(), s["force"][2].get<double>());
+}
+
+int parse_and_run(int argc, char** argv) {
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  CLI::App app{"Static equilibrium of a block lattice (linear, displacement form) on the processes of mpirun.", "springproof-lattice"};
+  Options options;
+  app.add_option("CASE", options.case_file, "case file whose body is block.geo")->required()->check(CLI::ExistingFile);
+  app.add_option("--cells", options.cells, "cubes along x, y, z instead of the case's");
+  app.add_option("--poisson-ratio", options.poisson_ratio, "instead of the case's first")->check(CLI::Range(-0.999, 0.4999));
+  app.add_option("--model", options.model, "model of a lattice of cells")->capture_default_str();
+  app.add_option("--tolerance", options.tolerance, "relative residual")->capture_default_str()->check(CLI::Range(1e-13, 1e-2));
+  app.add_option("--json", options.json_file, "write the result as JSON too");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return rank == 0 ? app.exit(e) : (e.get_exit_code() ? 2 : 0);
+  }
+  try {
+    const nlohmann::json result = run(options, PETSC_COMM_WORLD);
+    if (rank > 0) return 0;
+    print(result);
+    if (!options.json_file.empty()) {
+      std::ofstream out(options.json_file);
+      out << result.dump(2) << "\n";
+      if (!out.flush()) throw InputError("cannot write " + options.json_file);
+    }
+    return result["converged"].get<bool>() ? 0 : 1;
+  } catch (const InputError& e) {
+    if (rank == 0) fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  } catch (const std::invalid_argument& e) {  // found by all processes alike, as the next
+    if (rank == 0) fmt::print(stderr, "{}: {}\n", options.case_file, e.what());
+    return 2;
+  } catch (const std::runtime_error& e) {
+    if (rank == 0) fmt::print(stderr, "{}: {}\n", options.case_file, e.what());
+    return 2;
+  }
+}
+
+}  // namespace
+}  // namespace springproof
+
+int main(int argc, char** argv) {
+  int none = 0;
+  PetscInitialize(&none, nullptr, nullptr, nullptr);
+  PetscPopSignalHandler();
+  int status = 1;
+  try {
+    status = springproof::parse_and_run(argc, argv);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "springproof-lattice: {}\n", e.what());
+    MPI_Abort(PETSC_COMM_WORLD, 1);
+  }
+  PetscFinalize();
+  return status;
+}

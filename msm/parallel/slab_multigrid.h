@@ -1,0 +1,74 @@
+// A block lattice shared out to processes in slabs across its last axis: static equilibrium over MPI and PETSc.
+#pragma once
+
+#include <mpi.h>
+
+#include "msm/solve/multigrid.h"
+
+namespace springproof {
+
+/// The planes of one level that this process has: its own, and one beside them that others own.
+struct SlabLevel {
+  LatticeLevel lattice;
+  int own_begin = 0, own_end = 0;  ///< its own planes of points, counted from the lattice's first
+
+  long own_first() const { return lattice.point_begin[own_begin]; }
+  long own_points() const { return lattice.point_begin[own_end] - own_first(); }
+};
+
+/// Planes of points next to a slab, from the processes that own them.
+class PlaneExchange {
+ public:
+  PlaneExchange(const SlabLevel& level, MPI_Comm communicator);
+  template <class Real>
+  void complete(Real* field) const;  ///< a nodal field of the level
+
+ private:
+  const SlabLevel* level_;
+  MPI_Comm communicator_;
+  int below_, above_;  ///< processes, MPI_PROC_NULL at the ends
+};
+
+/// How a block is shared out: each process has whole planes of cells of the coarsest level in slabs.
+struct SlabPartition {
+  std::array<int, 3> cells{};
+  int levels = 0;            ///< of slabs; the lattice below them is on every process
+  int z_begin = 0, z_end = 0;  ///< own planes of cells of that lattice
+
+  /// @throws std::invalid_argument if there are more processes than planes to share.
+  SlabPartition(const std::array<int, 3>& block_cells, MPI_Comm communicator);
+  SlabLevel level(int l, MPI_Comm communicator) const;
+  int first_plane(MPI_Comm communicator) const;  ///< of cells that this process has of the finest level, and how many
+};
+
+/// Displacement form of HybMSS (the cycle of Multigrid): levels of slabs above, the rest of the hierarchy on every process.
+class SlabMultigrid {
+ public:
+  /// `fixed`: per unknown 3 * point + axis of this process' finest level.
+  SlabMultigrid(const SlabPartition& partition, const std::vector<char>& fixed, const CellMatrix& cell, MPI_Comm communicator);
+
+  const SlabLevel& finest() const { return slabs_[0]; }
+  /// u of K u = b, u = 0 on fixed unknowns; nodal fields of the finest level, right on own points, u also beside them.
+  KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u);
+  /// y = K x on own points; completes x.
+  void multiply(Eigen::VectorXd& x, Eigen::VectorXd& y);
+  /// z = M^-1 r on own points.
+  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
+  void clear_fixed(Eigen::VectorXd& v) const;
+
+ private:
+  void cycle(int l);
+  void cycle_below();
+  void gather_fixed(LatticeLevel& whole) const;
+
+  MPI_Comm communicator_;
+  double unit_ = 1;
+  std::vector<SlabLevel> slabs_;           ///< the last is this process' part of the lattice below
+  std::vector<PlaneExchange> exchanges_;
+  std::vector<SmoothingLevel> levels_;
+  Eigen::VectorXf below_r_, below_x_;
+  std::unique_ptr<Multigrid> below_;
+  std::unique_ptr<LatticeOperator<double>> K_;
+};
+
+}  // namespace springproof

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# A lattice in slabs: two and three processes find what one finds, to 1e-10.   mpi_lattice.sh SPRINGPROOF-LATTICE
+set -u
+program=$1
+command -v mpirun >/dev/null || { echo "no mpirun"; exit 77; }
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+
+cat >"$work/block.toml" <<TOML
+[body]
+geo = "block.geo"
+size_m = [1, 1, 2]
+cells = [4, 4, 8]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.25
+density_kg_m3 = 1000
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+displacement_m = [0.05, 0.02, -0.2]
+[[load]]
+on = "x_max"
+traction_Pa = [100, 20, 0]
+[[load]]
+gravity_m_s2 = [0, 1, 0]
+TOML
+
+run() { mpirun -q -np "$@" --tolerance 1e-13 --json "$work/json" >"$work/out" 2>"$work/err" && grep -E "displacement|force" "$work/out"; }
+
+# The numbers of both, line by line, within 1e-10 of the largest of the line.
+compare() {
+  paste -d '|' "$1" "$2" | awk -F '|' '
+    { n = split($1, a, /[ ,()]+/); m = split($2, b, /[ ,()]+/); largest = 0; lines++
+      if (n != m || n == 0) { print "other lines: " $0; bad = 1 }
+      for (i = 1; i <= n; i++) if (a[i] ~ /^-?[0-9]/) { x = a[i] < 0 ? -a[i] : a[i]; if (x > largest) largest = x }
+      for (i = 1; i <= n; i++) if (a[i] ~ /^-?[0-9]/) { d = a[i] - b[i]; if (d < 0) d = -d
+        if (d > 1e-10 * largest) { print a[i] " against " b[i] " in: " $1; bad = 1 } } }
+    END { if (lines < 3) { print lines " lines"; bad = 1 } exit bad }'
+}
+
+check() {
+  run 1 "$program" "$work/block.toml" "$@" >"$work/one" || { echo "FAILED: one process, $*"; cat "$work/err"; failed=1; return; }
+  for processes in 2 3; do
+    run $processes "$program" "$work/block.toml" "$@" >"$work/more" || { echo "FAILED: $processes processes, $*"; cat "$work/err"; failed=1; return; }
+    compare "$work/one" "$work/more" || { echo "FAILED: $processes processes, $*"; failed=1; return; }
+  done
+  echo "same: $*"
+}
+check
+check --cells 9 9 18
+check --cells 16 16 32 --poisson-ratio 0.4
+check --cells 23 23 46 --poisson-ratio -0.5 --model msm_18
+check --cells 20 20 40 --poisson-ratio 0.3 --model hybmss_bt
+
+# What is wrong is said once, with exit status 2.   refuse WHAT MESSAGE ARGUMENTS
+refuse() {
+  local what=$1 message=$2
+  shift 2
+  mpirun -q -np 2 "$program" "$@" >"$work/out" 2>"$work/err"
+  local status=$?
+  [ $status -eq 2 ] && [ "$(grep -c -- "$message" "$work/err")" -eq 1 ] && { echo "refused: $what"; return; }
+  echo "FAILED: $what ended with $status"
+  cat "$work/out" "$work/err"
+  failed=1
+}
+refuse "cells that are no cubes" "no cubes" "$work/block.toml" --cells 4 4 9
+refuse "a model without cells" "no lattice of cells" "$work/block.toml" --model emsm
+sed 's/\[0, 0, 0\]/["free", "free", 0]/; s/\[0.05, 0.02, -0.2\]/["free", "free", -0.2]/' "$work/block.toml" >"$work/loose.toml"
+refuse "a body that is not held" "is not held" "$work/loose.toml"
+printf '[[load]]\non = "z_max"\ndisplacement_m = ["free", "free", 0]\n' | cat "$work/block.toml" - >"$work/conflict.toml"
+refuse "two values at one node" "conflict.toml: .*already prescribes" "$work/conflict.toml"
+printf '[[load]]\non = "x_min"\nforce_N = [1, 0, 0]\n' | cat "$work/block.toml" - >"$work/force.toml"
+refuse "a force over a patch" "not shared out" "$work/force.toml"
+exit $failed
