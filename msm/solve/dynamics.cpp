@@ -47,6 +47,73 @@ class Forces {
   Eigen::VectorXd J_;
 };
 
+/// What moves the nodes: the plain loops, or a kernel.
+class Motion {
+ public:
+  Motion(const MassSpringModel& model, double density, const DynamicsOptions& options)
+      : model_(model), x_(model.network.X), v_(NodalVectors::Zero(x_.rows(), 3)), internal_(model, options.lagged),
+        inverse_mass_(masses(model.network, density).cwiseInverse()) {
+    if (!options.lagged && LatticeMotion::suits(model)) {
+      LatticeMotionOptions kernel;
+      kernel.precision = options.precision;
+      kernel.threads = options.threads;
+      lattice_.emplace(model, density, kernel);
+    }
+  }
+
+  void set_conditions(const BoundaryConditions& bc) {
+    bc_ = bc;
+    if (lattice_) lattice_->set_conditions(bc);
+  }
+
+  void move_supports() {
+    if (lattice_) return lattice_->move_supports();
+    for (Eigen::Index i = 0; i < x_.size(); ++i)
+      if (bc_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + bc_.prescribed.data()[i];
+  }
+
+  ForceNorms advance(long steps, double dt, double damping) {
+    if (lattice_) return lattice_->advance(steps, dt, damping);
+    ForceNorms norms;
+    for (; steps > 0; --steps) norms = plain_step(dt, damping);
+    return norms;
+  }
+
+  NodalVectors positions() const { return lattice_ ? lattice_->positions() : x_; }
+  NodalVectors velocities() const { return lattice_ ? lattice_->velocities() : v_; }
+  const Eigen::VectorXd& inverse_mass() const { return inverse_mass_; }
+  const BoundaryConditions& conditions() const { return bc_; }
+  std::string description() const { return lattice_ ? lattice_->description() : "plain loops"; }
+
+ private:
+  ForceNorms plain_step(double dt, double damping) {
+    const NodalVectors f = internal_.at(x_);
+    double unbalanced = 0, support = 0;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      const double force = f.data()[i] + bc_.external.data()[i];
+      if (bc_.fixed[i]) {
+        support += force * force;
+        continue;
+      }
+      unbalanced += force * force;
+      double& speed = v_.data()[i];
+      speed = (speed + dt * force * inverse_mass_[i / 3]) / (1 + dt * damping);
+      x_.data()[i] += dt * speed;
+    }
+    move_supports();
+    return {std::sqrt(unbalanced), std::sqrt(support)};
+  }
+
+  const MassSpringModel& model_;
+  NodalVectors x_, v_;
+  Forces internal_;
+  Eigen::VectorXd inverse_mass_;
+  BoundaryConditions bc_;
+  std::optional<LatticeMotion> lattice_;
+};
+
+constexpr long steps_between_looks = 10;  // at whether the nodes are at rest, or lost
+
 }  // namespace
 
 double lagged_damping(const MassSpringModel& model, double density, double time_step) {
@@ -58,51 +125,39 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   const double start = cpu_seconds();
   DynamicsResult result;
   const double dt = result.time_step = checked_time_step(model, density, options);
-  const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
   const NodalVectors& X = model.network.X;
-  BoundaryConditions bc = load_path(options.ramp > 0 ? 0.0 : 1.0);
-  NodalVectors x = X, v = NodalVectors::Zero(X.rows(), 3), f;
+  Motion motion(model, density, options);
+  bool ramping = options.ramp > 0;
+  motion.set_conditions(load_path(ramping ? 0.0 : 1.0));
+  motion.move_supports();
   const long last = static_cast<long>(std::ceil(options.duration / dt));
   Equilibrium& state = result.state;
-  bool ramping = options.ramp > 0;
-  Forces internal(model, options.lagged);
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    if (bc.fixed[i]) x.data()[i] += bc.prescribed.data()[i];
-  for (; result.steps < last; ++result.steps) {
+  bool at_rest = false;
+  while (result.steps < last && !at_rest) {
     result.time = result.steps * dt;
     if (ramping) {
       const double factor = std::min(1.0, result.time / options.ramp);
-      bc = load_path(factor);
+      motion.set_conditions(load_path(factor));
       ramping = factor < 1;
     }
-    f = internal.at(x);
-    double unbalanced = 0, support = 0;
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      const double force = f.data()[i] + bc.external.data()[i];
-      if (bc.fixed[i]) {
-        support += force * force;
-        x.data()[i] = X.data()[i] + bc.prescribed.data()[i];
-        continue;
-      }
-      unbalanced += force * force;
-      double& speed = v.data()[i];
-      speed = (speed + dt * force * inverse_mass[i / 3]) / (1 + dt * options.damping);
-      x.data()[i] += dt * speed;
-    }
-    if (options.after_step) options.after_step(result.time + dt, x, v);
-    const double scale = std::max(std::sqrt(support), bc.external.norm());
-    state.residual = scale > 0 ? std::sqrt(unbalanced) / scale : 0;
+    const long steps = ramping || options.after_step ? 1 : std::min(steps_between_looks, last - result.steps);
+    const ForceNorms norms = motion.advance(steps, dt, options.damping);
+    result.steps += steps;
+    if (options.after_step) options.after_step(result.steps * dt, motion.positions(), motion.velocities());
+    const double scale = std::max(norms.support, motion.conditions().external.norm());
+    state.residual = scale > 0 ? norms.unbalanced / scale : 0;
     if (!std::isfinite(state.residual)) {
-      state.message = fmt::format("the motion diverged at t = {:.4g} s", result.time);
+      state.message = fmt::format("the motion diverged at t = {:.4g} s", result.steps * dt);
       return result;
     }
-    if (!ramping && options.rest_tolerance > 0 && state.residual < options.rest_tolerance &&
-        v.norm() * options.damping * dt < options.rest_tolerance * (x - X).norm())
-      break;
+    at_rest = !ramping && options.rest_tolerance > 0 && state.residual < options.rest_tolerance &&
+              motion.velocities().norm() * options.damping * dt < options.rest_tolerance * (motion.positions() - X).norm();
   }
+  const NodalVectors x = motion.positions(), v = motion.velocities();
+  const BoundaryConditions& bc = motion.conditions();
   result.time = result.steps * dt;
-  result.kinetic_energy = 0.5 * (v.rowwise().squaredNorm().array() / inverse_mass.array()).sum();
-  state.ok = options.rest_tolerance == 0 || result.steps < last;
+  result.kinetic_energy = 0.5 * (v.rowwise().squaredNorm().array() / motion.inverse_mass().array()).sum();
+  state.ok = options.rest_tolerance == 0 || at_rest;
   if (!state.ok)
     state.message = fmt::format("not at rest after {:.4g} s: unbalanced force {:.2e} of the supports'", result.time,
                                 state.residual);
@@ -112,7 +167,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
     if (!bc.fixed[i]) state.support.data()[i] = 0;
     state.unknowns += !bc.fixed[i];
   }
-  state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s", result.steps, dt);
+  state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s, {}", result.steps, dt, motion.description());
   state.iterations = static_cast<int>(result.steps);
   state.seconds = cpu_seconds() - start;
   state.memory_MiB = peak_memory_MiB();

@@ -1,0 +1,88 @@
+// What the lattice kernels work on: plain arrays, springs by their place in the lattice.
+//
+// Nodes stand at x + stride (y + rows z), x in blocks of as many nodes as the processor has lanes; lengths in cell edges.
+// A spring belongs to the row that it starts from.  From each row go five pairs of rows: along the row itself, and to the
+// rows at (y, z) + row_pairs[]; the last four hold up to three springs per node: straight (x to x), rising (x to x + 1) and
+// falling (x + 1 to x).  Blocks with equal coefficients share one entry of a table, so there is no stiffness per spring.
+#pragma once
+
+namespace springproof {
+
+constexpr int lattice_pairs = 5;
+constexpr int lattice_directions = 13;   ///< along x; then straight, rising, falling of each other pair
+constexpr int row_pairs[lattice_pairs][2] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};  ///< (dy, dz)
+constexpr int lattice_coefficients = lattice_directions + 1;  ///< spring constants, then the cells' kappa
+constexpr int node_coefficients = 6;     ///< 1 / mass of the three unknowns (0 if fixed), external force
+
+/// Blocks begin <= b < end of a row that have nodes.
+struct LatticeRun {
+  int begin, end;
+  unsigned springs;   ///< bit d: there are springs of direction d
+  bool cells;         ///< there are cells that start from this row and correct their volume
+};
+
+/// Real is float or double.
+template <class Real>
+struct LatticeView {
+  Real* u[3];                 ///< displacement [edges]
+  Real* v[3];                 ///< velocity [edges/s]
+  long row, plane;            ///< from row to row, from plane to plane
+  int rows;                   ///< per plane
+  int row_blocks;
+  const int* first_run;       ///< per row and one more
+  const LatticeRun* runs;
+  const int* spring_entry;    ///< per block: where its coefficients start in `springs`
+  const Real* springs;        ///< lattice_coefficients vectors per entry: k times edge [N], kappa edge^2 [N]
+  const int* node_entry;
+  const Real* nodes;          ///< node_coefficients vectors per entry: 1 / (mass edge), force [N]
+  bool bounded;               ///< VolumeEnergy::bounded
+};
+
+/// Planes of one thread.  Forces live in a ring of rows + 2 rows, three components each, all zero between steps but for
+/// what the plane above `end` has got.
+template <class Real>
+struct LatticeSlab {
+  int begin, end;
+  Real* ring;
+  Real* first;                ///< forces of the first plane, which waits for the slab below; nullptr: there is none below
+};
+
+enum class LatticeFinish { move, move_and_measure, store_forces };
+
+template <class Real>
+struct LatticeStep {
+  LatticeFinish finish;
+  Real time_step;             ///< [s]
+  Real decay;                 ///< 1 / (1 + damping * time_step)
+  Real* force[3];             ///< where forces are stored [N]
+};
+
+/// Sums over the nodes of |force|^2 [N^2] at free and at fixed unknowns.
+struct LatticeSums {
+  double free, fixed;
+};
+
+template <class Real>
+struct LatticeKernels {
+  int lanes;
+  /// Forces of planes begin <= z < end and the motion of those rows that have all of theirs.
+  void (*sweep)(const LatticeView<Real>&, const LatticeSlab<Real>&, int begin, int end, const LatticeStep<Real>&, LatticeSums&);
+  /// The first plane of a slab, once the slab below is swept.
+  void (*finish_first)(const LatticeView<Real>&, const LatticeSlab<Real>&, const LatticeSlab<Real>& below,
+                       const LatticeStep<Real>&, LatticeSums&);
+};
+
+namespace portable {
+void get_lattice_kernels(LatticeKernels<float>&);
+void get_lattice_kernels(LatticeKernels<double>&);
+}
+namespace avx2 {
+void get_lattice_kernels(LatticeKernels<float>&);
+void get_lattice_kernels(LatticeKernels<double>&);
+}
+namespace avx512 {
+void get_lattice_kernels(LatticeKernels<float>&);
+void get_lattice_kernels(LatticeKernels<double>&);
+}
+
+}  // namespace springproof

@@ -1,0 +1,222 @@
+#include "msm/kernels/lattice_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+namespace springproof {
+namespace {
+
+using Place = std::array<int, 3>;
+
+/// Places of the nodes in the lattice, counted from its lowest corner; empty if they are not on one.
+std::vector<Place> places_of(const Network& network) {
+  const double edge = network.cell_edge;
+  if (!(edge > 0) || network.nodes() == 0) return {};
+  const Eigen::RowVector3d origin = network.X.colwise().minCoeff();
+  std::vector<Place> places(network.nodes());
+  for (int n = 0; n < network.nodes(); ++n)
+    for (int d = 0; d < 3; ++d) {
+      const double at = (network.X(n, d) - origin[d]) / edge;
+      if (!(std::abs(at - std::round(at)) < 1e-8 * std::max(1.0, at)) || at > 1e6) return {};
+      places[n][d] = static_cast<int>(std::round(at));
+    }
+  return places;
+}
+
+Place extent_of(const std::vector<Place>& places) {
+  Place extent = {0, 0, 0};
+  for (const Place& p : places)
+    for (int d = 0; d < 3; ++d) extent[d] = std::max(extent[d], p[d] + 1);
+  return extent;
+}
+
+bool springs_fit(const Network& network, const std::vector<Place>& places) {
+  for (const Spring& s : network.springs) {
+    int square = 0;
+    for (int d = 0; d < 3; ++d) {
+      const int step = std::abs(places[s.j][d] - places[s.i][d]);
+      if (step > 1) return false;
+      square += step;
+    }
+    if (square == 0 || std::abs(s.rest_length - network.cell_edge * std::sqrt(double(square))) > 1e-9 * s.rest_length) return false;
+  }
+  return true;
+}
+
+bool cells_fit(const Network& network, const std::vector<Place>& places) {
+  for (const Hexahedron& cell : network.cells)
+    for (int n = 0; n < 8; ++n)
+      for (int d = 0; d < 3; ++d)
+        if (places[cell[n]][d] - places[cell[0]][d] != hexahedron_corners[n][d] - hexahedron_corners[0][d]) return false;
+  return true;
+}
+
+bool one_node_per_place(std::vector<Place> places) {
+  std::sort(places.begin(), places.end());
+  return std::adjacent_find(places.begin(), places.end()) == places.end();
+}
+
+/// Each law at most once, and only those that the kernels have.
+bool laws_fit(const MassSpringModel& model) {
+  std::vector<std::size_t> kinds;
+  for (const ForceLaw& law : model.laws) {
+    if (!std::holds_alternative<Springs>(law) && !std::holds_alternative<VolumeCorrection>(law)) return false;
+    if (std::find(kinds.begin(), kinds.end(), law.index()) != kinds.end()) return false;
+    kinds.push_back(law.index());
+  }
+  return true;
+}
+
+long rounded_up(long n, long to) { return (n + to - 1) / to * to; }
+
+/// The axes of space along x, y and z of the arrays.
+Place axes_for(const Place& extent, int lanes) {
+  const auto waste = [&](int d) { return double(rounded_up(extent[d], lanes)) / extent[d]; };
+  Place axis = {0, 1, 2};
+  std::stable_sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });
+  std::rotate(axis.begin(), std::min_element(axis.begin(), axis.end(), [&](int a, int b) { return waste(a) < waste(b); }), axis.end());
+  if (extent[axis[1]] > extent[axis[2]]) std::swap(axis[1], axis[2]);
+  return axis;
+}
+
+struct Direction {
+  bool from_first;  ///< the spring starts from its node i
+  int number;       ///< of lattice_directions
+};
+
+/// What a spring from one place to another is to the kernels; d = places[j] - places[i] along the arrays' axes.
+Direction direction_of(Place d) {
+  const bool forward = d[2] > 0 || (d[2] == 0 && (d[1] > 0 || (d[1] == 0 && d[0] > 0)));
+  if (!forward) d = {-d[0], -d[1], -d[2]};
+  int pair = 0;
+  while (row_pairs[pair][0] != d[1] || row_pairs[pair][1] != d[2]) ++pair;
+  return {forward, pair == 0 ? 0 : 3 * pair - 2 + (d[0] == 0 ? 0 : d[0] > 0 ? 1 : 2)};
+}
+
+const VolumeCorrection* volume_correction_of(const MassSpringModel& model) {
+  for (const ForceLaw& law : model.laws)
+    if (const auto* volume = std::get_if<VolumeCorrection>(&law)) return volume;
+  return nullptr;
+}
+
+/// Coefficients of all blocks, one after the other.
+std::vector<double> spring_coefficients(const MassSpringModel& model, const LatticeLayout& l) {
+  const Network& network = model.network;
+  std::vector<double> all(std::size_t(l.rows()) * l.row_blocks * lattice_coefficients * l.lanes, 0.0);
+  const auto at = [&](int slot, int number) -> double& {
+    const long x = slot % l.plane % l.row;
+    return all[(std::size_t(l.block_of(slot)) * lattice_coefficients + number) * l.lanes + x % l.lanes];
+  };
+  const auto place = [&](int slot) -> Place {
+    const long in_plane = slot % l.plane;
+    return {int(in_plane % l.row), int(in_plane / l.row), int(slot / l.plane)};
+  };
+  const bool has_springs = std::any_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });
+  if (has_springs)
+    for (const Spring& s : network.springs) {
+      const Place i = place(l.slot[s.i]), j = place(l.slot[s.j]);
+      const Direction d = direction_of({j[0] - i[0], j[1] - i[1], j[2] - i[2]});
+      const int from = l.slot[d.from_first ? s.i : s.j];
+      at(from + std::min(0, d.from_first ? j[0] - i[0] : i[0] - j[0]), d.number) += s.stiffness * network.cell_edge;
+    }
+  if (const VolumeCorrection* volume = volume_correction_of(model))
+    for (const Hexahedron& cell : network.cells) {
+      int low = l.slot[cell[0]];
+      for (int n : cell) low = std::min(low, l.slot[n]);
+      at(low, lattice_directions) += volume->kappa * network.cell_edge * network.cell_edge;
+    }
+  return all;
+}
+
+/// Adds the runs of a row, given the coefficients of its blocks and which of them hold nodes.
+void add_runs(const LatticeLayout& l, const double* row, const char* has_node, std::vector<LatticeRun>& runs) {
+  bool open = false, crossing = false;  // crossing: the block before has springs or cells that end in this one
+  for (int b = 0; b < l.row_blocks; ++b) {
+    const double* block = row + std::size_t(b) * lattice_coefficients * l.lanes;
+    LatticeRun found = {b, b + 1, 0, false};
+    bool crosses = false;
+    for (int d = 0; d < lattice_coefficients; ++d)
+      for (int lane = 0; lane < l.lanes; ++lane) {
+        if (block[d * l.lanes + lane] == 0) continue;
+        if (d < lattice_directions) found.springs |= 1u << d;
+        else found.cells = true;
+        crosses = crosses || lane == l.lanes - 1;
+      }
+    const bool active = has_node[b] || found.springs || found.cells || crossing;
+    if (active && open) {
+      runs.back().end = b + 1;
+      runs.back().springs |= found.springs;
+      runs.back().cells = runs.back().cells || found.cells;
+    } else if (active) {
+      runs.push_back(found);
+    }
+    open = active;
+    crossing = crosses;
+  }
+}
+
+}  // namespace
+
+int CoefficientTable::entry(const double* block) {
+  const std::string_view bytes(reinterpret_cast<const char*>(block), size_ * sizeof(double));
+  const std::uint64_t hash = std::hash<std::string_view>{}(bytes);
+  const auto [begin, end] = known_.equal_range(hash);
+  for (auto it = begin; it != end; ++it)
+    if (std::memcmp(&values_[it->second], block, bytes.size()) == 0) return it->second;
+  const auto start = static_cast<int>(values_.size());
+  values_.insert(values_.end(), block, block + size_);
+  known_.emplace(hash, start);
+  return start;
+}
+
+int LatticeLayout::block_of(int s) const {
+  const long in_plane = s % plane;
+  return static_cast<int>((s / plane * nodes[1] + in_plane / row) * row_blocks + in_plane % row / lanes);
+}
+
+bool is_lattice_of_springs(const MassSpringModel& model) {
+  const Network& network = model.network;
+  if (!network.image_of.empty() || !network.triangles.empty() || !laws_fit(model)) return false;
+  const std::vector<Place> places = places_of(network);
+  if (places.empty() || !springs_fit(network, places) || !cells_fit(network, places) || !one_node_per_place(places)) return false;
+  const Place extent = extent_of(places);
+  double box = 1;
+  for (int n : extent) box *= n + 16;  // with what rows are padded by
+  return box * lattice_coefficients < std::numeric_limits<int>::max() && box < 64.0 * network.nodes() + 1e6;
+}
+
+LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_per_value) {
+  const Network& network = model.network;
+  const std::vector<Place> places = places_of(network);
+  const Place extent = extent_of(places);
+  LatticeLayout l;
+  l.lanes = lanes;
+  l.axis = axes_for(extent, lanes);
+  for (int d = 0; d < 3; ++d) l.nodes[d] = extent[l.axis[d]];
+  l.row_blocks = static_cast<int>(rounded_up(l.nodes[0], lanes) / lanes);
+  l.row = rounded_up(l.nodes[0] + 1, lanes);  // beyond a row's end there is no node
+  const long line = 64 / bytes_per_value;
+  l.plane = rounded_up(l.nodes[1] * l.row, line) + 5 * line;  // no power of two: planes would share places in the cache
+  l.size = l.plane * l.nodes[2] + lanes;
+  std::vector<char> has_node(std::size_t(l.rows()) * l.row_blocks, 0);
+  for (const Place& p : places) {
+    l.slot.push_back(static_cast<int>(p[l.axis[2]] * l.plane + p[l.axis[1]] * l.row + p[l.axis[0]]));
+    has_node[l.block_of(l.slot.back())] = 1;
+  }
+  const std::vector<double> coefficients = spring_coefficients(model, l);
+  const int block_size = lattice_coefficients * lanes;
+  CoefficientTable table(block_size);
+  for (std::size_t b = 0; b < has_node.size(); ++b) l.spring_entry.push_back(table.entry(&coefficients[b * block_size]));
+  l.springs = table.values();
+  l.first_run.push_back(0);
+  for (long row = 0; row < l.rows(); ++row) {
+    add_runs(l, &coefficients[row * l.row_blocks * block_size], &has_node[row * l.row_blocks], l.runs);
+    l.first_run.push_back(static_cast<int>(l.runs.size()));
+  }
+  return l;
+}
+
+}  // namespace springproof

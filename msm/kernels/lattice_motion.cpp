@@ -1,0 +1,299 @@
+#include "msm/kernels/lattice_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+
+#include "msm/kernels/lattice_layout.h"
+#include "msm/kernels/workers.h"
+
+namespace springproof {
+namespace {
+
+constexpr std::size_t cache_line = 64;
+constexpr double far_away = 1e4;  // [edges] where places without a node are, so that no node is ever in the same place
+
+template <class Real>
+LatticeKernels<Real> kernels_for(InstructionSet set) {
+  const auto& usable = usable_instruction_sets();
+  if (std::find(usable.begin(), usable.end(), set) == usable.end())
+    throw std::invalid_argument("instruction set " + name_of(set) + " cannot be used here");
+  LatticeKernels<Real> kernels;
+#ifdef SPRINGPROOF_X86_KERNELS
+  if (set == InstructionSet::avx512) avx512::get_lattice_kernels(kernels);
+  else if (set == InstructionSet::avx2) avx2::get_lattice_kernels(kernels);
+  else
+#endif
+    portable::get_lattice_kernels(kernels);
+  return kernels;
+}
+
+/// Values on cache lines.
+template <class Real>
+class AlignedArray {
+ public:
+  AlignedArray() = default;
+  AlignedArray(std::size_t size, Real value) : size_(size), values_(static_cast<Real*>(::operator new(size * sizeof(Real), alignment))) {
+    std::fill_n(values_.get(), size, value);
+  }
+  Real* data() const { return values_.get(); }
+  std::size_t bytes() const { return size_ * sizeof(Real); }
+
+ private:
+  static constexpr std::align_val_t alignment{cache_line};
+  struct Delete {
+    void operator()(Real* p) const { ::operator delete(p, alignment); }
+  };
+  std::size_t size_ = 0;
+  std::unique_ptr<Real, Delete> values_;
+};
+
+template <class Real>
+AlignedArray<Real> aligned_copy(const std::vector<double>& values) {
+  AlignedArray<Real> copy(values.size(), Real(0));
+  std::transform(values.begin(), values.end(), copy.data(), [](double v) { return static_cast<Real>(v); });
+  return copy;
+}
+
+/// First planes of slabs with equal numbers of blocks to compute, and the end.
+std::vector<int> split_planes(const LatticeLayout& l, int slabs) {
+  std::vector<double> work(l.nodes[2] + 1, 0.0);  // of the planes below
+  for (int z = 0; z < l.nodes[2]; ++z) {
+    work[z + 1] = work[z] + 1e-3;
+    for (int r = l.first_run[long(z) * l.nodes[1]]; r < l.first_run[long(z + 1) * l.nodes[1]]; ++r)
+      work[z + 1] += (l.runs[r].end - l.runs[r].begin) * (1.0 + __builtin_popcount(l.runs[r].springs));
+  }
+  std::vector<int> begin = {0};
+  for (int s = 1; s < slabs; ++s) {
+    const double share = work.back() * s / slabs;
+    const auto above = std::lower_bound(work.begin(), work.end(), share);
+    int z = static_cast<int>(above - work.begin());
+    if (z > 0 && share - work[z - 1] < work[z] - share) --z;
+    begin.push_back(std::clamp(z, begin.back() + 1, l.nodes[2] - (slabs - s)));
+  }
+  begin.push_back(l.nodes[2]);
+  return begin;
+}
+
+/// How far a slab has come, in steps; read by its neighbours.
+struct alignas(cache_line) Progress {
+  std::atomic<long> swept = 0;       ///< forces of all planes
+  std::atomic<long> first_done = 0;  ///< the first plane has moved
+};
+
+}  // namespace
+
+class LatticeMotion::Arrays {
+ public:
+  virtual ~Arrays() = default;
+  virtual void set_conditions(const BoundaryConditions& conditions) = 0;
+  virtual void move_supports() = 0;
+  virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;
+  virtual ForceNorms advance(long steps, double time_step, double damping) = 0;
+  virtual NodalVectors positions() const = 0;
+  virtual NodalVectors velocities() const = 0;
+  virtual NodalVectors forces() = 0;
+  virtual double bytes_per_node() const = 0;
+  virtual std::string description() const = 0;
+};
+
+template <class Real>
+class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
+ public:
+  ArraysOf(const MassSpringModel& model, double density, const LatticeMotionOptions& options)
+      : network_(model.network), edge_(model.network.cell_edge), density_(density), instructions_(options.instructions),
+        kernels_(kernels_for<Real>(options.instructions)), layout_(lattice_layout(model, kernels_.lanes, sizeof(Real))),
+        workers_(std::clamp(options.threads, 1, layout_.nodes[2])), progress_(workers_.count()) {
+    for (const ForceLaw& law : model.laws)
+      if (const auto* volume = std::get_if<VolumeCorrection>(&law)) bounded_ = volume->form == VolumeEnergy::bounded;
+    make_arrays();
+    make_slabs();
+    BoundaryConditions none;
+    none.fixed.assign(3 * network_.nodes(), 0);
+    none.prescribed = none.external = NodalVectors::Zero(network_.nodes(), 3);
+    ArraysOf::set_conditions(none);
+  }
+
+  void set_conditions(const BoundaryConditions& conditions) override {
+    const int lanes = layout_.lanes, block_size = node_coefficients * lanes;
+    std::vector<double> all(std::size_t(layout_.rows()) * layout_.row_blocks * block_size, 0.0);
+    supports_.clear();
+    for (int n = 0; n < network_.nodes(); ++n) {
+      const int slot = layout_.slot[n];
+      double* block = &all[std::size_t(layout_.block_of(slot)) * block_size + slot % layout_.plane % layout_.row % lanes];
+      for (int d = 0; d < 3; ++d) {
+        const int axis = layout_.axis[d];
+        const bool fixed = conditions.fixed[3 * n + axis];
+        block[d * lanes] = fixed ? 0 : 1 / (density_ * network_.volume[n] * edge_);
+        block[(3 + d) * lanes] = conditions.external(n, axis);
+        if (fixed) supports_.push_back({d, slot, static_cast<Real>(conditions.prescribed(n, axis) / edge_)});
+      }
+    }
+    CoefficientTable table(block_size);
+    for (std::size_t b = 0; b < node_entry_.size(); ++b) node_entry_[b] = table.entry(&all[b * block_size]);
+    nodes_ = aligned_copy<Real>(table.values());
+    supports_wait_ = true;
+  }
+
+  void move_supports() override {
+    for (const Support& s : supports_) u_[s.component][s.slot] = s.displacement;
+    supports_wait_ = false;
+  }
+
+  void set_state(const NodalVectors& x, const NodalVectors& v) override {
+    for (int n = 0; n < network_.nodes(); ++n)
+      for (int d = 0; d < 3; ++d) {
+        u_[d][layout_.slot[n]] = static_cast<Real>((x(n, layout_.axis[d]) - network_.X(n, layout_.axis[d])) / edge_);
+        v_[d][layout_.slot[n]] = static_cast<Real>(v(n, layout_.axis[d]) / edge_);
+      }
+  }
+
+  ForceNorms advance(long steps, double time_step, double damping) override {
+    ForceNorms norms;
+    if (steps > 0 && supports_wait_) {
+      norms = run(1, time_step, damping);
+      move_supports();
+      --steps;
+    }
+    return steps > 0 ? run(steps, time_step, damping) : norms;
+  }
+
+  NodalVectors positions() const override { return network_.X + edge_ * in_network_order(u_); }
+  NodalVectors velocities() const override { return edge_ * in_network_order(v_); }
+
+  NodalVectors forces() override {
+    AlignedArray<Real> stored(3 * layout_.size, Real(0));
+    std::array<Real*, 3> f;
+    LatticeStep<Real> step = {LatticeFinish::store_forces, 0, 1, {}};
+    for (int d = 0; d < 3; ++d) step.force[d] = f[d] = stored.data() + d * layout_.size;
+    run(1, step, step);
+    return in_network_order(f);
+  }
+
+  double bytes_per_node() const override {
+    return (double(motion_.bytes() + rings_.bytes() + springs_.bytes() + nodes_.bytes()) + 4.0 * (layout_.slot.size() + layout_.spring_entry.size() + node_entry_.size()) +
+           double(layout_.first_run.size() * sizeof(int) + layout_.runs.size() * sizeof(LatticeRun) + supports_.size() * sizeof(Support))) / network_.nodes();
+  }
+
+  std::string description() const override {
+    return fmt::format("lattice kernel {}, {} lanes of {} bits, {}", name_of(instructions_), layout_.lanes, 8 * sizeof(Real),
+                       workers_.count() == 1 ? "1 thread" : fmt::format("{} threads", workers_.count()));
+  }
+
+ private:
+  struct Support {
+    int component, slot;
+    Real displacement;
+  };
+
+  void make_arrays() {
+    const std::size_t apart = layout_.size + 5 * cache_line / sizeof(Real);  // as with planes
+    const std::size_t each = (apart * sizeof(Real) + cache_line - 1) / cache_line * cache_line / sizeof(Real);
+    motion_ = AlignedArray<Real>(6 * each, Real(0));
+    for (int d = 0; d < 3; ++d) {
+      u_[d] = motion_.data() + 2 * d * each;
+      v_[d] = u_[d] + each;
+      std::fill_n(u_[d], layout_.size, static_cast<Real>(far_away));
+      for (int slot : layout_.slot) u_[d][slot] = 0;
+    }
+    springs_ = aligned_copy<Real>(layout_.springs);
+    layout_.springs = {};
+    node_entry_.resize(layout_.spring_entry.size());
+  }
+
+  void make_slabs() {
+    const int slabs = workers_.count();
+    const std::vector<int> begin = split_planes(layout_, slabs);
+    const long ring = 3 * layout_.row * (layout_.nodes[1] + 2), first = 3 * layout_.row * layout_.nodes[1];
+    rings_ = AlignedArray<Real>(slabs == 1 ? ring : slabs * (2 * ring + first), Real(0));
+    Real* p = rings_.data();
+    for (int s = 0; s < slabs; ++s, p += 2 * ring + first)
+      for (int parity = 0; parity < 2; ++parity)
+        slabs_[parity].push_back({begin[s], begin[s + 1], slabs == 1 ? p : p + parity * ring, s == 0 ? nullptr : p + 2 * ring});
+  }
+
+  ForceNorms run(long steps, double time_step, double damping) {
+    const LatticeStep<Real> step = {LatticeFinish::move, static_cast<Real>(time_step), static_cast<Real>(1 / (1 + damping * time_step)), {}};
+    LatticeStep<Real> last = step;
+    last.finish = LatticeFinish::move_and_measure;
+    return run(steps, step, last);
+  }
+
+  ForceNorms run(long steps, const LatticeStep<Real>& step, const LatticeStep<Real>& last) {
+    const LatticeView<Real> view = {{u_[0], u_[1], u_[2]}, {v_[0], v_[1], v_[2]}, layout_.row, layout_.plane, layout_.nodes[1],
+                                    layout_.row_blocks, layout_.first_run.data(), layout_.runs.data(), layout_.spring_entry.data(),
+                                    springs_.data(), node_entry_.data(), nodes_.data(), bounded_};
+    std::vector<LatticeSums> sums(workers_.count(), {0, 0});
+    workers_.run([&](int worker) {
+      for (long n = 0; n < steps; ++n) step_of_slab(worker, steps_done_ + n, view, n + 1 < steps ? step : last, sums[worker]);
+    });
+    steps_done_ += steps;
+    LatticeSums total = {0, 0};
+    for (const LatticeSums& s : sums) total = {total.free + s.free, total.fixed + s.fixed};
+    return {std::sqrt(total.free), std::sqrt(total.fixed)};
+  }
+
+  /// The slab above gives its first plane's positions before it moves, the slab below its forces on our first plane.
+  void step_of_slab(int s, long number, const LatticeView<Real>& view, const LatticeStep<Real>& step, LatticeSums& sums) {
+    const auto& slabs = slabs_[number % 2];
+    const LatticeSlab<Real>& slab = slabs[s];
+    kernels_.sweep(view, slab, slab.begin, slab.end - 1, step, sums);
+    if (s + 1 < workers_.count()) wait_until(progress_[s + 1].first_done, number);
+    kernels_.sweep(view, slab, slab.end - 1, slab.end, step, sums);
+    progress_[s].swept.store(number + 1, std::memory_order_release);
+    if (s == 0) return;
+    wait_until(progress_[s - 1].swept, number + 1);
+    kernels_.finish_first(view, slab, slabs[s - 1], step, sums);
+    progress_[s].first_done.store(number + 1, std::memory_order_release);
+  }
+
+  NodalVectors in_network_order(const std::array<Real*, 3>& arrays) const {
+    NodalVectors result(network_.nodes(), 3);
+    for (int n = 0; n < network_.nodes(); ++n)
+      for (int d = 0; d < 3; ++d) result(n, layout_.axis[d]) = static_cast<double>(arrays[d][layout_.slot[n]]);
+    return result;
+  }
+
+  const Network& network_;
+  double edge_, density_;
+  InstructionSet instructions_;
+  LatticeKernels<Real> kernels_;
+  LatticeLayout layout_;
+  bool bounded_ = false;
+  AlignedArray<Real> motion_, rings_, springs_, nodes_;
+  std::array<Real*, 3> u_, v_;
+  std::vector<int> node_entry_;
+  std::vector<Support> supports_;
+  bool supports_wait_ = false;
+  std::vector<LatticeSlab<Real>> slabs_[2];
+  Workers workers_;
+  std::vector<Progress> progress_;
+  long steps_done_ = 0;
+};
+
+bool LatticeMotion::suits(const MassSpringModel& model) { return is_lattice_of_springs(model); }
+
+LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {
+  if (!suits(model)) throw std::invalid_argument("the lattice kernel is for cubic lattices of springs, with or without volume correction");
+  if (options.precision == Precision::float64) arrays_ = std::make_unique<ArraysOf<double>>(model, density, options);
+  else arrays_ = std::make_unique<ArraysOf<float>>(model, density, options);
+}
+
+LatticeMotion::LatticeMotion(LatticeMotion&&) noexcept = default;
+LatticeMotion& LatticeMotion::operator=(LatticeMotion&&) noexcept = default;
+LatticeMotion::~LatticeMotion() = default;
+
+void LatticeMotion::set_conditions(const BoundaryConditions& conditions) { arrays_->set_conditions(conditions); }
+void LatticeMotion::move_supports() { arrays_->move_supports(); }
+void LatticeMotion::set_state(const NodalVectors& x, const NodalVectors& v) { arrays_->set_state(x, v); }
+ForceNorms LatticeMotion::advance(long steps, double dt, double damping) { return arrays_->advance(steps, dt, damping); }
+NodalVectors LatticeMotion::positions() const { return arrays_->positions(); }
+NodalVectors LatticeMotion::velocities() const { return arrays_->velocities(); }
+NodalVectors LatticeMotion::forces() { return arrays_->forces(); }
+double LatticeMotion::bytes_per_node() const { return arrays_->bytes_per_node(); }
+std::string LatticeMotion::description() const { return arrays_->description(); }
+
+}  // namespace springproof

@@ -1,0 +1,54 @@
+// Vector functions that std::experimental::simd lacks.  For kernels only.
+#pragma once
+
+#include <immintrin.h>
+
+#include "msm/kernels/simd.h"
+
+/// The compiler finds the larger of a kernel's small functions too large.
+#define SPRINGPROOF_INLINE inline __attribute__((always_inline))
+
+namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
+
+template <class Real>
+constexpr int lanes = static_cast<int>(Lanes<Real>::size());
+
+/// The compiler's own vector of n values.
+template <class Value, int n>
+struct Builtin {
+  typedef Value type __attribute__((vector_size(n * sizeof(Value))));
+};
+template <class Real>
+using RealVector = typename Builtin<Real, lanes<Real>>::type;
+
+/// (last of `before`, all but the last of `v`).
+SPRINGPROOF_INLINE Lanes<double> shift_in(const Lanes<double>& before, const Lanes<double>& v) {
+  typename Builtin<long long, lanes<double>>::type order;
+  for (int i = 0; i < lanes<double>; ++i) order[i] = lanes<double> - 1 + i;
+  return Lanes<double>(__builtin_shuffle(static_cast<RealVector<double>>(before), static_cast<RealVector<double>>(v), order));
+}
+SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes<float>& v) {
+  typename Builtin<int, lanes<float>>::type order;
+  for (int i = 0; i < lanes<float>; ++i) order[i] = lanes<float> - 1 + i;
+  return Lanes<float>(__builtin_shuffle(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), order));
+}
+
+/// J^(-1/3), of the sign of J, by two steps of fourth order from a guess in single precision (10 %) out of the bits.
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> inverse_cube_root(const Lanes<Real>& J) {
+  using Float = typename Builtin<float, lanes<Real>>::type;
+  using Int = typename Builtin<int, lanes<Real>>::type;
+  const Lanes<Real> size = stdx::abs(J);
+  const Float s = __builtin_convertvector(static_cast<RealVector<Real>>(size), Float);
+  const Float third = __builtin_convertvector(reinterpret_cast<Int>(s), Float) * (-1.0f / 3);
+  const Int bits = __builtin_convertvector(third, Int) + 0x54a21d2a;  // 4/3 of the exponent's bias, and a shift that spreads the error
+  Lanes<Real> y(__builtin_convertvector(reinterpret_cast<Float>(bits), RealVector<Real>));
+  for (int step = 0; step < 2; ++step) {
+    const Lanes<Real> e = Real(1) - size * y * y * y;  // (1 - e)^(-1/3) = 1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...
+    y += y * e * (Real(1.0 / 3) + e * (Real(2.0 / 9) + e * Real(14.0 / 81)));
+  }
+  stdx::where(J < Real(0), y) = -y;
+  return y;
+}
+
+}  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

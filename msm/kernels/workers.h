@@ -1,0 +1,36 @@
+// Threads that stand ready: the parts of a time step are too short to start threads for.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace springproof {
+
+class Workers {
+ public:
+  /// `count` workers, of which the calling thread is number 0.
+  explicit Workers(int count);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  int count() const { return static_cast<int>(threads_.size()) + 1; }
+
+  /// Runs the job once for each worker, at the same time; returns when all are done.  Jobs must not throw.
+  void run(const std::function<void(int worker)>& job);
+
+ private:
+  void work(int worker);
+
+  std::vector<std::thread> threads_;
+  const std::function<void(int)>* job_ = nullptr;  ///< nullptr: go home
+  std::atomic<int> round_ = 0;
+  std::atomic<int> busy_ = 0;
+};
+
+/// Waits until `reached` is at least `value`: a short time at full speed, then giving way to others.
+void wait_until(const std::atomic<long>& reached, long value);
+
+}  // namespace springproof
