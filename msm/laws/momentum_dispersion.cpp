@@ -7,73 +7,22 @@
 namespace springproof {
 namespace {
 
-/// The node whose J an end of a spring adds to.
-int sink(const MomentumDispersion& law, const Network& network, int node) {
-  return law.group.empty() ? network.master(node) : law.group[network.master(node)];
-}
-
-struct Coefficients {
-  std::vector<std::array<double, 2>> in;    ///< a_si, a_sj
-  std::vector<std::array<double, 2>> out;   ///< c_si, c_sj
-};
-
-Coefficients coefficients(const MomentumDispersion& law, const Network& network) {
-  const std::size_t springs = network.springs.size();
-  Coefficients c;
-  c.in.resize(springs);
-  c.out.resize(springs);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());  // what each node's outflow is divided by
-  for (std::size_t s = 0; s < springs; ++s) {
-    const Spring& spring = network.springs[s];
-    const double k = spring.stiffness, L = spring.rest_length;
-    for (int end = 0; end < 2; ++end) {
-      double norm = 1;
-      switch (law.form) {
-        case Dispersion::symmetric: {
-          const double w = law.weight.empty() ? k * L : law.weight[2 * s + end];
-          c.in[s][end] = w;
-          c.out[s][end] = law.q * w;
-          norm = w * L;
-          break;
-        }
-        case Dispersion::share_weighted:
-          norm = law.weight.empty() ? 1 : law.weight[s];
-          c.in[s][end] = law.q * k * L;
-          c.out[s][end] = norm / L;
-          break;
-        case Dispersion::published:
-          c.in[s][end] = law.q * k * L;
-          c.out[s][end] = 1 / L;
-          break;
-        case Dispersion::published_transposed:
-          c.in[s][end] = law.q * k / L;
-          c.out[s][end] = L;
-          break;
-      }
-      sum[sink(law, network, end == 0 ? spring.i : spring.j)] += norm;
-    }
-  }
-  for (std::size_t s = 0; s < springs; ++s) {
-    c.out[s][0] /= sum[sink(law, network, network.springs[s].i)];
-    c.out[s][1] /= sum[sink(law, network, network.springs[s].j)];
-  }
-  return c;
-}
+using Coefficients = MomentumDispersion::Coefficients;
 
 Eigen::VectorXd inflow_of(const MomentumDispersion& law, const Coefficients& c, const Network& network, const NodalVectors& x) {
   Eigen::VectorXd J = Eigen::VectorXd::Zero(network.nodes());
   for (std::size_t n = 0; n < c.in.size(); ++n) {
     const Spring& s = network.springs[n];
     const double elongation = (x.row(s.j) - x.row(s.i)).norm() - s.rest_length;
-    J[sink(law, network, s.i)] += c.in[n][0] * elongation;
-    J[sink(law, network, s.j)] += c.in[n][1] * elongation;
+    J[law.sink(network, s.i)] += c.in[n][0] * elongation;
+    J[law.sink(network, s.j)] += c.in[n][1] * elongation;
   }
   return J;
 }
 
 double tension(const MomentumDispersion& law, const Coefficients& c, const Network& network, const Eigen::VectorXd& J, std::size_t s) {
   const Spring& spring = network.springs[s];
-  return c.out[s][0] * J[sink(law, network, spring.i)] + c.out[s][1] * J[sink(law, network, spring.j)];
+  return c.out[s][0] * J[law.sink(network, spring.i)] + c.out[s][1] * J[law.sink(network, spring.j)];
 }
 
 void add_forces_of(const MomentumDispersion& law, const Coefficients& c, const Network& network, const NodalVectors& x,
@@ -88,9 +37,52 @@ void add_forces_of(const MomentumDispersion& law, const Coefficients& c, const N
 
 }  // namespace
 
+MomentumDispersion::Coefficients MomentumDispersion::coefficients(const Network& network) const {
+  const std::size_t springs = network.springs.size();
+  Coefficients c;
+  c.in.resize(springs);
+  c.out.resize(springs);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());  // what each node's outflow is divided by
+  for (std::size_t s = 0; s < springs; ++s) {
+    const Spring& spring = network.springs[s];
+    const double k = spring.stiffness, L = spring.rest_length;
+    for (int end = 0; end < 2; ++end) {
+      double norm = 1;
+      switch (form) {
+        case Dispersion::symmetric: {
+          const double w = weight.empty() ? k * L : weight[2 * s + end];
+          c.in[s][end] = w;
+          c.out[s][end] = q * w;
+          norm = w * L;
+          break;
+        }
+        case Dispersion::share_weighted:
+          norm = weight.empty() ? 1 : weight[s];
+          c.in[s][end] = q * k * L;
+          c.out[s][end] = norm / L;
+          break;
+        case Dispersion::published:
+          c.in[s][end] = q * k * L;
+          c.out[s][end] = 1 / L;
+          break;
+        case Dispersion::published_transposed:
+          c.in[s][end] = q * k / L;
+          c.out[s][end] = L;
+          break;
+      }
+      sum[sink(network, end == 0 ? spring.i : spring.j)] += norm;
+    }
+  }
+  for (std::size_t s = 0; s < springs; ++s) {
+    c.out[s][0] /= sum[sink(network, network.springs[s].i)];
+    c.out[s][1] /= sum[sink(network, network.springs[s].j)];
+  }
+  return c;
+}
+
 double MomentumDispersion::energy(const Network& network, const NodalVectors& x) const {
   if (!conservative()) return 0;
-  const Coefficients c = coefficients(*this, network);
+  const Coefficients c = coefficients(network);
   const Eigen::VectorXd J = inflow_of(*this, c, network, x);
   double sum = 0;  // half of tension times elongation: the energy is quadratic in the elongations
   for (std::size_t s = 0; s < network.springs.size(); ++s) {
@@ -101,33 +93,33 @@ double MomentumDispersion::energy(const Network& network, const NodalVectors& x)
 }
 
 Eigen::VectorXd MomentumDispersion::inflow(const Network& network, const NodalVectors& x) const {
-  return inflow_of(*this, coefficients(*this, network), network, x);
+  return inflow_of(*this, coefficients(network), network, x);
 }
 
 void MomentumDispersion::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
-  const Coefficients c = coefficients(*this, network);
+  const Coefficients c = coefficients(network);
   add_forces_of(*this, c, network, x, inflow_of(*this, c, network, x), f);
 }
 
 void MomentumDispersion::add_forces(const Network& network, const NodalVectors& x, const Eigen::VectorXd& J,
                                     NodalVectors& f) const {
-  add_forces_of(*this, coefficients(*this, network), network, x, J, f);
+  add_forces_of(*this, coefficients(network), network, x, J, f);
 }
 
 std::vector<double> MomentumDispersion::tensions(const Network& network, const Eigen::VectorXd& J) const {
-  const Coefficients c = coefficients(*this, network);
+  const Coefficients c = coefficients(network);
   std::vector<double> T(network.springs.size());
   for (std::size_t s = 0; s < T.size(); ++s) T[s] = tension(*this, c, network, J, s);
   return T;
 }
 
 std::vector<double> MomentumDispersion::stiffness_bound(const Network& network, bool of_size) const {
-  const Coefficients c = coefficients(*this, network);
+  const Coefficients c = coefficients(network);
   Eigen::VectorXd in = Eigen::VectorXd::Zero(network.nodes()), out = in, product = in;  // |a|^2, |c|^2, a . c
   for (std::size_t s = 0; s < c.in.size(); ++s) {
     const Spring& spring = network.springs[s];
     for (int end = 0; end < 2; ++end) {
-      const int n = sink(*this, network, end == 0 ? spring.i : spring.j);
+      const int n = sink(network, end == 0 ? spring.i : spring.j);
       in[n] += c.in[s][end] * c.in[s][end] / spring.stiffness;
       out[n] += c.out[s][end] * c.out[s][end] / spring.stiffness;
       product[n] += c.in[s][end] * c.out[s][end] / spring.stiffness;
@@ -139,13 +131,13 @@ std::vector<double> MomentumDispersion::stiffness_bound(const Network& network, 
   std::vector<double> k(c.in.size());
   for (std::size_t s = 0; s < k.size(); ++s) {
     const Spring& spring = network.springs[s];
-    k[s] = spring.stiffness * (R[sink(*this, network, spring.i)] + R[sink(*this, network, spring.j)]);
+    k[s] = spring.stiffness * (R[sink(network, spring.i)] + R[sink(network, spring.j)]);
   }
   return k;
 }
 
 void MomentumDispersion::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
-  const Coefficients c = coefficients(*this, network);
+  const Coefficients c = coefficients(network);
   const Eigen::VectorXd J = inflow_of(*this, c, network, x);
   if (J.isZero(0)) return;
   for (std::size_t n = 0; n < c.in.size(); ++n) {
@@ -162,7 +154,7 @@ void MomentumDispersion::add_tangent(const Network& network, const NodalVectors&
 }
 
 void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x, Tangent& K) const {
-  const Coefficients c = coefficients(*this, network);
+  const Coefficients c = coefficients(network);
   std::vector<Eigen::Triplet<double>> in, out;
   in.reserve(12 * c.in.size());
   out.reserve(12 * c.in.size());
@@ -170,7 +162,7 @@ void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x,
     const Spring& s = network.springs[n];
     const Vec3 e = (x.row(s.j) - x.row(s.i)).transpose().normalized();
     for (int end = 0; end < 2; ++end) {
-      const int node = sink(*this, network, end == 0 ? s.i : s.j);
+      const int node = sink(network, end == 0 ? s.i : s.j);
       for (int d = 0; d < 3; ++d) {
         in.emplace_back(node, 3 * s.j + d, c.in[n][end] * e[d]);
         in.emplace_back(node, 3 * s.i + d, -c.in[n][end] * e[d]);

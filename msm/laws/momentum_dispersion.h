@@ -1,6 +1,7 @@
 // Force law: momentum dispersion of eMSM, which gives springs any Poisson's ratio.  Kot & Nagahashi (2015), sec. 3-5.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,16 @@ struct MomentumDispersion {
   Eigen::VectorXd inflow(const Network& network, const NodalVectors& x) const;
   /// The forces that given inflows cause at x.
   void add_forces(const Network& network, const NodalVectors& x, const Eigen::VectorXd& J, NodalVectors& f) const;
+  /// What passes per spring and end, i then j.
+  struct Coefficients {
+    std::vector<std::array<double, 2>> in;   ///< a_si, a_sj
+    std::vector<std::array<double, 2>> out;  ///< c_si, c_sj
+  };
+  Coefficients coefficients(const Network& network) const;
+
+  /// The node whose J the springs at a node add to.
+  int sink(const Network& network, int node) const { return group.empty() ? network.master(node) : group[network.master(node)]; }
+
   /// The tension that given inflows add to each spring [N].
   std::vector<double> tensions(const Network& network, const Eigen::VectorXd& J) const;
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 
-#include "msm/solve/time_step.h"
+#include "msm/kernels/list_forces.h"
 #include "msm/solve/cost.h"
+#include "msm/solve/time_step.h"
 
 namespace springproof {
 namespace {
@@ -25,92 +27,127 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
   return dt;
 }
 
-/// Internal forces of a model; lagged: with the J that its nodes had at the step before.
-class Forces {
- public:
-  Forces(const MassSpringModel& model, bool lagged) : model_(model), dispersion_(lagged ? dispersion_of(model) : nullptr) {}
-
-  NodalVectors at(const NodalVectors& x) {
-    if (!dispersion_) return forces(model_, x);
-    NodalVectors f = NodalVectors::Zero(x.rows(), 3);
-    for (const ForceLaw& law : model_.laws)
-      if (!std::holds_alternative<MomentumDispersion>(law)) std::visit([&](const auto& l) { l.add_forces(model_.network, x, f); }, law);
-    const Eigen::VectorXd J = dispersion_->inflow(model_.network, x);
-    dispersion_->add_forces(model_.network, x, J_.size() > 0 ? J_ : J, f);
-    J_ = J;
-    return f;
-  }
-
- private:
-  const MassSpringModel& model_;
-  const MomentumDispersion* dispersion_;  ///< nullptr: nothing lags
-  Eigen::VectorXd J_;
+/// What moves the nodes.
+struct Motion {
+  virtual ~Motion() = default;
+  virtual void set_conditions(const BoundaryConditions& conditions) = 0;
+  virtual void move_supports() = 0;  ///< at once
+  virtual ForceNorms advance(long steps) = 0;
+  virtual NodalVectors positions() const = 0;
+  virtual NodalVectors velocities() const = 0;
+  virtual std::string description() const = 0;
 };
 
-/// What moves the nodes: the plain loops, or a kernel.
-class Motion {
+/// Any model, by the plain force loops.
+class PlainMotion : public Motion {
  public:
-  Motion(const MassSpringModel& model, double density, const DynamicsOptions& options)
-      : model_(model), x_(model.network.X), v_(NodalVectors::Zero(x_.rows(), 3)), internal_(model, options.lagged),
-        inverse_mass_(masses(model.network, density).cwiseInverse()) {
-    if (!options.lagged && LatticeMotion::suits(model)) {
-      LatticeMotionOptions kernel;
-      kernel.precision = options.precision;
-      kernel.threads = options.threads;
-      lattice_.emplace(model, density, kernel);
-    }
-  }
+  PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping, bool lagged)
+      : model_(model), dispersion_(lagged ? dispersion_of(model) : nullptr), inverse_mass_(inverse_mass), dt_(time_step),
+        damping_(damping), x_(model.network.X), v_(NodalVectors::Zero(x_.rows(), 3)) {}
 
-  void set_conditions(const BoundaryConditions& bc) {
-    bc_ = bc;
-    if (lattice_) lattice_->set_conditions(bc);
-  }
+  void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
 
-  void move_supports() {
-    if (lattice_) return lattice_->move_supports();
+  void move_supports() override {
     for (Eigen::Index i = 0; i < x_.size(); ++i)
-      if (bc_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + bc_.prescribed.data()[i];
+      if (conditions_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
   }
 
-  ForceNorms advance(long steps, double dt, double damping) {
-    if (lattice_) return lattice_->advance(steps, dt, damping);
+  ForceNorms advance(long steps) override {
     ForceNorms norms;
-    for (; steps > 0; --steps) norms = plain_step(dt, damping);
+    for (; steps > 0; --steps) norms = step();
     return norms;
   }
 
-  NodalVectors positions() const { return lattice_ ? lattice_->positions() : x_; }
-  NodalVectors velocities() const { return lattice_ ? lattice_->velocities() : v_; }
-  const Eigen::VectorXd& inverse_mass() const { return inverse_mass_; }
-  const BoundaryConditions& conditions() const { return bc_; }
-  std::string description() const { return lattice_ ? lattice_->description() : "plain loops"; }
+  NodalVectors positions() const override { return x_; }
+  NodalVectors velocities() const override { return v_; }
+  std::string description() const override { return "plain loops"; }
 
  private:
-  ForceNorms plain_step(double dt, double damping) {
-    const NodalVectors f = internal_.at(x_);
+  ForceNorms step() {
+    const NodalVectors f = forces_at_x();
     double unbalanced = 0, support = 0;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      const double force = f.data()[i] + bc_.external.data()[i];
-      if (bc_.fixed[i]) {
-        support += force * force;
-        continue;
-      }
-      unbalanced += force * force;
+      const double force = f.data()[i] + conditions_.external.data()[i];
+      (conditions_.fixed[i] ? support : unbalanced) += force * force;
+      if (conditions_.fixed[i]) continue;
       double& speed = v_.data()[i];
-      speed = (speed + dt * force * inverse_mass_[i / 3]) / (1 + dt * damping);
-      x_.data()[i] += dt * speed;
+      speed = (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
+      x_.data()[i] += dt_ * speed;
     }
     move_supports();
     return {std::sqrt(unbalanced), std::sqrt(support)};
   }
 
+  /// Lagged: with the J that the nodes had at the step before.
+  NodalVectors forces_at_x() {
+    if (!dispersion_) return forces(model_, x_);
+    NodalVectors f = NodalVectors::Zero(x_.rows(), 3);
+    for (const ForceLaw& law : model_.laws)
+      if (!std::holds_alternative<MomentumDispersion>(law)) std::visit([&](const auto& l) { l.add_forces(model_.network, x_, f); }, law);
+    const Eigen::VectorXd J = dispersion_->inflow(model_.network, x_);
+    dispersion_->add_forces(model_.network, x_, J_.size() > 0 ? J_ : J, f);
+    J_ = J;
+    return f;
+  }
+
   const MassSpringModel& model_;
+  const MomentumDispersion* dispersion_;  ///< nullptr: nothing lags
+  Eigen::VectorXd inverse_mass_, J_;
+  double dt_, damping_;
   NodalVectors x_, v_;
-  Forces internal_;
-  Eigen::VectorXd inverse_mass_;
-  BoundaryConditions bc_;
-  std::optional<LatticeMotion> lattice_;
+  BoundaryConditions conditions_;
 };
+
+/// Networks of springs, with or without momentum dispersion.
+template <class Real>
+class MotionOfList : public Motion {
+ public:
+  MotionOfList(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping, bool lagged)
+      : motion_(model, inverse_mass, time_step, damping, lagged) {}
+
+  void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
+  void move_supports() override { motion_.place_prescribed(); }
+  ForceNorms advance(long steps) override {
+    SquaredForces squared;
+    for (; steps > 0; --steps) squared = motion_.step();
+    return {std::sqrt(squared.unbalanced), std::sqrt(squared.support)};
+  }
+  NodalVectors positions() const override { return motion_.positions(); }
+  NodalVectors velocities() const override { return motion_.velocities(); }
+  std::string description() const override {
+    return fmt::format("list kernel, {}, {}", sizeof(Real) == 4 ? "FP32" : "FP64", name_of(instruction_set()));
+  }
+
+ private:
+  ListMotion<Real> motion_;
+};
+
+/// Lattices that have a kernel.
+class MotionOfLattice : public Motion {
+ public:
+  MotionOfLattice(const MassSpringModel& model, double density, double time_step, const DynamicsOptions& options)
+      : motion_(model, density, {.precision = options.precision, .threads = options.threads}), dt_(time_step), damping_(options.damping) {}
+
+  void set_conditions(const BoundaryConditions& conditions) override { motion_.set_conditions(conditions); }
+  void move_supports() override { motion_.move_supports(); }
+  ForceNorms advance(long steps) override { return motion_.advance(steps, dt_, damping_); }
+  NodalVectors positions() const override { return motion_.positions(); }
+  NodalVectors velocities() const override { return motion_.velocities(); }
+  std::string description() const override { return motion_.description(); }
+
+ private:
+  LatticeMotion motion_;
+  double dt_, damping_;
+};
+
+std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double dt, const DynamicsOptions& options) {
+  if (!options.lagged && LatticeMotion::suits(model)) return std::make_unique<MotionOfLattice>(model, density, dt, options);
+  const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
+  if (!ListForces<double>::covers(model)) return std::make_unique<PlainMotion>(model, inverse_mass, dt, options.damping, options.lagged);
+  if (options.precision == Precision::float32)
+    return std::make_unique<MotionOfList<float>>(model, inverse_mass, dt, options.damping, options.lagged);
+  return std::make_unique<MotionOfList<double>>(model, inverse_mass, dt, options.damping, options.lagged);
+}
 
 constexpr long steps_between_looks = 10;  // at whether the nodes are at rest, or lost
 
@@ -126,10 +163,11 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   DynamicsResult result;
   const double dt = result.time_step = checked_time_step(model, density, options);
   const NodalVectors& X = model.network.X;
-  Motion motion(model, density, options);
+  const std::unique_ptr<Motion> motion = make_motion(model, density, dt, options);
   bool ramping = options.ramp > 0;
-  motion.set_conditions(load_path(ramping ? 0.0 : 1.0));
-  motion.move_supports();
+  BoundaryConditions bc = load_path(ramping ? 0.0 : 1.0);
+  motion->set_conditions(bc);
+  motion->move_supports();
   const long last = static_cast<long>(std::ceil(options.duration / dt));
   Equilibrium& state = result.state;
   bool at_rest = false;
@@ -137,26 +175,26 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
     result.time = result.steps * dt;
     if (ramping) {
       const double factor = std::min(1.0, result.time / options.ramp);
-      motion.set_conditions(load_path(factor));
+      bc = load_path(factor);
+      motion->set_conditions(bc);
       ramping = factor < 1;
     }
     const long steps = ramping || options.after_step ? 1 : std::min(steps_between_looks, last - result.steps);
-    const ForceNorms norms = motion.advance(steps, dt, options.damping);
+    const ForceNorms norms = motion->advance(steps);
     result.steps += steps;
-    if (options.after_step) options.after_step(result.steps * dt, motion.positions(), motion.velocities());
-    const double scale = std::max(norms.support, motion.conditions().external.norm());
+    if (options.after_step) options.after_step(result.steps * dt, motion->positions(), motion->velocities());
+    const double scale = std::max(norms.support, bc.external.norm());
     state.residual = scale > 0 ? norms.unbalanced / scale : 0;
     if (!std::isfinite(state.residual)) {
       state.message = fmt::format("the motion diverged at t = {:.4g} s", result.steps * dt);
       return result;
     }
     at_rest = !ramping && options.rest_tolerance > 0 && state.residual < options.rest_tolerance &&
-              motion.velocities().norm() * options.damping * dt < options.rest_tolerance * (motion.positions() - X).norm();
+              motion->velocities().norm() * options.damping * dt < options.rest_tolerance * (motion->positions() - X).norm();
   }
-  const NodalVectors x = motion.positions(), v = motion.velocities();
-  const BoundaryConditions& bc = motion.conditions();
+  const NodalVectors x = motion->positions(), v = motion->velocities();
   result.time = result.steps * dt;
-  result.kinetic_energy = 0.5 * (v.rowwise().squaredNorm().array() / motion.inverse_mass().array()).sum();
+  result.kinetic_energy = 0.5 * (v.rowwise().squaredNorm().array() * masses(model.network, density).array()).sum();
   state.ok = options.rest_tolerance == 0 || at_rest;
   if (!state.ok)
     state.message = fmt::format("not at rest after {:.4g} s: unbalanced force {:.2e} of the supports'", result.time,
@@ -167,7 +205,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
     if (!bc.fixed[i]) state.support.data()[i] = 0;
     state.unknowns += !bc.fixed[i];
   }
-  state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s, {}", result.steps, dt, motion.description());
+  state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s, {}", result.steps, dt, motion->description());
   state.iterations = static_cast<int>(result.steps);
   state.seconds = cpu_seconds() - start;
   state.memory_MiB = peak_memory_MiB();

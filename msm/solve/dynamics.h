@@ -16,7 +16,7 @@ struct DynamicsOptions {
   double ramp = 0;                   ///< the load grows linearly over this time [s]; 0 = at once
   double duration = 10;              ///< [s]
   double rest_tolerance = 0;         ///< stop when unbalanced and inertial forces fall below this fraction; 0 = never
-  Precision precision = Precision::float64;  ///< of the lattice kernel; other models have float64 only
+  Precision precision = Precision::float64;  ///< of the kernels; the plain loops have float64 only
   int threads = 1;                   ///< of the lattice kernel
   bool lagged = false;               ///< nodes disperse the J of the step before; Kot & Nagahashi (2015), sec. 7
   /// Called after every step with the time, positions [m] and the velocity of the step [m/s].
@@ -38,8 +38,8 @@ struct DynamicsResult {
 /// fraction, which the lag itself damps.  Forms without an energy may need more.
 double lagged_damping(const MassSpringModel& model, double density, double time_step);
 
-/// Steps v += dt (f/m - damping v), x += dt v (the damping implicit), prescribed unknowns on their path.  Lattices that
-/// have a kernel (LatticeMotion) are stepped by it, and asked every few steps whether they are at rest.
+/// Steps v += dt (f/m - damping v), x += dt v (the damping implicit), prescribed unknowns on their path.  Models that
+/// have a kernel (LatticeMotion, ListMotion) are stepped by it.  Whether they are at rest is asked every few steps.
 /// @throws InputError if the time step exceeds safe_time_step(), if the damping is negative, or, lagged, not above
 ///   lagged_damping(); the bound is in the message.
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,

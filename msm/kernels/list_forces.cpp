@@ -1,0 +1,184 @@
+#include "msm/kernels/list_forces.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <type_traits>
+
+namespace springproof {
+namespace {
+
+template <class Real>
+std::vector<Padded<Real>> zeros(const SpringBlocks& blocks) {
+  return std::vector<Padded<Real>>(blocks.order.size(), Padded<Real>{});
+}
+
+template <class Real>
+void by_place(const SpringBlocks& blocks, const NodalVectors& v, std::vector<Padded<Real>>& out) {
+  for (int p = 0; p < blocks.nodes(); ++p)
+    for (int d = 0; d < 3; ++d) out[p].v[d] = static_cast<Real>(v(blocks.order[p], d));
+}
+
+}  // namespace
+
+template <class Real>
+const ListKernels<Real>& list_kernels(InstructionSet set) {
+  constexpr bool is_double = std::is_same_v<Real, double>;
+#define SPRINGPROOF_KERNELS_OF(instruction_set)                  \
+  if constexpr (is_double) return instruction_set::list_double; \
+  else return instruction_set::list_float
+#ifdef SPRINGPROOF_X86_KERNELS
+  if (set == InstructionSet::avx2) {
+    SPRINGPROOF_KERNELS_OF(avx2);
+  }
+  if (set == InstructionSet::avx512) {
+    SPRINGPROOF_KERNELS_OF(avx512);
+  }
+#endif
+  SPRINGPROOF_KERNELS_OF(portable);
+#undef SPRINGPROOF_KERNELS_OF
+}
+
+template const ListKernels<double>& list_kernels<double>(InstructionSet set);
+template const ListKernels<float>& list_kernels<float>(InstructionSet set);
+
+template <class Real>
+ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network, const SpringBlocks& blocks,
+                                             const ListDispersionScales& scales) {
+  const MomentumDispersion::Coefficients c = law.coefficients(network);
+  a_i = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.in(s) * c.in[s][end]; });
+  a_j = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.in(s) * c.in[s][1 - end]; });
+  c_i = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.out(s) * c.out[s][end]; });
+  c_j = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.out(s) * c.out[s][1 - end]; });
+  if (law.group.empty() && network.image_of.empty()) return;
+  std::vector<int> place(blocks.order.size());
+  for (int p = 0; p < blocks.nodes(); ++p) place[blocks.order[p]] = p;
+  for (int node : blocks.order) sink.push_back(place[law.sink(network, node)]);
+}
+
+template <class Real>
+void ListDispersionData<Real>::share(std::vector<Real>& J) const {
+  if (sink.empty()) return;
+  std::vector<Real> total(J.size(), 0);
+  for (std::size_t p = 0; p < J.size(); ++p) total[sink[p]] += J[p];
+  for (std::size_t p = 0; p < J.size(); ++p) J[p] = total[sink[p]];
+}
+
+template <class Real>
+bool ListForces<Real>::covers(const MassSpringModel& model) {
+  int springs = 0, dispersions = 0;
+  for (const ForceLaw& law : model.laws) {
+    springs += std::holds_alternative<Springs>(law);
+    dispersions += std::holds_alternative<MomentumDispersion>(law);
+  }
+  return springs == 1 && dispersions <= 1 && springs + dispersions == static_cast<int>(model.laws.size());
+}
+
+template <class Real>
+ListForces<Real>::ListForces(const MassSpringModel& model, InstructionSet set)
+    : kernels_(&list_kernels<Real>(set)), blocks_(model.network), x_(zeros<Real>(blocks_)), f_(x_) {
+  if (!covers(model)) throw std::invalid_argument("list forces are of springs and momentum dispersion only");
+  const Network& network = model.network;
+  k_ = blocks_.per_entry<Real>(network, [&](int s, int) { return network.springs[s].stiffness; });
+  kL_ = blocks_.per_entry<Real>(network, [&](int s, int) { return network.springs[s].stiffness * network.springs[s].rest_length; });
+  const MomentumDispersion* law = dispersion_of(model);
+  if (!law) return;
+  L_ = blocks_.per_entry<Real>(network, [&](int s, int) { return network.springs[s].rest_length; });
+  dispersion_.emplace_back(*law, network, blocks_);
+  inverse_length_.resize(blocks_.entries());
+}
+
+template <class Real>
+void ListForces<Real>::add(const Padded<Real>* x, Padded<Real>* f, bool lagged) {
+  const ListPattern pattern = blocks_.pattern();
+  const ListSprings<Real> springs = {k_.data(), kL_.data(), L_.data()};
+  if (dispersion_.empty()) return kernels_->spring_forces(pattern, springs, x, f);
+  const ListDispersion<Real> dispersion = dispersion_.front().arrays();
+  old_J_.swap(J_);
+  J_.assign(blocks_.order.size(), 0);
+  kernels_->inflow(pattern, springs, dispersion, x, J_.data(), inverse_length_.data());
+  dispersion_.front().share(J_);
+  const std::vector<Real>& J = lagged && !old_J_.empty() ? old_J_ : J_;
+  kernels_->dispersed_forces(pattern, springs, dispersion, x, J.data(), inverse_length_.data(), f);
+}
+
+template <class Real>
+void ListForces<Real>::at(const NodalVectors& x, NodalVectors& f) {
+  by_place(blocks_, x, x_);
+  std::fill(f_.begin(), f_.end(), Padded<Real>{});
+  add(x_.data(), f_.data());
+  f.resize(x.rows(), 3);
+  for (int p = 0; p < blocks_.nodes(); ++p)
+    for (int d = 0; d < 3; ++d) f(blocks_.order[p], d) = f_[p].v[d];
+}
+
+template <class Real>
+ListMotion<Real>::ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping,
+                             bool lagged, InstructionSet set)
+    : forces_(model, set), X_(model.network.X), inverse_mass_(inverse_mass), time_step_(time_step), damping_(damping), lagged_(lagged) {
+  x_ = v_ = f_ = gain_ = external_ = prescribed_ = zeros<Real>(forces_.blocks());
+  by_place(forces_.blocks(), X_, x_);
+}
+
+template <class Real>
+void ListMotion<Real>::load(const BoundaryConditions& conditions) {
+  const std::vector<int>& order = forces_.blocks().order;
+  by_place(forces_.blocks(), conditions.external, external_);
+  for (std::size_t p = 0; p < order.size(); ++p)
+    for (int d = 0; d < 3; ++d) {
+      const int n = order[p];
+      const bool fixed = conditions.fixed[3 * n + d];
+      gain_[p].v[d] = fixed ? 0 : static_cast<Real>(time_step_ * inverse_mass_[n] / (1 + time_step_ * damping_));
+      prescribed_[p].v[d] = static_cast<Real>(X_(n, d) + conditions.prescribed(n, d));
+    }
+  moved_ = true;
+}
+
+template <class Real>
+void ListMotion<Real>::place_prescribed() {
+  for (std::size_t p = 0; p < x_.size(); ++p)
+    for (int d = 0; d < 3; ++d)
+      if (gain_[p].v[d] == 0) x_[p].v[d] = prescribed_[p].v[d];
+  moved_ = false;
+}
+
+template <class Real>
+SquaredForces ListMotion<Real>::step() {
+  forces_.add(x_.data(), f_.data(), lagged_);
+  ListStep<Real> s;
+  s.nodes = static_cast<long>(x_.size());
+  s.dt = static_cast<Real>(time_step_);
+  s.decay = static_cast<Real>(1 / (1 + time_step_ * damping_));
+  s.gain = gain_.data();
+  s.external = external_.data();
+  s.x = x_.data();
+  s.v = v_.data();
+  s.f = f_.data();
+  const SquaredForces squared = forces_.kernels().step(s);
+  if (moved_) place_prescribed();
+  return squared;
+}
+
+template <class Real>
+NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>& v) const {
+  NodalVectors out(X_.rows(), 3);
+  for (std::size_t p = 0; p < v.size(); ++p)
+    for (int d = 0; d < 3; ++d) out(forces_.blocks().order[p], d) = v[p].v[d];
+  return out;
+}
+
+template <class Real>
+NodalVectors ListMotion<Real>::positions() const {
+  return in_network_order(x_);
+}
+
+template <class Real>
+NodalVectors ListMotion<Real>::velocities() const {
+  return in_network_order(v_);
+}
+
+template class ListForces<double>;
+template class ListForces<float>;
+template class ListMotion<double>;
+template class ListMotion<float>;
+
+}  // namespace springproof

@@ -1,0 +1,250 @@
+// Springs in blocks of four from one node.  Four differences of padded vectors give four squared lengths by shuffles, the
+// roots are taken in full registers, and each tension multiplies its own difference again: no transposes, and whole nodes
+// are loaded and stored, so that two lanes may share a node.
+#include "msm/kernels/list_kernels.h"
+#include "msm/kernels/simd.h"
+
+namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
+namespace {
+
+template <class Real, int n>
+struct VectorOf {
+  typedef Real type __attribute__((vector_size(n * sizeof(Real)), aligned(sizeof(Real)), may_alias));
+};
+template <class Real>
+struct FourOf {
+  typedef Real type __attribute__((vector_size(4 * sizeof(Real)), may_alias));
+};
+template <class Real>
+using Four = typename FourOf<Real>::type;  // of an aligned address
+
+// Blocks whose roots fill a register.
+template <class Real>
+constexpr int group = Lanes<Real>::size() < 4 ? 1 : static_cast<int>(Lanes<Real>::size()) / 4;
+template <class Real>
+using Wide = typename VectorOf<Real, 4 * group<Real>>::type;
+
+template <class Real>
+inline Four<Real> four(const Padded<Real>* p, int n) {
+  return *reinterpret_cast<const Four<Real>*>(p + n);
+}
+
+template <class Real>
+inline Four<Real>& four(Padded<Real>* p, int n) {
+  return *reinterpret_cast<Four<Real>*>(p + n);
+}
+
+template <class Real>
+inline Four<Real> all(Real s) {
+  return Four<Real>{s, s, s, s};
+}
+
+template <class Real>
+inline Wide<Real> wide(const Real* p) {
+  return *reinterpret_cast<const Wide<Real>*>(p);
+}
+
+template <class Real>
+inline Wide<Real> square_root(Wide<Real> a) {
+  Real lanes[4 * group<Real>];
+  reinterpret_cast<Wide<Real>&>(lanes) = a;
+  for (int l = 0; l < 4 * group<Real>; l += static_cast<int>(Lanes<Real>::size()))
+    store<Real>(stdx::sqrt(load<Real>(lanes + l)), lanes + l);
+  return reinterpret_cast<Wide<Real>&>(lanes);
+}
+
+/// The sums over the lanes of each.
+template <class V>
+inline V sums(const V& a, const V& b, const V& c, const V& d) {
+  const V ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const V cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
+template <class Real>
+inline Wide<Real> join(const Four<Real>* parts) {
+  if constexpr (group<Real> == 1)
+    return parts[0];
+  else if constexpr (group<Real> == 2)
+    return __builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7);
+  else
+    return __builtin_shufflevector(__builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7),
+                                   __builtin_shufflevector(parts[2], parts[3], 0, 1, 2, 3, 4, 5, 6, 7), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9,
+                                   10, 11, 12, 13, 14, 15);
+}
+
+/// What one group of blocks works with.
+template <class Real>
+struct Group {
+  int i[group<Real>];
+  const int* j;
+  Four<Real> d[group<Real>][4];  // x_j - x_i
+
+  inline Group(const ListPattern& p, long block, const Padded<Real>* x) : j(p.j + 4 * block) {
+    for (int g = 0; g < group<Real>; ++g) {
+      i[g] = p.i[block + g];
+      const Four<Real> from = four(x, i[g]);
+      for (int l = 0; l < 4; ++l) d[g][l] = four(x, j[4 * g + l]) - from;
+    }
+  }
+
+  inline Wide<Real> squared_lengths() const {
+    Four<Real> parts[group<Real>];
+    for (int g = 0; g < group<Real>; ++g)
+      parts[g] = sums<Four<Real>>(d[g][0] * d[g][0], d[g][1] * d[g][1], d[g][2] * d[g][2], d[g][3] * d[g][3]);
+    return join<Real>(parts);
+  }
+
+  /// The products with a vector per entry.
+  inline Wide<Real> along(const Padded<Real>* m) const {
+    Four<Real> parts[group<Real>];
+    for (int g = 0; g < group<Real>; ++g)
+      parts[g] = sums<Four<Real>>(d[g][0] * four(m, 4 * g), d[g][1] * four(m, 4 * g + 1), d[g][2] * four(m, 4 * g + 2),
+                                  d[g][3] * four(m, 4 * g + 3));
+    return join<Real>(parts);
+  }
+};
+
+/// f_i += s d, f_j -= s d.
+template <class Real>
+inline void scatter(const int* i, const int* j, const Four<Real> (&d)[group<Real>][4], const Wide<Real>& s, Padded<Real>* f) {
+  for (int g = 0; g < group<Real>; ++g) {
+    const Four<Real> s0 = all<Real>(s[4 * g]), s1 = all<Real>(s[4 * g + 1]), s2 = all<Real>(s[4 * g + 2]), s3 = all<Real>(s[4 * g + 3]);
+    four(f, i[g]) += (s0 * d[g][0] + s1 * d[g][1]) + (s2 * d[g][2] + s3 * d[g][3]);
+    four(f, j[4 * g]) -= s0 * d[g][0];
+    four(f, j[4 * g + 1]) -= s1 * d[g][1];
+    four(f, j[4 * g + 2]) -= s2 * d[g][2];
+    four(f, j[4 * g + 3]) -= s3 * d[g][3];
+  }
+}
+
+/// J_i += a_i e, J_j += a_j e.
+template <class Real>
+inline void add_inflow(const int* i, const int* j, const Wide<Real>& to_i, const Wide<Real>& to_j, Real* J) {
+  for (int g = 0; g < group<Real>; ++g) {
+    J[i[g]] += (to_i[4 * g] + to_i[4 * g + 1]) + (to_i[4 * g + 2] + to_i[4 * g + 3]);
+    for (int l = 4 * g; l < 4 * g + 4; ++l) J[j[l]] += to_j[l];
+  }
+}
+
+/// c_i J_i + c_j J_j.
+template <class Real>
+inline Wide<Real> dispersed(const int* i, const int* j, const ListDispersion<Real>& c, long e, const Real* J) {
+  Wide<Real> at_i, at_j;
+  for (int g = 0; g < group<Real>; ++g)
+    for (int l = 4 * g; l < 4 * g + 4; ++l) {
+      at_i[l] = J[i[g]];
+      at_j[l] = J[j[l]];
+    }
+  return wide(c.c_i + e) * at_i + wide(c.c_j + e) * at_j;
+}
+
+template <class Real>
+void spring_forces(const ListPattern& p, const ListSprings<Real>& springs, const Padded<Real>* x, Padded<Real>* f) {
+  for (long b = 0; b < p.blocks; b += group<Real>) {
+    const Group<Real> at(p, b, x);
+    const Wide<Real> square = at.squared_lengths();  // root and quotient do not wait for each other
+    const Wide<Real> s = wide(springs.k + 4 * b) - wide(springs.kL + 4 * b) / square * square_root<Real>(square);
+    scatter<Real>(at.i, at.j, at.d, s, f);
+  }
+}
+
+template <class Real>
+void inflow(const ListPattern& p, const ListSprings<Real>& springs, const ListDispersion<Real>& dispersion, const Padded<Real>* x,
+            Real* J, Real* inverse_length) {
+  for (long b = 0; b < p.blocks; b += group<Real>) {
+    const Group<Real> at(p, b, x);
+    const Wide<Real> square = at.squared_lengths(), length = square_root<Real>(square);
+    const Wide<Real> e = length - wide(springs.L + 4 * b);
+    *reinterpret_cast<Wide<Real>*>(inverse_length + 4 * b) = length / square;
+    add_inflow<Real>(at.i, at.j, wide(dispersion.a_i + 4 * b) * e, wide(dispersion.a_j + 4 * b) * e, J);
+  }
+}
+
+template <class Real>
+void dispersed_forces(const ListPattern& p, const ListSprings<Real>& springs, const ListDispersion<Real>& dispersion,
+                      const Padded<Real>* x, const Real* J, const Real* inverse_length, Padded<Real>* f) {
+  for (long b = 0; b < p.blocks; b += group<Real>) {
+    const Group<Real> at(p, b, x);
+    const Wide<Real> added = dispersed<Real>(at.i, at.j, dispersion, 4 * b, J);
+    const Wide<Real> s = wide(springs.k + 4 * b) + (added - wide(springs.kL + 4 * b)) * wide(inverse_length + 4 * b);
+    scatter<Real>(at.i, at.j, at.d, s, f);
+  }
+}
+
+template <class Real>
+SquaredForces step(const ListStep<Real>& s) {
+  Four<Real> unbalanced = all<Real>(0), support = unbalanced;
+  SquaredForces sum;
+  for (long n = 0; n < s.nodes; ++n) {
+    const int node = static_cast<int>(n);
+    const Four<Real> gain = four(s.gain, node), force = four(s.f, node) + four(s.external, node);
+    const Four<Real> square = force * force;
+    unbalanced += gain > all<Real>(0) ? square : all<Real>(0);
+    support += gain > all<Real>(0) ? all<Real>(0) : square;
+    const Four<Real> v = s.decay * four(s.v, node) + gain * force;
+    four(s.v, node) = v;
+    four(s.x, node) += s.dt * v;
+    four(s.f, node) = all<Real>(0);
+  }
+  for (int d = 0; d < 3; ++d) {
+    sum.unbalanced += unbalanced[d];
+    sum.support += support[d];
+  }
+  return sum;
+}
+
+template <class Real>
+void stiffness(const ListPattern& p, const Padded<Real>* m, const Padded<Real>* u, Padded<Real>* y) {
+  for (long b = 0; b < p.blocks; b += group<Real>) {
+    const Group<Real> at(p, b, u);
+    const Wide<Real> t = -at.along(m + 4 * b);
+    scatter<Real>(at.i, at.j, reinterpret_cast<const Four<Real>(&)[group<Real>][4]>(m[4 * b]), t, y);
+  }
+}
+
+template <class Real>
+void linear_inflow(const ListPattern& p, const Padded<Real>* m, const ListDispersion<Real>& dispersion, const Padded<Real>* u,
+                   Real* J, Real* kept) {
+  for (long b = 0; b < p.blocks; b += group<Real>) {
+    const Group<Real> at(p, b, u);
+    const Wide<Real> t = at.along(m + 4 * b);
+    *reinterpret_cast<Wide<Real>*>(kept + 4 * b) = t;
+    add_inflow<Real>(at.i, at.j, wide(dispersion.a_i + 4 * b) * t, wide(dispersion.a_j + 4 * b) * t, J);
+  }
+}
+
+template <class Real>
+void linear_forces(const ListPattern& p, const Padded<Real>* m, const ListDispersion<Real>& dispersion, const Real* J,
+                   const Real* kept, Padded<Real>* y) {
+  for (long b = 0; b < p.blocks; b += group<Real>) {
+    const int *i = p.i + b, *j = p.j + 4 * b;
+    const Wide<Real> t = -(wide(kept + 4 * b) + dispersed<Real>(i, j, dispersion, 4 * b, J));
+    scatter<Real>(i, j, reinterpret_cast<const Four<Real>(&)[group<Real>][4]>(m[4 * b]), t, y);
+  }
+}
+
+template <class Real>
+void smooth(const ListSmoothing<Real>& s) {
+  for (long n = 0; n < s.nodes; ++n) {
+    const int node = static_cast<int>(n);
+    const Four<Real> r = four(s.r, node) - four(s.y, node);
+    const Four<Real> Dr = r[0] * four(s.inverse, 3 * node) + r[1] * four(s.inverse, 3 * node + 1) + r[2] * four(s.inverse, 3 * node + 2);
+    const Four<Real> z = s.old_part * four(s.z, node) + s.new_part * Dr;
+    four(s.r, node) = r;
+    four(s.z, node) = z;
+    four(s.x, node) += z;
+    four(s.y, node) = all<Real>(0);
+  }
+}
+
+template <class Real>
+constexpr ListKernels<Real> kernels = {spring_forces<Real>, inflow<Real>,        dispersed_forces<Real>, step<Real>,
+                                       stiffness<Real>,     linear_inflow<Real>, linear_forces<Real>,    smooth<Real>};
+
+}  // namespace
+
+extern const ListKernels<double> list_double = kernels<double>;
+extern const ListKernels<float> list_float = kernels<float>;
+
+}  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

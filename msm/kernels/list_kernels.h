@@ -1,0 +1,102 @@
+// The kernels of networks without a lattice, on plain arrays: what list_kernel.cpp defines once per instruction set.
+#pragma once
+
+namespace springproof {
+
+/// A node's vector, the fourth number 0.
+template <class Real>
+struct alignas(4 * sizeof(Real)) Padded {
+  Real v[4];
+};
+
+constexpr int block_springs = 4;     ///< springs of a block, all from the same node i
+constexpr int blocks_together = 4;   ///< the number of blocks is a multiple of it
+
+/// Springs in blocks; entry 4 b + l is lane l of block b.  A lane that is not needed repeats another's nodes with zeros
+/// for everything it multiplies.
+struct ListPattern {
+  long blocks = 0;
+  const int* i = nullptr;  ///< per block
+  const int* j = nullptr;  ///< per entry
+};
+
+/// Nonlinear springs, per entry.
+template <class Real>
+struct ListSprings {
+  const Real* k = nullptr;       ///< [N/m]
+  const Real* kL = nullptr;      ///< stiffness times rest length [N]
+  const Real* L = nullptr;       ///< rest length [m]; of dispersion only
+};
+
+/// Momentum dispersion, per entry: J_n = sum a e over the springs at n, tension += c_i J_i + c_j J_j.
+template <class Real>
+struct ListDispersion {
+  const Real* a_i = nullptr;
+  const Real* a_j = nullptr;
+  const Real* c_i = nullptr;
+  const Real* c_j = nullptr;
+};
+
+/// One step of semi-implicit Euler: v = decay v + gain (f + external), x += dt v; gain = 0 where held.
+template <class Real>
+struct ListStep {
+  long nodes = 0;
+  Real dt = 0, decay = 1;
+  const Padded<Real>* gain = nullptr;      ///< dt / m / (1 + dt damping)
+  const Padded<Real>* external = nullptr;  ///< [N]
+  Padded<Real>* x = nullptr;
+  Padded<Real>* v = nullptr;
+  Padded<Real>* f = nullptr;               ///< internal forces; 0 afterwards
+};
+
+struct SquaredForces {
+  double unbalanced = 0, support = 0;  ///< [N^2] on free and on held unknowns
+};
+
+/// One step of a Chebyshev smoother over 3x3 node blocks D: r -= y, z = old z + new D^-1 r, x += z, y = 0.
+template <class Real>
+struct ListSmoothing {
+  long nodes = 0;
+  Real old_part = 0, new_part = 0;
+  const Padded<Real>* inverse = nullptr;  ///< three rows per node
+  Padded<Real>* y = nullptr;
+  Padded<Real>* r = nullptr;
+  Padded<Real>* z = nullptr;
+  Padded<Real>* x = nullptr;
+};
+
+template <class Real>
+struct ListKernels {
+  /// f += forces of the springs at x.
+  void (*spring_forces)(const ListPattern&, const ListSprings<Real>&, const Padded<Real>* x, Padded<Real>* f);
+  /// J += sum a e; keeps 1 / length per entry.
+  void (*inflow)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&, const Padded<Real>* x, Real* J,
+                 Real* inverse_length);
+  /// f += forces of springs and dispersion together, with the inverse lengths of inflow() at the same x.
+  void (*dispersed_forces)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&, const Padded<Real>* x,
+                           const Real* J, const Real* inverse_length, Padded<Real>* f);
+  SquaredForces (*step)(const ListStep<Real>&);
+
+  // Small displacements u about a state; m = sqrt(k) times the direction, per entry.
+  /// y += sum m (m . du).
+  void (*stiffness)(const ListPattern&, const Padded<Real>* m, const Padded<Real>* u, Padded<Real>* y);
+  /// J += sum a t, t = m . du kept per entry.
+  void (*linear_inflow)(const ListPattern&, const Padded<Real>* m, const ListDispersion<Real>&, const Padded<Real>* u, Real* J,
+                        Real* t);
+  /// y += sum m (t + c_i J_i + c_j J_j).
+  void (*linear_forces)(const ListPattern&, const Padded<Real>* m, const ListDispersion<Real>&, const Real* J, const Real* t,
+                        Padded<Real>* y);
+  void (*smooth)(const ListSmoothing<Real>&);
+};
+
+#define SPRINGPROOF_LIST_KERNELS(instruction_set) \
+  namespace instruction_set {                     \
+  extern const ListKernels<double> list_double;   \
+  extern const ListKernels<float> list_float;     \
+  }
+SPRINGPROOF_LIST_KERNELS(portable)
+SPRINGPROOF_LIST_KERNELS(avx2)
+SPRINGPROOF_LIST_KERNELS(avx512)
+#undef SPRINGPROOF_LIST_KERNELS
+
+}  // namespace springproof

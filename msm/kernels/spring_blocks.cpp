@@ -1,0 +1,99 @@
+#include "msm/kernels/spring_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace springproof {
+namespace {
+
+/// The lowest 21 bits, two zeros after each.
+std::uint64_t spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+/// Along a Z-curve through cubes of the mean spring length.
+std::vector<int> spatial_order(const Network& network) {
+  std::vector<int> order(network.nodes());
+  std::iota(order.begin(), order.end(), 0);
+  if (network.springs.empty()) return order;
+  double edge = 0;
+  for (const Spring& s : network.springs) edge += s.rest_length / static_cast<double>(network.springs.size());
+  const Eigen::RowVector3d lower = network.X.colwise().minCoeff();
+  std::vector<std::uint64_t> key(order.size());
+  for (int n = 0; n < network.nodes(); ++n) {
+    const Eigen::RowVector3d at = (network.X.row(n) - lower) / edge;
+    for (int d = 0; d < 3; ++d) key[n] |= spread(static_cast<std::uint64_t>(at[d])) << d;
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
+  return order;
+}
+
+struct Half {
+  int other;   ///< place of the other node
+  int spring;
+};
+
+/// Each place's springs, by place.
+struct Adjacency {
+  std::vector<int> begin;
+  std::vector<Half> halves;
+
+  Adjacency(const Network& network, const std::vector<int>& place) : begin(place.size() + 1, 0), halves(2 * network.springs.size()) {
+    for (const Spring& s : network.springs) {
+      ++begin[place[s.i] + 1];
+      ++begin[place[s.j] + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (int s = 0; s < static_cast<int>(network.springs.size()); ++s) {
+      const int i = place[network.springs[s].i], j = place[network.springs[s].j];
+      halves[next[i]++] = {j, s};
+      halves[next[j]++] = {i, s};
+    }
+    for (std::size_t n = 0; n < place.size(); ++n)
+      std::sort(halves.begin() + begin[n], halves.begin() + begin[n + 1], [](const Half& a, const Half& b) { return a.other < b.other; });
+  }
+};
+
+}  // namespace
+
+SpringBlocks::SpringBlocks(const Network& network) : order(spatial_order(network)) {
+  std::vector<int> place(order.size());
+  for (int p = 0; p < nodes(); ++p) place[order[p]] = p;
+  const Adjacency adjacency(network, place);
+  std::vector<char> taken(network.springs.size(), 0);
+  std::vector<Half> open;
+  // A node takes its open springs in fours and leaves the rest to nodes after it; those before it have had their turn.
+  for (int p = 0; p < nodes(); ++p) {
+    open.clear();
+    for (int h = adjacency.begin[p]; h < adjacency.begin[p + 1]; ++h)
+      if (!taken[adjacency.halves[h].spring]) open.push_back(adjacency.halves[h]);
+    const auto must = static_cast<std::size_t>(
+        std::count_if(open.begin(), open.end(), [&](const Half& half) { return half.other < p; }));
+    const std::size_t full = open.size() / 4 * 4, takes = full >= must ? full : open.size();
+    for (std::size_t n = 0; n < takes; ++n) taken[open[n].spring] = 1;
+    for (std::size_t n = 0; n < takes; n += 4) {
+      i.push_back(p);
+      for (std::size_t lane = n; lane < n + 4; ++lane) {
+        j.push_back(open[lane < takes ? lane : n].other);
+        spring.push_back(lane < takes ? open[lane].spring : -1);
+      }
+    }
+  }
+  while (i.size() % blocks_together != 0) {
+    i.push_back(i.back());
+    for (int lane = 0; lane < 4; ++lane) {
+      j.push_back(j.back());
+      spring.push_back(-1);
+    }
+  }
+}
+
+}  // namespace springproof

@@ -1,0 +1,34 @@
+// The springs of a network in the order that the list kernels take them.
+#pragma once
+
+#include <vector>
+
+#include "msm/kernels/list_kernels.h"
+#include "msm/network.h"
+
+namespace springproof {
+
+/// Nodes along a Z-curve through space, so that neighbours lie close in memory; springs in blocks of four that share their
+/// first node.  Which end of a spring comes first is chosen such that nearly all blocks are full.
+struct SpringBlocks {
+  std::vector<int> order;   ///< per place the network's node
+  std::vector<int> i, j;    ///< places: i per block, j per entry (four a block)
+  std::vector<int> spring;  ///< per entry the network's spring; -1: the lane is not needed
+
+  explicit SpringBlocks(const Network& network);
+
+  int nodes() const { return static_cast<int>(order.size()); }
+  std::size_t entries() const { return j.size(); }
+  ListPattern pattern() const { return {static_cast<long>(i.size()), i.data(), j.data()}; }
+
+  /// Per entry value(s, end): s the spring, end 0 where its node i comes first in the block, else 1; 0 in lanes not needed.
+  template <class Real, class Value>
+  std::vector<Real> per_entry(const Network& network, Value value) const {
+    std::vector<Real> values(entries());
+    for (std::size_t e = 0; e < values.size(); ++e)
+      if (spring[e] >= 0) values[e] = static_cast<Real>(value(spring[e], network.springs[spring[e]].i == order[i[e / 4]] ? 0 : 1));
+    return values;
+  }
+};
+
+}  // namespace springproof

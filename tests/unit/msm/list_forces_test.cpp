@@ -1,0 +1,171 @@
+// The list kernels against the plain loops of the laws.
+#include "msm/kernels/list_forces.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "msm/solve/dynamics.h"
+#include "msm/solve/time_step.h"
+#include "msm/topology/random_network.h"
+#include "support/zoo.h"
+
+using namespace springproof;
+using namespace springproof::test;
+
+namespace {
+
+double uniform(std::mt19937& generator) { return generator() / 4294967295.0; }
+
+/// `springs` springs between distinct random pairs of nodes, all constants different.
+Network tangle(int nodes, int springs, unsigned seed) {
+  std::mt19937 generator(seed);
+  Network network;
+  network.X = noise(nodes, 1, seed + 1);
+  std::set<std::pair<int, int>> pairs;
+  while (static_cast<int>(pairs.size()) < springs) {
+    const int i = static_cast<int>(generator() % nodes), j = static_cast<int>(generator() % nodes);
+    if (i < j) pairs.insert({i, j});
+  }
+  for (const auto& [i, j] : pairs)
+    network.springs.push_back({i, j, 0.5 + uniform(generator), (network.X.row(j) - network.X.row(i)).norm() * (0.8 + 0.4 * uniform(generator))});
+  network.volume = Eigen::VectorXd::Constant(nodes, 0.1);
+  return network;
+}
+
+std::vector<MassSpringModel> models_of(const Network& network) {
+  std::vector<MassSpringModel> models = {{network, {Springs{}}}};
+  for (Dispersion form : {Dispersion::symmetric, Dispersion::share_weighted, Dispersion::published, Dispersion::published_transposed})
+    if (network.image_of.empty() || form == Dispersion::symmetric) models.push_back({network, {Springs{}, MomentumDispersion{0.6, form}}});
+  MomentumDispersion weighted{0.6, Dispersion::symmetric};
+  for (std::size_t e = 0; e < 2 * network.springs.size(); ++e) weighted.weight.push_back(0.1 + 0.01 * double(e % 97));
+  if (network.image_of.empty())
+    for (int n = 0; n < network.nodes(); ++n) weighted.group.push_back(n - n % 3);
+  models.push_back({network, {Springs{}, weighted}});
+  return models;
+}
+
+std::vector<MassSpringModel> all_models() {
+  std::vector<Network> networks = {tangle(2, 1, 1), tangle(7, 7, 2), tangle(143, 1003, 3)};
+  networks.push_back(random_network(region_of(block_mesh({7, 6, 5}, {7, 6, 5})), {.spacing = 1.0}));
+  networks.push_back(periodic_random_network({6, 6, 6}, {.spacing = 1.0}));
+  std::vector<MassSpringModel> models;
+  for (const Network& network : networks)
+    for (MassSpringModel& m : models_of(network)) models.push_back(std::move(m));
+  return models;
+}
+
+template <class Real>
+void expect_plain_forces(double tolerance) {
+  for (InstructionSet set : usable_instruction_sets())
+    for (const MassSpringModel& model : all_models()) {
+      const NodalVectors x = model.network.X + noise(model.network.nodes(), 0.05, 9), expected = forces(model, x);
+      NodalVectors f;
+      ListForces<Real> fast(model, set);
+      for (int repeat = 0; repeat < 2; ++repeat) {
+        fast.at(x, f);
+        EXPECT_LE((f - expected).cwiseAbs().maxCoeff(), tolerance * expected.cwiseAbs().maxCoeff())
+            << name_of(set) << ", " << model.network.springs.size() << " springs, " << model.laws.size() << " laws";
+      }
+    }
+}
+
+/// The steps of run_dynamics(), written out.
+void plain_steps(const MassSpringModel& model, const Eigen::VectorXd& mass, const LoadPath& path, const DynamicsOptions& o, int steps,
+                 NodalVectors& x, NodalVectors& v) {
+  const double dt = *o.time_step;
+  x = model.network.X;
+  v = NodalVectors::Zero(x.rows(), 3);
+  Eigen::VectorXd J;
+  for (int step = 0; step < steps; ++step) {
+    const BoundaryConditions bc = path(o.ramp > 0 ? std::min(1.0, step * dt / o.ramp) : 1.0);
+    if (step == 0)
+      for (Eigen::Index i = 0; i < x.size(); ++i)
+        if (bc.fixed[i]) x.data()[i] += bc.prescribed.data()[i];
+    NodalVectors f = forces(model, x);
+    if (const MomentumDispersion* law = o.lagged ? dispersion_of(model) : nullptr) {
+      f.setZero();
+      Springs{}.add_forces(model.network, x, f);
+      const Eigen::VectorXd now = law->inflow(model.network, x);
+      law->add_forces(model.network, x, step == 0 ? now : J, f);
+      J = now;
+    }
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (bc.fixed[i]) {
+        x.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i];
+      } else {
+        v.data()[i] = (v.data()[i] + dt * (f.data()[i] + bc.external.data()[i]) / mass[i / 3]) / (1 + dt * o.damping);
+        x.data()[i] += dt * v.data()[i];
+      }
+  }
+}
+
+}  // namespace
+
+TEST(ListForces, DoubleIsThePlainLoop) { expect_plain_forces<double>(1e-12); }
+
+TEST(ListForces, FloatIsThePlainLoopToSinglePrecision) { expect_plain_forces<float>(1e-5); }
+
+TEST(ListForces, CoverSpringsAndDispersionOnly) {
+  const Network network = tangle(7, 7, 2);
+  EXPECT_TRUE(ListForces<double>::covers({network, {Springs{}}}));
+  EXPECT_TRUE(ListForces<double>::covers({network, {Springs{}, MomentumDispersion{0.1}}}));
+  EXPECT_FALSE(ListForces<double>::covers({network, {MomentumDispersion{0.1}}}));
+  const MassSpringModel corrected{network, {Springs{}, VolumeCorrection{1.0}}};
+  EXPECT_FALSE(ListForces<double>::covers(corrected));
+  EXPECT_THROW(ListForces<double>{corrected}, std::invalid_argument);
+}
+
+TEST(SpringBlocks, HoldEverySpringOnceInNearlyFullBlocks) {
+  const Network network = random_network(region_of(block_mesh({12, 12, 12}, {12, 12, 12})), {.spacing = 1.0});
+  const SpringBlocks blocks(network);
+  std::vector<int> seen(network.springs.size(), 0);
+  for (std::size_t e = 0; e < blocks.entries(); ++e) {
+    ASSERT_NE(blocks.i[e / 4], blocks.j[e]);
+    if (blocks.spring[e] < 0) continue;
+    ++seen[blocks.spring[e]];
+    const Spring& s = network.springs[blocks.spring[e]];
+    EXPECT_EQ(std::minmax(blocks.order[blocks.i[e / 4]], blocks.order[blocks.j[e]]), std::minmax(s.i, s.j));
+  }
+  EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+  EXPECT_EQ(blocks.i.size() % blocks_together, 0u);
+  EXPECT_LE(double(blocks.entries()), 1.02 * double(seen.size()));
+}
+
+TEST(ListMotion, IsThePlainMotion) {
+  const Network network = random_network(region_of(block_mesh({6, 5, 5}, {6, 5, 5})), {.spacing = 1.0});
+  BoundaryConditions full;
+  full.fixed.assign(3 * network.nodes(), 0);
+  full.prescribed = NodalVectors::Zero(network.nodes(), 3);
+  full.external = noise(network.nodes(), 0.01, 4);
+  for (int n = 0; n < network.nodes(); ++n)
+    if (network.X(n, 0) < 0.5) {
+      full.fixed[3 * n] = full.fixed[3 * n + 2] = 1;
+      full.prescribed(n, 2) = 0.1;
+    }
+  const LoadPath path = [&](double factor) {
+    BoundaryConditions bc = full;
+    bc.prescribed *= factor;
+    bc.external *= factor;
+    return bc;
+  };
+  for (const MassSpringModel& model : models_of(network))
+    for (double ramp : {0.0, 0.8})
+      for (bool lagged : {false, true}) {
+        DynamicsOptions options;
+        options.ramp = ramp;
+        options.lagged = lagged;
+        options.damping = 5;
+        options.time_step = 0.2 * safe_time_step(model, 1, lagged);
+        options.duration = 59.5 * *options.time_step;
+        NodalVectors x, v;
+        plain_steps(model, masses(network, 1), path, options, 60, x, v);
+        NodalVectors last_v;
+        options.after_step = [&](double, const NodalVectors&, const NodalVectors& now) { last_v = now; };
+        const DynamicsResult result = run_dynamics(model, 1, path, options);
+        ASSERT_EQ(result.steps, 60);
+        const NodalVectors u = x - network.X;
+        EXPECT_LE((result.state.displacement - u).cwiseAbs().maxCoeff(), 1e-11 * u.cwiseAbs().maxCoeff());
+        EXPECT_LE((last_v - v).cwiseAbs().maxCoeff(), 1e-11 * v.cwiseAbs().maxCoeff());
+      }
+}
