@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <exception>
 
 #include "comparisons/calculix_command.h"
@@ -10,6 +11,7 @@
 #include "comparisons/pictures_command.h"
 #include "comparisons/suite.h"
 #include "fem_reference/reference.h"
+#include "meshes/child.h"
 #include "msm/models.h"
 #include "problem/experiment.h"
 
@@ -40,6 +42,17 @@ int list() {
                            "line                        strain and stress along [line] against Kelvin's solution"})
     fmt::print("  {}\n", line);
   return 0;
+}
+
+int run_bench(const std::vector<std::string>& arguments) {
+  const std::filesystem::path program = find_program("springproof-bench", "SPRINGPROOF_BENCH_PROGRAM");
+  if (program.empty())
+    throw std::runtime_error("the program springproof-bench is neither beside this one nor named by SPRINGPROOF_BENCH_PROGRAM");
+  std::signal(SIGINT, [](int) { interrupt_children(); });
+  std::signal(SIGTERM, [](int) { interrupt_children(); });
+  const ChildEnd end = run_child({program, arguments, {}, {}, {}});
+  if (end.kind == ChildEnd::killed) throw std::runtime_error("springproof-bench " + words_for(end));
+  return end.status;
 }
 
 }  // namespace
@@ -88,22 +101,9 @@ int main(int argc, char** argv) try {
   CLI::App* pictures_command = app.add_subcommand("pictures", "The figures and bodies of a report as PNG files, without a display");
   pictures.add_options(*pictures_command);
 
-  std::string bench_of;
-  std::vector<std::string> bench_arguments = {"--bench"};
-  CLI::App* bench_command = app.add_subcommand("bench", "Measure the solvers: ratios of runs on this machine");
-  bench_command->add_option("WHAT", bench_of, "fem: the reference against assembled PETSc CG + GAMG")
-      ->required()
-      ->check(CLI::IsMember({"fem"}));
-  const auto pass_on = [&](const std::string& option, const std::string& value) {
-    bench_arguments.insert(bench_arguments.end(), {option, value});
-  };
-  bench_command->add_option_function<int>("--cells", [&](int n) { pass_on("--bench-cells", std::to_string(n)); },
-                                          "cells along the side of the cube, a multiple of 8 (default 24)")
-      ->check(CLI::Range(8, 96));
-  bench_command->add_option_function<std::string>("--json", [&](const std::string& f) { pass_on("--json", f); },
-                                                  "write the figures to this file too");
-  bench_command->add_flag_callback("--no-baseline", [&] { bench_arguments.push_back("--no-baseline"); },
-                                   "leave the assembled baseline out (some 3 GB at 24 cells)");
+  CLI::App* bench_command = app.add_subcommand("bench", "Measure what things cost, each beside its baseline (springproof bench --help)");
+  bench_command->set_help_flag();
+  bench_command->prefix_command();  // the program that it starts knows its options
 
   try {
     app.parse(argc, argv);
@@ -112,7 +112,7 @@ int main(int argc, char** argv) try {
   }
   if (*compare_command) return compare(find_cases(names), options);
   if (*list_command) return list();
-  if (*bench_command) return fem::run_program(bench_arguments);
+  if (*bench_command) return run_bench(bench_command->remaining());
   if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();
   if (*pictures_command) return pictures.run();

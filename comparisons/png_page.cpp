@@ -1,12 +1,10 @@
 #include "comparisons/png_page.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
 #include <stdexcept>
 
 #include "meshes/child.h"
@@ -75,12 +73,8 @@ PngPage png_page(const std::string& dom) {
 }
 
 fs::path find_chromium() {
-  const char* path = std::getenv("PATH");
-  for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
-    std::istringstream folders(path ? path : "");
-    for (std::string folder; std::getline(folders, folder, ':');)
-      if (const fs::path file = fs::path(folder) / name; access(file.c_str(), X_OK) == 0) return file;
-  }
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
+    if (const fs::path file = program_on_path(name); !file.empty()) return file;
   return {};
 }
 

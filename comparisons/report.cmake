@@ -39,6 +39,11 @@ set(report_assets
     report_js=${report_dir}/report/verification.js
     report_js=${report_dir}/report/fem_column.js
     report_js=${report_dir}/report/report.js
+    bench_html=${report_dir}/bench/page/bench.html
+    bench_js=${report_dir}/report/data.js
+    bench_js=${report_dir}/report/figure.js
+    bench_js=${report_dir}/report/charts.js
+    bench_js=${report_dir}/bench/page/bench.js
     chart_js=${SPRINGPROOF_CHART_JS}
     three_js=${SPRINGPROOF_THREE_JS}
     orbit_controls_js=${SPRINGPROOF_ORBIT_CONTROLS_JS})
@@ -50,7 +55,7 @@ add_custom_command(
   COMMENT "Embedding the report's page and its libraries"
   VERBATIM)
 
-add_library(report STATIC ${report_dir}/report.cpp ${report_dir}/headline.cpp ${report_dir}/results.cpp ${report_generated})
+add_library(report STATIC ${report_dir}/report.cpp ${report_dir}/page.cpp ${report_dir}/headline.cpp ${report_dir}/results.cpp ${report_generated})
 set(report_view ${CMAKE_BINARY_DIR}/arrows/comparisons)
 file(MAKE_DIRECTORY ${report_view})
 file(CREATE_LINK ${CMAKE_SOURCE_DIR}/comparisons ${report_view}/comparisons SYMBOLIC)

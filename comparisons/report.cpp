@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "comparisons/headline.h"
+#include "comparisons/page.h"
 #include "comparisons/report/assets.h"
 #include "comparisons/results.h"
 
@@ -35,20 +34,6 @@ std::string escaped(std::string_view text) {
       default:
         out += c;
     }
-  }
-  return out;
-}
-
-/// JSON that may stand inside <script>: "<" occurs only in strings, where it can be written as an escape.
-std::string script_json(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string out;
-  out.reserve(text.size());
-  for (char c : text) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
   }
   return out;
 }
@@ -128,23 +113,6 @@ std::string headline_html(const Json& results) {
   out += folded_html("failures", fmt::format("Expectations that fail: {}", head.failed), head.failed_checks);
   out += folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()),
                      head.failed_runs);
-  return out;
-}
-
-/// Puts values[name] in place of each @name@, in one pass: what is put in is not searched again.
-std::string filled(std::string_view text, const std::map<std::string_view, std::string>& values) {
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t open = text.find('@', at);
-    if (open == std::string_view::npos) return out.append(text.substr(at));
-    const std::size_t close = text.find('@', open + 1);
-    const auto name = close == std::string_view::npos ? "" : text.substr(open + 1, close - open - 1);
-    const auto value = values.find(name);
-    if (value == values.end())
-      throw std::logic_error(fmt::format("report template: @{}@ has no value", name));
-    out.append(text.substr(at, open - at)).append(value->second);
-    at = close + 1;
-  }
   return out;
 }
 

@@ -54,6 +54,9 @@ std::string words_for(const ChildEnd& end, double time_limit = 0);
 /// The program named by the environment variable, else `name` beside the running executable; empty: there is none.
 std::filesystem::path find_program(const std::string& name, const char* variable);
 
+/// The program of that name on PATH; empty: there is none.
+std::filesystem::path program_on_path(const std::string& name);
+
 /// The whole file; empty if it cannot be read.
 std::string text_of_file(const std::filesystem::path& file);
 

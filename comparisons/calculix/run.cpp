@@ -1,7 +1,6 @@
 #include "comparisons/calculix/run.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -79,16 +78,7 @@ void fill_solution(const Deck& deck, const Printed& printed, Solution& solution)
 
 }  // namespace
 
-fs::path program() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder.empty() ? "." : folder) / "ccx";
-    std::error_code ignored;
-    if (fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0) return fs::absolute(file);
-  }
-  return {};
-}
+fs::path program() { return program_on_path("ccx"); }
 
 std::string version() {
   const fs::path file = program();

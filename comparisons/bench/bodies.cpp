@@ -1,0 +1,57 @@
+#include "comparisons/bench/bodies.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "msm/calibrate.h"
+#include "msm/models.h"
+#include "msm/topology/random_network.h"
+
+namespace springproof::bench {
+
+MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells, double poisson_ratio) {
+  const Mesh mesh = block_mesh(edge * Vec3(cells[0], cells[1], cells[2]), cells);
+  return build_model(resolve({name, {}, name, {}}), mesh, {youngs_modulus, poisson_ratio, density});
+}
+
+MassSpringModel random_springs(int nodes) {
+  const int n = int(std::lround(std::cbrt(nodes)));
+  const Mesh mesh = block_mesh(Vec3::Constant(n * edge), {n, n, n});
+  MassSpringModel model;
+  model.network = random_network(region_of(mesh), {.spacing = edge, .max_length = {}});
+  correct_surface(model.network);
+  calibrate(0.4 * youngs_modulus, model.network);
+  model.laws = {Springs{}};
+  return model;
+}
+
+NodalVectors moved(const Network& network) {
+  NodalVectors x = network.X;
+  for (Eigen::Index n = 0; n < x.rows(); ++n)
+    for (int c = 0; c < 3; ++c)
+      x(n, c) += 0.01 * edge * std::sin(3 * network.X(n, c) / edge + 2 * network.X(n, (c + 1) % 3) / edge + c);
+  return x;
+}
+
+BoundaryConditions clamped_bottom(const Network& network, double depth) {
+  BoundaryConditions bc;
+  const Eigen::Index unknowns = network.X.size();
+  bc.fixed.assign(unknowns, 0);
+  bc.owner.assign(unknowns, -1);
+  bc.prescribed = NodalVectors::Zero(network.X.rows(), 3);
+  bc.external = masses(network, density) * Eigen::RowVector3d(0.3e-4, 0.5e-4, -1e-4);
+  const double bottom = network.X.col(2).minCoeff() + depth;
+  for (Eigen::Index n = 0; n < network.X.rows(); ++n)
+    if (network.X(n, 2) <= bottom) {
+      for (int c = 0; c < 3; ++c) bc.fixed[3 * n + c] = 1, bc.owner[3 * n + c] = 0;
+      bc.external.row(n).setZero();
+    }
+  return bc;
+}
+
+std::string size_text(const std::array<int, 3>& n) {
+  return n[0] == n[1] && n[1] == n[2] ? fmt::format("{}^3", n[0]) : fmt::format("{} x {} x {}", n[0], n[1], n[2]);
+}
+
+}  // namespace springproof::bench

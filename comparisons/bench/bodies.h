@@ -1,0 +1,29 @@
+// What is timed: lattices and disordered networks of cubes of 0.1 m, and how they are held and loaded.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "msm/boundary.h"
+#include "msm/laws/laws.h"
+
+namespace springproof::bench {
+
+inline constexpr double edge = 0.1, youngs_modulus = 1e4, density = 1000;  // [m], [Pa], [kg/m^3]
+
+/// A block of so many cubes as a model of the table (msm/models.h) at a Poisson's ratio.
+MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells, double poisson_ratio);
+
+/// A cube of about so many nodes joined at random, <S> = 15, nu = 1/4.
+MassSpringModel random_springs(int nodes);
+
+/// The rest positions, each moved by a hundredth of an edge at most: smooth and the same every time.
+NodalVectors moved(const Network& network);
+
+/// The nodes at the bottom (z <= depth above the lowest) clamped, an oblique body force on all, small enough for linear behaviour.
+BoundaryConditions clamped_bottom(const Network& network, double depth = 1e-6 * edge);
+
+/// "30^3", "4 x 4 x 24".
+std::string size_text(const std::array<int, 3>& cells);
+
+}  // namespace springproof::bench

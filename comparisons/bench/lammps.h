@@ -1,0 +1,36 @@
+// The same springs in LAMMPS (lmp on PATH): atom_style bond, bond_style harmonic, no pair style, lists never rebuilt.
+#pragma once
+
+#include <string>
+
+#include "meshes/child.h"
+#include "msm/network.h"
+
+namespace springproof::bench {
+
+class Lammps {
+ public:
+  /// lmp on PATH, or what SPRINGPROOF_LAMMPS names.
+  static bool available();
+  static std::string version();
+
+  /// Writes the data file: springs in the network's order (by first node), positions moved().  Nodes of more than 64
+  /// different masses all get the mean one, since LAMMPS has masses per type.
+  explicit Lammps(const Network& network);
+
+  /// Least time of one step [s] of some runs: LAMMPS' loop time times the share of a processor that it says it had.
+  /// @throws std::runtime_error if it fails, with its last words.
+  double seconds_per_step(double seconds_of_a_run, int runs) const;
+
+  /// Its forces at moved() [N].
+  NodalVectors forces() const;
+
+ private:
+  std::string output_of(const std::string& commands) const;
+
+  TemporaryFolder folder_;
+  double cutoff_, time_step_;
+  long nodes_, springs_;
+};
+
+}  // namespace springproof::bench

@@ -1,0 +1,46 @@
+// The machine: what it is, and what a core of it can do at most, measured.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace springproof::bench {
+
+enum class Precision { fp64, fp32 };
+
+/// A level of the memory as one core sees it.
+struct MemoryLevel {
+  std::string name;         ///< "L1", "L2", "L3", "DRAM"
+  double bytes = 0;         ///< its size; of DRAM 0
+  double GB_s = 0;          ///< read by one core; of DRAM the triad's, the line that a store reads first counted (32 bytes)
+  double all_cores = 0;     ///< [GB/s] of DRAM, all cores at once; else 0
+};
+
+/// What one core does with one instruction set.
+struct Arithmetic {
+  std::string instruction_set;       ///< "portable", "avx2", "avx512"
+  double gflops64 = 0, gflops32 = 0; ///< multiply-adds, two each
+  double root64 = 0, root32 = 0;     ///< a square root and a division of one number [ns]
+};
+
+struct Machine {
+  std::string processor;
+  int cores = 0;
+  std::vector<Arithmetic> arithmetic;  ///< of each usable instruction set, the widest last; empty: not measured
+  std::vector<MemoryLevel> memory;     ///< nearest first
+
+  const Arithmetic& widest() const { return arithmetic.back(); }
+  /// The level that holds so many bytes, with a tenth of its room left.
+  const MemoryLevel& level_for(double bytes) const;
+};
+
+/// Name, cores and caches; no limits.
+Machine this_machine();
+
+/// Measures the limits [some 4 s; quick: 1 s].
+void measure_limits(bool quick, Machine& machine);
+
+nlohmann::json to_json(const Machine& machine);
+
+}  // namespace springproof::bench

@@ -1,0 +1,105 @@
+// springproof-bench, which `springproof bench` starts: what things cost on this machine, each beside its baseline.
+//
+// A program of its own because it may link PETSc, whose libraries springproof shall not wait for.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "comparisons/bench/dynamics.h"
+#include "comparisons/bench/experiments.h"
+#include "comparisons/bench/fem.h"
+#include "comparisons/bench/interrupt.h"
+#include "comparisons/bench/page.h"
+#include "comparisons/bench/statics.h"
+#include "comparisons/bench/table.h"
+#include "comparisons/results.h"
+#include "msm/kernels/instruction_set.h"
+#include "problem/input_error.h"
+
+namespace {
+
+using namespace springproof;
+using namespace springproof::bench;
+using Json = nlohmann::json;
+
+void add_options(CLI::App& app, BenchOptions& options) {
+  app.add_option("WHAT", options.what, "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and damped dynamics), "
+                                       "fem (the finite element reference), experiments (built-in cases), all")
+      ->required()
+      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "all"}));
+  app.add_option("--json", options.json, "write the figures to this file too");
+  app.add_option("--out", options.out, "folder for bench.html, with the roofline, and bench.json");
+  app.add_flag("--quick", options.quick, "small sizes: a look at the table in half a minute, no measurement");
+  app.add_option("--threads", options.threads, "of the rows that compare several threads with one")->check(CLI::Range(2, 256))->capture_default_str();
+  const auto pass_on = [&options](const char* option, const std::string& value) { options.fem_arguments.insert(options.fem_arguments.end(), {option, value}); };
+  app.add_option_function<int>("--cells", [pass_on](int n) { pass_on("--bench-cells", std::to_string(n)); }, "fem: cells along the side of the cube, a multiple of 8 (default 24)")
+      ->check(CLI::Range(8, 96));
+  app.add_flag_callback("--no-baseline", [&options] { options.fem_arguments.push_back("--no-baseline"); }, "fem: leave the assembled baseline out (some 3 GB at 24 cells)");
+  app.footer("Missed targets are printed as MISSED; they do not change the exit status.\n"
+             "Exit status: 0 every row has a result, 1 one has not, 2 the input is unusable, 130 interrupted (what is measured is written).");
+}
+
+bool wants(const BenchOptions& options, const char* what) { return options.what == what || options.what == "all"; }
+
+void measure(const BenchOptions& options, Machine& machine, Findings& findings, Json& fem) {
+  if (wants(options, "statics")) bench_statics(options, findings);
+  if (wants(options, "dynamics")) {
+    fmt::print(stderr, "limits of this machine ...\n");
+    measure_limits(options.quick, machine);
+    bench_dynamics(options, machine, findings);
+  }
+  if (wants(options, "experiments")) bench_experiments(options, findings);
+  if (wants(options, "fem")) fem = bench_fem(options, findings);
+}
+
+void write(const BenchOptions& options, const Json& document) {
+  const std::string text = document.dump(1, ' ', false, Json::error_handler_t::replace);
+  if (!options.json.empty()) write_file(options.json, text);
+  if (options.out.empty()) return;
+  std::filesystem::create_directories(options.out);
+  write_file(options.out / "bench.json", text);
+  write_page(options.out / "bench.html", document);
+  fmt::print(stderr, "{}\n", (options.out / "bench.html").string());
+}
+
+int run(const BenchOptions& options) {
+  catch_interrupts();
+  Machine machine = this_machine();
+  Findings findings;
+  Json fem;
+  try {
+    measure(options, machine, findings, fem);
+  } catch (const std::runtime_error&) {
+    if (!interrupted()) throw;
+    findings.remarks.push_back("interrupted: the rows are those measured before");
+  }
+  Json document = to_json(findings);
+  document["program"] = {{"version", SPRINGPROOF_VERSION}, {"instruction_set", name_of(instruction_set())}, {"quick", options.quick}};
+  document["machine"] = to_json(machine);
+  if (!fem.is_null()) document["fem"] = fem;
+  fmt::print("{}", table_text(machine, findings));
+  write(options, document);
+  if (interrupted()) return 130;
+  return complete(findings) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app{"What things cost on this machine: each row beside its baseline, measured in the same run.", "springproof bench"};
+  BenchOptions options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  return run(options);
+} catch (const springproof::InputError& e) {
+  fmt::print(stderr, "error: {}\n", e.what());
+  return 2;
+} catch (const std::exception& e) {
+  fmt::print(stderr, "error: {}\n", e.what());
+  return 1;
+}

@@ -1,0 +1,106 @@
+#include "comparisons/bench/motion.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "comparisons/bench/bench_kernel_choice.h"
+#include "comparisons/bench/bodies.h"
+#include "msm/solve/time_step.h"
+
+namespace springproof::bench {
+namespace {
+
+/// Positions and velocities stepped with forces(): the definition, with whatever kernels stand behind it.
+class Stepper {
+ public:
+  explicit Stepper(const MassSpringModel& model)
+      : model_(model), dt_(0.5 * safe_time_step(model, density)), x_(moved(model.network)), v_(NodalVectors::Zero(x_.rows(), 3)),
+        dt_over_mass_(dt_ * masses(model.network, density).cwiseInverse()) {}
+
+  void advance(long steps) {
+    for (; steps > 0; --steps) {
+      const NodalVectors f = forces(model_, x_);
+      for (Eigen::Index n = 0; n < x_.rows(); ++n) v_.row(n) += dt_over_mass_[n] * f.row(n);
+      x_ += dt_ * v_;
+    }
+  }
+
+ private:
+  const MassSpringModel& model_;
+  double dt_;
+  NodalVectors x_, v_;
+  Eigen::VectorXd dt_over_mass_;
+};
+
+struct PlainState {
+  std::vector<PlainNode> nodes;
+  std::vector<PlainSpring> springs;
+  std::vector<double> dt_over_mass;
+};
+
+}  // namespace
+
+Work operations(const MassSpringModel& model) {
+  const Network& net = model.network;
+  const double m = double(net.springs.size()), n = double(net.nodes());
+  Work w{21 * m + 12 * n, m, 0, 0};
+  for (const ForceLaw& law : model.laws) {
+    if (std::holds_alternative<VolumeCorrection>(law)) w.flops += 156 * double(net.cells.size());
+    if (std::holds_alternative<MomentumDispersion>(law)) w.flops += 8 * m;
+  }
+  return w;
+}
+
+std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
+  if (options.threads > 1 || options.precision != Precision::fp64) return {};
+  const double m = double(model.network.springs.size()), n = double(model.network.nodes());
+  Motion motion{"forces()", {}, model.network.nodes(), long(model.network.springs.size()), operations(model)};
+  motion.work.streamed = 24 * m + 216 * n;
+  motion.work.kept = 24 * m + 80 * n;
+  const auto stepper = std::make_shared<Stepper>(model);
+  motion.advance = [stepper](long steps) { stepper->advance(steps); };
+  return motion;
+}
+
+Motion plain_motion(const Network& network) {
+  const MassSpringModel springs{network, {Springs{}}};
+  const double dt = 0.5 * safe_time_step(springs, density);
+  const auto state = std::make_shared<PlainState>();
+  const NodalVectors x = moved(network);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) state->nodes.push_back({{x(i, 0), x(i, 1), x(i, 2)}, {}, {}});
+  for (const Spring& s : network.springs) state->springs.push_back({s.i, s.j, s.stiffness, s.rest_length});
+  for (const double mass : masses(network, density)) state->dt_over_mass.push_back(dt / mass);
+  const double m = double(network.springs.size()), n = double(network.nodes());
+  Motion motion{"plain loop", {}, network.nodes(), long(network.springs.size()), operations(springs)};
+  motion.work.streamed = 24 * m + 296 * n;
+  motion.work.kept = 24 * m + 80 * n;
+  const auto step = kernels_of(instruction_set()).plain_step;
+  motion.advance = [state, step, dt](long steps) {
+    for (; steps > 0; --steps)
+      step(state->nodes.data(), long(state->nodes.size()), state->springs.data(), long(state->springs.size()), state->dt_over_mass.data(), dt);
+  };
+  return motion;
+}
+
+namespace {
+
+/// Least time [s] that the arithmetic of a step can take on one core.
+double arithmetic_limit(const Motion& motion, const Arithmetic& core) {
+  const bool fp64 = motion.precision == Precision::fp64;
+  return std::max(1e-9 * motion.work.flops / (fp64 ? core.gflops64 : core.gflops32),
+                  1e-9 * motion.work.roots * (fp64 ? core.root64 : core.root32));
+}
+
+}  // namespace
+
+Usage usage_of(const Motion& motion, double seconds, const Machine& machine) {
+  const MemoryLevel& level = machine.level_for(motion.work.kept);
+  return {motion.work.kept / double(motion.nodes), 1e-9 * motion.work.streamed / seconds / level.GB_s,
+          arithmetic_limit(motion, machine.widest()) / seconds};
+}
+
+RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name, const std::string& size) {
+  return {name, size, machine.level_for(motion.work.kept).name, motion.work.flops / motion.work.streamed, 1e-9 * motion.work.flops / seconds};
+}
+
+}  // namespace springproof::bench

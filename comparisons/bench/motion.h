@@ -1,0 +1,52 @@
+// Motions that can be timed: one entry per way of computing an explicit step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "comparisons/bench/machine.h"
+#include "comparisons/bench/rows.h"
+#include "comparisons/bench/timer.h"
+#include "msm/laws/laws.h"
+
+namespace springproof::bench {
+
+/// What one step takes at least; docs/performance.md says how it is counted.
+struct Work {
+  double flops = 0;     ///< additions, multiplications, roots and divisions, each one
+  double roots = 0;     ///< of them pairs of a root and a division
+  double streamed = 0;  ///< bytes read and written, each array once per sweep
+  double kept = 0;      ///< bytes of all arrays
+};
+
+/// Explicit steps of a network: forces and semi-implicit Euler.
+struct Motion {
+  std::string how;      ///< "forces(), AVX2", "plain loop"
+  Advance advance;
+  long nodes = 0, springs = 0;
+  Work work = {};
+  Precision precision = Precision::fp64;
+};
+
+struct MotionOptions {
+  int threads = 1;
+  Precision precision = Precision::fp64;
+};
+
+/// The fastest way that the library has for a model; nothing if it has none with these options.
+/// The model must outlive it.
+std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options = {});
+
+/// The baseline that anybody writes in an hour: one array of nodes {x, v, f}, one of springs of 24 bytes, a loop over each,
+/// compiled for this processor.
+Motion plain_motion(const Network& network);
+
+/// How well a motion that takes so many seconds per step uses one core.
+Usage usage_of(const Motion& motion, double seconds, const Machine& machine);
+RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name, const std::string& size);
+
+/// Operations of one step of the model, whoever computes it.
+Work operations(const MassSpringModel& model);
+
+}  // namespace springproof::bench

@@ -1,0 +1,12 @@
+// The findings as a page of their own, with the report's charts and colours.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+namespace springproof::bench {
+
+/// @throws std::runtime_error if it cannot be written.
+void write_page(const std::filesystem::path& file, const nlohmann::json& document);
+
+}  // namespace springproof::bench

@@ -1,0 +1,74 @@
+// What a bench finds: rows, each with its baseline of the same run and its target, and points of the roofline.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace springproof::bench {
+
+enum class Sense { none, at_least, at_most };
+
+/// What the judged number of a row should reach.
+struct Target {
+  Sense sense = Sense::none;
+  double limit = 0;
+};
+inline Target at_least(double limit) { return {Sense::at_least, limit}; }
+inline Target at_most(double limit) { return {Sense::at_most, limit}; }
+
+/// How well a kernel uses the machine.
+struct Usage {
+  double bytes_per_node = 0;    ///< that the motion keeps, lists of springs included
+  double bandwidth_share = 0;   ///< of the level of the memory that holds them
+  double arithmetic_share = 0;  ///< of the limit of multiply-adds or of roots and divisions, whichever is nearer
+};
+
+struct BenchRow {
+  std::string subject;         ///< "dynamics"
+  std::string what;            ///< "HybMSS-CF over LAMMPS"
+  std::string size;            ///< "30^3"
+  std::string unit;            ///< of the value and the baseline's value
+  double value = 0;
+  std::string baseline = {};       ///< what it is held against; empty: nothing, and the value itself is judged
+  double baseline_value = 0;
+  Target target = {};
+  std::optional<Usage> usage = {};
+  std::string note = {};       ///< what computed it; why there is no result
+  bool ok = true;              ///< false: no result
+
+  /// Baseline over value, or, where it should be small, value over baseline; without a baseline the value.
+  double judged() const;
+};
+
+enum class Outcome { met, missed, information, no_result };
+Outcome outcome(const BenchRow& row);
+std::string to_string(Outcome outcome);
+
+/// "at least 5", "at most 1.35"; empty without a target.
+std::string to_string(const Target& target);
+
+/// One kernel in the roofline.
+struct RooflinePoint {
+  std::string name;          ///< "HybMSS-CF"
+  std::string size;          ///< "30^3"
+  std::string level;         ///< of the memory that holds its data: "L1", "L2", "L3", "DRAM"
+  double flops_per_byte = 0;
+  double gflops = 0;
+};
+
+struct Findings {
+  std::vector<BenchRow> rows;
+  std::vector<RooflinePoint> points;
+  std::vector<std::string> remarks;  ///< what was left out and why
+
+  void add(Findings more);
+};
+
+/// Whether every row has a result.
+bool complete(const Findings& findings);
+
+nlohmann::json to_json(const Findings& findings);
+
+}  // namespace springproof::bench
