@@ -95,10 +95,27 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
 }
 
 /// Those before an interrupt, which ends the mesher too.
-std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases) {
+/// Leaves a case the Poisson's ratios that are wanted, and what is expected there or everywhere.
+/// @throws InputError if it has none of them.
+Experiment only(const std::vector<double>& wanted, Experiment e) {
+  if (wanted.empty()) return e;
+  const auto left_out = [&](double nu) {
+    return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return std::abs(w - nu) < 1e-12; });
+  };
+  std::string has;
+  for (const IsotropicMaterial& m : e.materials) has += fmt::format("{}{}", has.empty() ? "" : ", ", m.poisson_ratio);
+  std::erase_if(e.materials, [&](const IsotropicMaterial& m) { return left_out(m.poisson_ratio); });
+  std::erase_if(e.expectations, [&](const Expectation& x) { return x.poisson_ratio && left_out(*x.poisson_ratio); });
+  std::erase_if(e.published, [&](const PublishedValue& v) { return left_out(v.poisson_ratio); });
+  if (e.materials.empty())
+    throw InputError(fmt::format("{}: poisson_ratio: none of those wanted (allowed: {})", e.file.string(), has));
+  return e;
+}
+
+std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const std::vector<double>& poisson_ratios) {
   std::vector<PreparedCase> prepared;
   for (const fs::path& file : cases) try {
-      if (!interrupted) prepared.push_back(prepare(read_experiment(file)));
+      if (!interrupted) prepared.push_back(prepare(only(poisson_ratios, read_experiment(file))));
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
     }
@@ -254,7 +271,7 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  const std::vector<PreparedCase> prepared = prepare_all(cases);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options.poisson_ratios);
   if (interrupted) {
     fmt::print(stderr, "interrupted before any part was run\n");
     return 130;

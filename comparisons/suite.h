@@ -13,6 +13,7 @@ struct SuiteOptions {
   int jobs = 0;          ///< parts at once; 0 = one per processor core
   bool resume = false;   ///< take finished parts from `out`
   bool vtu = true;       ///< write a VTU per run
+  std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
 };
 
 /// Case files named by paths: files, folders (the *.toml right in them), or folders of the built-in experiments

@@ -11,6 +11,7 @@
 #include "msm/models.h"
 #include "msm/parallel/slab_multigrid.h"
 #include "msm/solve/cost.h"
+#include "msm/solve/time_step.h"
 #include "problem/experiment.h"
 #include "problem/input_error.h"
 
@@ -22,6 +23,8 @@ struct Options {
   std::optional<std::array<int, 3>> cells;
   std::optional<double> poisson_ratio;
   double tolerance = 1e-10;
+  long steps = 0;       ///< > 0: explicit steps instead of equilibrium
+  double damping = 0;   ///< [1/s]
 };
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -91,22 +94,42 @@ struct Sum {
   }
 };
 
-nlohmann::json run(const Options& options, MPI_Comm communicator) {
-  const Experiment experiment = read_experiment(options.case_file);
-  const std::array<int, 3> cells = options.cells.value_or(experiment.body.cells.empty() ? Cells{0, 0, 0} : experiment.body.cells.back());
-  check_case(experiment, cells);
-  IsotropicMaterial material = experiment.materials.front();
-  if (options.poisson_ratio) material.poisson_ratio = *options.poisson_ratio;
+/// What every process needs of the case before its slab is made.
+struct BlockCase {
+  Experiment experiment;
+  std::array<int, 3> cells;
+  IsotropicMaterial material;
+  ModelParameters model;
+};
+
+BlockCase read_case(const Options& options) {
+  BlockCase c{read_experiment(options.case_file), {}, {}, {}};
+  c.cells = options.cells.value_or(c.experiment.body.cells.empty() ? Cells{0, 0, 0} : c.experiment.body.cells.back());
+  check_case(c.experiment, c.cells);
+  c.material = c.experiment.materials.front();
+  if (options.poisson_ratio) c.material.poisson_ratio = *options.poisson_ratio;
   ModelChoice choice;
   choice.name = options.model;
-  const CellMatrix cell = one_cell(resolve(choice), experiment.body.size[0] / cells[0], material);
+  c.model = resolve(choice);
+  return c;
+}
 
+/// What is said of every run.
+nlohmann::json describe(const Options& options, const BlockCase& c, MPI_Comm communicator) {
+  int processes;
+  MPI_Comm_size(communicator, &processes);
+  return {{"processes", processes}, {"cells", c.cells}, {"poisson_ratio", c.material.poisson_ratio}, {"model", options.model}};
+}
+
+nlohmann::json solve_static(const Options& options, MPI_Comm communicator) {
+  const BlockCase c = read_case(options);
+  const CellMatrix cell = one_cell(c.model, c.experiment.body.size[0] / c.cells[0], c.material);
   const double start = seconds();
-  const SlabPartition partition(cells, communicator);
+  const SlabPartition partition(c.cells, communicator);
   const SlabLevel slab = partition.level(0, communicator);
-  const Mesh mesh = slab_mesh(experiment.body.size, cells, slab.lattice);
+  const Mesh mesh = slab_mesh(c.experiment.body.size, c.cells, slab.lattice);
   BoundaryConditions bc;
-  agree(options.case_file, communicator, [&] { bc = transfer(experiment.loads, mesh, material.density, Kinematics::linear); });
+  agree(options.case_file, communicator, [&] { bc = transfer(c.experiment.loads, mesh, c.material.density, Kinematics::linear); });
   SlabMultigrid multigrid(partition, bc.fixed, cell, communicator);
   const double set_up = seconds() - start;
 
@@ -127,7 +150,7 @@ nlohmann::json run(const Options& options, MPI_Comm communicator) {
   multigrid.multiply(u, force);
 
   const Sum sum{communicator};
-  std::vector<Vec3> support(experiment.loads.size(), Vec3::Zero());
+  std::vector<Vec3> support(c.experiment.loads.size(), Vec3::Zero());
   double square = 0, fixed = 0;
   for (long n = slab.own_first(); n < slab.own_first() + slab.own_points(); ++n)
     for (int a = 0; a < 3; ++a) {
@@ -136,19 +159,57 @@ nlohmann::json run(const Options& options, MPI_Comm communicator) {
       fixed += bc.fixed[3 * n + a];
       if (const int owner = bc.owner[3 * n + a]; owner >= 0) support[owner][a] += force[at] - external[at];
     }
-  int processes;
-  MPI_Comm_size(communicator, &processes);
-  const double unknowns = sum(3.0 * static_cast<double>(slab.own_points()) - fixed);
-  nlohmann::json result = {{"processes", processes}, {"cells", cells}, {"poisson_ratio", material.poisson_ratio}, {"model", options.model},
-                           {"converged", k.converged}, {"unknowns", unknowns}, {"iterations", k.iterations}, {"residual", k.residual},
-                           {"set_up_seconds", sum.largest(set_up)}, {"solve_seconds", sum.largest(solve)},
-                           {"MiB_per_process", sum.largest(peak_memory_MiB())},
-                           {"displacement_rms_m", std::sqrt(sum(square) / (unknowns + sum(fixed)))}};
+  const double values = sum(3.0 * static_cast<double>(slab.own_points()));
+  nlohmann::json result = describe(options, c, communicator);
+  result.update({{"converged", k.converged}, {"unknowns", values - sum(fixed)}, {"iterations", k.iterations}, {"residual", k.residual},
+                 {"set_up_seconds", sum.largest(set_up)}, {"solve_seconds", sum.largest(solve)},
+                 {"MiB_per_process", sum.largest(peak_memory_MiB())}, {"displacement_rms_m", std::sqrt(sum(square) / values)}});
   for (std::size_t i = 0; i < support.size(); ++i) {
     for (int a = 0; a < 3; ++a) support[i][a] = sum(support[i][a]);
-    if (prescribes_displacement(experiment.loads[i]))
-      result["support_N"].push_back({{"patch", *patch_of(experiment.loads[i])}, {"force", {support[i][0], support[i][1], support[i][2]}}});
+    if (prescribes_displacement(c.experiment.loads[i]))
+      result["support_N"].push_back({{"patch", *patch_of(c.experiment.loads[i])}, {"force", {support[i][0], support[i][1], support[i][2]}}});
   }
+  return result;
+}
+
+/// Explicit steps of the loaded block from rest, the supports moved at once; positions and velocities of the planes beside
+/// a slab come from their owners after every step.
+nlohmann::json move(const Options& options, MPI_Comm communicator) {
+  const BlockCase c = read_case(options);
+  const double start = seconds();
+  const SlabPartition partition(c.cells, communicator);
+  const SlabLevel slab = partition.level(0, communicator);
+  const Mesh mesh = slab_mesh(c.experiment.body.size, c.cells, slab.lattice);
+  const MassSpringModel model = build_model(c.model, mesh, c.material);
+  if (!LatticeMotion::suits(model)) throw InputError(fmt::format("model \"{}\" has no lattice kernel", options.model));
+  BoundaryConditions bc;
+  agree(options.case_file, communicator, [&] { bc = transfer(c.experiment.loads, mesh, c.material.density, Kinematics::finite); });
+  const Sum sum{communicator};
+  const double dt = -sum.largest(-0.95 * safe_time_step(model, c.material.density));
+  LatticeMotion motion(model, c.material.density);
+  motion.set_conditions(bc);
+  motion.move_supports();
+  PlaneExchange neighbours(slab, communicator);
+  const double set_up = seconds() - start;
+  const double loop_start = seconds();
+  for (long n = 0; n < options.steps; ++n) {
+    motion.advance(1, dt, options.damping);
+    neighbours.complete(motion);
+  }
+  const double loop = seconds() - loop_start;
+  const NodalVectors u = motion.positions() - model.network.X, v = motion.velocities();
+  double square = 0, energy = 0;
+  const Eigen::VectorXd m = masses(model.network, c.material.density);
+  for (long n = slab.own_first(); n < slab.own_first() + slab.own_points(); ++n) {
+    square += u.row(n).squaredNorm();
+    energy += 0.5 * m[n] * v.row(n).squaredNorm();
+  }
+  nlohmann::json result = describe(options, c, communicator);
+  const double values = sum(3.0 * static_cast<double>(slab.own_points()));
+  result.update({{"converged", std::isfinite(square)}, {"unknowns", values}, {"steps", options.steps}, {"time_step_s", dt},
+                 {"set_up_seconds", sum.largest(set_up)}, {"solve_seconds", sum.largest(loop)},
+                 {"MiB_per_process", sum.largest(peak_memory_MiB())}, {"displacement_rms_m", std::sqrt(sum(square) / values)},
+                 {"kinetic_energy_J", sum(energy)}});
   return result;
 }
 
@@ -156,11 +217,15 @@ void print(const nlohmann::json& r) {
   fmt::print("{} on {} x {} x {} cells, nu = {}: {:.0f} unknowns, {} process{}\n", r["model"].get<std::string>(), r["cells"][0].get<int>(),
              r["cells"][1].get<int>(), r["cells"][2].get<int>(), r["poisson_ratio"].get<double>(), r["unknowns"].get<double>(),
              r["processes"].get<int>(), r["processes"] == 1 ? "" : "es");
-  fmt::print("{} iterations, residual {:.2e}{}\n", r["iterations"].get<int>(), r["residual"].get<double>(),
-             r["converged"].get<bool>() ? "" : ": NOT CONVERGED");
-  fmt::print("set-up {:.3f} s, solve {:.3f} s, {:.0f} MiB per process\n", r["set_up_seconds"].get<double>(), r["solve_seconds"].get<double>(),
+  if (r.contains("steps"))
+    fmt::print("{} steps of {:.3g} s\n", r["steps"].get<long>(), r["time_step_s"].get<double>());
+  else
+    fmt::print("{} iterations, residual {:.2e}{}\n", r["iterations"].get<int>(), r["residual"].get<double>(),
+               r["converged"].get<bool>() ? "" : ": NOT CONVERGED");
+  fmt::print("set-up {:.3f} s, then {:.3f} s, {:.0f} MiB per process\n", r["set_up_seconds"].get<double>(), r["solve_seconds"].get<double>(),
              r["MiB_per_process"].get<double>());
   fmt::print("displacement, root mean square: {:.12e} m\n", r["displacement_rms_m"].get<double>());
+  if (r.contains("kinetic_energy_J")) fmt::print("kinetic energy of this displacement: {:.12e} J\n", r["kinetic_energy_J"].get<double>());
   for (const auto& s : r.value("support_N", nlohmann::json::array()))
     fmt::print("force of {}: ({:.12e}, {:.12e}, {:.12e}) N\n", s["patch"].get<std::string>(), s["force"][0].get<double>(),
                s["force"][1].get<double>(), s["force"][2].get<double>());
@@ -169,13 +234,15 @@ void print(const nlohmann::json& r) {
 int parse_and_run(int argc, char** argv) {
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  CLI::App app{"Static equilibrium of a block lattice (linear, displacement form) on the processes of mpirun.", "springproof-lattice"};
+  CLI::App app{"A block lattice on the processes of mpirun: linear static equilibrium (displacement form), or explicit steps.", "springproof-lattice"};
   Options options;
   app.add_option("CASE", options.case_file, "case file whose body is block.geo")->required()->check(CLI::ExistingFile);
   app.add_option("--cells", options.cells, "cubes along x, y, z instead of the case's");
   app.add_option("--poisson-ratio", options.poisson_ratio, "instead of the case's first")->check(CLI::Range(-0.999, 0.4999));
   app.add_option("--model", options.model, "model of a lattice of cells")->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "relative residual")->capture_default_str()->check(CLI::Range(1e-13, 1e-2));
+  app.add_option("--steps", options.steps, "so many explicit steps (large displacements) instead of equilibrium")->check(CLI::NonNegativeNumber);
+  app.add_option("--damping", options.damping, "of explicit steps [1/s]")->capture_default_str()->check(CLI::NonNegativeNumber);
   app.add_option("--json", options.json_file, "write the result as JSON too");
   try {
     app.parse(argc, argv);
@@ -183,7 +250,7 @@ int parse_and_run(int argc, char** argv) {
     return rank == 0 ? app.exit(e) : (e.get_exit_code() ? 2 : 0);
   }
   try {
-    const nlohmann::json result = run(options, PETSC_COMM_WORLD);
+    const nlohmann::json result = (options.steps > 0 ? move : solve_static)(options, PETSC_COMM_WORLD);
     if (rank > 0) return 0;
     print(result);
     if (!options.json_file.empty()) {

@@ -2,6 +2,7 @@
 
 #include <petscksp.h>
 
+#include <numeric>
 #include <stdexcept>
 
 namespace springproof {
@@ -52,6 +53,26 @@ void PlaneExchange::complete(Real* field) const {
   };
   pass(level_->own_end - 1, above_, 0, below_);
   pass(level_->own_begin, below_, lattice.planes(), above_);
+}
+
+std::vector<int> PlaneExchange::nodes_of_plane(int plane) const {
+  const LatticeLevel& lattice = level_->lattice;
+  std::vector<int> nodes(lattice.point_begin[plane + 1] - lattice.point_begin[plane]);
+  std::iota(nodes.begin(), nodes.end(), static_cast<int>(lattice.point_begin[plane]));
+  return nodes;
+}
+
+void PlaneExchange::complete(LatticeMotion& motion) const {
+  const auto pass = [&](int send_plane, int to, int receive_plane, int from) {
+    const std::vector<int> mine = nodes_of_plane(send_plane), theirs = nodes_of_plane(receive_plane);
+    std::vector<double> out(6 * mine.size()), in(6 * theirs.size());
+    if (to != MPI_PROC_NULL) motion.read(mine, out.data());
+    MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, to, 0, in.data(), static_cast<int>(in.size()), MPI_DOUBLE, from, 0,
+                 communicator_, MPI_STATUS_IGNORE);
+    if (from != MPI_PROC_NULL) motion.write(theirs, in.data());
+  };
+  pass(level_->own_end - 1, above_, 0, below_);
+  pass(level_->own_begin, below_, level_->lattice.planes(), above_);
 }
 
 SlabPartition::SlabPartition(const std::array<int, 3>& block_cells, MPI_Comm communicator) : cells(block_cells) {

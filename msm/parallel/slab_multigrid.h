@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include "msm/kernels/lattice_motion.h"
 #include "msm/solve/multigrid.h"
 
 namespace springproof {
@@ -22,8 +23,11 @@ class PlaneExchange {
   PlaneExchange(const SlabLevel& level, MPI_Comm communicator);
   template <class Real>
   void complete(Real* field) const;  ///< a nodal field of the level
+  void complete(LatticeMotion& motion) const;  ///< positions and velocities
 
  private:
+  std::vector<int> nodes_of_plane(int plane) const;
+
   const SlabLevel* level_;
   MPI_Comm communicator_;
   int below_, above_;  ///< processes, MPI_PROC_NULL at the ends
