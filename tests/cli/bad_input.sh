@@ -64,6 +64,7 @@ head -c 300 /dev/urandom >"$work/noise.toml"
 expect "noise" "noise.toml" compare "$work/noise.toml" --out "$work/out"
 echo "$good" >"$work/good.toml"
 touch "$work/file"
+expect "none of the Poisson ratios" "none of those wanted .allowed: 0.25" compare "$work/good.toml" --poisson-ratio 0.3 --out "$work/out"
 expect "unwritable output" "cannot write" compare "$work/good.toml" --out "$work/file/out"
 expect "material: nu = 0.5" "poisson_ratio" material -E 1 --nu 0.5
 expect "material: one modulus" "two" material -E 1
