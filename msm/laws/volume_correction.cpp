@@ -16,18 +16,13 @@ Eigen::Matrix3d cross_matrix(const Vec3& v) {
   return m;
 }
 
-/// psi(J), psi'(J), psi''(J) per unit kappa.
-struct Density {
-  double value, slope, curvature;
-};
+}  // namespace
 
-Density density(VolumeEnergy form, double J) {
+VolumeDensity volume_density(VolumeEnergy form, double J) {
   if (form == VolumeEnergy::paper) return {0.5 * (J - 1) * (J - 1), J - 1, 1};
   const double root = std::cbrt(J);
   return {4.5 * (root - 1) * (root - 1), 3 * (root - 1) / (root * root), (2 / root - 1) / (J * root)};
 }
-
-}  // namespace
 
 MeanEdgeVolume mean_edge_volume(const Hexahedron& cell, const NodalVectors& x) {
   MeanEdgeVolume v;
@@ -53,7 +48,7 @@ double VolumeCorrection::energy(const Network& network, const NodalVectors& x) c
   for (const Hexahedron& cell : network.cells) {
     const double J = mean_edge_volume(cell, x).value / V;
     if (J <= 0 && form == VolumeEnergy::bounded) return std::numeric_limits<double>::infinity();
-    sum += V * kappa * density(form, J).value;
+    sum += V * kappa * volume_density(form, J).value;
   }
   return sum;
 }
@@ -62,7 +57,7 @@ void VolumeCorrection::add_forces(const Network& network, const NodalVectors& x,
   const double V = network.cell_volume();
   for (const Hexahedron& cell : network.cells) {
     const MeanEdgeVolume v = mean_edge_volume(cell, x);
-    const double pressure = kappa * density(form, v.value / V).slope;
+    const double pressure = kappa * volume_density(form, v.value / V).slope;
     for (int n = 0; n < 8; ++n) f.row(cell[n]) -= pressure * v.gradient.row(n);
   }
 }
@@ -71,18 +66,24 @@ void VolumeCorrection::add_tangent(const Network& network, const NodalVectors& x
   const double V = network.cell_volume();
   for (const Hexahedron& cell : network.cells) {
     const MeanEdgeVolume v = mean_edge_volume(cell, x);
-    const Density d = density(form, v.value / V);
-    const Eigen::Matrix3d A = cross_matrix(v.a), B = cross_matrix(v.b), C = cross_matrix(v.c);
+    const VolumeDensity d = volume_density(form, v.value / V);
     for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) {
-        // d2V'/dx_m dx_n, from the product rule on b x c, c x a, a x b.
-        const Eigen::Matrix3d curvature =
-            (1.0 / 16) * (sign(m, 0) * (sign(n, 2) * B - sign(n, 1) * C) + sign(m, 1) * (sign(n, 0) * C - sign(n, 2) * A) +
-                          sign(m, 2) * (sign(n, 1) * A - sign(n, 0) * B));
-        K.add(cell[m], cell[n],
-              kappa * (d.curvature / V * v.gradient.row(m).transpose() * v.gradient.row(n) + d.slope * curvature));
-      }
+      for (int n = 0; n < 8; ++n)
+        K.add(cell[m], cell[n], kappa * d.curvature / V * v.gradient.row(m).transpose() * v.gradient.row(n));
+    add_volume_curvature(cell, v, kappa * d.slope, K);
   }
+}
+
+void add_volume_curvature(const Hexahedron& cell, const MeanEdgeVolume& v, double pressure, BlockMatrix& K) {
+  const Eigen::Matrix3d A = cross_matrix(v.a), B = cross_matrix(v.b), C = cross_matrix(v.c);
+  for (int m = 0; m < 8; ++m)
+    for (int n = 0; n < 8; ++n) {
+      // From the product rule on b x c, c x a, a x b.
+      const Eigen::Matrix3d curvature =
+          (1.0 / 16) * (sign(m, 0) * (sign(n, 2) * B - sign(n, 1) * C) + sign(m, 1) * (sign(n, 0) * C - sign(n, 2) * A) +
+                        sign(m, 2) * (sign(n, 1) * A - sign(n, 0) * B));
+      K.add(cell[m], cell[n], pressure * curvature);
+    }
 }
 
 double min_cell_volume_ratio(const Network& network, const NodalVectors& x) {

@@ -31,6 +31,15 @@ struct MeanEdgeVolume {
 };
 MeanEdgeVolume mean_edge_volume(const Hexahedron& cell, const NodalVectors& x);
 
+/// psi(J), psi'(J), psi''(J) per unit kappa.
+struct VolumeDensity {
+  double value, slope, curvature;
+};
+VolumeDensity volume_density(VolumeEnergy form, double J);
+
+/// K += pressure d2V'/dx2 of one cell [N/m].
+void add_volume_curvature(const Hexahedron& cell, const MeanEdgeVolume& volume, double pressure, BlockMatrix& K);
+
 /// Smallest V'/V over the cells; <= 0: a cell is inverted.  1 for networks without cells.
 double min_cell_volume_ratio(const Network& network, const NodalVectors& x);
 

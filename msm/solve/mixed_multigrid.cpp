@@ -243,6 +243,20 @@ KrylovResult MixedMultigrid::solve(const Eigen::VectorXd& f, const Eigen::Vector
   return result;
 }
 
+void MixedMultigrid::apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u, Eigen::VectorXd& p) {
+  Level& finest = levels_[0];
+  Eigen::VectorXd f_rows, g_rows = Eigen::VectorXd::Zero(size() - pressures());
+  lattice_.to_rows(f, f_rows);
+  cells_to_rows(g, g_rows.data());
+  finest.f = f_rows.cast<float>();
+  finest.g = g_rows.cast<float>();
+  cycle(0);
+  f_rows = finest.u.cast<double>();
+  g_rows = finest.p.cast<double>();
+  lattice_.from_rows(f_rows, u);
+  p = cells_from_rows(g_rows.data());
+}
+
 Eigen::VectorXd MixedMultigrid::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size()), y(size()), u_rows, f;
   lattice_.to_rows(u, u_rows);

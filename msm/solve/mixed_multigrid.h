@@ -18,6 +18,9 @@ class MixedMultigrid {
   KrylovResult solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
                      Eigen::VectorXd& u, Eigen::VectorXd& p);
 
+  /// (u, p) = M^-1 (f, g).
+  void apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u, Eigen::VectorXd& p);
+
   /// K_s u + B^T p, fixed unknowns included: minus the internal force.
   Eigen::VectorXd force(const Eigen::VectorXd& u, const Eigen::VectorXd& p);
   /// B u: first-order volume change of each cell.

@@ -6,6 +6,7 @@
 #include "meshes/volume.h"
 #include "msm/solve/cost.h"
 #include "msm/solve/equilibrium.h"
+#include "msm/solve/mixed_newton.h"
 #include "msm/solve/tangent_solver.h"
 
 namespace springproof {
@@ -13,7 +14,7 @@ namespace {
 
 Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data(), v.size()}; }
 
-constexpr int cholesky_limit = 8000;   // free unknowns; above it Krylov with the rest state's multigrid
+constexpr int cholesky_limit = 3000;   // free unknowns; above it Krylov with the rest state's multigrid
 constexpr int dispersive_limit = 4000; // the factors of momentum dispersion are several times as large
 
 /// One load step either lands on a stable state or says why not.
@@ -25,12 +26,15 @@ struct Newton {
   const NewtonOptions& options;
   const std::vector<char> fixed;
   TangentSolver K;                       ///< tangent at the state taken over last
+  std::unique_ptr<MixedNewton> mixed;    ///< near nu = 1/2; null: the form without pressures
   double stiffness = 0;                  ///< largest diagonal entry at rest [N/m]
   int iterations = 0;
 
   Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
       : model(m), path(p), options(o), fixed(fixed_unknowns),
-        K(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit) {}
+        K(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit) {
+    if (K.unknowns() > cholesky_limit && MixedNewton::suits(m)) mixed = std::make_unique<MixedNewton>(m, fixed_unknowns);
+  }
 
   /// Unbalanced force on free unknowns, relative to the forces that are in balance (or, for motions that need next
   /// to none, a thousandth of stiffness times displacement).
@@ -88,21 +92,38 @@ struct Newton {
     return false;
   }
 
+  /// What a state in balance is worth; x becomes it if it is accepted.
+  Outcome judge(const NodalVectors& trial, bool definite, NodalVectors& x) const {
+    if (!definite || !K.stable()) return Outcome::unstable;
+    if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}, {}}, trial) <= 0) return Outcome::inverted;
+    x = trial;
+    return Outcome::accepted;
+  }
+
+  Outcome mixed_step(const BoundaryConditions& bc, NodalVectors& x, double& relative) {
+    NodalVectors trial = x;
+    const int before = mixed->iterations();
+    const bool balanced = mixed->step(bc, options.tolerance, options.max_iterations, trial);
+    iterations += mixed->iterations() - before;
+    if (!balanced) return Outcome::not_converged;
+    Eigen::VectorXd r;
+    relative = residual(trial, bc.external, r);
+    const bool definite = K.take(trial);
+    const Outcome outcome = judge(trial, definite, x);
+    if (outcome == Outcome::accepted) mixed->accept();
+    return outcome;
+  }
+
   Outcome step(double factor_of_load, NodalVectors& x, double& relative) {
     const BoundaryConditions bc = path(factor_of_load);
+    if (mixed) return mixed_step(bc, x, relative);
     NodalVectors trial = predict(x, bc);
     for (int i = 0; i < options.max_iterations; ++i) {
       Eigen::VectorXd r, du;
       relative = residual(trial, bc.external, r);
       if (!std::isfinite(relative)) return Outcome::not_converged;
       const bool definite = K.take(trial);
-      if (relative <= options.tolerance) {
-        if (!definite || !K.stable()) return Outcome::unstable;
-        if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}, {}}, trial) <= 0)
-          return Outcome::inverted;
-        x = trial;
-        return Outcome::accepted;
-      }
+      if (relative <= options.tolerance) return judge(trial, definite, x);
       ++iterations;
       if (!definite) return Outcome::unstable;
       if (!solve(r, std::clamp(1e-2 * relative, 1e-8, 1e-3), du)) return Outcome::unstable;
@@ -157,7 +178,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.support = -forces(model, x) - reached.external;
   for (Eigen::Index i = 0; i < result.support.size(); ++i)
     if (!full.fixed[i]) result.support.data()[i] = 0;
-  result.solver = fmt::format("Newton + {}, {} load step{}", newton.K.name(), steps,
+  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K.name(), steps,
                               steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
   result.unknowns = newton.K.unknowns();

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "msm/measure/validity.h"
+#include "msm/solve/mixed_newton.h"
 #include "msm/solve/time_step.h"
 #include "msm/solve/dynamics.h"
 #include "support/tolerances.h"
@@ -266,6 +267,46 @@ TEST(Supports, TransferKeepsForceAndMoment) {
   expect(resultant(Traction{"x_max", {5, 6, 7}}), Vec3(5, 6, 7) * 6, {1, 1, 1.5});
   expect(resultant(PatchForce{"z_min", {5, 6, 7}}), {5, 6, 7}, {0.5, 1, 0});
   expect(resultant(Gravity{{0, 0, -10}}), {0, 0, -10 * 500 * 6.0}, {0.5, 1, 1.5});
+}
+
+/// Above the size of the direct solver, with the pressures as unknowns: the balance of the plain force loops, in few steps.
+TEST(MixedNewton, BalancesTheForcesNearIncompressibility) {
+  const Mesh cube = block_mesh({1, 1, 1}, {11, 11, 11});
+  const std::vector<Load> loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"z_max", {0.0, 0.05, -0.15}},
+                                   Gravity{{0, 0, -10}}};
+  for (VolumeEnergy form : {VolumeEnergy::bounded, VolumeEnergy::paper})
+    for (double nu : {0.45, 0.499, 0.4999}) {
+      ModelParameters parameters = test::model("hybmss");
+      parameters.volume_energy = form;
+      const MassSpringModel model = build_model(parameters, cube, {1e4, nu, 10});
+      const LoadPath path = [&](double factor) { return transfer(loads, cube, 10, Kinematics::finite, factor); };
+      const Equilibrium e = solve_finite(model, path);
+      ASSERT_TRUE(e.ok) << nu << ": " << e.message;
+      EXPECT_NE(e.solver.find("mixed"), std::string::npos) << e.solver;
+      EXPECT_LE(e.iterations, 20) << nu;
+      const BoundaryConditions bc = path(1);
+      const NodalVectors f = forces(model, model.network.X + e.displacement) + bc.external;
+      double on_free = 0, on_fixed = 0;
+      for (Eigen::Index i = 0; i < f.size(); ++i) (bc.fixed[i] ? on_fixed : on_free) += f.data()[i] * f.data()[i];
+      EXPECT_LE(std::sqrt(on_free / on_fixed), 1e-8) << nu;
+      for (Eigen::Index i = 0; i < f.size(); ++i)
+        if (bc.fixed[i]) ASSERT_NEAR(e.displacement.data()[i], bc.prescribed.data()[i], 1e-12);
+    }
+}
+
+/// The form without pressures, which smaller bodies take, finds the same state.
+TEST(MixedNewton, IsTheStateOfTheFormWithoutPressures) {
+  const Mesh cube = block_mesh({1, 1, 1}, {8, 8, 8});
+  const MassSpringModel model = build_model(test::model("hybmss"), cube, {1e4, 0.49, 10});
+  const std::vector<Load> loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"z_max", {0.0, 0.0, -0.1}}};
+  const LoadPath path = [&](double factor) { return transfer(loads, cube, 10, Kinematics::finite, factor); };
+  const Equilibrium direct = solve_finite(model, path);
+  ASSERT_TRUE(direct.ok);
+  EXPECT_NE(direct.solver.find("Cholesky"), std::string::npos) << direct.solver;
+  MixedNewton mixed(model, path(1).fixed);
+  NodalVectors x = model.network.X;
+  ASSERT_TRUE(mixed.step(path(1), 1e-11, 20, x));
+  EXPECT_LE((x - model.network.X - direct.displacement).norm(), 1e-8 * direct.displacement.norm());
 }
 
 }  // namespace
