@@ -42,18 +42,29 @@ template const ListKernels<double>& list_kernels<double>(InstructionSet set);
 template const ListKernels<float>& list_kernels<float>(InstructionSet set);
 
 template <class Real>
-ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network, const SpringBlocks& blocks,
-                                             const ListDispersionScales& scales) {
+ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network, const SpringBlocks& blocks)
+    : a_i(blocks.entries()), a_j(a_i), c_i(a_i), c_j(a_i) {
   const MomentumDispersion::Coefficients c = law.coefficients(network);
-  a_i = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.in(s) * c.in[s][end]; });
-  a_j = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.in(s) * c.in[s][1 - end]; });
-  c_i = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.out(s) * c.out[s][end]; });
-  c_j = blocks.per_entry<Real>(network, [&](int s, int end) { return scales.out(s) * c.out[s][1 - end]; });
+  for (std::size_t e = 0; e < a_i.size(); ++e) {
+    const int s = blocks.spring[e];
+    if (s < 0) continue;
+    const int end = blocks.end_of_i(network, e);
+    a_i[e] = static_cast<Real>(c.in[s][end]);
+    a_j[e] = static_cast<Real>(c.in[s][1 - end]);
+    c_i[e] = static_cast<Real>(c.out[s][end]);
+    c_j[e] = static_cast<Real>(c.out[s][1 - end]);
+  }
   if (law.group.empty() && network.image_of.empty()) return;
   std::vector<int> place(blocks.order.size());
   for (int p = 0; p < blocks.nodes(); ++p) place[blocks.order[p]] = p;
   for (int node : blocks.order) sink.push_back(place[law.sink(network, node)]);
 }
+
+template <class Real>
+template <class Other>
+ListDispersionData<Real>::ListDispersionData(const ListDispersionData<Other>& o)
+    : a_i(o.a_i.begin(), o.a_i.end()), a_j(o.a_j.begin(), o.a_j.end()), c_i(o.c_i.begin(), o.c_i.end()), c_j(o.c_j.begin(), o.c_j.end()),
+      sink(o.sink) {}
 
 template <class Real>
 void ListDispersionData<Real>::share(std::vector<Real>& J) const {
@@ -62,6 +73,10 @@ void ListDispersionData<Real>::share(std::vector<Real>& J) const {
   for (std::size_t p = 0; p < J.size(); ++p) total[sink[p]] += J[p];
   for (std::size_t p = 0; p < J.size(); ++p) J[p] = total[sink[p]];
 }
+
+template struct ListDispersionData<double>;
+template struct ListDispersionData<float>;
+template ListDispersionData<float>::ListDispersionData(const ListDispersionData<double>&);
 
 template <class Real>
 bool ListForces<Real>::covers(const MassSpringModel& model) {
@@ -78,11 +93,11 @@ ListForces<Real>::ListForces(const MassSpringModel& model, InstructionSet set)
     : kernels_(&list_kernels<Real>(set)), blocks_(model.network), x_(zeros<Real>(blocks_)), f_(x_) {
   if (!covers(model)) throw std::invalid_argument("list forces are of springs and momentum dispersion only");
   const Network& network = model.network;
-  k_ = blocks_.per_entry<Real>(network, [&](int s, int) { return network.springs[s].stiffness; });
-  kL_ = blocks_.per_entry<Real>(network, [&](int s, int) { return network.springs[s].stiffness * network.springs[s].rest_length; });
+  k_ = blocks_.per_entry<Real>([&](int s) { return network.springs[s].stiffness; });
+  kL_ = blocks_.per_entry<Real>([&](int s) { return network.springs[s].stiffness * network.springs[s].rest_length; });
   const MomentumDispersion* law = dispersion_of(model);
   if (!law) return;
-  L_ = blocks_.per_entry<Real>(network, [&](int s, int) { return network.springs[s].rest_length; });
+  L_ = blocks_.per_entry<Real>([&](int s) { return network.springs[s].rest_length; });
   dispersion_.emplace_back(*law, network, blocks_);
   inverse_length_.resize(blocks_.entries());
 }

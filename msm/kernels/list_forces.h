@@ -1,7 +1,6 @@
 // Forces and explicit steps of networks without a lattice, by the list kernels.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "msm/boundary.h"
@@ -15,19 +14,17 @@ namespace springproof {
 template <class Real>
 const ListKernels<Real>& list_kernels(InstructionSet set);
 
-/// Factors per spring on what goes in and out of the nodes' sums.
-struct ListDispersionScales {
-  std::function<double(int spring)> in = [](int) { return 1.0; }, out = in;
-};
-
 /// What momentum dispersion needs beside the springs.
 template <class Real>
 struct ListDispersionData {
   std::vector<Real> a_i, a_j, c_i, c_j;  ///< per entry
   std::vector<int> sink;                 ///< per place the place whose J takes its springs' flow; empty: its own
 
-  ListDispersionData(const MomentumDispersion& law, const Network& network, const SpringBlocks& blocks,
-                     const ListDispersionScales& scales = {});
+  ListDispersionData(const MomentumDispersion& law, const Network& network, const SpringBlocks& blocks);
+
+  template <class Other>
+  explicit ListDispersionData(const ListDispersionData<Other>& other);
+
   ListDispersion<Real> arrays() const { return {a_i.data(), a_j.data(), c_i.data(), c_j.data()}; }
   void share(std::vector<Real>& J) const;  ///< gives all members of a group the group's J
 };

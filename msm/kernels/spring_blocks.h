@@ -21,12 +21,15 @@ struct SpringBlocks {
   std::size_t entries() const { return j.size(); }
   ListPattern pattern() const { return {static_cast<long>(i.size()), i.data(), j.data()}; }
 
-  /// Per entry value(s, end): s the spring, end 0 where its node i comes first in the block, else 1; 0 in lanes not needed.
+  /// 0 if the spring of an entry has its node i first in the block, else 1.
+  int end_of_i(const Network& network, std::size_t e) const { return network.springs[spring[e]].i == order[i[e / 4]] ? 0 : 1; }
+
+  /// value(spring) per entry; 0 in lanes not needed.
   template <class Real, class Value>
-  std::vector<Real> per_entry(const Network& network, Value value) const {
+  std::vector<Real> per_entry(Value value) const {
     std::vector<Real> values(entries());
     for (std::size_t e = 0; e < values.size(); ++e)
-      if (spring[e] >= 0) values[e] = static_cast<Real>(value(spring[e], network.springs[spring[e]].i == order[i[e / 4]] ? 0 : 1));
+      if (spring[e] >= 0) values[e] = static_cast<Real>(value(spring[e]));
     return values;
   }
 };

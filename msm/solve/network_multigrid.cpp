@@ -1,6 +1,5 @@
 #include "msm/solve/network_multigrid.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +9,6 @@
 namespace springproof {
 namespace {
 
-constexpr int smoothing_degree = 3;
 constexpr double auxiliary_spacings = 1.75;    // cell edge over mean node distance: 1.5 to 2 differ little
 constexpr double largest_kappa = 8;            // times G: beyond it the lattice's own cycle suffers
 constexpr double smallest_fill = 0.1;
@@ -139,8 +137,8 @@ void Passage::restrict_to(const Eigen::VectorXd& r, const std::vector<char>& nod
     if (fixed[i]) r_lattice[i] = 0;
 }
 
-NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
-    : fixed_(fixed), K_(tangent(model, model.network.X)) {
+NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed, const ListStiffness<double>* list)
+    : fixed_(fixed), smoother_(network_smoother(model, fixed, list)) {
   const Network& network = model.network;
   const double edge = network.grid && !network.cells.empty()
                           ? 2 * network.cell_edge
@@ -149,68 +147,14 @@ NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vect
   passage_ = passage(network, aux);
   hold(fixed, passage_);
   lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, passage_.fixed, 900, aux.fill), auxiliary_cell(model, edge), 3, true);
-  const std::vector<Eigen::Matrix3d> blocks = K_.node_blocks();
-  inverse_block_.resize(network.nodes());
-  for (int n = 0; n < network.nodes(); ++n) {
-    Eigen::Matrix3d block = blocks[n];
-    for (int d = 0; d < 3; ++d)
-      if (fixed_[3 * n + d]) {
-        block.row(d).setZero();
-        block.col(d).setZero();
-        block(d, d) = 1;
-      }
-    inverse_block_[n] = block.inverse();
-    for (int d = 0; d < 3; ++d)
-      if (fixed_[3 * n + d]) inverse_block_[n](d, d) = 0;
-  }
-  largest_eigenvalue_ = 1.1 * largest_eigenvalue();
-}
-
-void NetworkMultigrid::block_jacobi(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
-  z.resize(r.size());
-  for (std::size_t n = 0; n < inverse_block_.size(); ++n) z.segment<3>(3 * n) = inverse_block_[n] * r.segment<3>(3 * n);
-}
-
-/// Of D^-1 K, by a few power iterations from a rough vector.
-double NetworkMultigrid::largest_eigenvalue() const {
-  Eigen::VectorXd v(static_cast<Eigen::Index>(fixed_.size())), Kv;
-  unsigned state = 1;
-  for (double& value : v) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
-  block_jacobi(Eigen::VectorXd(v), v);
-  double estimate = 1;
-  for (int i = 0; i < 15; ++i) {
-    v.normalize();
-    K_.multiply(v, Kv);
-    block_jacobi(Kv, v);
-    estimate = v.norm();
-  }
-  return estimate;
-}
-
-void NetworkMultigrid::smooth(Eigen::VectorXd& r, Eigen::VectorXd& x, bool update_residual) const {
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(r.size()), Dr, Kz;
-  for (int k = 1; k <= smoothing_degree; ++k) {
-    block_jacobi(r, Dr);
-    z = (2.0 * k - 3) / (2.0 * k + 1) * z + (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue_) * Dr;
-    x += z;
-    if (k < smoothing_degree || update_residual) {
-      K_.multiply(z, Kz);
-      r -= Kz;
-    }
-  }
 }
 
 void NetworkMultigrid::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
-  x.setZero(b.size());
-  Eigen::VectorXd r = b, coarse_r, coarse_x, correction, Kc;
-  smooth(r, x, true);
-  passage_.restrict_to(r, fixed_, coarse_r);
-  lattice_->apply(coarse_r, coarse_x);
-  passage_.prolongate(coarse_x, fixed_, correction);
-  x += correction;
-  K_.multiply(correction, Kc);
-  r -= Kc;
-  smooth(r, x, false);
+  smoother_->before(b, residual_);
+  passage_.restrict_to(residual_, fixed_, coarse_r_);
+  lattice_->apply(coarse_r_, coarse_x_);
+  passage_.prolongate(coarse_x_, fixed_, correction_);
+  smoother_->after(correction_, x);
 }
 
 }  // namespace springproof

@@ -6,6 +6,7 @@
 
 #include "msm/laws/laws.h"
 #include "msm/solve/multigrid.h"
+#include "msm/solve/network_smoother.h"
 
 namespace springproof {
 
@@ -23,28 +24,23 @@ struct Passage {
   void restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed, Eigen::VectorXd& r_lattice) const;
 };
 
-/// Symmetric cycle for the rest state of a conservative model: Chebyshev (fourth kind) over the node blocks on the network
-/// itself, then one V-cycle of a lattice with cells of `spacings` mean node distances that fills the same body, with the
-/// network's affine shear modulus and the bulk modulus that momentum dispersion adds.
+/// Symmetric cycle for the rest state of a conservative model: smoothing on the network itself, in between one V-cycle of a
+/// lattice with cells of `spacings` mean node distances that fills the same body, with the network's affine shear modulus
+/// and the bulk modulus that momentum dispersion adds.
 class NetworkMultigrid {
  public:
-  NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed);
+  /// `list`: the model's stiffness at rest, if ListStiffness covers it; null: smooths over the assembled tangent.
+  NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed, const ListStiffness<double>* list);
 
   /// z = M^-1 r, symmetric positive definite; zero on the fixed unknowns.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
-  const Tangent& finest() const { return K_; }
 
  private:
-  void smooth(Eigen::VectorXd& r, Eigen::VectorXd& x, bool update_residual) const;
-  void block_jacobi(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
-  double largest_eigenvalue() const;
-
   std::vector<char> fixed_;
-  Tangent K_;
-  std::vector<Eigen::Matrix3d> inverse_block_;
-  double largest_eigenvalue_ = 0;
+  std::unique_ptr<NetworkSmoother> smoother_;
   Passage passage_;  ///< from the auxiliary lattice to the network
   std::unique_ptr<Multigrid> lattice_;
+  mutable Eigen::VectorXd residual_, coarse_r_, coarse_x_, correction_;
 };
 
 }  // namespace springproof

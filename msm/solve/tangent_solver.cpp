@@ -24,12 +24,17 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
   const Network& network = model.network;
   if (network.grid && !network.cells.empty() && !dispersion_of(model))
     lattice_ = std::make_unique<Multigrid>(lattice_levels(network, fixed), cell_stiffness(model).total);
-  else
-    network_ = std::make_unique<NetworkMultigrid>(companion_ ? *companion_ : model, fixed);
+  else {
+    if (ListStiffness<double>::covers(model)) {
+      list_ = std::make_unique<ListStiffness<double>>(model, std::make_shared<SpringBlocks>(network));
+      if (companion_) companion_list_ = std::make_unique<ListStiffness<double>>(*companion_, list_->blocks());
+    }
+    network_ = std::make_unique<NetworkMultigrid>(companion_ ? *companion_ : model, fixed, companion_ ? companion_list_.get() : list_.get());
+  }
 }
 
 bool TangentSolver::take(const NodalVectors& x) {
-  at_rest_ = lattice_ && x == model_.network.X;  // then the multigrid has the tangent
+  at_rest_ = (lattice_ || list_) && x == model_.network.X;  // then the multigrid or the list has the tangent
   if (at_rest_) return true;
   if (K_.local.nodes() == 0) K_.local = BlockMatrix(coupled_nodes(model_.network));
   update_tangent(model_, x, K_);
@@ -51,38 +56,60 @@ void TangentSolver::clear_fixed(Eigen::VectorXd& v) const {
     if (fixed_[i]) v[i] = 0;
 }
 
-KrylovResult TangentSolver::iterate(const Tangent& K, bool symmetric, const Eigen::VectorXd& b, double tolerance,
+TangentSolver::Stiffness TangentSolver::symmetric_stiffness() const {
+  if (!companion_) return stiffness();
+  return {companion_K_, at_rest_ ? companion_list_.get() : nullptr};
+}
+
+void TangentSolver::multiply(const Stiffness& K, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  if (K.at_rest)
+    K.at_rest->multiply(x, y);
+  else if (at_rest_)
+    lattice_->multiply(x, y);
+  else
+    K.assembled.multiply(x, y);
+}
+
+Eigen::VectorXd TangentSolver::diagonal() const {
+  if (!at_rest_) return K_.diagonal();
+  const std::vector<Eigen::Matrix3d> blocks = list_->node_blocks();
+  Eigen::VectorXd d(static_cast<Eigen::Index>(fixed_.size()));
+  for (std::size_t p = 0; p < blocks.size(); ++p) d.segment<3>(3 * list_->blocks()->order[p]) = blocks[p].diagonal();
+  return d;
+}
+
+KrylovResult TangentSolver::iterate(const Stiffness& K, bool symmetric, const Eigen::VectorXd& b, double tolerance,
                                     int max_iterations, Eigen::VectorXd& u) const {
   const Operator apply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-    K.multiply(x, y);
+    multiply(K, x, y);
     clear_fixed(y);
   };
   const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { precondition(r, z); };
   Eigen::VectorXd free = b;
   clear_fixed(free);
-  if (at_rest_) return lattice_->solve(free, tolerance, max_iterations, u);
+  if (at_rest_ && lattice_) return lattice_->solve(free, tolerance, max_iterations, u);
   u.setZero(b.size());
   if (symmetric) {
     KrylovResult result = conjugate_gradients(apply, condition, free, tolerance, max_iterations, u);
     if (result.converged || result.negative_curvature) return result;
     // Near nu = 1/2 forces cancel in the product, and no solution in these digits leaves a smaller residual.
-    const double round_off = 64 * std::numeric_limits<double>::epsilon() * K.diagonal().cwiseProduct(u).norm() / free.norm();
+    const double round_off = 64 * std::numeric_limits<double>::epsilon() * diagonal().cwiseProduct(u).norm() / free.norm();
     result.converged = result.residual <= round_off;
     return result;
   }
   // A cycle alone leaves the soft motions of a body held at few points to GMRES, which forgets them at a restart.
   const Operator solved = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    direct_ ? precondition(r, z) : void(iterate(companion_K_, true, r, inner_tolerance, max_iterations, z));
+    direct_ ? precondition(r, z) : void(iterate(symmetric_stiffness(), true, r, inner_tolerance, max_iterations, z));
   };
   return gmres(apply, solved, free, tolerance, max_iterations, 60, u);
 }
 
 KrylovResult TangentSolver::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) const {
-  return iterate(K_, !companion_, b, tolerance, max_iterations, u);
+  return iterate(stiffness(), !companion_, b, tolerance, max_iterations, u);
 }
 
 void TangentSolver::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
-  at_rest_ ? lattice_->multiply(x, y) : K_.multiply(x, y);
+  multiply(stiffness(), x, y);
 }
 
 bool TangentSolver::stable() const {
@@ -91,11 +118,11 @@ bool TangentSolver::stable() const {
   Eigen::VectorXd b(static_cast<Eigen::Index>(fixed_.size())), u;
   unsigned state = 1;
   for (double& value : b) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
-  return !iterate(symmetric_tangent(), true, b, 1e-6, 4000, u).negative_curvature;
+  return !iterate(symmetric_stiffness(), true, b, 1e-6, 4000, u).negative_curvature;
 }
 
 double TangentSolver::largest_diagonal() const {
-  return at_rest_ ? lattice_->largest_diagonal() : K_.diagonal().maxCoeff();
+  return at_rest_ && lattice_ ? lattice_->largest_diagonal() : diagonal().maxCoeff();
 }
 
 std::string TangentSolver::name() const {

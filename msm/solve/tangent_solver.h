@@ -36,11 +36,19 @@ class TangentSolver {
   std::string name() const;  ///< "Cholesky", "CG + multigrid", ...
 
  private:
-  KrylovResult iterate(const Tangent& K, bool symmetric, const Eigen::VectorXd& b, double tolerance, int max_iterations,
+  /// A stiffness: that of a list at rest if there is one, else what was assembled.
+  struct Stiffness {
+    const Tangent& assembled;
+    const ListStiffness<double>* at_rest;
+  };
+  Stiffness stiffness() const { return {K_, at_rest_ ? list_.get() : nullptr}; }
+  Stiffness symmetric_stiffness() const;
+  void multiply(const Stiffness& K, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  Eigen::VectorXd diagonal() const;  ///< of the model's own stiffness; not of a lattice at rest
+  KrylovResult iterate(const Stiffness& K, bool symmetric, const Eigen::VectorXd& b, double tolerance, int max_iterations,
                        Eigen::VectorXd& u) const;
   void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
   void clear_fixed(Eigen::VectorXd& v) const;
-  const Tangent& symmetric_tangent() const { return companion_ ? companion_K_ : K_; }
 
   const MassSpringModel& model_;
   std::vector<char> fixed_;
@@ -48,10 +56,11 @@ class TangentSolver {
   std::unique_ptr<MassSpringModel> companion_;  ///< of a model that is not conservative
   Tangent K_, companion_K_;
   bool direct_ = false;
-  bool at_rest_ = false;                        ///< a lattice at rest: K_ is left empty
+  bool at_rest_ = false;                        ///< of lattice_ or list_: K_ is left empty
   DirectSolver factors_;
   std::unique_ptr<Multigrid> lattice_;
   std::unique_ptr<NetworkMultigrid> network_;
+  std::unique_ptr<ListStiffness<double>> list_, companion_list_;  ///< of networks that it covers
 };
 
 }  // namespace springproof

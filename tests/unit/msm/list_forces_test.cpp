@@ -1,5 +1,5 @@
 // The list kernels against the plain loops of the laws.
-#include "msm/kernels/list_forces.h"
+#include "msm/kernels/list_stiffness.h"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,12 @@ using namespace springproof::test;
 namespace {
 
 double uniform(std::mt19937& generator) { return generator() / 4294967295.0; }
+
+RandomParameters spacing_one() {
+  RandomParameters p{};
+  p.spacing = 1;
+  return p;
+}
 
 /// `springs` springs between distinct random pairs of nodes, all constants different.
 Network tangle(int nodes, int springs, unsigned seed) {
@@ -47,8 +53,8 @@ std::vector<MassSpringModel> models_of(const Network& network) {
 
 std::vector<MassSpringModel> all_models() {
   std::vector<Network> networks = {tangle(2, 1, 1), tangle(7, 7, 2), tangle(143, 1003, 3)};
-  networks.push_back(random_network(region_of(block_mesh({7, 6, 5}, {7, 6, 5})), {.spacing = 1.0}));
-  networks.push_back(periodic_random_network({6, 6, 6}, {.spacing = 1.0}));
+  networks.push_back(random_network(region_of(block_mesh({7, 6, 5}, {7, 6, 5})), spacing_one()));
+  networks.push_back(periodic_random_network({6, 6, 6}, spacing_one()));
   std::vector<MassSpringModel> models;
   for (const Network& network : networks)
     for (MassSpringModel& m : models_of(network)) models.push_back(std::move(m));
@@ -116,8 +122,29 @@ TEST(ListForces, CoverSpringsAndDispersionOnly) {
   EXPECT_THROW(ListForces<double>{corrected}, std::invalid_argument);
 }
 
+TEST(ListStiffness, IsTheTangentAtRest) {
+  for (InstructionSet set : usable_instruction_sets())
+    for (MassSpringModel& model : all_models()) {
+      for (Spring& s : model.network.springs) s.rest_length = (model.network.X.row(s.j) - model.network.X.row(s.i)).norm();
+      const ListStiffness<double> list(model, std::make_shared<SpringBlocks>(model.network), set);
+      const Tangent K = tangent(model, model.network.X);
+      const NodalVectors u = noise(model.network.nodes(), 1, 5);
+      const Eigen::VectorXd flat = Eigen::Map<const Eigen::VectorXd>(u.data(), u.size());
+      Eigen::VectorXd expected, y, single;
+      K.multiply(flat, expected);
+      list.multiply(flat, y);
+      EXPECT_LE((y - expected).lpNorm<Eigen::Infinity>(), 1e-13 * expected.lpNorm<Eigen::Infinity>());
+      const double unit = 7e4;
+      ListStiffness<float>(list, unit).multiply(flat, single);
+      EXPECT_LE((unit * single - expected).lpNorm<Eigen::Infinity>(), 1e-5 * expected.lpNorm<Eigen::Infinity>());
+      const std::vector<Eigen::Matrix3d> blocks = list.node_blocks(), node_blocks = K.node_blocks();
+      for (std::size_t p = 0; p < blocks.size(); ++p)
+        EXPECT_LE((blocks[p] - node_blocks[list.blocks()->order[p]]).norm(), 1e-13 * (1 + node_blocks[list.blocks()->order[p]].norm()));
+    }
+}
+
 TEST(SpringBlocks, HoldEverySpringOnceInNearlyFullBlocks) {
-  const Network network = random_network(region_of(block_mesh({12, 12, 12}, {12, 12, 12})), {.spacing = 1.0});
+  const Network network = random_network(region_of(block_mesh({12, 12, 12}, {12, 12, 12})), spacing_one());
   const SpringBlocks blocks(network);
   std::vector<int> seen(network.springs.size(), 0);
   for (std::size_t e = 0; e < blocks.entries(); ++e) {
@@ -133,7 +160,7 @@ TEST(SpringBlocks, HoldEverySpringOnceInNearlyFullBlocks) {
 }
 
 TEST(ListMotion, IsThePlainMotion) {
-  const Network network = random_network(region_of(block_mesh({6, 5, 5}, {6, 5, 5})), {.spacing = 1.0});
+  const Network network = random_network(region_of(block_mesh({6, 5, 5}, {6, 5, 5})), spacing_one());
   BoundaryConditions full;
   full.fixed.assign(3 * network.nodes(), 0);
   full.prescribed = NodalVectors::Zero(network.nodes(), 3);

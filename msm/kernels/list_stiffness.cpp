@@ -1,0 +1,168 @@
+#include "msm/kernels/list_stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace springproof {
+
+template <class Real>
+void by_place(const SpringBlocks& blocks, const double* v, double factor, std::vector<Padded<Real>>& out) {
+  out.resize(blocks.order.size());
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    const double* from = v + 3 * blocks.order[p];
+    out[p] = {{static_cast<Real>(factor * from[0]), static_cast<Real>(factor * from[1]), static_cast<Real>(factor * from[2]), 0}};
+  }
+}
+
+template <class Real>
+void by_node(const SpringBlocks& blocks, const std::vector<Padded<Real>>& v, double factor, double* out) {
+  for (std::size_t p = 0; p < v.size(); ++p) {
+    double* to = out + 3 * blocks.order[p];
+    for (int d = 0; d < 3; ++d) to[d] = factor * v[p].v[d];
+  }
+}
+
+template void by_place<double>(const SpringBlocks&, const double*, double, std::vector<Padded<double>>&);
+template void by_place<float>(const SpringBlocks&, const double*, double, std::vector<Padded<float>>&);
+template void by_node<double>(const SpringBlocks&, const std::vector<Padded<double>>&, double, double*);
+template void by_node<float>(const SpringBlocks&, const std::vector<Padded<float>>&, double, double*);
+
+template <class Real>
+bool ListStiffness<Real>::covers(const MassSpringModel& model) {
+  const Network& network = model.network;
+  return ListForces<Real>::covers(model) && std::all_of(network.springs.begin(), network.springs.end(), [&](const Spring& s) {
+           return s.stiffness > 0 && std::abs((network.X.row(s.j) - network.X.row(s.i)).norm() - s.rest_length) <= 1e-9 * s.rest_length;
+         });
+}
+
+template <class Real>
+ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks, InstructionSet set)
+    : set_(set), kernels_(&list_kernels<Real>(set)), blocks_(std::move(blocks)), m_(blocks_->entries(), Padded<Real>{}) {
+  if (!covers(model)) throw std::invalid_argument("list stiffness is of springs and momentum dispersion only");
+  const Network& network = model.network;
+  const MomentumDispersion* law = dispersion_of(model);
+  if (law) dispersion_.emplace_back(*law, network, *blocks_);
+  for (std::size_t e = 0; e < m_.size(); ++e) {
+    if (blocks_->spring[e] < 0) continue;
+    const int i = blocks_->order[blocks_->i[e / 4]], j = blocks_->order[blocks_->j[e]];
+    const Eigen::RowVector3d d = network.X.row(j) - network.X.row(i);
+    const double root = std::sqrt(network.springs[blocks_->spring[e]].stiffness), scale = root / d.norm();
+    for (int axis = 0; axis < 3; ++axis) m_[e].v[axis] = static_cast<Real>(scale * d[axis]);
+    if (!law) continue;  // the elongation is m . du / root, and a tension along the spring m T / root
+    ListDispersionData<Real>& data = dispersion_.front();
+    for (std::vector<Real>* values : {&data.a_i, &data.a_j, &data.c_i, &data.c_j}) (*values)[e] /= static_cast<Real>(root);
+  }
+  if (law) kept_.resize(blocks_->entries());
+}
+
+template <class Real>
+template <class Other>
+ListStiffness<Real>::ListStiffness(const ListStiffness<Other>& other, double unit)
+    : set_(other.set_), kernels_(&list_kernels<Real>(set_)), blocks_(other.blocks_), m_(other.m_.size()), kept_(other.kept_.size()) {
+  const double root = std::sqrt(unit);
+  for (std::size_t e = 0; e < m_.size(); ++e)
+    for (int d = 0; d < 4; ++d) m_[e].v[d] = static_cast<Real>(other.m_[e].v[d] / root);
+  for (const auto& data : other.dispersion_) dispersion_.emplace_back(data);  // what passes through J has m twice, too
+}
+
+template <class Real>
+void ListStiffness<Real>::add(const Padded<Real>* u, Padded<Real>* y) const {
+  const ListPattern pattern = blocks_->pattern();
+  if (dispersion_.empty()) return kernels_->stiffness(pattern, m_.data(), u, y);
+  const ListDispersion<Real> dispersion = dispersion_.front().arrays();
+  J_.assign(blocks_->order.size(), 0);
+  kernels_->linear_inflow(pattern, m_.data(), dispersion, u, J_.data(), kept_.data());
+  dispersion_.front().share(J_);
+  kernels_->linear_forces(pattern, m_.data(), dispersion, J_.data(), kept_.data(), y);
+}
+
+template <class Real>
+void ListStiffness<Real>::multiply(const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
+  by_place(*blocks_, u.data(), 1, u_);
+  y_.assign(u_.size(), Padded<Real>{});
+  add(u_.data(), y_.data());
+  y.resize(u.size());
+  by_node(*blocks_, y_, 1, y.data());
+}
+
+namespace {
+
+/// What one node contributes to one sum J, and gets from it.
+struct Share {
+  int sink;
+  Vec3 in, out;
+};
+
+/// Per place the entries that it is in.
+struct EntriesOfPlaces {
+  std::vector<int> begin, entry;
+
+  explicit EntriesOfPlaces(const SpringBlocks& blocks) : begin(blocks.order.size() + 1, 0), entry(2 * blocks.entries()) {
+    for (std::size_t e = 0; e < blocks.entries(); ++e) {
+      ++begin[blocks.i[e / 4] + 1];
+      ++begin[blocks.j[e] + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (int e = 0; e < static_cast<int>(blocks.entries()); ++e) {
+      entry[next[blocks.i[e / 4]]++] = e;
+      entry[next[blocks.j[e]]++] = e;
+    }
+  }
+};
+
+}  // namespace
+
+template <class Real>
+void ListStiffness<Real>::add_flow_blocks(std::vector<Eigen::Matrix3d>& blocks) const {
+  const EntriesOfPlaces at(*blocks_);
+  const ListDispersionData<Real>& data = dispersion_.front();
+  const auto sink = [&](int p) { return data.sink.empty() ? p : data.sink[p]; };
+  std::vector<char> of_group(blocks.size(), 0);
+  for (int p = 0; p < blocks_->nodes(); ++p)
+    if (sink(p) != p) of_group[sink(p)] = 1;
+  std::vector<Share> shares;
+  for (int p = 0; p < blocks_->nodes(); ++p) {
+    shares.assign(1, {sink(p), Vec3::Zero(), Vec3::Zero()});
+    const auto add_share = [&](int to, const Vec3& in, const Vec3& out) {
+      auto known = shares.begin();
+      if (to != known->sink && !of_group[to]) {  // met once
+        blocks[p] += out * in.transpose();
+        return;
+      }
+      while (known != shares.end() && known->sink != to) ++known;
+      if (known == shares.end()) known = shares.insert(known, {to, Vec3::Zero(), Vec3::Zero()});
+      known->in += in;
+      known->out += out;
+    };
+    for (int n = at.begin[p]; n < at.begin[p + 1]; ++n) {
+      const int e = at.entry[n], i = blocks_->i[e / 4], j = blocks_->j[e];
+      const double sign = i == p ? -1 : 1;
+      const Vec3 m(sign * m_[e].v[0], sign * m_[e].v[1], sign * m_[e].v[2]);
+      add_share(sink(i), data.a_i[e] * m, data.c_i[e] * m);
+      add_share(sink(j), data.a_j[e] * m, data.c_j[e] * m);
+    }
+    for (const Share& share : shares) blocks[p] += share.out * share.in.transpose();
+  }
+}
+
+template <class Real>
+std::vector<Eigen::Matrix3d> ListStiffness<Real>::node_blocks() const {
+  std::vector<Eigen::Matrix3d> blocks(blocks_->order.size(), Eigen::Matrix3d::Zero());
+  for (std::size_t e = 0; e < m_.size(); ++e) {
+    const Vec3 m(m_[e].v[0], m_[e].v[1], m_[e].v[2]);
+    const Eigen::Matrix3d k = m * m.transpose();
+    blocks[blocks_->i[e / 4]] += k;
+    blocks[blocks_->j[e]] += k;
+  }
+  if (!dispersion_.empty()) add_flow_blocks(blocks);
+  return blocks;
+}
+
+template class ListStiffness<double>;
+template class ListStiffness<float>;
+template ListStiffness<float>::ListStiffness(const ListStiffness<double>&, double);
+
+}  // namespace springproof
