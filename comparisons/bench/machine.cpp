@@ -75,6 +75,14 @@ double read_GB_s(const BenchKernels& k, double bytes, const TimerOptions& option
   return 8e-9 * double(a.size) / seconds;
 }
 
+/// The best of some sizes that lie between two levels.
+double level_GB_s(const BenchKernels& k, double inner, double bytes, const TimerOptions& options) {
+  double best = 0;
+  for (const double part : {0.125, 0.25, 0.5})
+    if (const double size = part * bytes; size >= 1.5 * inner) best = std::max(best, read_GB_s(k, size, options));
+  return best > 0 ? best : read_GB_s(k, 0.5 * bytes, options);
+}
+
 /// Triad of `threads` at once, each with arrays of its own, that no cache holds.
 double triad_GB_s(const BenchKernels& k, double last_cache, int threads, TimerOptions options) {
   const long n = std::max(4194304L, long(2 * last_cache / 8 / 64) * 64) / threads / 64 * 64;
@@ -107,7 +115,7 @@ void measure_limits(bool quick, Machine& machine) {
   const BenchKernels widest = kernels_of(usable_instruction_sets().back());
   double inner = 0;
   for (MemoryLevel& level : machine.memory) {
-    level.GB_s = read_GB_s(widest, std::max(level.bytes / 2, 2 * inner), options);
+    level.GB_s = level_GB_s(widest, inner, level.bytes, options);
     inner = level.bytes;
   }
   TimerOptions longer = options;

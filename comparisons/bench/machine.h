@@ -7,8 +7,6 @@
 
 namespace springproof::bench {
 
-enum class Precision { fp64, fp32 };
-
 /// A level of the memory as one core sees it.
 struct MemoryLevel {
   std::string name;         ///< "L1", "L2", "L3", "DRAM"

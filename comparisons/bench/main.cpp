@@ -74,6 +74,7 @@ int run(const BenchOptions& options) {
     if (!interrupted()) throw;
     findings.remarks.push_back("interrupted: the rows are those measured before");
   }
+  if (options.quick) findings.remarks.push_back("quick: small sizes and few samples; the targets are those of the full ones");
   Json document = to_json(findings);
   document["program"] = {{"version", SPRINGPROOF_VERSION}, {"instruction_set", name_of(instruction_set())}, {"quick", options.quick}};
   document["machine"] = to_json(machine);

@@ -5,6 +5,8 @@
 
 #include "comparisons/bench/bench_kernel_choice.h"
 #include "comparisons/bench/bodies.h"
+#include "msm/kernels/lattice_motion.h"
+#include "msm/kernels/list_forces.h"
 #include "msm/solve/time_step.h"
 
 namespace springproof::bench {
@@ -51,15 +53,56 @@ Work operations(const MassSpringModel& model) {
   return w;
 }
 
-std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
-  if (options.threads > 1 || options.precision != Precision::fp64) return {};
-  const double m = double(model.network.springs.size()), n = double(model.network.nodes());
-  Motion motion{"forces()", {}, model.network.nodes(), long(model.network.springs.size()), operations(model)};
+namespace {
+
+Motion new_motion(const std::string& how, const MassSpringModel& model, Precision precision) {
+  return {how, {}, model.network.nodes(), long(model.network.springs.size()), operations(model), precision};
+}
+
+Motion lattice_motion(const MassSpringModel& model, const MotionOptions& options) {
+  const auto kernel = std::make_shared<LatticeMotion>(model, density, LatticeMotionOptions{options.precision, options.threads});
+  const NodalVectors x = moved(model.network);
+  kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
+  Motion motion = new_motion(kernel->description(), model, options.precision);
+  motion.work.streamed = (options.precision == Precision::float64 ? 96.0 : 48.0) * double(motion.nodes);
+  motion.work.kept = kernel->bytes_per_node() * double(motion.nodes);
+  const double dt = 0.5 * safe_time_step(model, density);
+  motion.advance = [kernel, dt](long steps) { kernel->advance(steps, dt, 0); };
+  return motion;
+}
+
+/// Entries of the kernel are nearly as many as springs.
+Motion list_motion(const MassSpringModel& model) {
+  const double dt = 0.5 * safe_time_step(model, density);
+  const Eigen::VectorXd mass = masses(model.network, density);
+  const auto kernel = std::make_shared<ListMotion<double>>(model, mass.cwiseInverse(), dt, 0);
+  kernel->load(clamped_bottom(model.network, 0.5 * edge));
+  Motion motion = new_motion("list kernel, " + name_of(instruction_set()), model, Precision::float64);
+  const double m = double(motion.springs), n = double(motion.nodes);
+  const bool disperses = dispersion_of(model) != nullptr;
+  motion.work.streamed = (disperses ? 98 : 21) * m + (disperses ? 424 : 352) * n;
+  motion.work.kept = (disperses ? 73 : 33) * m + (disperses ? 236 : 220) * n;
+  motion.advance = [kernel](long steps) { for (; steps > 0; --steps) kernel->step(); };
+  return motion;
+}
+
+Motion forces_motion(const MassSpringModel& model) {
+  Motion motion = new_motion("forces()", model, Precision::float64);
+  const double m = double(motion.springs), n = double(motion.nodes);
   motion.work.streamed = 24 * m + 216 * n;
   motion.work.kept = 24 * m + 80 * n;
   const auto stepper = std::make_shared<Stepper>(model);
   motion.advance = [stepper](long steps) { stepper->advance(steps); };
   return motion;
+}
+
+}  // namespace
+
+std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
+  if (LatticeMotion::suits(model)) return lattice_motion(model, options);
+  if (options.threads > 1 || options.precision != Precision::float64) return {};
+  if (ListForces<double>::covers(model)) return list_motion(model);
+  return forces_motion(model);
 }
 
 Motion plain_motion(const Network& network) {
@@ -86,7 +129,7 @@ namespace {
 
 /// Least time [s] that the arithmetic of a step can take on one core.
 double arithmetic_limit(const Motion& motion, const Arithmetic& core) {
-  const bool fp64 = motion.precision == Precision::fp64;
+  const bool fp64 = motion.precision == Precision::float64;
   return std::max(1e-9 * motion.work.flops / (fp64 ? core.gflops64 : core.gflops32),
                   1e-9 * motion.work.roots * (fp64 ? core.root64 : core.root32));
 }

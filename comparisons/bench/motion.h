@@ -8,6 +8,7 @@
 #include "comparisons/bench/machine.h"
 #include "comparisons/bench/rows.h"
 #include "comparisons/bench/timer.h"
+#include "msm/kernels/lattice_motion.h"
 #include "msm/laws/laws.h"
 
 namespace springproof::bench {
@@ -26,12 +27,12 @@ struct Motion {
   Advance advance;
   long nodes = 0, springs = 0;
   Work work = {};
-  Precision precision = Precision::fp64;
+  Precision precision = Precision::float64;
 };
 
 struct MotionOptions {
   int threads = 1;
-  Precision precision = Precision::fp64;
+  Precision precision = Precision::float64;
 };
 
 /// The fastest way that the library has for a model; nothing if it has none with these options.

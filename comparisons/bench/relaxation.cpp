@@ -1,5 +1,6 @@
 #include "comparisons/bench/relaxation.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "comparisons/bench/bodies.h"
@@ -25,12 +26,12 @@ double lowest_frequency_squared(const MassSpringModel& model, BoundaryConditions
 
 }  // namespace
 
-Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance) {
+Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance, double factor) {
   Relaxation result;
   DynamicsOptions options;
-  options.damping = result.damping = 2 * std::sqrt(lowest_frequency_squared(model, conditions));
+  options.damping = result.damping = factor * 2 * std::sqrt(lowest_frequency_squared(model, conditions));
   options.rest_tolerance = tolerance;
-  options.duration = 200 / options.damping;
+  options.duration = 200 * factor / options.damping * std::max(1.0, factor);
   const double start = cpu_seconds();
   const DynamicsResult motion = run_dynamics(model, density, [&](double) { return conditions; }, options);
   result.seconds = cpu_seconds() - start;

@@ -14,7 +14,7 @@ struct Relaxation {
 };
 
 /// run_dynamics() from rest with the largest safe step and the best mass-proportional damping, 2 sqrt(lmin), lmin the smallest
-/// squared frequency [1/s^2] of the linearised model, until the unbalanced force falls below the tolerance.
-Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance);
+/// squared frequency [1/s^2] of the linearised model, until the unbalanced force falls below the tolerance.  `factor`: times that damping.
+Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance, double factor = 1);
 
 }  // namespace springproof::bench

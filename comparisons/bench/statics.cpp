@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -48,7 +49,7 @@ Problem rabbit(int voxels) {
   MeshRequest request;
   request.file = find_geo(named, {});
   request.size = Vec3(0.2, 0.12, 0.25);
-  request.tetrahedra = 20000;
+  request.tetrahedra = std::min(20000, 2 * voxels);
   const Mesh body = mesh_body(request).mesh;
   const Mesh mesh = voxelise(voxel_grid(body, std::cbrt(volume(body, body.nodes) / voxels)), body).mesh;
   const std::vector<Load> loads = {PrescribedDisplacement{"feet", {0.0, 0.0, 0.0}}, PatchForce{"head", Vec3(-0.1, 0, 0)}};

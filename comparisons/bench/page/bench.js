@@ -6,7 +6,8 @@ const subjectNames = {dynamics: 'Dynamics: explicit steps', statics: 'Statics: e
 const limitOf = row => row.target ? row.target.at_least ?? row.target.at_most : null;
 const targetText = row => !row.target ? '' : `${'at_least' in row.target ? '≥' : '≤'} ${number(limitOf(row), 3)}`;
 const judgedText = row => number(row.judged, 3) + (row.baseline ? '×' : '');
-const nameOf = row => [row.what, row.size].filter(Boolean).join(', ');
+const sizeText = size => size.replace(/\^3/g, '³');
+const nameOf = row => [row.what, sizeText(row.size)].filter(Boolean).join(', ');
 
 function outcomeChip(row) {
   const kinds = {met: 'pass', missed: 'fail', 'no result': 'fail'};
@@ -129,7 +130,7 @@ function rooflineChart(points) {
   const options = baseOptions();
   options.plugins.legend.labels.boxWidth = 22;
   options.plugins.tooltip = {filter: item => item.raw && item.raw.p, callbacks: {
-    label: ({raw}) => `${raw.p.name}, ${raw.p.size}: ${number(raw.y, 3)} GF/s at ${number(raw.x, 3)} flops per byte, data in ${raw.p.level}`}};
+    label: ({raw}) => `${raw.p.name}, ${sizeText(raw.p.size)}: ${number(raw.y, 3)} GF/s at ${number(raw.x, 3)} flops per byte, data in ${raw.p.level}`}};
   options.scales = {x: logAxis('operations per byte read or written', {min: xs[0], max: xs[1]}), y: logAxis('GF/s', {min: Math.max(y.min, 0.1), max: y.max})};
   options.color = ink;
   return {type: 'scatter', data: {datasets: [...dots, ...lines]}, options, plugins: [pointSizes]};
@@ -148,7 +149,7 @@ const pointSizes = {
     chart.data.datasets.forEach((dataset, i) => {
       if (dataset.type !== 'scatter' || !chart.isDatasetVisible(i)) return;
       chart.getDatasetMeta(i).data.forEach((element, k) => {
-        const text = dataset.data[k].p.size, width = ctx.measureText(text).width;
+        const text = sizeText(dataset.data[k].p.size), width = ctx.measureText(text).width;
         const spot = [[element.x + 11, element.y], [element.x - 11 - width, element.y], [element.x - width / 2, element.y - 15], [element.x - width / 2, element.y + 15]]
           .find(([left, at]) => taken.every(box => left > box[0] + box[2] + 3 || box[0] > left + width + 3 || Math.abs(at - box[1]) > 12));
         if (!spot) return;
@@ -185,7 +186,7 @@ function benchRow(row) {
        el('td', {class: 'number'}, row.baseline ? number(row.baseline.value, 4) : '', row.baseline ? el('small', {}, row.baseline.name) : ''),
        el('td', {class: 'number'}, row.baseline ? el('b', {}, judgedText(row)) : '')]
     : [el('td', {colspan: 3, class: 'lost'}, 'no result')];
-  return el('tr', {}, el('td', {}, row.what, row.note ? el('small', {}, row.note) : ''), el('td', {}, row.size), ...cells,
+  return el('tr', {}, el('td', {}, row.what, row.note ? el('small', {}, row.note) : ''), el('td', {}, sizeText(row.size)), ...cells,
             el('td', {class: 'number'}, targetText(row)), el('td', {}, outcomeChip(row)), ...usageCells(row));
 }
 

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# The bench runs, and its figures are finite and positive; how large they are is no test's business.   bench.sh SPRINGPROOF
+set -u
+program=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+fail() { echo "FAILED: $*"; failed=1; }
+
+for what in dynamics statics; do
+  "$program" bench $what --quick --json "$work/$what.json" --out "$work/$what" >"$work/$what.txt" 2>"$work/$what.err"
+  status=$?
+  [ $status -eq 0 ] || { fail "$what ended with $status"; cat "$work/$what.txt" "$work/$what.err"; }
+  # Every row with a result has one line "judged", a number above 0.
+  awk -F ': ' -v what=$what '
+    /^ *"judged"/ { sub(/,$/, "", $2); n++; if (!($2 > 0 && $2 < 1e12)) { print "no good ratio: " $0; bad = 1 } }
+    /"ok": false/ { print "a row without a result"; bad = 1 }
+    END { if (n < 5) { print n " rows"; bad = 1 } exit bad }' "$work/$what.json" || fail "$what: figures"
+  grep -q "targets met" "$work/$what.txt" || fail "$what: no count of targets"
+  cmp -s "$work/$what.json" "$work/$what/bench.json" || fail "$what: two JSON files differ"
+  grep -q 'id="results-data">{' "$work/$what/bench.html" || fail "$what: no data in the page"
+done
+grep -q '"name": "DRAM"' "$work/dynamics.json" || fail "no limits of the memory"
+grep -q '"flops_per_byte"' "$work/dynamics.json" || fail "no roofline"
+if command -v lmp >/dev/null; then grep -q '"name": "LAMMPS"' "$work/dynamics.json" || fail "no row against LAMMPS"; fi
+SPRINGPROOF_LAMMPS=/bin/false "$program" bench dynamics --quick >"$work/out" 2>&1 && fail "a LAMMPS that fails passes unnoticed"
+"$program" bench nothing >/dev/null 2>"$work/err"
+[ $? -eq 2 ] || fail "an unknown bench is accepted"
+
+# Interrupted: what is measured is kept.
+"$program" bench dynamics --json "$work/half.json" >"$work/out" 2>&1 &
+pid=$!
+for _ in $(seq 100); do grep -q "HybMSS-CF, 15" "$work/out" && break; sleep 0.2; done
+kill -INT $pid
+wait $pid
+[ $? -eq 130 ] || fail "an interrupted bench ended with $?"
+grep -q '"judged"' "$work/half.json" || fail "an interrupted bench keeps nothing"
+[ $failed -eq 0 ] && echo "the bench runs"
+exit $failed

@@ -1,0 +1,84 @@
+// A baseline that computes something else would be no baseline.
+#include <gtest/gtest.h>
+
+#include "comparisons/bench/bench_kernel_choice.h"
+#include "comparisons/bench/bodies.h"
+#include "comparisons/bench/gamg.h"
+#include "comparisons/bench/in_child.h"
+#include "comparisons/bench/lammps.h"
+#include "comparisons/bench/relaxation.h"
+#include "msm/solve/equilibrium.h"
+
+#include <nlohmann/json.hpp>
+
+namespace springproof::bench {
+namespace {
+
+TEST(PlainLoop, MovesAsTheForcesSay) {
+  const MassSpringModel model = lattice("hybmss_cf", {4, 3, 5}, 0.25);
+  const NodalVectors x = moved(model.network), f = forces(model, x);
+  const Eigen::VectorXd mass = masses(model.network, density);
+  const double dt = 1e-4;
+  for (const InstructionSet set : usable_instruction_sets()) {
+    std::vector<PlainNode> nodes;
+    std::vector<PlainSpring> springs;
+    std::vector<double> dt_over_mass;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      nodes.push_back({{x(i, 0), x(i, 1), x(i, 2)}, {}, {}});
+      dt_over_mass.push_back(dt / mass[i]);
+    }
+    for (const Spring& s : model.network.springs) springs.push_back({s.i, s.j, s.stiffness, s.rest_length});
+    kernels_of(set).plain_step(nodes.data(), long(nodes.size()), springs.data(), long(springs.size()), dt_over_mass.data(), dt);
+    double off = 0, largest = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double v = dt / mass[i] * f(i, c);
+        off = std::max({off, std::abs(nodes[i].v[c] - v), std::abs(nodes[i].x[c] - (x(i, c) + dt * v)) / dt});
+        largest = std::max(largest, std::abs(v));
+        EXPECT_EQ(nodes[i].f[c], 0);
+      }
+    EXPECT_LT(off, 1e-10 * largest) << name_of(set);
+  }
+}
+
+TEST(Lammps, HasOurForces) {
+  if (!Lammps::available()) GTEST_SKIP() << "no lmp";
+  for (const MassSpringModel& model : {lattice("hybmss_cf", {4, 3, 5}, 0.25), random_springs(300)}) {
+    const NodalVectors ours = forces({model.network, {Springs{}}, false}, moved(model.network));
+    EXPECT_LT((Lammps(model.network).forces() - ours).cwiseAbs().maxCoeff(), 1e-10 * ours.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(Gamg, FindsOurEquilibrium) {
+  if (!has_gamg()) GTEST_SKIP() << "no PETSc";
+  const MassSpringModel model = lattice("hybmss", {6, 5, 4}, 0.3);
+  const BoundaryConditions conditions = clamped_bottom(model.network);
+  const auto answer = in_child([&] {
+    const Equilibrium ours = solve_linear(model, conditions);
+    const GamgResult gamg = solve_gamg(model, conditions, 1e-10, ours.displacement);
+    return nlohmann::json{{"converged", gamg.converged}, {"iterations", gamg.iterations}, {"difference", gamg.difference}};
+  });
+  EXPECT_TRUE(answer.at("converged"));
+  EXPECT_GT(answer.at("iterations"), 1);
+  EXPECT_LT(answer.at("difference"), 1e-7);
+}
+
+TEST(Relaxation, RestsAndNoOtherDampingIsFaster) {
+  const MassSpringModel model = lattice("hybmss_cf", {4, 4, 4}, 0.25);
+  const BoundaryConditions conditions = clamped_bottom(model.network);
+  const Relaxation best = relax(model, conditions, 1e-8);
+  ASSERT_TRUE(best.at_rest) << best.message;
+  for (const double factor : {0.6, 1.6}) {
+    const Relaxation other = relax(model, conditions, 1e-8, factor);
+    EXPECT_GT(other.steps, best.steps) << factor;
+  }
+}
+
+TEST(InChild, ReturnsThrowsAndSurvives) {
+  EXPECT_EQ(in_child([] { return nlohmann::json(42); }), 42);
+  EXPECT_THROW(in_child([]() -> nlohmann::json { throw std::runtime_error("no"); }), std::runtime_error);
+  EXPECT_THROW(in_child([]() -> nlohmann::json { std::abort(); }), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace springproof::bench

@@ -1,0 +1,47 @@
+#include "comparisons/bench/rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "comparisons/bench/table.h"
+
+namespace springproof::bench {
+namespace {
+
+BenchRow row(double value, double baseline, Target target) { return {"dynamics", "a", "10^3", "ns", value, baseline > 0 ? "b" : "", baseline, target}; }
+
+TEST(BenchRows, SpeedUpsAreBaselineOverOurs) {
+  EXPECT_DOUBLE_EQ(row(2, 10, at_least(5)).judged(), 5);
+  EXPECT_EQ(outcome(row(2, 10, at_least(5))), Outcome::met);
+  EXPECT_EQ(outcome(row(2, 9.9, at_least(5))), Outcome::missed);
+}
+
+TEST(BenchRows, OverheadsAreOursOverBaseline) {
+  EXPECT_DOUBLE_EQ(row(3, 2, at_most(1.6)).judged(), 1.5);
+  EXPECT_EQ(outcome(row(3, 2, at_most(1.6))), Outcome::met);
+  EXPECT_EQ(outcome(row(3, 2, at_most(1.4))), Outcome::missed);
+}
+
+TEST(BenchRows, WithoutBaselineTheValueIsJudged) {
+  EXPECT_EQ(outcome(row(13, 0, at_most(13))), Outcome::met);
+  EXPECT_EQ(outcome(row(14, 0, at_most(13))), Outcome::missed);
+  EXPECT_EQ(outcome(row(14, 0, {})), Outcome::information);
+}
+
+TEST(BenchRows, WhatIsNoNumberIsNoResult) {
+  EXPECT_EQ(outcome(row(std::nan(""), 0, at_most(13))), Outcome::no_result);
+  EXPECT_EQ(outcome(row(0, 10, at_least(5))), Outcome::no_result);
+  EXPECT_FALSE(complete({{row(1, 0, {}), row(std::nan(""), 0, {})}, {}, {}}));
+}
+
+TEST(BenchTable, MissedTargetsAreNotHidden) {
+  const Findings findings{{row(2, 9, at_least(5)), row(2, 11, at_least(5))}, {}, {"a remark"}};
+  const std::string text = table_text({"a processor", 2, {}, {{"L1", 32768}}}, findings);
+  EXPECT_NE(text.find("MISSED"), std::string::npos);
+  EXPECT_NE(text.find("1 of 2 targets met"), std::string::npos);
+  EXPECT_NE(text.find("a remark"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace springproof::bench
