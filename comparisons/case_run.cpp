@@ -58,7 +58,7 @@ struct PartRun {
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
   return {model,   "fem", run.material.poisson_ratio, s.grid.cells, s.law.empty() ? run.experiment().kinematics : s.law,
           s.ok,    s.message, s.form,                 s.iterations, s.residual,
-          s.seconds, s.degrees_of_freedom, s.memory_MiB};
+          s.times.solve, s.unknowns, s.memory_MiB, s.times.set_up};
 }
 
 /// Runs the finite elements.
@@ -231,7 +231,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   for (const Sample& sample : samples) {
     const Equilibrium& s = sample.state;
     run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message, s.solver,
-                             s.iterations, s.residual, s.seconds, s.unknowns, s.memory_MiB});
+                             s.iterations, s.residual, sample.times.solve, s.unknowns, s.memory_MiB, sample.times.set_up});
     if (!s.ok) continue;
     if (fields.empty()) {
       save(run, lattice, label, sample.field);
@@ -320,15 +320,23 @@ void add_fem(PartRun& run, std::size_t lattice) {
     field.displacement = run.reference[lattice]->field.displacement;
     save(run, lattice, "fem", field);
   }
-  if (lattice >= run.grids.peers.size() || run.grids.peers[lattice].grid.cells[0] == 0) return;
-  const fem::Solution& s = run.grids.peers[lattice];
-  run.part.runs.push_back(fem_run(run, s, "fem_q1"));
-  if (!s.ok) return;
-  add_rows(run, lattice, "fem_q1", run.part.runs.back().kinematics, {at_lattice(prepared, lattice, s.displacement)}, {measures_of(prepared, s)});
-  save(run, lattice, "fem_q1", sampled_field(prepared, lattice, s));
+  if (lattice >= run.grids.peers.size()) return;
+  for (const fem::Solution& s : run.grids.peers[lattice]) {
+    const std::string name = "fem_" + s.grid.element;
+    run.part.runs.push_back(fem_run(run, s, name));
+    run.part.runs.back().cells = prepared.experiment.body.cells[lattice];
+    if (!s.ok) continue;
+    add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_lattice(prepared, lattice, s.displacement)}, {measures_of(prepared, s)});
+    save(run, lattice, name, sampled_field(prepared, lattice, s));
+  }
 }
 
 }  // namespace
+
+bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree) {
+  const double unknowns = 3.0 * static_cast<double>(mesh.nodes.rows()) * degree * degree * degree;
+  return experiment.most_unknowns == 0 || unknowns <= experiment.most_unknowns;
+}
 
 PreparedCase prepare(const Experiment& experiment) try {
   PreparedCase prepared;
@@ -353,6 +361,7 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
   build_reference(run);
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
     add_fem(run, lattice);
+    if (!small_enough(prepared.experiment, *prepared.meshes[lattice])) continue;
     for (std::size_t m = 0; m < prepared.models.size(); ++m) run_model(run, lattice, m);
   }
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);

@@ -27,6 +27,7 @@ struct PreparedCase {
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
   std::vector<std::shared_ptr<const Region>> regions;  ///< beside them: the true body where cubes stand for it, else empty
   std::vector<std::shared_ptr<const Mesh>> tetrahedra;  ///< of a body of voxels: three meshes, coarse to fine (the last is the true body)
+  std::vector<std::shared_ptr<const Mesh>> fitted;  ///< of it, per resolution tetrahedra with the cubes' edges, where elements on them are compared
   std::vector<double> voxel_edges;                  ///< of a body of voxels, one per resolution [m]
   NodalVectors body_points = NodalVectors(0, 3);    ///< and where its finite elements are asked for their displacement,
   std::vector<BodySample> body_samples;             ///< from which each lattice node takes its own
@@ -36,6 +37,10 @@ struct PreparedCase {
   std::set<std::string> sharing;                    ///< patches whose separate forces are a convention
   std::filesystem::path geo;                        ///< the body's gmsh script
 };
+
+/// False for a run with more unknowns than [compare] most_unknowns: about three per node of its mesh, and eight times as many for
+/// elements of degree 2.  Of a model the degree is 1.
+bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree = 1);
 
 /// @throws InputError for everything a user can get wrong, before any long work starts.
 PreparedCase prepare(const Experiment& experiment);
@@ -55,7 +60,7 @@ struct Part {
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder);
 
 /// The element of [reference] whose limit a name in [[expect]] stands for: "fem" the first, "fem_p1" linear tetrahedra;
-/// nothing for a model, or for fem_q1 beside models, which is run on their own cells.
+/// nothing for a model, or for an element of [compare] beside models, which is run at their resolutions.
 std::optional<std::string> reference_element(const Experiment& experiment, const std::string& model);
 
 /// Judges the expectations and sets published values beside ours, once all parts are in result.rows.

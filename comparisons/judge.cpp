@@ -72,7 +72,9 @@ Check judge_one(const CaseResult& result, const Expectation& e, double nu, const
 std::optional<std::string> reference_element(const Experiment& experiment, const std::string& model) {
   const std::vector<std::string>& elements = experiment.reference.elements;
   if (model == "fem" && !elements.empty()) return elements.front();
-  if (model == "fem_q1" && !experiment.models.empty()) return {};  // the peer on the models' own cells
+  if (!experiment.models.empty())
+    for (const std::string& peer : experiment.elements)
+      if (model == "fem_" + peer) return {};
   for (const std::string& element : elements)
     if (model == "fem_" + element) return element;
   return {};

@@ -8,6 +8,7 @@
 #include "msm/calibrate.h"
 #include "msm/measure/block_moduli.h"
 #include "msm/measure/statistics.h"
+#include "msm/solve/cost.h"
 #include "problem/measures.h"
 
 namespace springproof {
@@ -40,24 +41,57 @@ void add_moduli(const Experiment& e, const MassSpringModel& model, const NodalVe
   out["moduli.affine_youngs_modulus"] = 2.5 * affine_shear_modulus(model.network);
 }
 
+/// A network with what was found.
+struct Solved {
+  EmbeddedModel built;
+  BoundaryConditions conditions;
+  Equilibrium state;
+  RunTimes times;
+};
+
+Solved solve_network(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters, const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const Kinematics kinematics = e.model_kinematics();
+  const Mesh& mesh = *prepared.meshes[lattice];
+  const double start = cpu_seconds();
+  Solved s{build_embedded(parameters, mesh, material, prepared.regions[lattice].get()), {}, {}, {}};
+  const LoadPath path = [&](double factor) {
+    BoundaryConditions bc = transfer(e.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
+    if (parameters.hold_rigid_motions) hold_free_motions(s.built.model.network.X, bc);
+    return bc;
+  };
+  s.conditions = path(1.0);
+  const double ready = cpu_seconds();
+  LinearOptions options;
+  if (e.cost) options.tolerance = compared_residual;
+  s.state = kinematics == Kinematics::linear ? solve_linear(s.built.model, s.conditions, options) : solve_finite(s.built.model, path);
+  s.times = {ready - start, cpu_seconds() - ready};
+  return s;
+}
+
+/// With times worth comparing, and the memory of this run alone.
+Solved solve_and_count(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters, const IsotropicMaterial& material) {
+  if (lattice == 0) solve_network(prepared, lattice, parameters, material);  // what is kept from run to run is not counted
+  const MemoryGrowth memory;
+  Solved s = solve_network(prepared, lattice, parameters, material);
+  s.state.memory_MiB = memory.most_MiB();
+  if (s.state.ok) s.times = least_times(s.times, [&] { return solve_network(prepared, lattice, parameters, material).times; });
+  return s;
+}
+
 /// One network of the model, solved and measured.
 Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
                   const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
-  const Kinematics kinematics = e.model_kinematics();
   const auto& mesh = prepared.meshes[lattice];
-  const EmbeddedModel built = build_embedded(parameters, *mesh, material, prepared.regions[lattice].get());
+  const auto solve = e.cost ? solve_and_count : solve_network;
+  const auto [built, conditions, state, times] = solve(prepared, lattice, parameters, material);
   const Network& network = built.model.network;
-  const LoadPath path = [&](double factor) {
-    BoundaryConditions bc = transfer(e.loads, *mesh, built.embedding, network, material.density, kinematics, factor);
-    if (parameters.hold_rigid_motions) hold_free_motions(network.X, bc);
-    return bc;
-  };
-  const BoundaryConditions conditions = path(1.0);
   Sample sample;
-  sample.state = kinematics == Kinematics::linear ? solve_linear(built.model, conditions) : solve_finite(built.model, path);
+  sample.state = state;
+  sample.times = times;
   if (!sample.state.ok) return sample;
-  sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, kinematics);
+  sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
   const NodalVectors probes = at_probes(prepared, lattice, sample.field.displacement);
   sample.scalars = scalar_measures(sample.field, e.probes, probes);

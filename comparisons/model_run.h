@@ -8,12 +8,14 @@
 
 #include "comparisons/case_run.h"
 #include "msm/solve/equilibrium.h"
+#include "problem/run_cost.h"
 
 namespace springproof {
 
 /// What one network gives.
 struct Sample {
   Equilibrium state;
+  RunTimes times;
   Field field;                            ///< on the lattice's mesh; empty where state.ok is false
   std::map<std::string, double> scalars;  ///< every measure that has a value of its own
   std::optional<LineRecord> line;         ///< where the case has one

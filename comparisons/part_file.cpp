@@ -20,7 +20,7 @@ namespace springproof {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Row, case_name, kinematics, model, poisson_ratio, cells, measure, value, unit,
                                    reference, reference_uncertainty, error, samples, spread)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Run, model, kind, poisson_ratio, cells, kinematics, ok, message, solver, iterations,
-                                   residual, seconds, unknowns, memory_MiB)
+                                   residual, seconds, unknowns, memory_MiB, set_up_seconds)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, poisson_ratio, measure, unit, cells, values, observed_order, value,
                                    uncertainty, note, element)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Picture, model, poisson_ratio, cells, rest, displacement, difference, quads,

@@ -93,8 +93,15 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   for (const std::string& element : experiment.reference.elements)
     for (int divisor : {4, 2, 1})
       request.grids.push_back({divided(prepared.reference_cells, divisor), element, experiment.reference.grading});
+  const std::size_t references = request.grids.size();
+  std::vector<std::size_t> lattices;
   if (!experiment.models.empty())
-    for (const Cells& cells : experiment.body.cells) request.grids.push_back({cells, "q1", 1.0});
+    for (std::size_t i = 0; i < prepared.meshes.size(); ++i)
+      for (const std::string& element : experiment.elements)
+        if (small_enough(experiment, *prepared.meshes[i], element[1] - '0')) {
+          request.grids.push_back({experiment.body.cells[i], element, 1.0});
+          lattices.push_back(i);
+        }
   try {
     const std::vector<fem::Solution> solutions = fem::solve(request);
     ReferenceGrids out;
@@ -103,7 +110,8 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
       out.elements.push_back({element, {at, at + 3}});
       at += 3;
     }
-    out.peers.assign(at, solutions.end());
+    out.peers.resize(prepared.meshes.size());
+    for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;
   } catch (const std::runtime_error& e) {
     return {{}, {}, {}, e.what()};

@@ -21,7 +21,8 @@ bool complete(const ElementGrids& e);
 
 struct ReferenceGrids {
   std::vector<ElementGrids> elements;  ///< in the order of [reference] elements; empty: the program gave no answer
-  std::vector<fem::Solution> peers;    ///< eight-node elements on the models' own cells, if there are models
+  std::vector<std::vector<fem::Solution>> peers;  ///< per lattice the elements of [compare], if there are models; none where
+                                                  ///< that would be too many cubes
   std::vector<std::vector<fem::Solution>> refined;  ///< of a body of voxels, per lattice: q2 on its cubes, and on these cut
                                                     ///< into eight; none where that would be too many
   std::string failure;                 ///< why there is no answer

@@ -30,6 +30,7 @@ set(report_assets
     report_js=${report_dir}/report/figure.js
     report_js=${report_dir}/report/charts.js
     report_js=${report_dir}/report/line.js
+    report_js=${report_dir}/report/cost.js
     report_js=${report_dir}/report/splits.js
     report_js=${report_dir}/report/colours.js
     report_js=${report_dir}/report/pictures.js

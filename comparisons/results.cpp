@@ -164,6 +164,7 @@ Json json_of(const Run& r) {
           {"solver", r.solver},
           {"iterations", r.iterations},
           {"residual", number(r.residual)},
+          {"set_up_seconds", number(r.set_up_seconds)},
           {"seconds", number(r.seconds)},
           {"unknowns", r.unknowns},
           {"memory_MiB", number(r.memory_MiB)}};
@@ -258,6 +259,8 @@ Json json_of(const Experiment& e) {
           {"poisson_ratios", poisson_ratios},
           {"loads", loads},
           {"models", list(e.models)},
+          {"elements", e.elements},
+          {"cost", e.cost},
           {"measures", e.measures},
           {"probes", list(e.probes)},
           {"section", e.section ? json_of(*e.section) : Json(nullptr)},

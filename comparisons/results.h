@@ -41,9 +41,11 @@ struct Run {
   std::string solver;              ///< "CG + multigrid", "Newton, 8 load steps, Cholesky", ...
   int iterations = 0;
   double residual = 0;             ///< relative
-  double seconds = 0;
-  long unknowns = 0;
-  double memory_MiB = 0;           ///< largest resident memory of the solver's program up to the end of this run
+  double seconds = 0;              ///< CPU time from a discrete system with its loads to the displacement
+  long unknowns = 0;               ///< displacements that are free
+  double memory_MiB = 0;           ///< largest resident memory of the solver's program up to the end of this run; in an
+                                   ///< experiment with `cost` what the run added
+  double set_up_seconds = 0;       ///< CPU time from the mesh in memory to that system
 };
 
 /// How sure the reference is of one measure: three grids, observed order, Richardson limit, GCI.

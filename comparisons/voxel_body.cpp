@@ -8,6 +8,7 @@
 
 #include "comparisons/measures.h"
 #include "comparisons/reference_grids.h"
+#include "comparisons/voxel_reference.h"
 #include "meshes/facet_tree.h"
 #include "meshes/locate.h"
 #include "meshes/mesher.h"
@@ -22,12 +23,16 @@ namespace {
 constexpr int finest_tetrahedra = 20000;
 constexpr double mesh_ratio = 1.5;  // edges of one mesh over those of the next finer one
 
-void mesh_the_body(PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
+MeshRequest body_request(const PreparedCase& prepared) {
   MeshRequest request;
   request.file = prepared.geo;
-  request.size = e.body.size;
-  request.scale = e.body.scale;
+  request.size = prepared.experiment.body.size;
+  request.scale = prepared.experiment.body.scale;
+  return request;
+}
+
+void mesh_the_body(MeshRequest request, PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
   request.tetrahedra = finest_tetrahedra;
   if (!e.reference.elements.empty()) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
@@ -53,6 +58,18 @@ void compare_volumes(double cubes, double edge, double body, std::vector<std::st
   const std::string says = fmt::format("{} cubes of {:.6g} m fill {:.4g} times the volume of the body", cubes, edge, share);
   if (share > 2 || share < 0.5) throw std::invalid_argument("voxels: " + says + " (allowed: 0.5 to 2); take smaller voxels");
   if (std::abs(share - 1) > 0.1) notes.push_back(says + ": its thin parts are not resolved");
+}
+
+/// As fine as the lattices, for elements on tetrahedra beside the models.
+void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  if (elements_of(e, 'p').empty()) return;
+  for (const double edge : prepared.voxel_edges) {
+    request.edge = edge;
+    Mesh mesh = mesh_body(request).mesh;
+    select_patches(e.patches, mesh);
+    prepared.fitted.push_back(std::make_shared<Mesh>(std::move(mesh)));
+  }
 }
 
 void cut_lattices(PreparedCase& prepared) {
@@ -159,11 +176,13 @@ void check_probes(const PreparedCase& prepared) {
 
 void prepare_voxel_body(PreparedCase& prepared) try {
   const Experiment& e = prepared.experiment;
-  mesh_the_body(prepared);
+  const MeshRequest request = body_request(prepared);
+  mesh_the_body(request, prepared);
   std::vector<std::string> patches;
   for (const Patch& p : prepared.tetrahedra.back()->patches) patches.push_back(p.name);
   check_patches(e, patches);
   cut_lattices(prepared);
+  mesh_like_lattices(request, prepared);
   set_wrenches(prepared);
   check_probes(prepared);
   if (!e.reference.elements.empty()) place_samples(prepared);

@@ -19,20 +19,28 @@ NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
   return both;
 }
 
-std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const IsotropicMaterial& material) {
+using Meshes = std::vector<std::shared_ptr<const Mesh>>;
+
+/// Each element on each mesh, the meshes of one element one after the other.
+std::vector<fem::Discretisation> grids_on(const Meshes& meshes, const std::vector<std::string>& elements) {
+  std::vector<fem::Discretisation> grids;
+  for (const std::string& element : elements)
+    for (int m = 0; m < static_cast<int>(meshes.size()); ++m)
+      grids.push_back({{static_cast<int>(meshes[m]->tetrahedra.size()), 0, 0}, element, 1.0, m, 0});
+  return grids;
+}
+
+std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                            const std::vector<fem::Discretisation>& grids, const Meshes& meshes) {
+  if (grids.empty()) return {};
   const Experiment& e = prepared.experiment;
   const NodalVectors probes = probe_points(e);
   const bool stresses = wanted("stress", e.measures);
-  fem::Request request{e, material, {}, stacked(prepared.body_points, probes), stresses ? probes : NodalVectors(0, 3), 1e-8, prepared.tetrahedra};
-  for (const std::string& element : e.reference.elements)
-    for (int m = 0; m < static_cast<int>(prepared.tetrahedra.size()); ++m) {
-      const int cells = static_cast<int>(prepared.tetrahedra[m]->tetrahedra.size());
-      request.grids.push_back({{cells, 0, 0}, element, 1.0, m, 0});
-    }
+  const fem::Request request{e, material, grids, stacked(prepared.body_points, probes), stresses ? probes : NodalVectors(0, 3), 1e-8, meshes};
   std::vector<fem::Solution> solutions = fem::solve(request);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
-    const Mesh& own = *prepared.tetrahedra[s.grid.mesh];
+    const Mesh& own = *meshes[s.grid.mesh];
     s.reactions = about_true_patches(prepared, own, s.reactions);
     s.displacement = stacked(at_lattice_nodes(prepared, s.displacement.topRows(prepared.body_points.rows())),
                              s.displacement.bottomRows(probes.rows()));
@@ -40,14 +48,16 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   return solutions;
 }
 
-/// On the cubes of one lattice: q1, and if they are not too many q2 and q2 on cubes cut into eight.
-std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t lattice, const IsotropicMaterial& material) {
+/// On the cubes of one lattice: these elements, and for the parts of the error q2, and q2 on cubes cut into eight, if they are not too many.
+std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t lattice, const IsotropicMaterial& material,
+                                       const std::vector<std::string>& elements) {
   const Experiment& e = prepared.experiment;
   const auto& mesh = prepared.meshes[lattice];
   const Cells& cells = e.body.cells[lattice];
   if (mesh->hexahedra.size() > most_cubes) return {};
-  fem::Request request{e, material, {{cells, "q1", 1.0, 0, 0}}, mesh->nodes, NodalVectors(0, 3), 1e-8, {mesh}};
-  if (mesh->hexahedra.size() <= most_refined_cubes) {
+  fem::Request request{e, material, {}, mesh->nodes, NodalVectors(0, 3), 1e-8, {mesh}};
+  for (const std::string& element : elements) request.grids.push_back({cells, element, 1.0, 0, 0});
+  if (!e.cost && mesh->hexahedra.size() <= most_refined_cubes) {
     request.grids.push_back({cells, "q2", 1.0, 0, 0});
     request.grids.push_back({{2 * cells[0], 2 * cells[1], 2 * cells[2]}, "q2", 1.0, 0, 1});
   }
@@ -67,20 +77,35 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t
 
 }  // namespace
 
+std::vector<std::string> elements_of(const Experiment& e, char shape) {
+  std::vector<std::string> elements;
+  if (!e.models.empty())
+    std::copy_if(e.elements.begin(), e.elements.end(), std::back_inserter(elements), [&](const std::string& name) { return name[0] == shape; });
+  return elements;
+}
+
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
   ReferenceGrids out;
-  const std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material);
+  const Experiment& e = prepared.experiment;
+  const std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
   auto at = solutions.begin();
-  for (const std::string& element : prepared.experiment.reference.elements) {
+  for (const std::string& element : e.reference.elements) {
     out.elements.push_back({element, {at, at + 3}});
     at += 3;
   }
-  if (prepared.experiment.models.empty()) return out;
+  if (e.models.empty()) return out;
+  const auto too_fine = [&](const Mesh& mesh, const std::string& element) { return !small_enough(e, mesh, element[1] - '0'); };
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
-    std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material);
-    out.peers.push_back(cubes.empty() ? fem::Solution() : cubes.front());
-    out.refined.emplace_back(cubes.begin() + std::min<std::size_t>(1, cubes.size()), cubes.end());
+    std::vector<std::string> on_cubes = elements_of(e, 'q');
+    std::erase_if(on_cubes, [&](const std::string& element) { return too_fine(*prepared.meshes[lattice], element); });
+    const std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material, on_cubes);
+    const auto refined = cubes.begin() + static_cast<std::ptrdiff_t>(std::min(on_cubes.size(), cubes.size()));
+    out.peers.emplace_back(cubes.begin(), refined);
+    out.refined.emplace_back(refined, cubes.end());
   }
+  std::vector<fem::Discretisation> fitted = grids_on(prepared.fitted, elements_of(e, 'p'));
+  std::erase_if(fitted, [&](const fem::Discretisation& grid) { return too_fine(*prepared.fitted[grid.mesh], grid.element); });
+  for (const fem::Solution& s : solve_tetrahedra(prepared, material, fitted, prepared.fitted)) out.peers[s.grid.mesh].push_back(s);
   return out;
 } catch (const InputError&) {
   throw;
@@ -92,8 +117,11 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
 
 std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t lattice, const ReferenceGrids& grids) {
   if (lattice >= grids.refined.size() || grids.refined[lattice].size() != 2) return {};
-  const fem::Solution &peer = grids.peers[lattice], &h = grids.refined[lattice][0], &half = grids.refined[lattice][1];
-  if (!peer.ok || !h.ok || !half.ok) return {};
+  const std::vector<fem::Solution>& peers = grids.peers[lattice];
+  const auto q1 = std::find_if(peers.begin(), peers.end(), [](const fem::Solution& s) { return s.grid.element == "q1"; });
+  const fem::Solution &h = grids.refined[lattice][0], &half = grids.refined[lattice][1];
+  if (q1 == peers.end() || !q1->ok || !h.ok || !half.ok) return {};
+  const fem::Solution& peer = *q1;
   const NodalVectors u1 = at_lattice(prepared, lattice, h.displacement), u2 = at_lattice(prepared, lattice, half.displacement);
   VoxelLimit out{at_lattice(prepared, lattice, peer.displacement), 2 * u2 - u1, 3 * (u2 - u1).rowwise().norm(), measures_of(prepared, peer), {}};
   const auto coarse = measures_of(prepared, h), fine = measures_of(prepared, half);

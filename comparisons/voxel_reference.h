@@ -9,6 +9,9 @@
 
 namespace springproof {
 
+/// Of the elements compared beside the models, those of hexahedra ('q') or of tetrahedra ('p').
+std::vector<std::string> elements_of(const Experiment& experiment, char shape);
+
 /// What solve_grids is for such a body.
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 

@@ -57,9 +57,12 @@ json solution(const Solution& s) {
           {"volume_change_first_order", s.volume_change_first_order},
           {"min_jacobian", s.min_jacobian},
           {"degrees_of_freedom", s.degrees_of_freedom},
+          {"unknowns", s.unknowns},
           {"iterations", s.iterations},
           {"residual", s.residual},
           {"seconds", s.seconds},
+          {"set_up_seconds", s.times.set_up},
+          {"solve_seconds", s.times.solve},
           {"memory_MiB", s.memory_MiB}};
 }
 
@@ -79,9 +82,11 @@ Solution to_solution(const json& j) {
   s.volume_change_first_order = j.at("volume_change_first_order");
   s.min_jacobian = j.at("min_jacobian");
   s.degrees_of_freedom = j.at("degrees_of_freedom");
+  s.unknowns = j.at("unknowns");
   s.iterations = j.at("iterations");
   s.residual = j.at("residual");
   s.seconds = j.at("seconds");
+  s.times = {j.at("set_up_seconds"), j.at("solve_seconds")};
   s.memory_MiB = j.at("memory_MiB");
   return s;
 }

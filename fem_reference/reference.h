@@ -10,6 +10,7 @@
 
 #include "meshes/field.h"
 #include "problem/experiment.h"
+#include "problem/run_cost.h"
 
 namespace springproof::fem {
 
@@ -49,11 +50,13 @@ struct Solution {
   double volume_change = 0;              ///< exact, by the element's own quadrature [1]
   double volume_change_first_order = 0;  ///< integral of div u / V [1]
   double min_jacobian = 1;               ///< min det F at quadrature points
-  long degrees_of_freedom = 0;
+  long degrees_of_freedom = 0;  ///< of the displacement, held ones too
+  long unknowns = 0;            ///< of them free
   int iterations = 0;     ///< of the linear solver, all steps together
   double residual = 0;    ///< relative, of the final state
   double seconds = 0;     ///< CPU time of this grid, of all processes
-  double memory_MiB = 0;  ///< peak resident set so far, of the largest process
+  RunTimes times;         ///< of it, what the displacement took; the rest went into measuring
+  double memory_MiB = 0;  ///< peak resident set so far, of the largest process; of an experiment with `cost` what the grid added
 };
 
 /// Solves on every grid, in order.  A grid that fails has ok = false; it does not throw.

@@ -28,6 +28,7 @@ struct GridProblem {
   double tolerance = 1e-9;   ///< relative residual
   Method method = Method::automatic;
   bool wide_vectors = true;  ///< use the wide vectors of the processor, where it has them
+  bool own_memory = false;   ///< Solution::memory_MiB is what this grid adds
 };
 
 /// Solution::grid is left to the caller.  A solver that fails gives ok = false.

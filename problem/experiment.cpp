@@ -198,12 +198,7 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   if (const auto elements = table.find("elements")) {
     reference.elements.clear();
     if (const auto* array = elements->node->as_array(); array && array->empty()) return reference;
-    for (const TomlValue& item : as_list(*elements, "a list of elements: q1, q2, p1, p2")) {
-      const std::string element = as_choice(item, voxels ? std::vector<std::string>{"p2", "p1"} : element_names());
-      if (std::find(reference.elements.begin(), reference.elements.end(), element) != reference.elements.end())
-        refuse(item, fmt::format("'{}' is named twice", element), "each element once");
-      reference.elements.push_back(element);
-    }
+    reference.elements = read_elements(*elements, voxels ? std::vector<std::string>{"p2", "p1"} : element_names());
   }
   if (const auto grading = table.find("grading"))
     reference.grading = as_number(*grading, {"a number from 1 to 3", 1, 3, true, true});
@@ -259,6 +254,17 @@ std::string located(const SourceLocation& where, const std::string& message) {
 }
 
 }  // namespace
+
+std::vector<std::string> read_elements(const TomlValue& value, const std::vector<std::string>& allowed) {
+  std::vector<std::string> elements;
+  for (const TomlValue& item : as_list(value, "a list of elements: q1, q2, p1, p2")) {
+    const std::string element = as_choice(item, allowed);
+    if (std::find(elements.begin(), elements.end(), element) != elements.end())
+      refuse(item, fmt::format("'{}' is named twice", element), "each element once");
+    elements.push_back(element);
+  }
+  return elements;
+}
 
 InputError::InputError(const SourceLocation& where, const std::string& message)
     : std::runtime_error(located(where, message)) {}

@@ -81,8 +81,8 @@ std::string to_string(Source source);
 /// A value that must hold.  It becomes the verdict of the case.
 struct Expectation {
   std::string model;                    ///< label of a model in [compare], "fem" (the extrapolated reference), or
-                                        ///< "fem_<element>": the limit of that element of [reference]; beside models,
-                                        ///< "fem_q1" is the eight-node element on their own cells
+                                        ///< "fem_<element>": that element of [compare] at the models' resolutions, or the
+                                        ///< limit of that element of [reference]
   std::optional<double> poisson_ratio;  ///< empty: at every one
   std::optional<Cells> cells;           ///< empty: at every resolution
   std::string measure;                  ///< name of a measure, e.g. "volume_change", "force.z_max.magnitude"
@@ -121,6 +121,9 @@ struct Experiment {
   std::vector<Load> loads;
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
+  std::vector<std::string> elements = {"q1"};  ///< finite elements compared beside the models, at the same resolutions
+  double most_unknowns = 0;  ///< runs of models and elements with about more than these are left out; 0: none
+  bool cost = false;      ///< the runs' times are compared: short ones are repeated, all stop at one residual (problem/run_cost.h)
   std::string exact;      ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
   std::vector<std::string> measures;
   std::vector<Probe> probes;

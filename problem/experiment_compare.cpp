@@ -13,6 +13,9 @@ namespace {
 
 constexpr Key compare_schema[] = {{"models", Presence::optional, ""},
                                   {"measures", Presence::optional, ""},
+                                  {"elements", Presence::optional, ""},
+                                  {"most_unknowns", Presence::optional, ""},
+                                  {"cost", Presence::optional, ""},
                                   {"exact", Presence::optional, ""}};
 
 constexpr Key expect_schema[] = {
@@ -45,10 +48,13 @@ bool is_fem(const std::string& model) {
 /// Finite element results that a case has.
 std::vector<std::string> fem_names(const Experiment& experiment) {
   std::vector<std::string> names = {"fem"};
-  if (!experiment.models.empty()) names.push_back("fem_q1");
-  for (const std::string& element : experiment.reference.elements)
-    if (const std::string name = "fem_" + element; std::find(names.begin(), names.end(), name) == names.end())
-      names.push_back(name);
+  const auto add = [&](const std::vector<std::string>& elements) {
+    for (const std::string& element : elements)
+      if (const std::string name = "fem_" + element; std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+  };
+  if (!experiment.models.empty()) add(experiment.elements);
+  add(experiment.reference.elements);
   return names;
 }
 
@@ -239,6 +245,9 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   }
   if (const auto measures = table.find("measures"))
     experiment.measures = read_measures(*measures, experiment);
+  if (const auto elements = table.find("elements")) experiment.elements = read_elements(*elements, element_names());
+  if (const auto most = table.find("most_unknowns")) experiment.most_unknowns = as_number(*most, positive_number);
+  if (const auto cost = table.find("cost")) experiment.cost = as_flag(*cost);
 }
 
 void read_expectations(const TomlTable& document, Experiment& experiment) {

@@ -12,6 +12,9 @@ std::vector<Load> read_load(const TomlValue& value);
 /// The [[patch]] tables, in order.
 std::vector<PatchRule> read_patch_rules(const TomlTable& document);
 
+/// A list of elements, each once.
+std::vector<std::string> read_elements(const TomlValue& value, const std::vector<std::string>& allowed);
+
 /// [line]; loads, materials and kinematics must have been read.
 void read_line(const TomlTable& document, Experiment& experiment);
 

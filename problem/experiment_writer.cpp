@@ -157,6 +157,9 @@ void write_compare(const Experiment& experiment, Writer& out) {
   out.heading("[compare]");
   out.line("models", fmt::format("[{}]", fmt::join(models, ", ")));
   out.line("measures", list_of(experiment.measures));
+  out.line("elements", list_of(experiment.elements));
+  if (experiment.most_unknowns > 0) out.line("most_unknowns", number(experiment.most_unknowns));
+  if (experiment.cost) out.line("cost", "true");
   out.text("exact", experiment.exact);
 }
 

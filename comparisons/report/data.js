@@ -353,8 +353,11 @@ const palette = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9
 const markers = ['circle', 'triangle', 'rect', 'rectRot', 'star', 'crossRot', 'rectRounded', 'cross'];
 const dashes = [[], [7, 4], [2, 3]];
 
+const femStyles = {fem_q1: {color: '#8a8f98', marker: 'rectRot'}, fem_q2: {color: '#555d69', marker: 'rect'},
+                   fem_p1: {color: '#b0b5bd', marker: 'triangle'}, fem_p2: {color: '#6d7580', marker: 'circle'}};
+
 function modelStyle(model) {
-  if (isFem(model)) return {color: '#8a8f98', marker: 'rectRot', dash: [6, 4]};
+  if (isFem(model)) return {...(femStyles[model] || femStyles.fem_q1), dash: [6, 4]};
   const index = Math.max(0, models.indexOf(model));
   return {color: palette[index % palette.length], marker: markers[index % markers.length],
           dash: dashes[Math.min(2, Math.floor(index / markers.length))]};

@@ -76,7 +76,7 @@ function caseRow(result, {leading, others}) {
        el('small', {}, experiment.folder)),
     el('td', {}, verdictChip(caseVerdict(result)), el('small', {}, heldText(result))),
     el('td', {}, experiment.kinematics || '–',
-       el('small', {}, seconds(result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0)))),
+       el('small', {}, seconds(result.runs.reduce((sum, run) => sum + (run.set_up_seconds || 0) + (run.seconds || 0), 0)))),
     el('td', {class: 'number'}, '± ' + worstUncertainty(result)),
     leading.map(model => worstCell(result, model)),
     others.length > 0 ? el('td', {}, others.map(model => el('small', {}, otherModel(result, model)))) : null);
@@ -280,16 +280,16 @@ function publishedPart(result) {
 function runRow(run) {
   return el('tr', {class: run.ok ? '' : 'lost'}, [modelName(run.model), nuText(run.poisson_ratio), cellsText(run.cells), run.kinematics,
     run.solver].map(cell => el('td', {}, cell)),
-    [String(run.iterations ?? '–'), number(run.residual, 2), seconds(run.seconds), number(run.unknowns, 9), number(run.memory_MiB, 4)]
+    [String(run.iterations ?? '–'), number(run.residual, 2), seconds(run.set_up_seconds), seconds(run.seconds), number(run.unknowns, 9), number(run.memory_MiB, 4)]
       .map(cell => el('td', {class: 'number'}, cell)), el('td', {}, run.message));
 }
 
 function runsPart(result) {
   const failed = result.runs.filter(run => !run.ok).length;
-  const time = result.runs.reduce((sum, run) => sum + (run.seconds || 0), 0);
+  const time = result.runs.reduce((sum, run) => sum + (run.set_up_seconds || 0) + (run.seconds || 0), 0);
   return el('details', {class: 'fold'},
     el('summary', {}, `Runs: ${result.runs.length}` + (failed ? `, ${failed} without result` : '') + `, ${seconds(time)}`),
-    table('runs', ['model', 'ν', 'cells', 'kinematics', 'solver', right('iterations'), right('residual'), right('time'),
+    table('runs', ['model', 'ν', 'cells', 'kinematics', 'solver', right('iterations'), right('residual'), right('set-up'), right('solve'),
                    right('unknowns'), right('memory [MiB]'), 'message'], result.runs.map(runRow)));
 }
 

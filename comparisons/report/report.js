@@ -83,6 +83,7 @@ function start() {
   const compared = id => cases.some(result => result.id === id);
   const poisson = build('poisson', needsCases(poissonSection));
   const convergence = build('convergence', needsCases(convergenceSection));
+  const cost = build('cost', costSection);
   const splits = build('splits', splitsSection);
   const shapes = build('shapes', shapesSection);
   const line = build('line', lineSection);
@@ -91,13 +92,14 @@ function start() {
   build('pages', section => pagesSection(section, [
     {text: 'Error against ν', go: jumpTo('poisson', poisson), has: compared},
     {text: 'Convergence', go: jumpTo('convergence', convergence), has: compared},
+    {text: 'Error against cost', go: jumpTo('cost', cost), has: id => cost.has(id)},
     {text: 'Parts of the error', go: jumpTo('splits', splits), has: id => splits.has(id)},
     {text: 'Along the line', go: jumpTo('line', line), has: id => line.has(id)},
     {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
   ]));
   build('about', aboutSection);
   const wanted = /^#png=(\d+)(?:&only=(.*))?$/.exec(location.hash);
-  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, splits, line], decodeURIComponent(wanted[2] || ''));
+  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, cost, splits, line], decodeURIComponent(wanted[2] || ''));
   preparePrinting();
   window.addEventListener('hashchange', followHash);
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);

@@ -90,6 +90,9 @@ models = ["hybmss", { model = "hybmss", face_to_cube = 1.0, paper_e_form = true 
           { model = "emsm", weights = "share", label = "share" }, { model = "emsm", q = 0.25, damped = false }]
 measures = ["displacement_error", "displacement_error_max", "section_distance", "volume_change",
             "volume_change_first_order", "reaction", "probe", "stress"]
+elements = ["p1", "q1"]
+most_unknowns = 1e6
+cost = true
 
 [section]
 point_m = [1.2, 0, 0]
@@ -274,6 +277,9 @@ inline void expect_same(const Experiment& a, const Experiment& b) {
     EXPECT_EQ(a.models[i].label, b.models[i].label);
   }
   EXPECT_EQ(a.measures, b.measures);
+  EXPECT_EQ(a.elements, b.elements);
+  EXPECT_EQ(a.most_unknowns, b.most_unknowns);
+  EXPECT_EQ(a.cost, b.cost);
   EXPECT_EQ(a.exact, b.exact);
   ASSERT_EQ(a.probes.size(), b.probes.size());
   for (std::size_t i = 0; i < a.probes.size(); ++i) {

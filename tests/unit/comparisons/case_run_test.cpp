@@ -109,7 +109,7 @@ TEST(Judge, TakesTheLimitOfTheElementThatIsNamed) {
   EXPECT_EQ(verdict(two_elements(), e), Verdict::no_result);
 }
 
-TEST(Judge, BesideModelsFemQ1IsTheirPeer) {
+TEST(Judge, BesideModelsAComparedElementIsTheirPeer) {
   Experiment e;
   e.reference.elements = {"q1", "p2"};
   EXPECT_EQ(reference_element(e, "fem"), "q1");
@@ -119,6 +119,10 @@ TEST(Judge, BesideModelsFemQ1IsTheirPeer) {
   e.models.push_back({"hybmss", {}, "hybmss", {}});
   EXPECT_EQ(reference_element(e, "fem"), "q1");
   EXPECT_FALSE(reference_element(e, "fem_q1"));
+  EXPECT_EQ(reference_element(e, "fem_p2"), "p2");
+  e.elements = {"p2"};
+  EXPECT_EQ(reference_element(e, "fem_q1"), "q1");
+  EXPECT_FALSE(reference_element(e, "fem_p2"));
 }
 
 TEST(Judge, ALowerBoundHasNoTolerance) {
@@ -135,7 +139,7 @@ TEST(Judge, ALowerBoundHasNoTolerance) {
 TEST(PartFile, ComesBackWholeOrNotAtAll) {
   const auto file = std::filesystem::temp_directory_path() / "springproof_part_test.cbor";
   Part part;
-  part.runs = {{"hybmss", "msm", 0.25, {1, 2, 3}, "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99, 12.5}};
+  part.runs = {{"hybmss", "msm", 0.25, {1, 2, 3}, "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99, 12.5, 0.25}};
   part.rows = one_row(0.1, 0.2, 0.003).rows;
   part.rows.push_back({"case", "linear", "fem", 0.25, {4, 4, 4}, "volume_change", 0.1, "1", {}, {}, {}});
   part.references = {{0.25, "volume_change", "1", {{1, 1, 1}}, {0.1, 0.2}, {}, 0.2, 0.1, "note", "p1"}};
@@ -145,6 +149,7 @@ TEST(PartFile, ComesBackWholeOrNotAtAll) {
   ASSERT_TRUE(back);
   EXPECT_EQ(back->runs.at(0).message, "why not");
   EXPECT_EQ(back->runs.at(0).unknowns, 99);
+  EXPECT_EQ(back->runs.at(0).set_up_seconds, 0.25);
   EXPECT_EQ(back->rows.at(0).reference, 0.2);
   EXPECT_FALSE(back->rows.at(1).reference);
   EXPECT_FALSE(back->references.at(0).observed_order);

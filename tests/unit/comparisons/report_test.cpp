@@ -202,6 +202,37 @@ TEST_F(ReportInBrowser, ShowsTheCase) {
   EXPECT_NE(body.find("explicit run, not settled"), std::string::npos) << "published value";
 }
 
+/// Springs that are cheaper to 3 %, and elements that alone reach 1 %.
+CaseResult timed_case() {
+  CaseResult c;
+  c.experiment = sample_experiment();
+  c.experiment.cost = true;
+  for (int n : {1, 2}) {
+    const double tenfold = n == 1 ? 1 : 10;
+    c.runs.push_back({"hybmss", "msm", 0.25, {n, n, n}, "linear", true, "", "CG", 9, 1e-9, 0.0008 * tenfold, long(100 * tenfold), 1, 0.0002 * tenfold});
+    c.runs.push_back({"fem_q2", "fem", 0.25, {n, n, n}, "linear", true, "", "CG", 9, 1e-9, 0.008 * tenfold, long(1000 * tenfold), 1, 0.002 * tenfold});
+    for (const auto& [model, error] : {std::pair("hybmss", 0.2), std::pair("fem_q2", 0.05)})
+      c.rows.push_back({"compress", "linear", model, 0.25, {n, n, n}, "displacement_error", error / tenfold, "1", {}, 0.001, error / tenfold});
+  }
+  return c;
+}
+
+TEST_F(ReportInBrowser, SetsErrorsAgainstCost) {
+  const std::string dom = open({timed_case()});
+  expect_no_complaint(dom);
+  const std::string part = dom.substr(dom.find("<section id=\"cost\">"), dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  EXPECT_EQ(count(part, "<canvas"), 2u) << "against time, against unknowns";
+  // On straight lines in logarithms: 1 ms * 20/3 at 100 * 20/3 unknowns, and 10 ms * 5/3.
+  EXPECT_NE(part.find("hybmss</span><small>6.7 ms, 670 unknowns</small>"), std::string::npos) << "3 %";
+  EXPECT_NE(part.find("fem_q2: 17 ms, 1700 unknowns</small>"), std::string::npos) << "3 %, beside it";
+  EXPECT_NE(part.find("fem_q2</span><small>50 ms, 5000 unknowns</small><small>no springs do</small>"), std::string::npos) << "1 %";
+  EXPECT_NE(part.find("<td>–</td></tr>"), std::string::npos) << "0.3 %: no one does";
+}
+
+TEST_F(ReportInBrowser, WithoutTimesThereIsNoCost) {
+  EXPECT_NE(open({sample_case()}).find("<section id=\"cost\" hidden"), std::string::npos);
+}
+
 /// The sample with a smooth surface, tetrahedra, and the parts of its errors.
 CaseResult embedded_case() {
   CaseResult c = sample_case();
