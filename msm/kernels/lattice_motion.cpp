@@ -92,6 +92,8 @@ class LatticeMotion::Arrays {
   virtual void set_conditions(const BoundaryConditions& conditions) = 0;
   virtual void move_supports() = 0;
   virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;
+  virtual void read(const std::vector<int>& nodes, double* values) const = 0;
+  virtual void write(const std::vector<int>& nodes, const double* values) = 0;
   virtual ForceNorms advance(long steps, double time_step, double damping) = 0;
   virtual NodalVectors positions() const = 0;
   virtual NodalVectors velocities() const = 0;
@@ -148,6 +150,22 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
       for (int d = 0; d < 3; ++d) {
         u_[d][layout_.slot[n]] = static_cast<Real>((x(n, layout_.axis[d]) - network_.X(n, layout_.axis[d])) / edge_);
         v_[d][layout_.slot[n]] = static_cast<Real>(v(n, layout_.axis[d]) / edge_);
+      }
+  }
+
+  void read(const std::vector<int>& nodes, double* values) const override {
+    for (std::size_t i = 0; i < nodes.size(); ++i, values += 6)
+      for (int d = 0; d < 3; ++d) {
+        values[layout_.axis[d]] = edge_ * u_[d][layout_.slot[nodes[i]]];
+        values[3 + layout_.axis[d]] = edge_ * v_[d][layout_.slot[nodes[i]]];
+      }
+  }
+
+  void write(const std::vector<int>& nodes, const double* values) override {
+    for (std::size_t i = 0; i < nodes.size(); ++i, values += 6)
+      for (int d = 0; d < 3; ++d) {
+        u_[d][layout_.slot[nodes[i]]] = static_cast<Real>(values[layout_.axis[d]] / edge_);
+        v_[d][layout_.slot[nodes[i]]] = static_cast<Real>(values[3 + layout_.axis[d]] / edge_);
       }
   }
 
@@ -289,6 +307,8 @@ LatticeMotion::~LatticeMotion() = default;
 void LatticeMotion::set_conditions(const BoundaryConditions& conditions) { arrays_->set_conditions(conditions); }
 void LatticeMotion::move_supports() { arrays_->move_supports(); }
 void LatticeMotion::set_state(const NodalVectors& x, const NodalVectors& v) { arrays_->set_state(x, v); }
+void LatticeMotion::read(const std::vector<int>& nodes, double* values) const { arrays_->read(nodes, values); }
+void LatticeMotion::write(const std::vector<int>& nodes, const double* values) { arrays_->write(nodes, values); }
 ForceNorms LatticeMotion::advance(long steps, double dt, double damping) { return arrays_->advance(steps, dt, damping); }
 NodalVectors LatticeMotion::positions() const { return arrays_->positions(); }
 NodalVectors LatticeMotion::velocities() const { return arrays_->velocities(); }

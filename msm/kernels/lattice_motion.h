@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "msm/boundary.h"
 #include "msm/kernels/instruction_set.h"
@@ -46,6 +47,10 @@ class LatticeMotion {
   void move_supports();
 
   void set_state(const NodalVectors& x, const NodalVectors& v);  ///< [m], [m/s]
+
+  /// Of some nodes: displacement [m], then velocity [m/s], six values each.
+  void read(const std::vector<int>& nodes, double* values) const;
+  void write(const std::vector<int>& nodes, const double* values);
 
   /// Steps v = (v + dt f/m) / (1 + damping dt), x += dt v.
   /// @return the norms at the beginning of the last step.
