@@ -1,6 +1,8 @@
 // One time step of a lattice: forces row by row, each row moved as soon as it has all of its own.
 #include "msm/kernels/lattice_kernel.h"
 
+#include <type_traits>
+
 #include "msm/kernels/simd_math.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
@@ -35,11 +37,28 @@ SPRINGPROOF_INLINE Lanes<Real> coefficient(const Real* entry, int number) {
 
 constexpr double root_of(int n) { return n == 1 ? 1.0 : n == 2 ? 1.41421356237309504880 : 1.73205080756887729353; }
 
-/// k (1 - L / L') of a spring whose ends are (x, y, z) apart.
-template <int axes, class Real>
-SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z) {
+/// What the springs of a row get by momentum dispersion, given what its nodes have.
+template <class Real>
+struct Dispersed {
+  const Real *o, *r;  ///< J of the two rows
+  Coefficients<Real> c;
+
+  /// Tension of springs of a direction, whose ends are at a in row o and at b in row r.
+  SPRINGPROOF_INLINE Lanes<Real> tension(int block, int direction, long a, long b) const {
+    const Real* entry = c.of(block);
+    return coefficient(entry, 4 * direction + 1) * load(o + a) + coefficient(entry, 4 * direction + 3) * load(r + b);
+  }
+};
+
+struct Undispersed {};
+
+/// (k (L' - L) + T) / L' of springs whose ends are (x, y, z) apart, T by dispersion.
+template <int axes, class Real, class Dispersion>
+SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z,
+                                                  const Dispersion& dispersion, int block, int direction, long a, long b) {
   const Lanes<Real> square = x * x + y * y + z * z;
-  return k - k * (Real(root_of(axes)) / stdx::sqrt(square));
+  if constexpr (std::is_same_v<Dispersion, Undispersed>) return k - k * (Real(root_of(axes)) / stdx::sqrt(square));
+  else return k + (dispersion.tension(block, direction, a, b) - k * Real(root_of(axes))) / stdx::sqrt(square);
 }
 
 template <class Real>
@@ -78,14 +97,14 @@ SPRINGPROOF_INLINE Force<Real> difference(const Force<Real>& a, const Force<Real
 }
 
 /// Springs along the row.
-template <class Real>
-void springs_along(const Row<Real>& o, const ForceRow<Real>& on_o, const Coefficients<Real>& c, int begin, int end) {
+template <class Real, class Dispersion>
+void springs_along(const Row<Real>& o, const ForceRow<Real>& on_o, const Coefficients<Real>& c, const Dispersion& dispersion, int begin, int end) {
   Force<Real> before;
   for (int b = begin; b < end; ++b) {
     const long n = long(b) * lanes<Real>;
     const Lanes<Real> x = load(o.x + n + 1) - load(o.x + n) + Real(1), y = load(o.y + n + 1) - load(o.y + n),
                       z = load(o.z + n + 1) - load(o.z + n);
-    const Lanes<Real> t = tension_per_length<1>(coefficient(c.of(b), 0), x, y, z);
+    const Lanes<Real> t = tension_per_length<1>(coefficient(c.of(b), 0), x, y, z, dispersion, b, 0, n, n + 1);
     const Force<Real> f = {t * x, t * y, t * z}, far = shifted(before, f);
     add_to(on_o, n, difference(f, far));
     before = f;
@@ -93,9 +112,9 @@ void springs_along(const Row<Real>& o, const ForceRow<Real>& on_o, const Coeffic
 }
 
 /// Springs to another row, (dy, dz) away.
-template <int pair, bool straight, bool slanted, class Real>
+template <int pair, bool straight, bool slanted, class Real, class Dispersion>
 void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real>& on_o, const ForceRow<Real>& on_r,
-                     const Coefficients<Real>& c, int begin, int end) {
+                     const Coefficients<Real>& c, const Dispersion& dispersion, int begin, int end) {
   constexpr int dy = row_pairs[pair][0], dz = row_pairs[pair][1], axes = dy * dy + dz * dz, first = 1 + 3 * (pair - 1);
   Force<Real> rising, falling;  // of the block before, on r and on o
   for (int b = begin; b < end; ++b) {
@@ -106,17 +125,17 @@ void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real
     Force<Real> f_o, f_r;
     if constexpr (straight) {
       const Lanes<Real> x = rx - ox, y = ry - oy, z = rz - oz;
-      const Lanes<Real> t = tension_per_length<axes>(coefficient(k, first), x, y, z);
+      const Lanes<Real> t = tension_per_length<axes>(coefficient(k, first), x, y, z, dispersion, b, first, n, n);
       add(f_o, t, x, y, z);
       subtract(f_r, t, x, y, z);
     }
     if constexpr (slanted) {
       Lanes<Real> x = load(r.x + n + 1) - ox + Real(1), y = load(r.y + n + 1) - oy, z = load(r.z + n + 1) - oz;
-      Lanes<Real> t = tension_per_length<axes + 1>(coefficient(k, first + 1), x, y, z);
+      Lanes<Real> t = tension_per_length<axes + 1>(coefficient(k, first + 1), x, y, z, dispersion, b, first + 1, n, n + 1);
       add(f_o, t, x, y, z);
       const Force<Real> up = {t * x, t * y, t * z};
       x = rx - load(o.x + n + 1) - Real(1), y = ry - (load(o.y + n + 1) - Real(dy)), z = rz - (load(o.z + n + 1) - Real(dz));
-      t = tension_per_length<axes + 1>(coefficient(k, first + 2), x, y, z);
+      t = tension_per_length<axes + 1>(coefficient(k, first + 2), x, y, z, dispersion, b, first + 2, n + 1, n);
       subtract(f_r, t, x, y, z);
       const Force<Real> down = {t * x, t * y, t * z};
       f_o = sum(f_o, shifted(falling, down));
@@ -253,27 +272,105 @@ struct Neighbours {
   ForceRow<Real> on[lattice_pairs];
 };
 
-template <int pair, class Real>
-void pair_of_rows(const Neighbours<Real>& r, const Coefficients<Real>& c, const LatticeRun& run) {
+template <int pair, class Real, class Dispersion>
+void pair_of_rows(const Neighbours<Real>& n, const Coefficients<Real>& c, const Dispersion& dispersion, const LatticeRun& run) {
   const unsigned kinds = run.springs >> (3 * pair - 2) & 7;
+  const Row<Real>&o = n.at[0], &r = n.at[pair];
+  const ForceRow<Real>&on_o = n.on[0], &on_r = n.on[pair];
   if (kinds == 0) return;
-  if (kinds == 1) return springs_between<pair, true, false>(r.at[0], r.at[pair], r.on[0], r.on[pair], c, run.begin, run.end);
-  if (kinds % 2 == 0) return springs_between<pair, false, true>(r.at[0], r.at[pair], r.on[0], r.on[pair], c, run.begin, run.end);
-  springs_between<pair, true, true>(r.at[0], r.at[pair], r.on[0], r.on[pair], c, run.begin, run.end);
+  if (kinds == 1) return springs_between<pair, true, false>(o, r, on_o, on_r, c, dispersion, run.begin, run.end);
+  if (kinds % 2 == 0) return springs_between<pair, false, true>(o, r, on_o, on_r, c, dispersion, run.begin, run.end);
+  springs_between<pair, true, true>(o, r, on_o, on_r, c, dispersion, run.begin, run.end);
+}
+
+/// `dispersion_to(pair)`: of the springs to that row.
+template <class Real, class DispersionTo>
+void springs_of_run(const Neighbours<Real>& r, const Coefficients<Real>& c, const LatticeRun& run, const DispersionTo& dispersion_to) {
+  if (run.springs & 1) springs_along(r.at[0], r.on[0], c, dispersion_to(0), run.begin, run.end);
+  pair_of_rows<1>(r, c, dispersion_to(1), run);
+  pair_of_rows<2>(r, c, dispersion_to(2), run);
+  pair_of_rows<3>(r, c, dispersion_to(3), run);
+  pair_of_rows<4>(r, c, dispersion_to(4), run);
 }
 
 template <class Real>
-void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const Coefficients<Real>& c, const LatticeRun& run) {
-  if (run.springs & 1) springs_along(r.at[0], r.on[0], c, run.begin, run.end);
-  pair_of_rows<1>(r, c, run);
-  pair_of_rows<2>(r, c, run);
-  pair_of_rows<3>(r, c, run);
-  pair_of_rows<4>(r, c, run);
+void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const Coefficients<Real>& c, long row, const LatticeRun& run) {
+  if (l.J) {
+    const Coefficients<Real> coefficients = {l.dispersion_entry + row * l.row_blocks, l.dispersion};
+    springs_of_run(r, c, run, [&](int pair) {
+      const long other = row + row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows;
+      return Dispersed<Real>{l.J + row * l.row, l.J + other * l.row, coefficients};
+    });
+  } else {
+    springs_of_run(r, c, run, [](int) { return Undispersed{}; });
+  }
   if (!run.cells) return;
   const Row<Real> rows[4] = {r.at[0], r.at[1], r.at[3], r.at[4]};
   const ForceRow<Real> on[4] = {r.on[0], r.on[1], r.on[3], r.on[4]};
   if (l.bounded) volume_of_cells<true>(rows, on, c, run.begin, run.end);
   else volume_of_cells<false>(rows, on, c, run.begin, run.end);
+}
+
+/// Springs of one kind, `rise` = x of their end less x of their start: what flows in to the nodes at both ends.
+template <int axes, class Real>
+void inflow_of_springs(const Row<Real>& o, const Row<Real>& r, int dy, int dz, int rise, Real* J_o, Real* J_r,
+                       const Coefficients<Real>& c, int direction, int begin, int end) {
+  const long to_o = rise < 0 ? 1 : 0, to_r = rise > 0 ? 1 : 0;
+  Lanes<Real> before = 0;
+  for (int b = begin; b < end; ++b) {
+    const long n = long(b) * lanes<Real>;
+    const Lanes<Real> x = load(r.x + n + to_r) - load(o.x + n + to_o) + Real(rise), y = load(r.y + n + to_r) - load(o.y + n + to_o) + Real(dy),
+                      z = load(r.z + n + to_r) - load(o.z + n + to_o) + Real(dz);
+    const Lanes<Real> elongation = stdx::sqrt(x * x + y * y + z * z) - Real(root_of(axes));
+    Lanes<Real> in_o = coefficient(c.of(b), 4 * direction) * elongation, in_r = coefficient(c.of(b), 4 * direction + 2) * elongation;
+    Lanes<Real>& moved = rise < 0 ? in_o : in_r;  // belongs one node further on
+    if (rise != 0) {
+      const Lanes<Real> own = moved;
+      moved = shift_in(before, own);
+      before = own;
+    }
+    store<Real>(load(J_o + n) + in_o, J_o + n);
+    store<Real>(load(J_r + n) + in_r, J_r + n);
+  }
+}
+
+template <int pair, class Real>
+void inflow_between(const LatticeView<Real>& l, const Row<Real>& o, const Row<Real>& r, const Coefficients<Real>& c, long row, const LatticeRun& run) {
+  constexpr int dy = row_pairs[pair][0], dz = row_pairs[pair][1], axes = dy * dy + dz * dz, first = pair == 0 ? -1 : 1 + 3 * (pair - 1);
+  Real *J_o = l.J + row * l.row, *J_r = J_o + (dy + long(dz) * l.rows) * l.row;
+  const auto has = [&](int direction) { return run.springs >> direction & 1; };
+  if constexpr (pair > 0) {
+    if (has(first)) inflow_of_springs<axes>(o, r, dy, dz, 0, J_o, J_r, c, first, run.begin, run.end);
+    if (has(first + 2)) inflow_of_springs<axes + 1>(o, r, dy, dz, -1, J_o, J_r, c, first + 2, run.begin, run.end);
+  }
+  if (has(first + 1)) inflow_of_springs<axes + 1>(o, r, dy, dz, 1, J_o, J_r, c, first + 1, run.begin, run.end);
+}
+
+template <class Real>
+Row<Real> row_of(const LatticeView<Real>& l, int y, int z) {
+  const long at = z * l.plane + y * l.row;
+  return {l.u[0] + at, l.u[1] + at, l.u[2] + at};
+}
+
+template <class Real>
+void inflow(const LatticeView<Real>& l, int y, int z) {
+  const long row = long(z) * l.rows + y;
+  const Coefficients<Real> c = {l.dispersion_entry + row * l.row_blocks, l.dispersion};
+  Row<Real> at[lattice_pairs];
+  for (int p = 0; p < lattice_pairs; ++p) at[p] = row_of(l, y + row_pairs[p][0], z + row_pairs[p][1]);
+  for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) {
+    inflow_between<0>(l, at[0], at[0], c, row, l.runs[run]);
+    inflow_between<1>(l, at[0], at[1], c, row, l.runs[run]);
+    inflow_between<2>(l, at[0], at[2], c, row, l.runs[run]);
+    inflow_between<3>(l, at[0], at[3], c, row, l.runs[run]);
+    inflow_between<4>(l, at[0], at[4], c, row, l.runs[run]);
+  }
+}
+
+template <class Real>
+void inflow(const LatticeView<Real>& l) {
+  for (int z = 0; z < l.planes; ++z)
+    for (int y = 0; y < l.rows; ++y) inflow(l, y, z);
 }
 
 template <class Real>
@@ -309,12 +406,11 @@ void sweep(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, int begin,
       if (l.first_run[row] == l.first_run[row + 1]) continue;
       Neighbours<Real> r;
       for (int p = 0; p < lattice_pairs; ++p) {
-        const long at = (z + row_pairs[p][1]) * l.plane + (y + row_pairs[p][0]) * l.row;
-        r.at[p] = {l.u[0] + at, l.u[1] + at, l.u[2] + at};
+        r.at[p] = row_of(l, y + row_pairs[p][0], z + row_pairs[p][1]);
         r.on[p] = ring_row(l, slab, long(z + row_pairs[p][1] - slab.begin) * l.rows + y + row_pairs[p][0]);
       }
       const Coefficients<Real> c = {l.spring_entry + row * l.row_blocks, l.springs};
-      for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) forces_of_run(l, r, c, l.runs[run]);
+      for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) forces_of_run(l, r, c, row, l.runs[run]);
       if (slab.first && z == slab.begin) take(l, row, r.on[0], first_row(l, slab, y));
       else finish_row(l, y, z, r.on[0], step, sums);
     }
@@ -333,6 +429,7 @@ void finish_first(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, con
 template <class Real>
 void get(LatticeKernels<Real>& k) {
   k.lanes = lanes<Real>;
+  k.inflow = inflow<Real>;
   k.sweep = sweep<Real>;
   k.finish_first = finish_first<Real>;
 }

@@ -63,11 +63,15 @@ bool one_node_per_place(std::vector<Place> places) {
 bool laws_fit(const MassSpringModel& model) {
   std::vector<std::size_t> kinds;
   for (const ForceLaw& law : model.laws) {
-    if (!std::holds_alternative<Springs>(law) && !std::holds_alternative<VolumeCorrection>(law)) return false;
+    if (std::holds_alternative<HourglassCorrection>(law) || std::holds_alternative<AngularSprings>(law)) return false;
     if (std::find(kinds.begin(), kinds.end(), law.index()) != kinds.end()) return false;
     kinds.push_back(law.index());
   }
-  return true;
+  const MomentumDispersion* dispersion = dispersion_of(model);
+  if (!dispersion) return true;
+  for (int to : dispersion->group)
+    if (dispersion->group[to] != to) return false;
+  return std::any_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });
 }
 
 long rounded_up(long n, long to) { return (n + to - 1) / to * to; }
@@ -103,32 +107,76 @@ const VolumeCorrection* volume_correction_of(const MassSpringModel& model) {
 }
 
 /// Coefficients of all blocks, one after the other.
-std::vector<double> spring_coefficients(const MassSpringModel& model, const LatticeLayout& l) {
-  const Network& network = model.network;
-  std::vector<double> all(std::size_t(l.rows()) * l.row_blocks * lattice_coefficients * l.lanes, 0.0);
-  const auto at = [&](int slot, int number) -> double& {
-    const long x = slot % l.plane % l.row;
-    return all[(std::size_t(l.block_of(slot)) * lattice_coefficients + number) * l.lanes + x % l.lanes];
-  };
+class BlockCoefficients {
+ public:
+  BlockCoefficients(const LatticeLayout& l, int per_block)
+      : l_(l), size_(per_block * l.lanes), values_(std::size_t(l.rows()) * l.row_blocks * size_, 0.0) {}
+
+  double& at(int slot, int number) {
+    return values_[std::size_t(l_.block_of(slot)) * size_ + number * l_.lanes + slot % l_.plane % l_.row % l_.lanes];
+  }
+  const double* block(std::size_t number) const { return &values_[number * size_]; }
+
+  /// Where each block's coefficients start in a table that has equal ones once.
+  std::vector<int> table(std::vector<double>& values) const {
+    CoefficientTable known(size_);
+    std::vector<int> entries;
+    for (std::size_t b = 0; b < values_.size() / size_; ++b) entries.push_back(known.entry(block(b)));
+    values = known.values();
+    return entries;
+  }
+
+ private:
+  const LatticeLayout& l_;
+  int size_;
+  std::vector<double> values_;
+};
+
+/// Where a spring stands among the coefficients.
+struct PlaceOfSpring {
+  int slot, direction;
+  bool from_first;
+};
+
+PlaceOfSpring place_of(const Spring& s, const LatticeLayout& l) {
   const auto place = [&](int slot) -> Place {
     const long in_plane = slot % l.plane;
     return {int(in_plane % l.row), int(in_plane / l.row), int(slot / l.plane)};
   };
+  const Place i = place(l.slot[s.i]), j = place(l.slot[s.j]);
+  const Direction d = direction_of({j[0] - i[0], j[1] - i[1], j[2] - i[2]});
+  return {l.slot[d.from_first ? s.i : s.j] + std::min(0, d.from_first ? j[0] - i[0] : i[0] - j[0]), d.number, d.from_first};
+}
+
+BlockCoefficients spring_coefficients(const MassSpringModel& model, const LatticeLayout& l) {
+  const Network& network = model.network;
+  BlockCoefficients c(l, lattice_coefficients);
   const bool has_springs = std::any_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });
-  if (has_springs)
-    for (const Spring& s : network.springs) {
-      const Place i = place(l.slot[s.i]), j = place(l.slot[s.j]);
-      const Direction d = direction_of({j[0] - i[0], j[1] - i[1], j[2] - i[2]});
-      const int from = l.slot[d.from_first ? s.i : s.j];
-      at(from + std::min(0, d.from_first ? j[0] - i[0] : i[0] - j[0]), d.number) += s.stiffness * network.cell_edge;
-    }
+  for (const Spring& s : network.springs) {
+    const PlaceOfSpring p = place_of(s, l);
+    if (has_springs) c.at(p.slot, p.direction) += s.stiffness * network.cell_edge;
+  }
   if (const VolumeCorrection* volume = volume_correction_of(model))
     for (const Hexahedron& cell : network.cells) {
       int low = l.slot[cell[0]];
       for (int n : cell) low = std::min(low, l.slot[n]);
-      at(low, lattice_directions) += volume->kappa * network.cell_edge * network.cell_edge;
+      c.at(low, lattice_directions) += volume->kappa * network.cell_edge * network.cell_edge;
     }
-  return all;
+  return c;
+}
+
+BlockCoefficients dispersion_of_blocks(const MomentumDispersion& law, const Network& network, const LatticeLayout& l) {
+  const MomentumDispersion::Coefficients given = law.coefficients(network);
+  BlockCoefficients c(l, dispersion_coefficients);
+  for (std::size_t n = 0; n < network.springs.size(); ++n) {
+    const PlaceOfSpring p = place_of(network.springs[n], l);
+    for (int end = 0; end < 2; ++end) {
+      const int which = 4 * p.direction + (p.from_first == (end == 0) ? 0 : 2);
+      c.at(p.slot, which) = given.in[n][end] * network.cell_edge;  // of elongations in edges
+      c.at(p.slot, which + 1) = given.out[n][end];
+    }
+  }
+  return c;
 }
 
 /// Adds the runs of a row, given the coefficients of its blocks and which of them hold nodes.
@@ -206,14 +254,13 @@ LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_
     l.slot.push_back(static_cast<int>(p[l.axis[2]] * l.plane + p[l.axis[1]] * l.row + p[l.axis[0]]));
     has_node[l.block_of(l.slot.back())] = 1;
   }
-  const std::vector<double> coefficients = spring_coefficients(model, l);
-  const int block_size = lattice_coefficients * lanes;
-  CoefficientTable table(block_size);
-  for (std::size_t b = 0; b < has_node.size(); ++b) l.spring_entry.push_back(table.entry(&coefficients[b * block_size]));
-  l.springs = table.values();
+  const BlockCoefficients coefficients = spring_coefficients(model, l);
+  l.spring_entry = coefficients.table(l.springs);
+  if (const MomentumDispersion* dispersion = dispersion_of(model))
+    l.dispersion_entry = dispersion_of_blocks(*dispersion, network, l).table(l.dispersion);
   l.first_run.push_back(0);
   for (long row = 0; row < l.rows(); ++row) {
-    add_runs(l, &coefficients[row * l.row_blocks * block_size], &has_node[row * l.row_blocks], l.runs);
+    add_runs(l, coefficients.block(row * l.row_blocks), &has_node[row * l.row_blocks], l.runs);
     l.first_run.push_back(static_cast<int>(l.runs.size()));
   }
   return l;

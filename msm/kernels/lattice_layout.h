@@ -38,13 +38,16 @@ struct LatticeLayout {
   std::vector<LatticeRun> runs;
   std::vector<int> spring_entry;       ///< per block
   std::vector<double> springs;         ///< their coefficients, each once
+  std::vector<int> dispersion_entry;   ///< per block; empty without momentum dispersion
+  std::vector<double> dispersion;
 
   long rows() const { return long(nodes[1]) * nodes[2]; }
   int block_of(int slot) const;        ///< number of the block that holds a node
 };
 
 /// Whether a network is a cubic lattice of nodes, joined with neighbours at most one edge away on each axis, with no two
-/// nodes in one place, and its laws are springs and volume correction.
+/// nodes in one place, and its laws are springs, volume correction and
+/// momentum dispersion.
 bool is_lattice_of_springs(const MassSpringModel& model);
 
 /// Rows run along the axis that wastes fewest lanes, planes across the longest of the others.

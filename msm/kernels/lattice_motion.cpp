@@ -108,10 +108,11 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   ArraysOf(const MassSpringModel& model, double density, const LatticeMotionOptions& options)
       : network_(model.network), edge_(model.network.cell_edge), density_(density), instructions_(options.instructions),
         kernels_(kernels_for<Real>(options.instructions)), layout_(lattice_layout(model, kernels_.lanes, sizeof(Real))),
-        workers_(std::clamp(options.threads, 1, layout_.nodes[2])), progress_(workers_.count()) {
+        workers_(dispersion_of(model) ? 1 : std::clamp(options.threads, 1, layout_.nodes[2])), progress_(workers_.count()) {
     for (const ForceLaw& law : model.laws)
       if (const auto* volume = std::get_if<VolumeCorrection>(&law)) bounded_ = volume->form == VolumeEnergy::bounded;
     make_arrays();
+    if (const MomentumDispersion* dispersion = dispersion_of(model)) make_dispersion(*dispersion);
     make_slabs();
     BoundaryConditions none;
     none.fixed.assign(3 * network_.nodes(), 0);
@@ -192,8 +193,8 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   double bytes_per_node() const override {
-    return (double(motion_.bytes() + rings_.bytes() + springs_.bytes() + nodes_.bytes()) + 4.0 * (layout_.slot.size() + layout_.spring_entry.size() + node_entry_.size()) +
-           double(layout_.first_run.size() * sizeof(int) + layout_.runs.size() * sizeof(LatticeRun) + supports_.size() * sizeof(Support))) / network_.nodes();
+    return (double(motion_.bytes() + rings_.bytes() + springs_.bytes() + nodes_.bytes() + dispersion_.bytes() + J_.bytes()) + 4.0 * (layout_.slot.size() + layout_.spring_entry.size() + layout_.dispersion_entry.size() + node_entry_.size()) +
+           double(layout_.first_run.size() * sizeof(int) + layout_.runs.size() * sizeof(LatticeRun) + supports_.size() * sizeof(Support) + 16 * shared_.size())) / network_.nodes();
   }
 
   std::string description() const override {
@@ -222,6 +223,27 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     node_entry_.resize(layout_.spring_entry.size());
   }
 
+  void make_dispersion(const MomentumDispersion& law) {
+    dispersion_ = aligned_copy<Real>(layout_.dispersion);
+    layout_.dispersion = {};
+    J_ = AlignedArray<Real>(layout_.row * layout_.rows() + layout_.lanes, Real(0));
+    for (int n = 0; n < network_.nodes(); ++n)
+      if (const int to = law.sink(network_, n); to != n) shared_.push_back({place_of_J(n), place_of_J(to)});
+  }
+
+  std::size_t place_of_J(int node) const {
+    const long slot = layout_.slot[node], in_plane = slot % layout_.plane;
+    return slot / layout_.plane * layout_.nodes[1] * layout_.row + in_plane;
+  }
+
+  /// J of all nodes; those that share one have the sum.
+  void find_inflow(const LatticeView<Real>& view) {
+    std::fill_n(J_.data(), J_.bytes() / sizeof(Real), Real(0));
+    kernels_.inflow(view);
+    for (const auto& [from, to] : shared_) J_.data()[to] += J_.data()[from];
+    for (const auto& [from, to] : shared_) J_.data()[from] = J_.data()[to];
+  }
+
   void make_slabs() {
     const int slabs = workers_.count();
     const std::vector<int> begin = split_planes(layout_, slabs);
@@ -241,9 +263,10 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   ForceNorms run(long steps, const LatticeStep<Real>& step, const LatticeStep<Real>& last) {
-    const LatticeView<Real> view = {{u_[0], u_[1], u_[2]}, {v_[0], v_[1], v_[2]}, layout_.row, layout_.plane, layout_.nodes[1],
+    const LatticeView<Real> view = {{u_[0], u_[1], u_[2]}, {v_[0], v_[1], v_[2]}, layout_.row, layout_.plane, layout_.nodes[1], layout_.nodes[2],
                                     layout_.row_blocks, layout_.first_run.data(), layout_.runs.data(), layout_.spring_entry.data(),
-                                    springs_.data(), node_entry_.data(), nodes_.data(), bounded_};
+                                    springs_.data(), node_entry_.data(), nodes_.data(), bounded_, J_.data(),
+                                    layout_.dispersion_entry.data(), dispersion_.data()};
     std::vector<LatticeSums> sums(workers_.count(), {0, 0});
     workers_.run([&](int worker) {
       for (long n = 0; n < steps; ++n) step_of_slab(worker, steps_done_ + n, view, n + 1 < steps ? step : last, sums[worker]);
@@ -256,6 +279,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
 
   /// The slab above gives its first plane's positions before it moves, the slab below its forces on our first plane.
   void step_of_slab(int s, long number, const LatticeView<Real>& view, const LatticeStep<Real>& step, LatticeSums& sums) {
+    if (view.J) find_inflow(view);
     const auto& slabs = slabs_[number % 2];
     const LatticeSlab<Real>& slab = slabs[s];
     kernels_.sweep(view, slab, slab.begin, slab.end - 1, step, sums);
@@ -281,7 +305,8 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   LatticeKernels<Real> kernels_;
   LatticeLayout layout_;
   bool bounded_ = false;
-  AlignedArray<Real> motion_, rings_, springs_, nodes_;
+  AlignedArray<Real> motion_, rings_, springs_, nodes_, dispersion_, J_;
+  std::vector<std::pair<std::size_t, std::size_t>> shared_;  ///< whose J another node has
   std::array<Real*, 3> u_, v_;
   std::vector<int> node_entry_;
   std::vector<Support> supports_;
@@ -295,7 +320,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
 bool LatticeMotion::suits(const MassSpringModel& model) { return is_lattice_of_springs(model); }
 
 LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {
-  if (!suits(model)) throw std::invalid_argument("the lattice kernel is for cubic lattices of springs, with or without volume correction");
+  if (!suits(model)) throw std::invalid_argument("the lattice kernel is for cubic lattices of springs, with or without volume correction or momentum dispersion");
   if (options.precision == Precision::float64) arrays_ = std::make_unique<ArraysOf<double>>(model, density, options);
   else arrays_ = std::make_unique<ArraysOf<float>>(model, density, options);
 }

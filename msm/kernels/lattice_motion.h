@@ -16,7 +16,7 @@ enum class Precision { float64, float32 };
 
 struct LatticeMotionOptions {
   Precision precision = Precision::float64;  ///< float32: forces to 1e-6 of the largest, twice as fast
-  int threads = 1;                           ///< at most one per plane of nodes
+  int threads = 1;                           ///< at most one per plane of nodes; momentum dispersion has one
   InstructionSet instructions = instruction_set();
 };
 
@@ -30,8 +30,8 @@ struct ForceNorms {
 /// complete when the next one is reached, and are then spent at once.  Every spring is computed once.
 class LatticeMotion {
  public:
-  /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without the
-  /// volume correction.
+  /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without volume
+  /// correction or momentum dispersion.
   static bool suits(const MassSpringModel& model);
 
   /// At rest at X, nothing fixed, no load.  Keeps a reference to the network.

@@ -64,11 +64,19 @@ std::vector<ModelParameters> models() {
   for (const char* name : {"hybmss_cf", "hybmss", "hybmss_fd", "msm_18", "msm_14"}) all.push_back(test::model(name));
   all.push_back(test::model("hybmss"));
   all.back().volume_energy = VolumeEnergy::paper;
+  for (Dispersion form : {Dispersion::symmetric, Dispersion::share_weighted, Dispersion::published, Dispersion::published_transposed}) {
+    all.push_back(test::model("emsm"));
+    all.back().dispersion = form;
+  }
+  all.push_back(test::model("emsm"));
+  all.back().exact_volumes = false;
+  all.push_back(test::model("emsm"));
+  all.back().face_to_cube = 2;
   return all;
 }
 
 std::string label(const ModelParameters& p, const Body& body, const LatticeMotionOptions& options) {
-  return fmt::format("{}{} {} {} float{} {} threads", p.row.name, p.volume_energy == VolumeEnergy::paper ? " (paper)" : "", body.name,
+  return fmt::format("{}{} form {} {} {} float{} {} threads", p.row.name, p.volume_energy == VolumeEnergy::paper ? " (paper)" : "", static_cast<int>(p.dispersion), body.name,
                      name_of(options.instructions), options.precision == Precision::float32 ? 32 : 64, options.threads);
 }
 
