@@ -18,7 +18,7 @@ class Lammps {
   /// different masses all get the mean one, since LAMMPS has masses per type.
   explicit Lammps(const Network& network);
 
-  /// Time of one step [s], the median of some runs: LAMMPS' loop time times the share of a processor that it says it had.
+  /// Least time of one step [s] of some runs: LAMMPS' loop time times the share of a processor that it says it had.
   /// @throws std::runtime_error if it fails, with its last words.
   double seconds_per_step(double seconds_of_a_run, int runs) const;
 
