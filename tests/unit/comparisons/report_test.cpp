@@ -169,8 +169,8 @@ class ReportInBrowser : public Report {
     return output_of(
         "timeout 120 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
         "--enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking "
-        "--disable-component-update --disable-sync --enable-logging=stderr --virtual-time-budget=5000 "
-        "--window-size=1400,6000 --user-data-dir='" +
+        "--disable-component-update --disable-sync --enable-logging=stderr --virtual-time-budget=8000 "
+        "--window-size=1400,7500 --user-data-dir='" +
         profile.string() + "' --dump-dom 'file://" + file.string() + fragment + "' 2>&1");
   }
   const std::filesystem::path profile = file.string() + ".profile";
@@ -287,7 +287,7 @@ const std::string tools = R"js(
 TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
   const std::string dom = open_with(tools + R"js(
     setTimeout(() => document.querySelectorAll('section:not([hidden]) canvas').forEach(canvas =>
-      say(canvas.closest('section').id + (coloursOf(canvas) > 20 ? ' drawn' : ' blank'))), 2000);
+      say(canvas.closest('section').id + (coloursOf(canvas) > 20 ? ' drawn' : ' blank'))), 4000);
   )js");
   expect_no_complaint(dom);
   EXPECT_EQ(count(dom, "<p class=\"said\">poisson drawn"), 2u);
