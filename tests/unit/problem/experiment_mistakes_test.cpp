@@ -337,7 +337,7 @@ const Mistake mistakes[] = {
      {":19:35: compare.measures: 'displacement_error_order' needs the solution"}},
     {"ComparedElementTwice", full_case, "elements = [\"p1\", \"q1\"]", "elements = [\"p1\", \"p1\"]", {"compare.elements: 'p1' is named twice"}},
     {"ComparedElementUnknown", full_case, "elements = [\"p1\", \"q1\"]", "elements = [\"q3\"]", {"compare.elements: 'q3' is not known", "q2"}},
-    {"CostIsANumber", full_case, "cost = true", "cost = 1", {"compare.cost: is 1"}},
+    {"CostIsANumber", full_case, "cost = true", "cost = 1", {"compare.cost: is the integer 1"}},
     {"ModelsIsAString",
      small_case,
      "",
