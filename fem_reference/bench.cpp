@@ -25,7 +25,7 @@ struct BenchRow {
   long unknowns = 0;
   int iterations = 0;
   double seconds = 0, memory_MiB = 0, force = 0;
-  std::string form;
+  std::string form{};
 };
 
 // A cube between clamped plates, compressed by 5 %: singular at the edges, as the experiments are.

@@ -14,7 +14,7 @@
 namespace springproof {
 namespace {
 
-constexpr long cholesky_limit = 3000;        // free unknowns; above it multigrid is faster
+constexpr long cholesky_limit = 1000;        // free unknowns; above it multigrid is faster
 constexpr double mixed_above_kappa = 4;      // kappa / G: 3 at nu = 0.4, 8 at 0.45
 
 Eigen::VectorXd flat(const NodalVectors& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()); }

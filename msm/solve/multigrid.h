@@ -79,7 +79,7 @@ class Multigrid {
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
   double largest_diagonal() const { return largest_diagonal_; }
 
-  /// The finest level and the cycle on it, x of r, in units of `unit_cell`: for cycles that go on above it.
+  /// The finest level and the cycle on it, x of r, in units of the mean diagonal entry of the cell: for cycles that go on above it.
   SmoothingLevel& finest() { return levels_[0]; }
   void cycle() { cycle(0); }
 

@@ -13,7 +13,7 @@ for what in dynamics statics; do
   [ $status -eq 0 ] || { fail "$what ended with $status"; cat "$work/$what.txt" "$work/$what.err"; }
   # Every row with a result has one line "judged", a number above 0.
   awk -F ': ' -v what=$what '
-    /^ *"judged"/ { sub(/,$/, "", $2); n++; if (!($2 > 0 && $2 < 1e12)) { print "no good ratio: " $0; bad = 1 } }
+    /^ *"judged"/ { sub(/,$/, "", $2); n++; if (!($2 + 0 > 0 && $2 + 0 < 1e12)) { print "no good ratio: " $0; bad = 1 } }
     /"ok": false/ { print "a row without a result"; bad = 1 }
     END { if (n < 5) { print n " rows"; bad = 1 } exit bad }' "$work/$what.json" || fail "$what: figures"
   grep -q "targets met" "$work/$what.txt" || fail "$what: no count of targets"
