@@ -14,7 +14,9 @@
 namespace springproof {
 namespace {
 
-constexpr long cholesky_limit = 1000;        // free unknowns; above it multigrid is faster
+constexpr long lattice_cholesky_limit = 1000;  // free unknowns; above it multigrid is faster
+constexpr long cholesky_limit = 3000;          // the same for other networks
+constexpr long judge_limit = 20000;            // up to it a factorisation tells what the iteration could not
 constexpr double mixed_above_kappa = 4;      // kappa / G: 3 at nu = 0.4, 8 at 0.45
 
 Eigen::VectorXd flat(const NodalVectors& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()); }
@@ -46,6 +48,7 @@ void report(const KrylovResult& k, const std::string& name, Equilibrium& result)
   result.iterations = k.iterations;
   result.residual = k.residual;
   result.ok = k.converged;
+  result.message.clear();
   if (!k.converged)
     result.message = fmt::format("{} did not converge: residual {:.2e} after {} iterations{}", name, k.residual,
                                  k.iterations, k.negative_curvature ? " (stiffness not positive definite)" : "");
@@ -101,7 +104,7 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   const bool has_cells = model.network.grid && !model.network.cells.empty() && !dispersion_of(model);
   const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
-    if (result.unknowns <= cholesky_limit)
+    if (result.unknowns <= (has_cells ? lattice_cholesky_limit : cholesky_limit))
       solver = LinearSolver::cholesky;
     else
       solver = cell.kappa > mixed_above_kappa * G ? LinearSolver::mixed_multigrid : LinearSolver::multigrid;
@@ -111,6 +114,8 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
       solve_mixed(problem, cell, G, result);
     else
       solve_primal(problem, solver == LinearSolver::cholesky, result);
+    const bool iterated = solver == LinearSolver::multigrid && options.solver == LinearSolver::automatic;
+    if (!result.ok && iterated && result.unknowns <= judge_limit) solve_primal(problem, true, result);
   } catch (const std::runtime_error& e) {
     result.message = e.what();
   }
