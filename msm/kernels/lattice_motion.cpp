@@ -92,8 +92,8 @@ class LatticeMotion::Arrays {
   virtual void set_conditions(const BoundaryConditions& conditions) = 0;
   virtual void move_supports() = 0;
   virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;
-  virtual void read(const std::vector<int>& nodes, double* values) const = 0;
-  virtual void write(const std::vector<int>& nodes, const double* values) = 0;
+  virtual void read(int begin, int end, double* values) const = 0;
+  virtual void write(int begin, int end, const double* values) = 0;
   virtual ForceNorms advance(long steps, double time_step, double damping) = 0;
   virtual NodalVectors positions() const = 0;
   virtual NodalVectors velocities() const = 0;
@@ -154,19 +154,19 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
       }
   }
 
-  void read(const std::vector<int>& nodes, double* values) const override {
-    for (std::size_t i = 0; i < nodes.size(); ++i, values += 6)
+  void read(int begin, int end, double* values) const override {
+    for (int n = begin; n < end; ++n, values += 6)
       for (int d = 0; d < 3; ++d) {
-        values[layout_.axis[d]] = edge_ * u_[d][layout_.slot[nodes[i]]];
-        values[3 + layout_.axis[d]] = edge_ * v_[d][layout_.slot[nodes[i]]];
+        values[layout_.axis[d]] = edge_ * u_[d][layout_.slot[n]];
+        values[3 + layout_.axis[d]] = edge_ * v_[d][layout_.slot[n]];
       }
   }
 
-  void write(const std::vector<int>& nodes, const double* values) override {
-    for (std::size_t i = 0; i < nodes.size(); ++i, values += 6)
+  void write(int begin, int end, const double* values) override {
+    for (int n = begin; n < end; ++n, values += 6)
       for (int d = 0; d < 3; ++d) {
-        u_[d][layout_.slot[nodes[i]]] = static_cast<Real>(values[layout_.axis[d]] / edge_);
-        v_[d][layout_.slot[nodes[i]]] = static_cast<Real>(values[3 + layout_.axis[d]] / edge_);
+        u_[d][layout_.slot[n]] = static_cast<Real>(values[layout_.axis[d]] / edge_);
+        v_[d][layout_.slot[n]] = static_cast<Real>(values[3 + layout_.axis[d]] / edge_);
       }
   }
 
@@ -332,8 +332,8 @@ LatticeMotion::~LatticeMotion() = default;
 void LatticeMotion::set_conditions(const BoundaryConditions& conditions) { arrays_->set_conditions(conditions); }
 void LatticeMotion::move_supports() { arrays_->move_supports(); }
 void LatticeMotion::set_state(const NodalVectors& x, const NodalVectors& v) { arrays_->set_state(x, v); }
-void LatticeMotion::read(const std::vector<int>& nodes, double* values) const { arrays_->read(nodes, values); }
-void LatticeMotion::write(const std::vector<int>& nodes, const double* values) { arrays_->write(nodes, values); }
+void LatticeMotion::read(int begin, int end, double* values) const { arrays_->read(begin, end, values); }
+void LatticeMotion::write(int begin, int end, const double* values) { arrays_->write(begin, end, values); }
 ForceNorms LatticeMotion::advance(long steps, double dt, double damping) { return arrays_->advance(steps, dt, damping); }
 NodalVectors LatticeMotion::positions() const { return arrays_->positions(); }
 NodalVectors LatticeMotion::velocities() const { return arrays_->velocities(); }

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "msm/boundary.h"
 #include "msm/kernels/instruction_set.h"
@@ -48,9 +47,9 @@ class LatticeMotion {
 
   void set_state(const NodalVectors& x, const NodalVectors& v);  ///< [m], [m/s]
 
-  /// Of some nodes: displacement [m], then velocity [m/s], six values each.
-  void read(const std::vector<int>& nodes, double* values) const;
-  void write(const std::vector<int>& nodes, const double* values);
+  /// Of nodes begin <= n < end: displacement [m], then velocity [m/s], six values each.
+  void read(int begin, int end, double* values) const;
+  void write(int begin, int end, const double* values);
 
   /// Steps v = (v + dt f/m) / (1 + damping dt), x += dt v.
   /// @return the norms at the beginning of the last step.

@@ -142,7 +142,7 @@ nlohmann::json solve_static(const Options& options, MPI_Comm communicator) {
     }
   multigrid.multiply(prescribed, force);
   Eigen::VectorXd b = external - force;
-  multigrid.clear_fixed(b);
+  multigrid.finest().lattice.clear_fixed(b);
   const double solve_start = seconds();
   const KrylovResult k = multigrid.solve(b, options.tolerance, 1000, du);
   const double solve = seconds() - solve_start;

@@ -2,7 +2,6 @@
 
 #include <petscksp.h>
 
-#include <numeric>
 #include <stdexcept>
 
 namespace springproof {
@@ -39,40 +38,37 @@ PlaneExchange::PlaneExchange(const SlabLevel& level, MPI_Comm communicator) : le
   above_ = rank + 1 < size_of(communicator) ? rank + 1 : MPI_PROC_NULL;
 }
 
-template <class Real>
-void PlaneExchange::complete(Real* field) const {
-  const LatticeLevel& lattice = level_->lattice;
-  const long n = lattice.point_begin[1] - lattice.point_begin[0];  // all planes of a block are equal
-  std::vector<Real> out(3 * n), in(3 * n);
+template <class Real, class Pack, class Unpack>
+void PlaneExchange::exchange(int values_per_point, Pack pack, Unpack unpack) const {
+  const std::vector<long>& begin = level_->lattice.point_begin;
+  const int size = static_cast<int>(values_per_point * (begin[1] - begin[0]));  // all planes of a block are equal
+  std::vector<Real> out(size), in(size);
   const auto pass = [&](int send_plane, int to, int receive_plane, int from) {
-    for (int a = 0; a < 3; ++a) std::copy_n(field + a * lattice.stride() + lattice.point_begin[send_plane], n, out.data() + a * n);
-    MPI_Sendrecv(out.data(), static_cast<int>(3 * n), mpi_type<Real>(), to, 0, in.data(), static_cast<int>(3 * n), mpi_type<Real>(), from, 0,
-                 communicator_, MPI_STATUS_IGNORE);
-    if (from == MPI_PROC_NULL) return;
-    for (int a = 0; a < 3; ++a) std::copy_n(in.data() + a * n, n, field + a * lattice.stride() + lattice.point_begin[receive_plane]);
-  };
-  pass(level_->own_end - 1, above_, 0, below_);
-  pass(level_->own_begin, below_, lattice.planes(), above_);
-}
-
-std::vector<int> PlaneExchange::nodes_of_plane(int plane) const {
-  const LatticeLevel& lattice = level_->lattice;
-  std::vector<int> nodes(lattice.point_begin[plane + 1] - lattice.point_begin[plane]);
-  std::iota(nodes.begin(), nodes.end(), static_cast<int>(lattice.point_begin[plane]));
-  return nodes;
-}
-
-void PlaneExchange::complete(LatticeMotion& motion) const {
-  const auto pass = [&](int send_plane, int to, int receive_plane, int from) {
-    const std::vector<int> mine = nodes_of_plane(send_plane), theirs = nodes_of_plane(receive_plane);
-    std::vector<double> out(6 * mine.size()), in(6 * theirs.size());
-    if (to != MPI_PROC_NULL) motion.read(mine, out.data());
-    MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, to, 0, in.data(), static_cast<int>(in.size()), MPI_DOUBLE, from, 0,
-                 communicator_, MPI_STATUS_IGNORE);
-    if (from != MPI_PROC_NULL) motion.write(theirs, in.data());
+    if (to != MPI_PROC_NULL) pack(begin[send_plane], begin[send_plane + 1], out.data());
+    MPI_Sendrecv(out.data(), size, mpi_type<Real>(), to, 0, in.data(), size, mpi_type<Real>(), from, 0, communicator_, MPI_STATUS_IGNORE);
+    if (from != MPI_PROC_NULL) unpack(begin[receive_plane], begin[receive_plane + 1], in.data());
   };
   pass(level_->own_end - 1, above_, 0, below_);
   pass(level_->own_begin, below_, level_->lattice.planes(), above_);
+}
+
+template <class Real>
+void PlaneExchange::complete(Real* field) const {
+  const long stride = level_->lattice.stride();
+  exchange<Real>(
+      3,
+      [&](long begin, long end, Real* buffer) {
+        for (int a = 0; a < 3; ++a) buffer = std::copy(field + a * stride + begin, field + a * stride + end, buffer);
+      },
+      [&](long begin, long end, const Real* buffer) {
+        for (int a = 0; a < 3; ++a, buffer += end - begin) std::copy_n(buffer, end - begin, field + a * stride + begin);
+      });
+}
+
+void PlaneExchange::complete(LatticeMotion& motion) const {
+  exchange<double>(
+      6, [&](long begin, long end, double* buffer) { motion.read(static_cast<int>(begin), static_cast<int>(end), buffer); },
+      [&](long begin, long end, const double* buffer) { motion.write(static_cast<int>(begin), static_cast<int>(end), buffer); });
 }
 
 SlabPartition::SlabPartition(const std::array<int, 3>& block_cells, MPI_Comm communicator) : cells(block_cells) {
@@ -118,6 +114,11 @@ SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<c
   gather_fixed(whole.levels[0]);
   add_coarser_levels(whole);
   below_ = std::make_unique<Multigrid>(std::move(whole), cell, smoothing_degree);
+  counts_.resize(size_of(communicator));
+  begins_.resize(size_of(communicator));
+  const int own = static_cast<int>(slabs_.back().own_points()), begin = static_cast<int>(place_below() + slabs_.back().own_first());
+  MPI_Allgather(&own, 1, MPI_INT, counts_.data(), 1, MPI_INT, communicator);
+  MPI_Allgather(&begin, 1, MPI_INT, begins_.data(), 1, MPI_INT, communicator);
   below_r_ = below_x_ = Eigen::VectorXf::Zero(3 * slabs_.back().lattice.stride());
 
   // The bound of the lattice below, a smaller block of the same cells, and a margin.
@@ -132,11 +133,17 @@ SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<c
   K_ = std::make_unique<LatticeOperator<double>>(finest, cell);
 }
 
+/// Number in the lattice below of the first point of this process' part.
+long SlabMultigrid::place_below() const {
+  const LatticeLevel& part = slabs_.back().lattice;
+  return part.first_cell[2] * (part.point_begin[1] - part.point_begin[0]);
+}
+
 /// What is fixed of the lattice below, from all processes.
 void SlabMultigrid::gather_fixed(LatticeLevel& whole) const {
   const SlabLevel& part = slabs_.back();
   std::vector<char> held(3 * whole.points(), 0);
-  const long offset = part.lattice.first_cell[2] * (whole.point_begin[1] - whole.point_begin[0]);
+  const long offset = place_below();
   for (int place : part.lattice.fixed) {
     const long a = place / part.lattice.stride(), n = place % part.lattice.stride();
     if (n >= part.own_first() && n < part.own_first() + part.own_points()) held[a * whole.points() + offset + n] = 1;
@@ -152,15 +159,10 @@ void SlabMultigrid::cycle_below() {
   const SlabLevel& part = slabs_.back();
   SmoothingLevel& whole = below_->finest();
   const LatticeLevel& lattice = whole.K.level();
-  const long plane = lattice.point_begin[1] - lattice.point_begin[0], offset = part.lattice.first_cell[2] * plane;
-  const int processes = size_of(communicator_);
-  std::vector<int> counts(processes), begins(processes);
-  const int own = static_cast<int>(part.own_points()), begin = static_cast<int>(offset + part.own_first());
-  MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator_);
-  MPI_Allgather(&begin, 1, MPI_INT, begins.data(), 1, MPI_INT, communicator_);
+  const long offset = place_below();
   for (int a = 0; a < 3; ++a)
-    MPI_Allgatherv(below_r_.data() + a * part.lattice.stride() + part.own_first(), own, MPI_FLOAT, whole.r.data() + a * lattice.stride(),
-                   counts.data(), begins.data(), MPI_FLOAT, communicator_);
+    MPI_Allgatherv(below_r_.data() + a * part.lattice.stride() + part.own_first(), static_cast<int>(part.own_points()), MPI_FLOAT,
+                   whole.r.data() + a * lattice.stride(), counts_.data(), begins_.data(), MPI_FLOAT, communicator_);
   below_->cycle();
   for (int a = 0; a < 3; ++a)
     below_x_.segment(a * part.lattice.stride(), part.lattice.points()) = whole.x.segment(a * lattice.stride() + offset, part.lattice.points());
@@ -201,10 +203,6 @@ void SlabMultigrid::multiply(Eigen::VectorXd& x, Eigen::VectorXd& y) {
   });
 }
 
-void SlabMultigrid::clear_fixed(Eigen::VectorXd& v) const {
-  for (int place : slabs_[0].lattice.fixed) v[place] = 0;
-}
-
 namespace {
 
 /// Own points of a nodal field, as PETSc's vectors have them.
@@ -236,7 +234,7 @@ PetscErrorCode multiply_shell(Mat K, Vec x, Vec y) {
   PetscCall(MatShellGetContext(K, &shell));
   shell->read(x);
   shell->multigrid->multiply(shell->x, shell->y);
-  shell->multigrid->clear_fixed(shell->y);
+  shell->multigrid->finest().lattice.clear_fixed(shell->y);
   shell->write(y);
   return 0;
 }
@@ -255,7 +253,7 @@ PetscErrorCode precondition_shell(PC pc, Vec r, Vec z) {
 
 KrylovResult SlabMultigrid::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) {
   Shell shell{this, Eigen::VectorXd::Zero(b.size()), b};
-  clear_fixed(shell.y);
+  finest().lattice.clear_fixed(shell.y);
   Vec rhs, solution;
   check(VecCreateMPI(communicator_, static_cast<PetscInt>(3 * finest().own_points()), PETSC_DETERMINE, &rhs));
   check(VecDuplicate(rhs, &solution));

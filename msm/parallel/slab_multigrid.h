@@ -26,7 +26,9 @@ class PlaneExchange {
   void complete(LatticeMotion& motion) const;  ///< positions and velocities
 
  private:
-  std::vector<int> nodes_of_plane(int plane) const;
+  /// Sends own end planes and receives those beyond: pack(begin, end, buffer) and unpack of points begin ... end.
+  template <class Real, class Pack, class Unpack>
+  void exchange(int values_per_point, Pack pack, Unpack unpack) const;
 
   const SlabLevel* level_;
   MPI_Comm communicator_;
@@ -42,7 +44,6 @@ struct SlabPartition {
   /// @throws std::invalid_argument if there are more processes than planes to share.
   SlabPartition(const std::array<int, 3>& block_cells, MPI_Comm communicator);
   SlabLevel level(int l, MPI_Comm communicator) const;
-  int first_plane(MPI_Comm communicator) const;  ///< of cells that this process has of the finest level, and how many
 };
 
 /// Displacement form of HybMSS (the cycle of Multigrid): levels of slabs above, the rest of the hierarchy on every process.
@@ -58,11 +59,11 @@ class SlabMultigrid {
   void multiply(Eigen::VectorXd& x, Eigen::VectorXd& y);
   /// z = M^-1 r on own points.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
-  void clear_fixed(Eigen::VectorXd& v) const;
 
  private:
   void cycle(int l);
   void cycle_below();
+  long place_below() const;
   void gather_fixed(LatticeLevel& whole) const;
 
   MPI_Comm communicator_;
@@ -72,6 +73,7 @@ class SlabMultigrid {
   std::vector<SmoothingLevel> levels_;
   Eigen::VectorXf below_r_, below_x_;
   std::unique_ptr<Multigrid> below_;
+  std::vector<int> counts_, begins_;       ///< own points of each process in the lattice below
   std::unique_ptr<LatticeOperator<double>> K_;
 };
 

@@ -31,6 +31,19 @@ CellMatrix dense(const Tangent& K) {
 
 }  // namespace
 
+bool consists_of_cells(const MassSpringModel& model) {
+  return model.network.grid && !model.network.cells.empty() && !dispersion_of(model);
+}
+
+CellStiffness in_units(CellStiffness cell, double G, double edge) {
+  cell.total /= G * edge;
+  cell.without_volume /= G * edge;
+  cell.volume_gradient /= edge * edge;
+  cell.kappa /= G;
+  cell.volume /= edge * edge * edge;
+  return cell;
+}
+
 CellStiffness cell_stiffness(const MassSpringModel& model) {
   const MassSpringModel cell = one_cell(model);
   CellStiffness s;

@@ -19,6 +19,12 @@ struct CellStiffness {
   double volume = 0;           ///< V [m^3]
 };
 
+/// Whether the rest stiffness of a model is the sum of its cells': a lattice, without what reaches past a cell.
+bool consists_of_cells(const MassSpringModel& model);
+
+/// The same with G, edge and G * edge as the units of pressure, length and stiffness: entries of order one.
+CellStiffness in_units(CellStiffness cell, double shear_modulus, double edge);
+
 /// @throws std::invalid_argument for a network without cells.
 CellStiffness cell_stiffness(const MassSpringModel& model);
 

@@ -20,11 +20,12 @@ struct Numbering {
   Numbering(const Index& first, const Index& box, const std::vector<Index>& in_order) : Numbering(first, box) {
     for (std::size_t n = 0; n < in_order.size(); ++n) at(in_order[n]) = static_cast<int>(n);
   }
-  int& at(const Index& p) { return number[(std::size_t(p[2] - low[2]) * size[1] + p[1] - low[1]) * size[0] + p[0] - low[0]]; }
+  std::size_t place(const Index& p) const { return (std::size_t(p[2] - low[2]) * size[1] + p[1] - low[1]) * size[0] + p[0] - low[0]; }
+  int& at(const Index& p) { return number[place(p)]; }
   int get(const Index& p) const {
     for (int d = 0; d < 3; ++d)
       if (p[d] < low[d] || p[d] >= low[d] + size[d]) return -1;
-    return const_cast<Numbering*>(this)->at(p);
+    return number[place(p)];
   }
   /// Numbers what is marked, x fastest, and lists it.  Returns where each plane begins, and the end.
   std::vector<long> number_marked(std::vector<Index>& list) {

@@ -38,6 +38,10 @@ struct LatticeLevel {
   long cells() const { return cell_begin.back(); }
   long points() const { return point_begin.back(); }
   long stride() const { return points() + array_slack; }
+  template <class Field>
+  void clear_fixed(Field& field) const {
+    for (int place : fixed) field[place] = 0;
+  }
   /// Point of corner `c` (hexahedron_corners) of cell `i` of a row.
   static long corner(const CellRow& row, int i, int c);
 };

@@ -17,7 +17,6 @@ namespace {
 constexpr long lattice_cholesky_limit = 1000;  // free unknowns; above it multigrid is faster
 constexpr long cholesky_limit = 3000;          // the same for other networks
 constexpr long judge_limit = 20000;            // up to it a factorisation tells what the iteration could not
-constexpr double mixed_above_kappa = 4;      // kappa / G: 3 at nu = 0.4, 8 at 0.45
 
 Eigen::VectorXd flat(const NodalVectors& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()); }
 
@@ -70,16 +69,9 @@ void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
   finish(p, u, Ku, result);
 }
 
-void solve_mixed(const LinearProblem& p, CellStiffness cell, double G, Equilibrium& result) {
-  // In units of G, l and G l both equations have entries of order one.
+void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Equilibrium& result) {
   const double l = p.model.network.cell_edge, unit = G * l;
-  cell.total /= unit;
-  cell.without_volume /= unit;
-  cell.volume_gradient /= l * l;
-  cell.kappa /= G;
-  cell.volume = 1;
-  const int inner_steps = cell.kappa > 1000 ? 12 : 6;
-  MixedMultigrid multigrid(lattice_levels(p.model.network, p.conditions.fixed), cell, 2, inner_steps);
+  MixedMultigrid multigrid(lattice_levels(p.model.network, p.conditions.fixed), in_units(cell, G, l));
   // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
   const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.model.network.cells.size()));
   Eigen::VectorXd f = p.external / unit - multigrid.force(p.prescribed, no_pressure), du, pressure;
@@ -101,7 +93,7 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   const LinearProblem problem{model, conditions, options, flat(conditions.prescribed), flat(conditions.external)};
   LinearSolver solver = options.solver;
   const double G = affine_shear_modulus(model.network);
-  const bool has_cells = model.network.grid && !model.network.cells.empty() && !dispersion_of(model);
+  const bool has_cells = consists_of_cells(model);
   const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
     if (result.unknowns <= (has_cells ? lattice_cholesky_limit : cholesky_limit))

@@ -5,19 +5,15 @@
 namespace springproof {
 namespace {
 
+constexpr int sweeps = 2;      // before and after the coarser lattice
 constexpr double omega = 1.3;  // damping of the displacement block in a Braess-Sarazin sweep
-
-template <class Vector>
-void clear(const std::vector<int>& places, Vector& v) {
-  for (int i : places) v[i] = 0;
-}
 
 double corner_gradient(const CellStiffness& cell) { return cell.volume_gradient.cwiseAbs().maxCoeff(); }
 
 }  // namespace
 
-MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_network, int sweeps, int inner_steps)
-    : lattice_(std::move(levels)), sweeps_(sweeps), inner_steps_(inner_steps),
+MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_network)
+    : lattice_(std::move(levels)), inner_steps_(of_network.kappa > 1000 ? 12 : 6),
       K_(lattice_.levels[0], reorder(of_network.without_volume, lattice_.axes), corner_gradient(of_network)) {
   if (!(of_network.kappa > 0)) throw std::invalid_argument("the mixed form needs kappa > 0 (nu > 1/4)");
   CellStiffness cell = of_network;
@@ -41,7 +37,7 @@ MixedMultigrid::Level MixedMultigrid::make_level(const LatticeLevel& lattice, co
   const long stride = lattice.stride(), cells = lattice.cells() + array_slack;
   const Eigen::VectorXd d = diagonal(lattice, cell.without_volume);
   level.inverse_diagonal = (d.array() > 0).select(1 / (omega * d.array()), 0).cast<float>().matrix();
-  clear(lattice.fixed, level.inverse_diagonal);
+  lattice.clear_fixed(level.inverse_diagonal);
   level.compliance = level.inverse_schur_diagonal = Eigen::VectorXf::Zero(cells);
   for (const CellRow& row : lattice.rows)
     for (int i = 0; i < row.length; ++i) {
@@ -145,7 +141,7 @@ void MixedMultigrid::residual(Level& level) const {
     const long at = a * stride + begin;
     level.d.segment(at, n) = level.f.segment(at, n) - Eigen::Map<const Eigen::VectorXf>(y, n);
   });
-  clear(level.K.level().fixed, level.d);
+  level.K.level().clear_fixed(level.d);
 }
 
 /// Bending moves a thin part's middle without change of volume; what the sections must do with it is left to the sweeps.
@@ -164,7 +160,7 @@ void MixedMultigrid::cycle(std::size_t l) {
   }
   level.u.setZero();
   level.p.setZero();
-  for (int s = 0; s < sweeps_; ++s) sweep(level, s == 0);
+  for (int s = 0; s < sweeps; ++s) sweep(level, s == 0);
   LatticeOperator<float>& K = level.K;
   const long stride = K.stride();
   residual(level);
@@ -182,14 +178,14 @@ void MixedMultigrid::cycle(std::size_t l) {
   for (long c = 0; c < cells; ++c) below.g[lattice.parent[c]] += level.r[c];
   cycle(l + 1);
   prolongate_field(lattice, K.kernels(), below.u.data(), stride, level.d.data());
-  clear(K.level().fixed, level.d);
+  K.level().clear_fixed(level.d);
   level.u += level.d;
   for (long c = 0; c < cells; ++c) level.p[c] += below.p[lattice.parent[c]];
   if (level.thin) {
     residual(level);
     correct_thin_parts(level);
   }
-  for (int s = 0; s < sweeps_; ++s) sweep(level, false);
+  for (int s = 0; s < sweeps; ++s) sweep(level, false);
 }
 
 void MixedMultigrid::multiply_rows(const double* x, double* y) {
@@ -216,26 +212,26 @@ Eigen::VectorXd MixedMultigrid::cells_from_rows(const double* rows) const {
 
 KrylovResult MixedMultigrid::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
                                    Eigen::VectorXd& u, Eigen::VectorXd& p) {
-  const std::vector<int>& fixed = lattice_.levels[0].fixed;
+  const LatticeLevel& finest = lattice_.levels[0];
   const Eigen::Index n = pressures(), m = size() - n;
   Eigen::VectorXd f_rows, b = Eigen::VectorXd::Zero(size()), x = Eigen::VectorXd::Zero(size());
   lattice_.to_rows(f, f_rows);
-  clear(fixed, f_rows);
+  finest.clear_fixed(f_rows);
   b.head(n) = f_rows;
   cells_to_rows(g, b.data() + n);
   const Operator A = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
     y.resize(v.size());
     multiply_rows(v.data(), y.data());
-    clear(fixed, y);
+    finest.clear_fixed(y);
   };
   const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    Level& finest = levels_[0];
-    finest.f = r.head(n).cast<float>();
-    finest.g = r.tail(m).cast<float>();
+    Level& top = levels_[0];
+    top.f = r.head(n).cast<float>();
+    top.g = r.tail(m).cast<float>();
     cycle(0);
     z.resize(r.size());
-    z.head(n) = finest.u.cast<double>();
-    z.tail(m) = finest.p.cast<double>();
+    z.head(n) = top.u.cast<double>();
+    z.tail(m) = top.p.cast<double>();
   };
   const KrylovResult result = gmres(A, condition, b, tolerance, max_iterations, 60, x);
   lattice_.from_rows(x.head(n), u);

@@ -5,6 +5,9 @@
 
 namespace springproof {
 
+/// kappa / G (3 at nu = 0.4, 8 at 0.45) above which pressures as unknowns are worth it.
+inline constexpr double mixed_above_kappa = 4;
+
 /// The saddle-point system  [K_s B^T; B -V/kappa] (u, p) = (f, g)  of springs K_s (everything but the volume term) and
 /// one pressure per cell, p = kappa/V B u; kappa > 0.  The V-cycle smooths with inexact Braess-Sarazin sweeps, in single
 /// precision.  Displacements are 3 per node of the network, pressures and g one per cell, all in units of the cell's
@@ -12,7 +15,7 @@ namespace springproof {
 class MixedMultigrid {
  public:
   /// @throws std::invalid_argument unless cell.kappa > 0.
-  MixedMultigrid(LatticeLevels levels, const CellStiffness& cell, int sweeps = 2, int inner_steps = 6);
+  MixedMultigrid(LatticeLevels levels, const CellStiffness& cell);
 
   /// (u, p) of the system, u = 0 on the fixed unknowns.
   KrylovResult solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
@@ -54,7 +57,7 @@ class MixedMultigrid {
   Eigen::VectorXd cells_from_rows(const double* rows) const;
 
   LatticeLevels lattice_;
-  int sweeps_, inner_steps_;
+  int inner_steps_;  ///< of the pressures in a sweep
   std::vector<Level> levels_;
   LatticeOperator<double> K_;
   Eigen::VectorXd compliance_;

@@ -8,7 +8,6 @@
 namespace springproof {
 namespace {
 
-constexpr double least_kappa = 4;        // times G: below it the form without pressures does as well
 constexpr double pressure_tolerance = 1e-8;
 constexpr int most_krylov_steps = 200;
 
@@ -24,7 +23,6 @@ Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data()
 }  // namespace
 
 struct MixedNewton::Linearised {
-  BlockMatrix K;                        ///< of everything but the change of pressures [N/m]
   std::vector<MeanEdgeVolume> volumes;
   Eigen::VectorXd curvature;            ///< psi'' per cell
   Eigen::VectorXd force;                ///< external - internal force [N]
@@ -33,34 +31,28 @@ struct MixedNewton::Linearised {
 
 bool MixedNewton::suits(const MassSpringModel& model) {
   const VolumeCorrection* volume = volume_of(model);
-  return volume && model.network.grid && !model.network.cells.empty() && !dispersion_of(model) &&
-         volume->kappa > least_kappa * affine_shear_modulus(model.network);
+  return volume && consists_of_cells(model) && volume->kappa > mixed_above_kappa * affine_shear_modulus(model.network);
 }
 
 MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& fixed)
     : model_(model), volume_(*volume_of(model)), fixed_(fixed) {
-  CellStiffness cell = cell_stiffness(model);
   unit_pressure_ = affine_shear_modulus(model.network);
   unit_length_ = model.network.cell_edge;
-  unit_force_ = unit_pressure_ * unit_length_ * unit_length_;
-  const double stiffness = unit_pressure_ * unit_length_;
-  cell.total /= stiffness;
-  cell.without_volume /= stiffness;
-  cell.volume_gradient /= unit_length_ * unit_length_;
-  cell.kappa /= unit_pressure_;
-  cell.volume = 1;
-  multigrid_ = std::make_unique<MixedMultigrid>(lattice_levels(model.network, fixed), cell, 2, cell.kappa > 1000 ? 12 : 6);
+  multigrid_ = std::make_unique<MixedMultigrid>(lattice_levels(model.network, fixed),
+                                                in_units(cell_stiffness(model), unit_pressure_, unit_length_));
+  K_ = BlockMatrix(coupled_nodes(model.network));
   p_ = accepted_p_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.network.cells.size()));
 }
 
-MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& x, const Eigen::VectorXd& external) const {
+MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& x, const Eigen::VectorXd& external) {
   const Network& network = model_.network;
   const double V = network.cell_volume();
-  Linearised at{BlockMatrix(coupled_nodes(network)), {}, Eigen::VectorXd(p_.size()), external, Eigen::VectorXd(p_.size())};
+  Linearised at{{}, Eigen::VectorXd(p_.size()), external, Eigen::VectorXd(p_.size())};
+  K_.set_zero();
   NodalVectors f = NodalVectors::Zero(x.rows(), 3);
   for (const ForceLaw& law : model_.laws) {
     if (std::holds_alternative<VolumeCorrection>(law)) continue;
-    std::visit([&](const auto& l) { l.add_forces(network, x, f); l.add_tangent(network, x, at.K); }, law);
+    std::visit([&](const auto& l) { l.add_forces(network, x, f); l.add_tangent(network, x, K_); }, law);
   }
   at.volumes.reserve(network.cells.size());
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
@@ -70,7 +62,7 @@ MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& x, const Eige
     at.curvature[i] = d.curvature;
     at.mismatch[i] = V * (p_[i] / volume_.kappa - d.slope) / d.curvature;
     for (int n = 0; n < 8; ++n) f.row(network.cells[c][n]) -= p_[i] * v.gradient.row(n);
-    add_volume_curvature(network.cells[c], v, p_[i], at.K);
+    add_volume_curvature(network.cells[c], v, p_[i], K_);
   }
   at.force += flat(f);
   return at;
@@ -81,7 +73,7 @@ void MixedNewton::solve(const Linearised& at, const Eigen::VectorXd& r, const Ei
                         Eigen::VectorXd& du, Eigen::VectorXd& dp) {
   const Network& network = model_.network;
   const Eigen::Index n = r.size(), m = h.size();
-  const double stiffness = unit_force_ / unit_length_, volume = unit_length_ * unit_length_ * unit_length_, area = unit_length_ * unit_length_;
+  const double area = unit_length_ * unit_length_, volume = area * unit_length_, stiffness = unit_pressure_ * unit_length_;
   const auto clear = [&](Eigen::VectorXd& v) {
     for (Eigen::Index i = 0; i < n; ++i)
       if (fixed_[i]) v[i] = 0;
@@ -90,7 +82,7 @@ void MixedNewton::solve(const Linearised& at, const Eigen::VectorXd& r, const Ei
   const Operator A = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
     y.resize(n + m);
     u = x.head(n);
-    at.K.multiply(u, Ku);
+    K_.multiply(u, Ku);
     y.head(n) = Ku / stiffness;
     for (Eigen::Index c = 0; c < m; ++c) {
       const Hexahedron& cell = network.cells[c];
@@ -110,7 +102,7 @@ void MixedNewton::solve(const Linearised& at, const Eigen::VectorXd& r, const Ei
     z << z_u, z_p;
   };
   Eigen::VectorXd b(n + m), x = Eigen::VectorXd::Zero(n + m);
-  b << r / unit_force_, h / volume;
+  b << r / (unit_pressure_ * area), h / volume;
   clear(b);
   gmres(A, precondition, b, tolerance, most_krylov_steps, 60, x);
   du = unit_length_ * x.head(n);
@@ -136,7 +128,7 @@ bool MixedNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
     Eigen::VectorXd r = at.force, h = at.mismatch, moved = Eigen::VectorXd::Zero(x.size());
     if (k == 0) {  // what the supports move is known
       Eigen::VectorXd Ku;
-      at.K.multiply(du, Ku);
+      K_.multiply(du, Ku);
       r -= Ku;
       for (Eigen::Index c = 0; c < h.size(); ++c)
         for (int n = 0; n < 8; ++n) h[c] -= at.volumes[c].gradient.row(n).dot(du.segment<3>(3 * network.cells[c][n]));

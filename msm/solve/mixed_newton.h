@@ -26,13 +26,14 @@ class MixedNewton {
 
  private:
   struct Linearised;
-  Linearised linearise(const NodalVectors& x, const Eigen::VectorXd& external) const;
+  Linearised linearise(const NodalVectors& x, const Eigen::VectorXd& external);  ///< and K_
   void solve(const Linearised& at, const Eigen::VectorXd& r, const Eigen::VectorXd& g, double tolerance, Eigen::VectorXd& du, Eigen::VectorXd& dp);
 
   const MassSpringModel& model_;
   VolumeCorrection volume_;
   std::vector<char> fixed_;
-  double unit_force_ = 1, unit_length_ = 1, unit_pressure_ = 1;
+  double unit_length_ = 1, unit_pressure_ = 1;
+  BlockMatrix K_;  ///< stiffness of everything but the change of pressures [N/m]
   std::unique_ptr<MixedMultigrid> multigrid_;
   Eigen::VectorXd p_, accepted_p_;
   int iterations_ = 0;

@@ -36,11 +36,6 @@ bool holds_rigid_motions(const LatticeLevel& level) {
   return found[0] > 1e-12 * found[5];
 }
 
-template <class Vector>
-void clear(const std::vector<int>& places, Vector& v) {
-  for (int i : places) v[i] = 0;
-}
-
 }  // namespace
 
 double largest_scaled_eigenvalue(const CellMatrix& cell) {
@@ -105,7 +100,7 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
 SmoothingLevel::SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell) : K(level, cell) {
   const Eigen::VectorXd d = diagonal(level, cell);
   inverse_diagonal = (d.array() > 0).select(1 / d.array(), 0).cast<float>().matrix();
-  clear(level.fixed, inverse_diagonal);
+  level.clear_fixed(inverse_diagonal);
   r = z = x = Eigen::VectorXf::Zero(3 * level.stride());
 }
 
@@ -174,7 +169,7 @@ void SmoothingLevel::take_residual() {
     r.segment(a * K.stride() + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
   });
   if (complete) complete(r);
-  clear(K.level().fixed, r);
+  K.level().clear_fixed(r);
 }
 
 void SmoothingLevel::before_coarse(int degree) {
@@ -191,7 +186,7 @@ void SmoothingLevel::before_coarse(int degree) {
 }
 
 void SmoothingLevel::after_coarse(int degree) {
-  clear(K.level().fixed, z);
+  K.level().clear_fixed(z);
   if (thin) thin->correct(r.data(), z.data());
   x += z;
   smooth(1, degree);
@@ -247,14 +242,14 @@ void Multigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
 }
 
 KrylovResult Multigrid::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) {
-  const std::vector<int>& fixed = lattice_.levels[0].fixed;
+  const LatticeLevel& finest = lattice_.levels[0];
   Eigen::VectorXd b_rows, u_rows;
   lattice_.to_rows(b, b_rows);
-  clear(fixed, b_rows);
+  finest.clear_fixed(b_rows);
   u_rows.setZero(b_rows.size());
   const Operator K = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
     multiply_rows(x, y);
-    clear(fixed, y);
+    finest.clear_fixed(y);
   };
   const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { apply_rows(r, z); };
   const KrylovResult result = conjugate_gradients(K, condition, b_rows, tolerance, max_iterations, u_rows);

@@ -23,7 +23,7 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
   if (!conservative(model)) companion_ = std::make_unique<MassSpringModel>(symmetric_companion(model));
   if (direct_) return;
   const Network& network = model.network;
-  if (network.grid && !network.cells.empty() && !dispersion_of(model))
+  if (consists_of_cells(model))
     lattice_ = std::make_unique<Multigrid>(lattice_levels(network, fixed), cell_stiffness(model).total);
   else {
     if (ListStiffness<double>::covers(model)) {

@@ -55,6 +55,9 @@ void dilate(Marks& marks, int by) {
 
 /// The cells of thin parts; no marks if there are none.
 Marks thin_cells(const LatticeLevel& level) {
+  const Index& side = level.cells_per_side;
+  const bool whole_box = level.cells() == long(side[0]) * side[1] * side[2];
+  if (whole_box && *std::min_element(side.begin(), side.end()) >= thickness) return {};
   Marks body{level.cells_per_side, std::vector<char>(std::size_t(level.cells_per_side[0]) * level.cells_per_side[1] * level.cells_per_side[2], 0)};
   for (const Index& c : level.cell_index) body.at(c[0], c[1], c[2]) = 1;
   Marks bulk = body;
