@@ -1,6 +1,7 @@
 #include "msm/solve/thin_parts.h"
 
 #include <algorithm>
+#include <iterator>
 #include <unordered_map>
 
 namespace springproof {
@@ -82,7 +83,55 @@ Eigen::Matrix<double, 3, 6> rigid_motions(const Eigen::Vector3f& arm, const bool
   return Z;
 }
 
+/// The blocks that points of one cell belong to, each with its rigid motions at the cell's corners.
+struct CellMotions {
+  int count = 0;
+  std::array<int, 8> block;
+  std::array<Eigen::Matrix<double, 24, 6>, 8> Z;
+
+  Eigen::Matrix<double, 24, 6>& of(int wanted) {
+    int s = 0;
+    while (s < count && block[s] != wanted) ++s;
+    if (s == count) {
+      block[count++] = wanted;
+      Z[s].setZero();
+    }
+    return Z[s];
+  }
+};
+
 }  // namespace
+
+ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride_(level.stride()) {
+  const std::vector<int> number = find_points(level);
+  if (points_.empty()) return;
+  form_blocks(level);
+  take_rows(level, number);
+  K_ = std::make_unique<LatticeOperator<float>>(*rows_, cell);
+  factor(number, level.edge_ratio * cell);
+  residual_.resize(3 * stride_);
+}
+
+/// The corners of thin cells; returns the number in points_ of each point of the level, -1: none.
+std::vector<int> ThinParts::find_points(const LatticeLevel& level) {
+  std::vector<int> number(level.points(), -1);
+  Marks thin = thin_cells(level);
+  if (thin.mark.empty()) return number;
+  for (const CellRow& row : level.rows)
+    for (int i = 0; i < row.length; ++i) {
+      const Index& c = level.cell_index[row.cell + i];
+      if (!thin.at(c[0], c[1], c[2])) continue;
+      for (int n = 0; n < 8; ++n) {
+        const long p = LatticeLevel::corner(row, i, n);
+        if (number[p] >= 0) continue;
+        number[p] = static_cast<int>(points_.size());
+        points_.emplace_back().place = p;
+      }
+    }
+  for (int place : level.fixed)
+    if (const int p = number[place % stride_]; p >= 0) points_[p].free[place / stride_] = false;
+  return number;
+}
 
 void ThinParts::form_blocks(const LatticeLevel& level) {
   int side = 2;
@@ -98,67 +147,46 @@ void ThinParts::form_blocks(const LatticeLevel& level) {
   blocks_ = static_cast<long>(block_at.size());
 }
 
-ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride_(level.stride()) {
-  Marks thin = thin_cells(level);
-  if (thin.mark.empty()) return;
-  std::vector<int> number(level.points(), -1);  // in points_
-  for (const CellRow& row : level.rows)
-    for (int i = 0; i < row.length; ++i) {
-      const Index& c = level.cell_index[row.cell + i];
-      if (!thin.at(c[0], c[1], c[2])) continue;
-      for (int n = 0; n < 8; ++n) {
-        const long p = LatticeLevel::corner(row, i, n);
-        if (number[p] >= 0) continue;
-        number[p] = static_cast<int>(points_.size());
-        points_.emplace_back().place = p;
-      }
-    }
-  form_blocks(level);
-  for (int place : level.fixed)
-    if (const int p = number[place % level.stride()]; p >= 0) points_[p].free[place / level.stride()] = false;
-
+/// The rows of the level whose cells touch the points.
+void ThinParts::take_rows(const LatticeLevel& level, const std::vector<int>& number) {
   rows_ = std::make_unique<LatticeLevel>();
   rows_->cells_per_side = level.cells_per_side;
   rows_->point_begin = level.point_begin;
   rows_->cell_begin = level.cell_begin;
   rows_->fill = level.fill;
   rows_->edge_ratio = level.edge_ratio;
-  using Coupling = Eigen::Matrix<double, 6, 6>;
-  std::unordered_map<long, Coupling> coupling;  // by pair of blocks, the later one first
-  std::array<Eigen::Matrix<double, 24, 6>, 8> Z, KZ;
+  const auto touches = [&](const CellRow& row) {
+    for (long first : row.point)
+      if (std::any_of(&number[first], &number[first] + row.length + 1, [](int p) { return p >= 0; })) return true;
+    return false;
+  };
   for (int k = 0; k < level.planes(); ++k) {
     rows_->row_begin.push_back(static_cast<long>(rows_->rows.size()));
-    for (long r = level.row_begin[k]; r < level.row_begin[k + 1]; ++r) {
-      const CellRow& row = level.rows[r];
-      bool used = false;
-      for (int i = 0; i < row.length; ++i) {
-        int local[8];
-        bool touches = false;
-        for (int n = 0; n < 8; ++n) touches |= (local[n] = number[LatticeLevel::corner(row, i, n)]) >= 0;
-        if (!touches) continue;
-        used = true;
-        const double scale = level.edge_ratio * (level.fill.empty() ? 1 : level.fill[row.cell + i]);
-        int blocks[8], count = 0;  // the cell's
-        for (int m = 0; m < 8; ++m)
-          if (local[m] >= 0 && std::find(blocks, blocks + count, points_[local[m]].block) == blocks + count)
-            blocks[count++] = points_[local[m]].block;
-        for (int s = 0; s < count; ++s) {
-          Z[s].setZero();
-          for (int m = 0; m < 8; ++m)
-            if (local[m] >= 0 && points_[local[m]].block == blocks[s])
-              Z[s].middleRows<3>(3 * m) = rigid_motions(points_[local[m]].arm, points_[local[m]].free);
-          KZ[s].noalias() = scale * cell * Z[s];
-        }
-        for (int s = 0; s < count; ++s)
-          for (int t = 0; t < count; ++t)
-            if (blocks[s] >= blocks[t])
-              coupling.try_emplace(blocks[s] * blocks_ + blocks[t], Coupling::Zero()).first->second += Z[s].transpose() * KZ[t];
-      }
-      if (used) rows_->rows.push_back(row);
-    }
+    std::copy_if(level.rows.begin() + level.row_begin[k], level.rows.begin() + level.row_begin[k + 1], std::back_inserter(rows_->rows), touches);
   }
   rows_->row_begin.push_back(static_cast<long>(rows_->rows.size()));
-  K_ = std::make_unique<LatticeOperator<float>>(*rows_, cell);
+}
+
+/// Factors Z^T K Z, `cell` of the level's edge.
+void ThinParts::factor(const std::vector<int>& number, const CellMatrix& cell) {
+  using Coupling = Eigen::Matrix<double, 6, 6>;
+  std::unordered_map<long, Coupling> coupling;  // by pair of blocks, the later one first
+  CellMotions motions;
+  for (const CellRow& row : rows_->rows)
+    for (int i = 0; i < row.length; ++i) {
+      motions.count = 0;
+      for (int n = 0; n < 8; ++n) {
+        const int p = number[LatticeLevel::corner(row, i, n)];
+        if (p >= 0) motions.of(points_[p].block).middleRows<3>(3 * n) = rigid_motions(points_[p].arm, points_[p].free);
+      }
+      const double fill = rows_->fill.empty() ? 1 : rows_->fill[row.cell + i];
+      for (int t = 0; t < motions.count; ++t) {
+        const Eigen::Matrix<double, 24, 6> KZ = fill * cell * motions.Z[t];
+        for (int s = 0; s < motions.count; ++s)
+          if (motions.block[s] >= motions.block[t])
+            coupling.try_emplace(motions.block[s] * blocks_ + motions.block[t], Coupling::Zero()).first->second += motions.Z[s].transpose() * KZ;
+      }
+    }
   std::vector<Eigen::Triplet<double>> entries;
   for (const auto& [pair, part] : coupling) {
     const long row = pair / blocks_, column = pair % blocks_;
@@ -166,12 +194,11 @@ ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride
       for (int t = 0; t < (row == column ? s + 1 : 6); ++t) entries.emplace_back(6 * row + s, 6 * column + t, part(s, t));
   }
   // A block of few points, or held ones, has motions that move nothing.
-  const double small = regularisation * level.edge_ratio * cell.diagonal().mean();
+  const double small = regularisation * cell.diagonal().mean();
   for (long i = 0; i < 6 * blocks_; ++i) entries.emplace_back(i, i, small);
   Eigen::SparseMatrix<double> A(6 * blocks_, 6 * blocks_);
   A.setFromTriplets(entries.begin(), entries.end());
   factors_.compute(A);
-  residual_.resize(3 * stride_);
 }
 
 void ThinParts::correct(const float* r, float* z) {

@@ -29,7 +29,10 @@ class ThinParts {
     bool free[3] = {true, true, true};
   };
 
+  std::vector<int> find_points(const LatticeLevel& level);
   void form_blocks(const LatticeLevel& level);
+  void take_rows(const LatticeLevel& level, const std::vector<int>& number);
+  void factor(const std::vector<int>& number, const CellMatrix& cell);
 
   long stride_ = 0;
   long blocks_ = 0;

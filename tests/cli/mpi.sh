@@ -2,11 +2,7 @@
 # Two processes find what one finds, to 1e-9.   mpi.sh SPRINGPROOF-FEM
 set -u
 program=$1
-command -v mpirun >/dev/null || { echo "no mpirun"; exit 77; }
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failed=0
+. "$(dirname "$0")/mpi_common"
 
 # A block held at both ends, under its weight.   make_case NAME KINEMATICS
 make_case() {
@@ -69,17 +65,7 @@ name = "inside"
 at_m = [3, 3, 0.25]
 TOML
 
-# The numbers of both answers, one by one: each within 1e-9 of the largest of its line.
-compare() {
-  paste -d '|' <(grep -E "volume|reaction|middle|corner|inside" "$1") <(grep -E "volume|reaction|middle|corner|inside" "$2") |
-    awk -F '|' '
-      { n = split($1, a, /[ ,()]+/); m = split($2, b, /[ ,()]+/); largest = 0; lines++
-        if (n != m || n == 0) { print "other lines: " $0; bad = 1 }
-        for (i = 1; i <= n; i++) if (a[i] ~ /^-?[0-9]/) { x = a[i] < 0 ? -a[i] : a[i]; if (x > largest) largest = x }
-        for (i = 1; i <= n; i++) if (a[i] ~ /^-?[0-9]/) { d = a[i] - b[i]; if (d < 0) d = -d
-          if (d > 1e-9 * largest) { print a[i] " against " b[i] " in: " $1; bad = 1 } } }
-      END { if (lines < 9) { print lines " lines"; bad = 1 } exit bad }'
-}
+compare() { same_numbers "$1" "$2" "volume|reaction|middle|corner|inside" 1e-9 9; }
 
 check() {
   local name=$1

@@ -19,23 +19,21 @@ inline Mesh tetrahedra_of(const Mesh& blocks) {
 template <class Keep>
 Mesh voxels_of(const Mesh& block, Keep keep) {
   Mesh mesh;
-  mesh.grid = block.grid;
-  mesh.grid->cell_index.clear();
-  std::vector<int> number(block.nodes.rows(), -1);
-  int nodes = 0;
+  std::vector<int> number(block.nodes.rows(), -1), used;
   for (std::size_t c = 0; c < block.hexahedra.size(); ++c) {
-    const auto& at = block.grid->cell_index[c];
-    if (!keep(at[0], at[1], at[2])) continue;
-    mesh.grid->cell_index.push_back(at);
-    Hexahedron& cell = mesh.hexahedra.emplace_back(block.hexahedra[c]);
-    for (int& n : cell) {
-      if (number[n] < 0) number[n] = nodes++;
+    const auto [i, j, k] = block.grid->cell_index[c];
+    if (!keep(i, j, k)) continue;
+    for (int& n : mesh.hexahedra.emplace_back(block.hexahedra[c])) {
+      if (number[n] < 0) {
+        number[n] = static_cast<int>(used.size());
+        used.push_back(n);
+      }
       n = number[n];
     }
   }
-  mesh.nodes.resize(nodes, 3);
-  for (std::size_t n = 0; n < number.size(); ++n)
-    if (number[n] >= 0) mesh.nodes.row(number[n]) = block.nodes.row(static_cast<Eigen::Index>(n));
+  mesh.nodes.resize(static_cast<Eigen::Index>(used.size()), 3);
+  for (std::size_t n = 0; n < used.size(); ++n) mesh.nodes.row(static_cast<Eigen::Index>(n)) = block.nodes.row(used[n]);
+  mesh.grid = detect_grid(mesh);
   return mesh;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "msm/models.h"
+#include "support/bodies.h"
 
 namespace springproof::test {
 
@@ -37,26 +38,8 @@ inline std::vector<ModelParameters> large_displacement_models() {
 
 /// A block of 3 x 2 x 2 cells with an L-shaped piece missing: faces, edges and a re-entrant corner.
 inline Mesh notched_block(double edge = 0.5) {
-  Mesh block = block_mesh(edge * Vec3(3, 2, 2), {3, 2, 2});
-  std::vector<Hexahedron> kept;
-  for (std::size_t c = 0; c < block.hexahedra.size(); ++c)
-    if (c != 0 && c != block.hexahedra.size() - 1) kept.push_back(block.hexahedra[c]);
-  Mesh mesh;
-  mesh.hexahedra = kept;
-  std::vector<int> number(block.nodes.rows(), -1);
-  std::vector<int> used;
-  for (auto& cell : mesh.hexahedra)
-    for (int& n : cell) {
-      if (number[n] < 0) {
-        number[n] = static_cast<int>(used.size());
-        used.push_back(n);
-      }
-      n = number[n];
-    }
-  mesh.nodes.resize(static_cast<Eigen::Index>(used.size()), 3);
-  for (std::size_t i = 0; i < used.size(); ++i) mesh.nodes.row(static_cast<Eigen::Index>(i)) = block.nodes.row(used[i]);
-  mesh.grid = detect_grid(mesh);
-  return mesh;
+  return voxels_of(block_mesh(edge * Vec3(3, 2, 2), {3, 2, 2}),
+                   [](int i, int j, int k) { return i + j + k != 0 && !(i == 2 && j == 1 && k == 1); });
 }
 
 /// Repeatable noise in [-size, size] (the generator's raw bits, not a library distribution).

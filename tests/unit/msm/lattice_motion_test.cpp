@@ -13,30 +13,7 @@ namespace {
 
 constexpr double density = 1000, edge = 0.25;
 
-using Keep = std::function<bool(int, int, int)>;
-
-/// Cells of a grid for which `keep` holds.
-Mesh voxels(const std::array<int, 3>& cells, const Keep& keep) {
-  const Mesh block = block_mesh(edge * Vec3(cells[0], cells[1], cells[2]), cells);
-  Mesh mesh;
-  std::vector<int> number(block.nodes.rows(), -1), used;
-  for (std::size_t c = 0; c < block.hexahedra.size(); ++c) {
-    const auto [i, j, k] = block.grid->cell_index[c];
-    if (!keep(i, j, k)) continue;
-    mesh.hexahedra.push_back(block.hexahedra[c]);
-    for (int& n : mesh.hexahedra.back()) {
-      if (number[n] < 0) {
-        number[n] = static_cast<int>(used.size());
-        used.push_back(n);
-      }
-      n = number[n];
-    }
-  }
-  mesh.nodes.resize(static_cast<Eigen::Index>(used.size()), 3);
-  for (std::size_t i = 0; i < used.size(); ++i) mesh.nodes.row(static_cast<Eigen::Index>(i)) = block.nodes.row(used[i]);
-  mesh.grid = detect_grid(mesh);
-  return mesh;
-}
+Mesh cubes(const std::array<int, 3>& cells) { return block_mesh(edge * Vec3(cells[0], cells[1], cells[2]), cells); }
 
 struct Body {
   std::string name;
@@ -47,15 +24,15 @@ std::vector<Body> bodies() {
   std::vector<Body> all;
   for (const std::array<int, 3>& n : std::vector<std::array<int, 3>>{
            {1, 1, 1}, {2, 3, 5}, {10, 10, 10}, {16, 5, 7}, {7, 7, 7}, {15, 3, 3}, {1, 1, 31}, {4, 9, 1}, {3, 16, 4}})
-    all.push_back({fmt::format("{}x{}x{}", n[0], n[1], n[2]), block_mesh(edge * Vec3(n[0], n[1], n[2]), n)});
+    all.push_back({fmt::format("{}x{}x{}", n[0], n[1], n[2]), cubes(n)});
   const auto ball = [](double i, double j, double k) { return i * i + j * j + k * k; };
-  all.push_back({"hollow ball", voxels({12, 12, 12}, [&](int i, int j, int k) {
+  all.push_back({"hollow ball", test::voxels_of(cubes({12, 12, 12}), [&](int i, int j, int k) {
                    const double r = ball(i - 5.5, j - 5.5, k - 5.5);
                    return r < 36 && r > 9;
                  })});
-  all.push_back({"bridge of single cells", voxels({17, 5, 4}, [](int i, int j, int k) { return i < 4 || i > 12 || (j == 2 && k == 1); })});
-  all.push_back({"sparse", voxels({13, 6, 7}, [](int i, int j, int k) { return (7 * i + 5 * j + 11 * k + i * j * k) % 3 == 0; })});
-  all.push_back({"cells that touch at corners", voxels({9, 8, 8}, [](int i, int j, int k) { return (i + j) % 2 == 0 && (j + k) % 2 == 0; })});
+  all.push_back({"bridge of single cells", test::voxels_of(cubes({17, 5, 4}), [](int i, int j, int k) { return i < 4 || i > 12 || (j == 2 && k == 1); })});
+  all.push_back({"sparse", test::voxels_of(cubes({13, 6, 7}), [](int i, int j, int k) { return (7 * i + 5 * j + 11 * k + i * j * k) % 3 == 0; })});
+  all.push_back({"cells that touch at corners", test::voxels_of(cubes({9, 8, 8}), [](int i, int j, int k) { return (i + j) % 2 == 0 && (j + k) % 2 == 0; })});
   return all;
 }
 
