@@ -1,99 +1,34 @@
 // One time step of a lattice: forces row by row, each row moved as soon as it has all of its own.
-#include "msm/kernels/lattice_kernel.h"
-
-#include <type_traits>
-
-#include "msm/kernels/simd_math.h"
+#include "msm/kernels/lattice_rows.h"
+#include "msm/kernels/lattice_volume.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
 
-template <class Real>
-struct Row {
-  const Real *x, *y, *z;
-};
-template <class Real>
-struct ForceRow {
-  Real *x, *y, *z;
-};
-
-/// Coefficients of the blocks of a row.
-template <class Real>
-struct Coefficients {
-  const int* entry;
-  const Real* table;
-  const Real* of(int block) const { return table + entry[block]; }
-};
-
-template <class Real>
-struct Force {
-  Lanes<Real> x = 0, y = 0, z = 0;
-};
-
-template <class Real>
-SPRINGPROOF_INLINE Lanes<Real> coefficient(const Real* entry, int number) {
-  return load(entry + number * lanes<Real>);
-}
-
-constexpr double root_of(int n) { return n == 1 ? 1.0 : n == 2 ? 1.41421356237309504880 : 1.73205080756887729353; }
-
-/// What the springs of a row get by momentum dispersion, given what its nodes have.
+/// What the springs to a row get by momentum dispersion, given what its nodes have.
 template <class Real>
 struct Dispersed {
-  const Real *o, *r;  ///< J of the two rows
-  Coefficients<Real> c;
-
-  /// Tension of springs of a direction, whose ends are at a in row o and at b in row r.
-  SPRINGPROOF_INLINE Lanes<Real> tension(int block, int direction, long a, long b) const {
-    const Real* entry = c.of(block);
-    return coefficient(entry, 4 * direction + 1) * load(o + a) + coefficient(entry, 4 * direction + 3) * load(r + b);
-  }
+  const Real *o, *r;              ///< J of the two rows
+  const Real* inverse_length;
+  long stride;
+  Coefficients<Real> out;
+  Real sign;
 };
 
 struct Undispersed {};
 
-/// (k (L' - L) + T) / L' of springs whose ends are (x, y, z) apart, T by dispersion.
-template <int axes, class Real, class Dispersion>
+/// (k (L' - L) + T) / L' of springs whose ends are (x, y, z) apart, T by dispersion; the ends are at a and b in their rows.
+template <int axes, class Real>
 SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z,
-                                                  const Dispersion& dispersion, int block, int direction, long a, long b) {
-  const Lanes<Real> square = x * x + y * y + z * z;
-  if constexpr (std::is_same_v<Dispersion, Undispersed>) return k - k * (Real(root_of(axes)) / stdx::sqrt(square));
-  else return k + (dispersion.tension(block, direction, a, b) - k * Real(root_of(axes))) / stdx::sqrt(square);
+                                                  const Undispersed&, int, int, long, long) {
+  return k - k * (Real(root_of(axes)) / stdx::sqrt(x * x + y * y + z * z));
 }
-
-template <class Real>
-SPRINGPROOF_INLINE void add(Force<Real>& f, const Lanes<Real>& t, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z) {
-  f.x += t * x;
-  f.y += t * y;
-  f.z += t * z;
-}
-template <class Real>
-SPRINGPROOF_INLINE void subtract(Force<Real>& f, const Lanes<Real>& t, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z) {
-  f.x -= t * x;
-  f.y -= t * y;
-  f.z -= t * z;
-}
-
-template <class Real>
-SPRINGPROOF_INLINE void add_to(const ForceRow<Real>& row, long n, const Force<Real>& f) {
-  store<Real>(load(row.x + n) + f.x, row.x + n);
-  store<Real>(load(row.y + n) + f.y, row.y + n);
-  store<Real>(load(row.z + n) + f.z, row.z + n);
-}
-
-template <class Real>
-SPRINGPROOF_INLINE Force<Real> shifted(const Force<Real>& before, const Force<Real>& f) {
-  return {shift_in(before.x, f.x), shift_in(before.y, f.y), shift_in(before.z, f.z)};
-}
-
-template <class Real>
-SPRINGPROOF_INLINE Force<Real> sum(const Force<Real>& a, const Force<Real>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-template <class Real>
-SPRINGPROOF_INLINE Force<Real> difference(const Force<Real>& a, const Force<Real>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
+template <int axes, class Real>
+SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>&, const Lanes<Real>&, const Lanes<Real>&,
+                                                  const Dispersed<Real>& d, int block, int direction, long a, long b) {
+  const Real* out = d.out.of(block);
+  const Lanes<Real> tension = coefficient(out, 2 * direction) * load(d.o + a) + coefficient(out, 2 * direction + 1) * load(d.r + b);
+  return k + (d.sign * tension - k * Real(root_of(axes))) * load(d.inverse_length + direction * d.stride + long(block) * lanes<Real>);
 }
 
 /// Springs along the row.
@@ -145,62 +80,6 @@ void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real
     }
     add_to(on_o, n, f_o);
     add_to(on_r, n, f_r);
-  }
-}
-
-/// Pressure of a cell of J times its volume, per kappa.
-template <bool bounded, class Real>
-SPRINGPROOF_INLINE Lanes<Real> pressure(const Lanes<Real>& J) {
-  if constexpr (bounded) {
-    const Lanes<Real> y = inverse_cube_root(J);  // 3 (J^(1/3) - 1) / J^(2/3)
-    return Real(3) * y * (Real(1) - y);
-  } else {
-    return J - Real(1);
-  }
-}
-
-/// Forces of the cells between four rows, which have (y, z) offsets 00, 10, 01, 11 from the first.
-template <bool bounded, class Real>
-void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], const Coefficients<Real>& c, int begin, int end) {
-  using V = Lanes<Real>;
-  Force<Real> before[3];  // bc, ca, ab
-  const Real quarter = Real(0.25);
-  for (int b = begin; b < end; ++b) {
-    const long n = long(b) * lanes<Real>;
-    V a[3], bb[3], cc[3];
-    const auto edges = [&](const Real* p00, const Real* p10, const Real* p01, const Real* p11, int i) {
-      const V low0 = load(p00 + n), low1 = load(p10 + n), low2 = load(p01 + n), low3 = load(p11 + n);
-      const V high0 = load(p00 + n + 1), high1 = load(p10 + n + 1), high2 = load(p01 + n + 1), high3 = load(p11 + n + 1);
-      const V m0 = low0 + high0, m1 = low1 + high1, m2 = low2 + high2, m3 = low3 + high3;
-      a[i] = quarter * (((high0 - low0) + (high1 - low1)) + ((high2 - low2) + (high3 - low3)));
-      bb[i] = quarter * ((m1 - m0) + (m3 - m2));
-      cc[i] = quarter * ((m2 - m0) + (m3 - m1));
-    };
-    edges(r[0].x, r[1].x, r[2].x, r[3].x, 0);
-    edges(r[0].y, r[1].y, r[2].y, r[3].y, 1);
-    edges(r[0].z, r[1].z, r[2].z, r[3].z, 2);
-    a[0] += Real(1);
-    bb[1] += Real(1);
-    cc[2] += Real(1);
-    const auto cross = [](const V (&p)[3], const V (&q)[3]) -> Force<Real> {
-      return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-    };
-    Force<Real> bc = cross(bb, cc), ca = cross(cc, a), ab = cross(a, bb);
-    const V J = a[0] * bc.x + a[1] * bc.y + a[2] * bc.z;
-    const V p = quarter * coefficient(c.of(b), lattice_directions) * pressure<bounded>(J);
-    const auto scale = [&](Force<Real>& f) { f.x *= p, f.y *= p, f.z *= p; };
-    scale(bc);
-    scale(ca);
-    scale(ab);
-    // A corner with signs (sx, sy, sz) gets -(sx bc + sy ca + sz ab); those of high x belong one further on.
-    const Force<Real> far_bc = shifted(before[0], bc), far_ca = shifted(before[1], ca), far_ab = shifted(before[2], ab);
-    before[0] = bc, before[1] = ca, before[2] = ab;
-    const Force<Real> B = difference(bc, far_bc), C = sum(ca, far_ca), A = sum(ab, far_ab);
-    const Force<Real> plus = sum(B, A), minus = difference(B, A);
-    add_to(on[0], n, sum(plus, C));
-    add_to(on[1], n, difference(plus, C));
-    add_to(on[2], n, sum(minus, C));
-    add_to(on[3], n, difference(minus, C));
   }
 }
 
@@ -294,12 +173,13 @@ void springs_of_run(const Neighbours<Real>& r, const Coefficients<Real>& c, cons
 }
 
 template <class Real>
-void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const Coefficients<Real>& c, long row, const LatticeRun& run) {
+void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const Coefficients<Real>& c, int y, int z, const LatticeRun& run) {
   if (l.J) {
-    const Coefficients<Real> coefficients = {l.dispersion_entry + row * l.row_blocks, l.dispersion};
+    const long row = long(z) * l.rows + y;
+    const Coefficients<Real> out = {l.outflow_entry + row * l.row_blocks, l.outflow};
     springs_of_run(r, c, run, [&](int pair) {
       const long other = row + row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows;
-      return Dispersed<Real>{l.J + row * l.row, l.J + other * l.row, coefficients};
+      return Dispersed<Real>{l.J + row * l.row, l.J + other * l.row, inverse_lengths(l, y, z), l.row, out, l.outflow_sign};
     });
   } else {
     springs_of_run(r, c, run, [](int) { return Undispersed{}; });
@@ -309,68 +189,6 @@ void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const 
   const ForceRow<Real> on[4] = {r.on[0], r.on[1], r.on[3], r.on[4]};
   if (l.bounded) volume_of_cells<true>(rows, on, c, run.begin, run.end);
   else volume_of_cells<false>(rows, on, c, run.begin, run.end);
-}
-
-/// Springs of one kind, `rise` = x of their end less x of their start: what flows in to the nodes at both ends.
-template <int axes, class Real>
-void inflow_of_springs(const Row<Real>& o, const Row<Real>& r, int dy, int dz, int rise, Real* J_o, Real* J_r,
-                       const Coefficients<Real>& c, int direction, int begin, int end) {
-  const long to_o = rise < 0 ? 1 : 0, to_r = rise > 0 ? 1 : 0;
-  Lanes<Real> before = 0;
-  for (int b = begin; b < end; ++b) {
-    const long n = long(b) * lanes<Real>;
-    const Lanes<Real> x = load(r.x + n + to_r) - load(o.x + n + to_o) + Real(rise), y = load(r.y + n + to_r) - load(o.y + n + to_o) + Real(dy),
-                      z = load(r.z + n + to_r) - load(o.z + n + to_o) + Real(dz);
-    const Lanes<Real> elongation = stdx::sqrt(x * x + y * y + z * z) - Real(root_of(axes));
-    Lanes<Real> in_o = coefficient(c.of(b), 4 * direction) * elongation, in_r = coefficient(c.of(b), 4 * direction + 2) * elongation;
-    Lanes<Real>& moved = rise < 0 ? in_o : in_r;  // belongs one node further on
-    if (rise != 0) {
-      const Lanes<Real> own = moved;
-      moved = shift_in(before, own);
-      before = own;
-    }
-    store<Real>(load(J_o + n) + in_o, J_o + n);
-    store<Real>(load(J_r + n) + in_r, J_r + n);
-  }
-}
-
-template <int pair, class Real>
-void inflow_between(const LatticeView<Real>& l, const Row<Real>& o, const Row<Real>& r, const Coefficients<Real>& c, long row, const LatticeRun& run) {
-  constexpr int dy = row_pairs[pair][0], dz = row_pairs[pair][1], axes = dy * dy + dz * dz, first = pair == 0 ? -1 : 1 + 3 * (pair - 1);
-  Real *J_o = l.J + row * l.row, *J_r = J_o + (dy + long(dz) * l.rows) * l.row;
-  const auto has = [&](int direction) { return run.springs >> direction & 1; };
-  if constexpr (pair > 0) {
-    if (has(first)) inflow_of_springs<axes>(o, r, dy, dz, 0, J_o, J_r, c, first, run.begin, run.end);
-    if (has(first + 2)) inflow_of_springs<axes + 1>(o, r, dy, dz, -1, J_o, J_r, c, first + 2, run.begin, run.end);
-  }
-  if (has(first + 1)) inflow_of_springs<axes + 1>(o, r, dy, dz, 1, J_o, J_r, c, first + 1, run.begin, run.end);
-}
-
-template <class Real>
-Row<Real> row_of(const LatticeView<Real>& l, int y, int z) {
-  const long at = z * l.plane + y * l.row;
-  return {l.u[0] + at, l.u[1] + at, l.u[2] + at};
-}
-
-template <class Real>
-void inflow(const LatticeView<Real>& l, int y, int z) {
-  const long row = long(z) * l.rows + y;
-  const Coefficients<Real> c = {l.dispersion_entry + row * l.row_blocks, l.dispersion};
-  Row<Real> at[lattice_pairs];
-  for (int p = 0; p < lattice_pairs; ++p) at[p] = row_of(l, y + row_pairs[p][0], z + row_pairs[p][1]);
-  for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) {
-    inflow_between<0>(l, at[0], at[0], c, row, l.runs[run]);
-    inflow_between<1>(l, at[0], at[1], c, row, l.runs[run]);
-    inflow_between<2>(l, at[0], at[2], c, row, l.runs[run]);
-    inflow_between<3>(l, at[0], at[3], c, row, l.runs[run]);
-    inflow_between<4>(l, at[0], at[4], c, row, l.runs[run]);
-  }
-}
-
-template <class Real>
-void inflow(const LatticeView<Real>& l) {
-  for (int z = 0; z < l.planes; ++z)
-    for (int y = 0; y < l.rows; ++y) inflow(l, y, z);
 }
 
 template <class Real>
@@ -410,7 +228,7 @@ void sweep(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, int begin,
         r.on[p] = ring_row(l, slab, long(z + row_pairs[p][1] - slab.begin) * l.rows + y + row_pairs[p][0]);
       }
       const Coefficients<Real> c = {l.spring_entry + row * l.row_blocks, l.springs};
-      for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) forces_of_run(l, r, c, row, l.runs[run]);
+      for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) forces_of_run(l, r, c, y, z, l.runs[run]);
       if (slab.first && z == slab.begin) take(l, row, r.on[0], first_row(l, slab, y));
       else finish_row(l, y, z, r.on[0], step, sums);
     }

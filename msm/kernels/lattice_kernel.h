@@ -12,7 +12,7 @@ constexpr int lattice_pairs = 5;
 constexpr int lattice_directions = 13;   ///< along x; then straight, rising, falling of each other pair
 constexpr int row_pairs[lattice_pairs][2] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};  ///< (dy, dz)
 constexpr int lattice_coefficients = lattice_directions + 1;  ///< spring constants, then the cells' kappa
-constexpr int dispersion_coefficients = 4 * lattice_directions;  ///< per direction: in and out at the start, in and out at the end
+constexpr int flow_coefficients = 2 * lattice_directions;  ///< per direction: at the start and at the end of its springs
 constexpr int node_coefficients = 6;     ///< 1 / mass of the three unknowns (0 if fixed), external force
 
 /// Blocks begin <= b < end of a row that have nodes.
@@ -38,9 +38,14 @@ struct LatticeView {
   const int* node_entry;
   const Real* nodes;          ///< node_coefficients vectors per entry: 1 / (mass edge), force [N]
   bool bounded;               ///< VolumeEnergy::bounded
-  Real* J;                    ///< inflow of momentum dispersion [N m], at row (y + rows z) + x; nullptr: there is none
-  const int* dispersion_entry;
-  const Real* dispersion;     ///< dispersion_coefficients vectors per entry: a edge [N m], c [1/m]
+  Real* J;                    ///< inflow of momentum dispersion, at row (y + rows z) + x; nullptr: there is none
+  const int* inflow_entry;
+  const Real* inflow;         ///< flow_coefficients vectors per entry, times elongations [edges]: what flows in
+  const int* outflow_entry;
+  const Real* outflow;        ///< the same, times J: tension [N]
+  Real outflow_sign;
+  Real* inverse_lengths;      ///< of the springs [1/edges], of so many planes by turns
+  int kept_planes;
 };
 
 /// Planes of one thread.  Forces live in a ring of rows + 2 rows, three components each, all zero between steps but for
@@ -70,8 +75,8 @@ struct LatticeSums {
 template <class Real>
 struct LatticeKernels {
   int lanes;
-  /// Adds what the springs of all nodes flow in to J.
-  void (*inflow)(const LatticeView<Real>&);
+  /// Adds what the springs of the nodes of plane z flow in to J, of this plane and the next, and keeps their inverse lengths.
+  void (*inflow)(const LatticeView<Real>&, int z);
   /// Forces of planes begin <= z < end and the motion of those rows that have all of theirs.
   void (*sweep)(const LatticeView<Real>&, const LatticeSlab<Real>&, int begin, int end, const LatticeStep<Real>&, LatticeSums&);
   /// The first plane of a slab, once the slab below is swept.

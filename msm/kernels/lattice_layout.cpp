@@ -165,18 +165,30 @@ BlockCoefficients spring_coefficients(const MassSpringModel& model, const Lattic
   return c;
 }
 
-BlockCoefficients dispersion_of_blocks(const MomentumDispersion& law, const Network& network, const LatticeLayout& l) {
-  const MomentumDispersion::Coefficients given = law.coefficients(network);
-  BlockCoefficients c(l, dispersion_coefficients);
+/// `ends`: per spring at i and j.
+BlockCoefficients flow_coefficients_of(const std::vector<std::array<double, 2>>& ends, const Network& network, const LatticeLayout& l) {
+  BlockCoefficients c(l, flow_coefficients);
   for (std::size_t n = 0; n < network.springs.size(); ++n) {
     const PlaceOfSpring p = place_of(network.springs[n], l);
-    for (int end = 0; end < 2; ++end) {
-      const int which = 4 * p.direction + (p.from_first == (end == 0) ? 0 : 2);
-      c.at(p.slot, which) = given.in[n][end] * network.cell_edge;  // of elongations in edges
-      c.at(p.slot, which + 1) = given.out[n][end];
-    }
+    c.at(p.slot, 2 * p.direction) = ends[n][p.from_first ? 0 : 1];
+    c.at(p.slot, 2 * p.direction + 1) = ends[n][p.from_first ? 1 : 0];
   }
   return c;
+}
+
+/// Of an energy what flows out is what flows in times a factor of the node, which is spread over both.
+void add_flows(const MomentumDispersion& law, const Network& network, LatticeLayout& l) {
+  MomentumDispersion::Coefficients c = law.coefficients(network);
+  for (auto& ends : c.in)
+    for (double& in : ends) in *= network.cell_edge;  // of elongations in edges
+  if (law.conservative()) {
+    for (std::size_t n = 0; n < c.in.size(); ++n)
+      for (int end = 0; end < 2; ++end) c.in[n][end] = std::copysign(std::sqrt(std::abs(c.in[n][end] * c.out[n][end])), c.in[n][end]);
+    l.outflow_sign = law.q < 0 ? -1 : 1;
+  } else {
+    l.outflow_entry = flow_coefficients_of(c.out, network, l).table(l.outflow);
+  }
+  l.inflow_entry = flow_coefficients_of(c.in, network, l).table(l.inflow);
 }
 
 /// Adds the runs of a row, given the coefficients of its blocks and which of them hold nodes.
@@ -256,8 +268,7 @@ LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_
   }
   const BlockCoefficients coefficients = spring_coefficients(model, l);
   l.spring_entry = coefficients.table(l.springs);
-  if (const MomentumDispersion* dispersion = dispersion_of(model))
-    l.dispersion_entry = dispersion_of_blocks(*dispersion, network, l).table(l.dispersion);
+  if (const MomentumDispersion* dispersion = dispersion_of(model)) add_flows(*dispersion, network, l);
   l.first_run.push_back(0);
   for (long row = 0; row < l.rows(); ++row) {
     add_runs(l, coefficients.block(row * l.row_blocks), &has_node[row * l.row_blocks], l.runs);

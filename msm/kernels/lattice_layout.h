@@ -38,8 +38,9 @@ struct LatticeLayout {
   std::vector<LatticeRun> runs;
   std::vector<int> spring_entry;       ///< per block
   std::vector<double> springs;         ///< their coefficients, each once
-  std::vector<int> dispersion_entry;   ///< per block; empty without momentum dispersion
-  std::vector<double> dispersion;
+  std::vector<int> inflow_entry, outflow_entry;  ///< of momentum dispersion; no outflow: it is the inflow times outflow_sign
+  std::vector<double> inflow, outflow;
+  double outflow_sign = 1;
 
   long rows() const { return long(nodes[1]) * nodes[2]; }
   int block_of(int slot) const;        ///< number of the block that holds a node

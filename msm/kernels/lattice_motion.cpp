@@ -193,8 +193,11 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   double bytes_per_node() const override {
-    return (double(motion_.bytes() + rings_.bytes() + springs_.bytes() + nodes_.bytes() + dispersion_.bytes() + J_.bytes()) + 4.0 * (layout_.slot.size() + layout_.spring_entry.size() + layout_.dispersion_entry.size() + node_entry_.size()) +
-           double(layout_.first_run.size() * sizeof(int) + layout_.runs.size() * sizeof(LatticeRun) + supports_.size() * sizeof(Support) + 16 * shared_.size())) / network_.nodes();
+    std::size_t bytes = 4 * (layout_.slot.size() + layout_.spring_entry.size() + layout_.inflow_entry.size() + layout_.outflow_entry.size() + node_entry_.size()) +
+                        layout_.first_run.size() * sizeof(int) + layout_.runs.size() * sizeof(LatticeRun) + supports_.size() * sizeof(Support);
+    for (const auto* array : {&motion_, &rings_, &springs_, &nodes_, &inflow_, &outflow_, &J_, &inverse_lengths_}) bytes += array->bytes();
+    for (const auto& shared : shared_) bytes += shared.size() * sizeof shared[0];
+    return double(bytes) / network_.nodes();
   }
 
   std::string description() const override {
@@ -224,24 +227,42 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   void make_dispersion(const MomentumDispersion& law) {
-    dispersion_ = aligned_copy<Real>(layout_.dispersion);
-    layout_.dispersion = {};
+    inflow_ = aligned_copy<Real>(layout_.inflow);
+    outflow_ = aligned_copy<Real>(layout_.outflow);
+    layout_.inflow = layout_.outflow = {};
     J_ = AlignedArray<Real>(layout_.row * layout_.rows() + layout_.lanes, Real(0));
-    for (int n = 0; n < network_.nodes(); ++n)
-      if (const int to = law.sink(network_, n); to != n) shared_.push_back({place_of_J(n), place_of_J(to)});
+    std::vector<int> first(network_.nodes(), layout_.nodes[2]), last(network_.nodes(), 0);  // planes of those that share a J
+    for (int n = 0; n < network_.nodes(); ++n) {
+      const int to = law.sink(network_, n);
+      for (int node : {n, to}) {
+        first[to] = std::min(first[to], plane_of(node));
+        last[to] = std::max(last[to], plane_of(node));
+      }
+    }
+    shared_.resize(layout_.nodes[2]);
+    for (int n = 0; n < network_.nodes(); ++n) {
+      const int to = law.sink(network_, n);
+      if (to != n) shared_[last[to]].push_back({place_of_J(n), place_of_J(to)});
+      inflow_ahead_ = std::max(inflow_ahead_, last[to] - first[to] + 1);
+    }
+    inverse_lengths_ = AlignedArray<Real>(long(inflow_ahead_ + 1) * layout_.nodes[1] * lattice_directions * layout_.row, Real(0));
   }
+
+  int plane_of(int node) const { return static_cast<int>(layout_.slot[node] / layout_.plane); }
 
   std::size_t place_of_J(int node) const {
     const long slot = layout_.slot[node], in_plane = slot % layout_.plane;
     return slot / layout_.plane * layout_.nodes[1] * layout_.row + in_plane;
   }
 
-  /// J of all nodes; those that share one have the sum.
-  void find_inflow(const LatticeView<Real>& view) {
-    std::fill_n(J_.data(), J_.bytes() / sizeof(Real), Real(0));
-    kernels_.inflow(view);
-    for (const auto& [from, to] : shared_) J_.data()[to] += J_.data()[from];
-    for (const auto& [from, to] : shared_) J_.data()[from] = J_.data()[to];
+  /// J of plane z and of those before it that waited for it; nodes that share one have the sum.
+  void find_inflow(const LatticeView<Real>& view, int z) {
+    const long plane = layout_.nodes[1] * layout_.row;
+    if (z == 0) std::fill_n(J_.data(), plane, Real(0));
+    if (z + 1 < layout_.nodes[2]) std::fill_n(J_.data() + (z + 1) * plane, plane, Real(0));
+    kernels_.inflow(view, z);
+    for (const auto& [from, to] : shared_[z]) J_.data()[to] += J_.data()[from];
+    for (const auto& [from, to] : shared_[z]) J_.data()[from] = J_.data()[to];
   }
 
   void make_slabs() {
@@ -263,10 +284,12 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   ForceNorms run(long steps, const LatticeStep<Real>& step, const LatticeStep<Real>& last) {
+    const bool own_outflow = !layout_.outflow_entry.empty();
     const LatticeView<Real> view = {{u_[0], u_[1], u_[2]}, {v_[0], v_[1], v_[2]}, layout_.row, layout_.plane, layout_.nodes[1], layout_.nodes[2],
                                     layout_.row_blocks, layout_.first_run.data(), layout_.runs.data(), layout_.spring_entry.data(),
                                     springs_.data(), node_entry_.data(), nodes_.data(), bounded_, J_.data(),
-                                    layout_.dispersion_entry.data(), dispersion_.data()};
+                                    layout_.inflow_entry.data(), inflow_.data(),
+                                    (own_outflow ? layout_.outflow_entry : layout_.inflow_entry).data(), (own_outflow ? outflow_ : inflow_).data(), static_cast<Real>(layout_.outflow_sign), inverse_lengths_.data(), inflow_ahead_ + 1};
     std::vector<LatticeSums> sums(workers_.count(), {0, 0});
     workers_.run([&](int worker) {
       for (long n = 0; n < steps; ++n) step_of_slab(worker, steps_done_ + n, view, n + 1 < steps ? step : last, sums[worker]);
@@ -279,7 +302,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
 
   /// The slab above gives its first plane's positions before it moves, the slab below its forces on our first plane.
   void step_of_slab(int s, long number, const LatticeView<Real>& view, const LatticeStep<Real>& step, LatticeSums& sums) {
-    if (view.J) find_inflow(view);
+    if (view.J) return dispersed_step(view, step, sums);
     const auto& slabs = slabs_[number % 2];
     const LatticeSlab<Real>& slab = slabs[s];
     kernels_.sweep(view, slab, slab.begin, slab.end - 1, step, sums);
@@ -290,6 +313,15 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     wait_until(progress_[s - 1].swept, number + 1);
     kernels_.finish_first(view, slab, slabs[s - 1], step, sums);
     progress_[s].first_done.store(number + 1, std::memory_order_release);
+  }
+
+  /// J is found some planes ahead of the forces, with positions that have not moved yet.
+  void dispersed_step(const LatticeView<Real>& view, const LatticeStep<Real>& step, LatticeSums& sums) {
+    int found = 0;
+    for (int z = 0; z < layout_.nodes[2]; ++z) {
+      for (; found <= std::min(z + inflow_ahead_, layout_.nodes[2] - 1); ++found) find_inflow(view, found);
+      kernels_.sweep(view, slabs_[0][0], z, z + 1, step, sums);
+    }
   }
 
   NodalVectors in_network_order(const std::array<Real*, 3>& arrays) const {
@@ -305,8 +337,9 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   LatticeKernels<Real> kernels_;
   LatticeLayout layout_;
   bool bounded_ = false;
-  AlignedArray<Real> motion_, rings_, springs_, nodes_, dispersion_, J_;
-  std::vector<std::pair<std::size_t, std::size_t>> shared_;  ///< whose J another node has
+  AlignedArray<Real> motion_, rings_, springs_, nodes_, inflow_, outflow_, J_, inverse_lengths_;
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> shared_;  ///< whose J another node has, by the last plane that adds to it
+  int inflow_ahead_ = 0;  ///< planes
   std::array<Real*, 3> u_, v_;
   std::vector<int> node_entry_;
   std::vector<Support> supports_;
