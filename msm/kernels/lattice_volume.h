@@ -5,11 +5,16 @@
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 
-/// Pressure of a cell of J times its volume, per kappa.
+/// Pressure of cells of J times their volume, per kappa; anything where there is no cell.
 template <bool bounded, class Real>
-SPRINGPROOF_INLINE Lanes<Real> pressure(const Lanes<Real>& J) {
+SPRINGPROOF_INLINE Lanes<Real> pressure(Lanes<Real> J, const Lanes<Real>& kappa) {
   if constexpr (bounded) {
-    const Lanes<Real> y = inverse_cube_root(J);  // 3 (J^(1/3) - 1) / J^(2/3)
+    stdx::where(kappa == Real(0), J) = 1;
+    const Lanes<Real> d = J - Real(1);
+    // 3 (J^(1/3) - 1) / J^(2/3); near 1 the root is known well enough for one step.
+    Lanes<Real> y;
+    if (stdx::all_of(stdx::abs(d) < Real(0.125))) y = nearer_inverse_cube_root(J, Real(1) - d * (Real(1.0 / 3) - d * (Real(2.0 / 9) - d * Real(14.0 / 81))));
+    else y = inverse_cube_root(J);
     return Real(3) * y * (Real(1) - y);
   } else {
     return J - Real(1);
@@ -21,30 +26,29 @@ template <bool bounded, class Real>
 void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], const Coefficients<Real>& c, int begin, int end) {
   using V = Lanes<Real>;
   Force<Real> before[3];  // bc, ca, ab
-  const Real quarter = Real(0.25);
   for (int b = begin; b < end; ++b) {
     const long n = long(b) * lanes<Real>;
-    V a[3], bb[3], cc[3];
+    V a[3], bb[3], cc[3];  // four times the cell's mean edges
     const auto edges = [&](const Real* p00, const Real* p10, const Real* p01, const Real* p11, int i) {
       const V low0 = load(p00 + n), low1 = load(p10 + n), low2 = load(p01 + n), low3 = load(p11 + n);
       const V high0 = load(p00 + n + 1), high1 = load(p10 + n + 1), high2 = load(p01 + n + 1), high3 = load(p11 + n + 1);
       const V m0 = low0 + high0, m1 = low1 + high1, m2 = low2 + high2, m3 = low3 + high3;
-      a[i] = quarter * (((high0 - low0) + (high1 - low1)) + ((high2 - low2) + (high3 - low3)));
-      bb[i] = quarter * ((m1 - m0) + (m3 - m2));
-      cc[i] = quarter * ((m2 - m0) + (m3 - m1));
+      a[i] = ((high0 - low0) + (high1 - low1)) + ((high2 - low2) + (high3 - low3));
+      bb[i] = (m1 - m0) + (m3 - m2);
+      cc[i] = (m2 - m0) + (m3 - m1);
     };
     edges(r[0].x, r[1].x, r[2].x, r[3].x, 0);
     edges(r[0].y, r[1].y, r[2].y, r[3].y, 1);
     edges(r[0].z, r[1].z, r[2].z, r[3].z, 2);
-    a[0] += Real(1);
-    bb[1] += Real(1);
-    cc[2] += Real(1);
+    a[0] += Real(4);
+    bb[1] += Real(4);
+    cc[2] += Real(4);
     const auto cross = [](const V (&p)[3], const V (&q)[3]) -> Force<Real> {
       return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
     };
     Force<Real> bc = cross(bb, cc), ca = cross(cc, a), ab = cross(a, bb);
-    const V J = a[0] * bc.x + a[1] * bc.y + a[2] * bc.z;
-    const V p = quarter * coefficient(c.of(b), lattice_directions) * pressure<bounded>(J);
+    const V J = Real(1.0 / 64) * (a[0] * bc.x + a[1] * bc.y + a[2] * bc.z), kappa = coefficient(c.of(b), lattice_directions);
+    const V p = Real(1.0 / 64) * kappa * pressure<bounded>(J, kappa);
     const auto scale = [&](Force<Real>& f) { f.x *= p, f.y *= p, f.z *= p; };
     scale(bc);
     scale(ca);

@@ -33,6 +33,13 @@ SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes
   return Lanes<float>(__builtin_shuffle(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), order));
 }
 
+/// J^(-1/3) from y near it, by a step of fourth order.
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> nearer_inverse_cube_root(const Lanes<Real>& J, const Lanes<Real>& y) {
+  const Lanes<Real> e = Real(1) - J * y * y * y;  // (1 - e)^(-1/3) = 1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...
+  return y + y * e * (Real(1.0 / 3) + e * (Real(2.0 / 9) + e * Real(14.0 / 81)));
+}
+
 /// J^(-1/3), of the sign of J, by two steps of fourth order from a guess in single precision (10 %) out of the bits.
 template <class Real>
 SPRINGPROOF_INLINE Lanes<Real> inverse_cube_root(const Lanes<Real>& J) {
@@ -43,10 +50,7 @@ SPRINGPROOF_INLINE Lanes<Real> inverse_cube_root(const Lanes<Real>& J) {
   const Float third = __builtin_convertvector(reinterpret_cast<Int>(s), Float) * (-1.0f / 3);
   const Int bits = __builtin_convertvector(third, Int) + 0x54a21d2a;  // 4/3 of the exponent's bias, and a shift that spreads the error
   Lanes<Real> y(__builtin_convertvector(reinterpret_cast<Float>(bits), RealVector<Real>));
-  for (int step = 0; step < 2; ++step) {
-    const Lanes<Real> e = Real(1) - size * y * y * y;  // (1 - e)^(-1/3) = 1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...
-    y += y * e * (Real(1.0 / 3) + e * (Real(2.0 / 9) + e * Real(14.0 / 81)));
-  }
+  for (int step = 0; step < 2; ++step) y = nearer_inverse_cube_root(size, y);
   stdx::where(J < Real(0), y) = -y;
   return y;
 }

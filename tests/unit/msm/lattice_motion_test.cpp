@@ -191,6 +191,17 @@ TEST(LatticeMotion, StretchByWholeCellsIsNoTrap) {
   }
 }
 
+TEST(LatticeMotion, DispersionMayBeNegative) {
+  for (const Body& body : bodies()) {
+    const MassSpringModel model = build_model(test::model("emsm"), body.mesh, {1e5, 0.1, density});
+    const NodalVectors x = model.network.X + test::noise(model.network.nodes(), 0.15 * edge);
+    LatticeMotion motion(model, density);
+    motion.set_state(x, NodalVectors::Zero(x.rows(), 3));
+    EXPECT_LT(dispersion_of(model)->q, 0);
+    EXPECT_LE(worst(motion.forces(), forces(model, x)), 1e-12) << body.name;
+  }
+}
+
 TEST(LatticeMotion, SuitsLatticesOnly) {
   const Mesh mesh = block_mesh({1, 1, 1}, {3, 3, 3});
   const IsotropicMaterial material{1e5, 0.3, density};
