@@ -1,4 +1,5 @@
 // One time step of a lattice: forces row by row, each row moved as soon as it has all of its own.
+#include "msm/kernels/lattice_hourglass.h"
 #include "msm/kernels/lattice_rows.h"
 #include "msm/kernels/lattice_volume.h"
 
@@ -184,11 +185,12 @@ void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const 
   } else {
     springs_of_run(r, c, run, [](int) { return Undispersed{}; });
   }
-  if (!run.cells) return;
+  if (!run.volume && !run.hourglass) return;
   const Row<Real> rows[4] = {r.at[0], r.at[1], r.at[3], r.at[4]};
   const ForceRow<Real> on[4] = {r.on[0], r.on[1], r.on[3], r.on[4]};
-  if (l.bounded) volume_of_cells<true>(rows, on, c, run.begin, run.end);
-  else volume_of_cells<false>(rows, on, c, run.begin, run.end);
+  if (run.volume && l.bounded) volume_of_cells<true>(rows, on, c, run.begin, run.end);
+  else if (run.volume) volume_of_cells<false>(rows, on, c, run.begin, run.end);
+  if (run.hourglass) hourglass_of_cells(rows, on, c, l.hourglass, run.begin, run.end);
 }
 
 template <class Real>

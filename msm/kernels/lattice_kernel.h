@@ -11,7 +11,9 @@ namespace springproof {
 constexpr int lattice_pairs = 5;
 constexpr int lattice_directions = 13;   ///< along x; then straight, rising, falling of each other pair
 constexpr int row_pairs[lattice_pairs][2] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};  ///< (dy, dz)
-constexpr int lattice_coefficients = lattice_directions + 1;  ///< spring constants, then the cells' kappa
+constexpr int kappa_coefficient = lattice_directions;  ///< after the spring constants: of the volume correction of cells
+constexpr int hourglass_coefficient = kappa_coefficient + 1;  ///< how often a cell's hourglass modes are corrected: once or not
+constexpr int lattice_coefficients = hourglass_coefficient + 1;
 constexpr int flow_coefficients = 2 * lattice_directions;  ///< per direction: at the start and at the end of its springs
 constexpr int node_coefficients = 6;     ///< 1 / mass of the three unknowns (0 if fixed), external force
 
@@ -19,10 +21,15 @@ constexpr int node_coefficients = 6;     ///< 1 / mass of the three unknowns (0 
 struct LatticeRun {
   int begin, end;
   unsigned springs;   ///< bit d: there are springs of direction d
-  bool cells;         ///< there are cells that start from this row and correct their volume
+  bool volume, hourglass;  ///< there are cells that start from this row and correct their volume, their hourglass modes
 };
 
-/// Real is float or double.
+/// HourglassCorrection::Stiffness over 8, times the edge [N].  Real is float or double.
+template <class Real>
+struct LatticeHourglass {
+  Real bending, coupling, torsion, torsion_coupling;
+};
+
 template <class Real>
 struct LatticeView {
   Real* u[3];                 ///< displacement [edges]
@@ -34,10 +41,11 @@ struct LatticeView {
   const int* first_run;       ///< per row and one more
   const LatticeRun* runs;
   const int* spring_entry;    ///< per block: where its coefficients start in `springs`
-  const Real* springs;        ///< lattice_coefficients vectors per entry: k times edge [N], kappa edge^2 [N]
+  const Real* springs;        ///< lattice_coefficients vectors per entry: k times edge [N], kappa edge^2 [N], 0 or 1
   const int* node_entry;
   const Real* nodes;          ///< node_coefficients vectors per entry: 1 / (mass edge), force [N]
   bool bounded;               ///< VolumeEnergy::bounded
+  LatticeHourglass<Real> hourglass;
   Real* J;                    ///< inflow of momentum dispersion, at row (y + rows z) + x; nullptr: there is none
   const int* inflow_entry;
   const Real* inflow;         ///< flow_coefficients vectors per entry, times elongations [edges]: what flows in

@@ -59,11 +59,19 @@ bool one_node_per_place(std::vector<Place> places) {
   return std::adjacent_find(places.begin(), places.end()) == places.end();
 }
 
+/// The model's law of a kind; nullptr if it has none.
+template <class Law>
+const Law* law_of(const MassSpringModel& model) {
+  for (const ForceLaw& law : model.laws)
+    if (const auto* found = std::get_if<Law>(&law)) return found;
+  return nullptr;
+}
+
 /// Each law at most once, and only those that the kernels have.
 bool laws_fit(const MassSpringModel& model) {
   std::vector<std::size_t> kinds;
   for (const ForceLaw& law : model.laws) {
-    if (std::holds_alternative<HourglassCorrection>(law) || std::holds_alternative<AngularSprings>(law)) return false;
+    if (std::holds_alternative<AngularSprings>(law)) return false;
     if (std::find(kinds.begin(), kinds.end(), law.index()) != kinds.end()) return false;
     kinds.push_back(law.index());
   }
@@ -71,7 +79,7 @@ bool laws_fit(const MassSpringModel& model) {
   if (!dispersion) return true;
   for (int to : dispersion->group)
     if (dispersion->group[to] != to) return false;
-  return std::any_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });
+  return law_of<Springs>(model) != nullptr;
 }
 
 long rounded_up(long n, long to) { return (n + to - 1) / to * to; }
@@ -98,12 +106,6 @@ Direction direction_of(Place d) {
   int pair = 0;
   while (row_pairs[pair][0] != d[1] || row_pairs[pair][1] != d[2]) ++pair;
   return {forward, pair == 0 ? 0 : 3 * pair - 2 + (d[0] == 0 ? 0 : d[0] > 0 ? 1 : 2)};
-}
-
-const VolumeCorrection* volume_correction_of(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws)
-    if (const auto* volume = std::get_if<VolumeCorrection>(&law)) return volume;
-  return nullptr;
 }
 
 /// Coefficients of all blocks, one after the other.
@@ -151,17 +153,20 @@ PlaceOfSpring place_of(const Spring& s, const LatticeLayout& l) {
 BlockCoefficients spring_coefficients(const MassSpringModel& model, const LatticeLayout& l) {
   const Network& network = model.network;
   BlockCoefficients c(l, lattice_coefficients);
-  const bool has_springs = std::any_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });
+  const bool has_springs = law_of<Springs>(model) != nullptr;
   for (const Spring& s : network.springs) {
     const PlaceOfSpring p = place_of(s, l);
     if (has_springs) c.at(p.slot, p.direction) += s.stiffness * network.cell_edge;
   }
-  if (const VolumeCorrection* volume = volume_correction_of(model))
-    for (const Hexahedron& cell : network.cells) {
-      int low = l.slot[cell[0]];
-      for (int n : cell) low = std::min(low, l.slot[n]);
-      c.at(low, lattice_directions) += volume->kappa * network.cell_edge * network.cell_edge;
-    }
+  const auto* volume = law_of<VolumeCorrection>(model);
+  const bool hourglass = law_of<HourglassCorrection>(model) != nullptr;
+  if (!volume && !hourglass) return c;
+  for (const Hexahedron& cell : network.cells) {
+    int low = l.slot[cell[0]];
+    for (int n : cell) low = std::min(low, l.slot[n]);
+    if (volume) c.at(low, kappa_coefficient) += volume->kappa * network.cell_edge * network.cell_edge;
+    if (hourglass) c.at(low, hourglass_coefficient) = 1;
+  }
   return c;
 }
 
@@ -196,20 +201,21 @@ void add_runs(const LatticeLayout& l, const double* row, const char* has_node, s
   bool open = false, crossing = false;  // crossing: the block before has springs or cells that end in this one
   for (int b = 0; b < l.row_blocks; ++b) {
     const double* block = row + std::size_t(b) * lattice_coefficients * l.lanes;
-    LatticeRun found = {b, b + 1, 0, false};
+    LatticeRun found = {b, b + 1, 0, false, false};
     bool crosses = false;
     for (int d = 0; d < lattice_coefficients; ++d)
       for (int lane = 0; lane < l.lanes; ++lane) {
         if (block[d * l.lanes + lane] == 0) continue;
         if (d < lattice_directions) found.springs |= 1u << d;
-        else found.cells = true;
+        else (d == kappa_coefficient ? found.volume : found.hourglass) = true;
         crosses = crosses || lane == l.lanes - 1;
       }
-    const bool active = has_node[b] || found.springs || found.cells || crossing;
+    const bool active = has_node[b] || found.springs || found.volume || found.hourglass || crossing;
     if (active && open) {
       runs.back().end = b + 1;
       runs.back().springs |= found.springs;
-      runs.back().cells = runs.back().cells || found.cells;
+      runs.back().volume = runs.back().volume || found.volume;
+      runs.back().hourglass = runs.back().hourglass || found.hourglass;
     } else if (active) {
       runs.push_back(found);
     }

@@ -47,8 +47,8 @@ struct LatticeLayout {
 };
 
 /// Whether a network is a cubic lattice of nodes, joined with neighbours at most one edge away on each axis, with no two
-/// nodes in one place, and its laws are springs, volume correction and
-/// momentum dispersion.
+/// nodes in one place, and its laws are springs, volume and hourglass
+/// correction, momentum dispersion.
 bool is_lattice_of_springs(const MassSpringModel& model);
 
 /// Rows run along the axis that wastes fewest lanes, planes across the longest of the others.

@@ -109,8 +109,10 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
       : network_(model.network), edge_(model.network.cell_edge), density_(density), instructions_(options.instructions),
         kernels_(kernels_for<Real>(options.instructions)), layout_(lattice_layout(model, kernels_.lanes, sizeof(Real))),
         workers_(dispersion_of(model) ? 1 : std::clamp(options.threads, 1, layout_.nodes[2])), progress_(workers_.count()) {
-    for (const ForceLaw& law : model.laws)
+    for (const ForceLaw& law : model.laws) {
       if (const auto* volume = std::get_if<VolumeCorrection>(&law)) bounded_ = volume->form == VolumeEnergy::bounded;
+      if (const auto* hourglass = std::get_if<HourglassCorrection>(&law)) hourglass_ = scaled(hourglass->stiffness(edge_));
+    }
     make_arrays();
     if (const MomentumDispersion* dispersion = dispersion_of(model)) make_dispersion(*dispersion);
     make_slabs();
@@ -211,6 +213,11 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     Real displacement;
   };
 
+  LatticeHourglass<Real> scaled(const HourglassCorrection::Stiffness& k) const {
+    const auto real = [&](double value) { return static_cast<Real>(value * edge_ / 8); };  // patterns have entries +-1, not +-1/sqrt(8)
+    return {real(k.bending), real(k.coupling), real(k.torsion), real(k.torsion_coupling)};
+  }
+
   void make_arrays() {
     const std::size_t apart = layout_.size + 5 * cache_line / sizeof(Real);  // as with planes
     const std::size_t each = (apart * sizeof(Real) + cache_line - 1) / cache_line * cache_line / sizeof(Real);
@@ -287,7 +294,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     const bool own_outflow = !layout_.outflow_entry.empty();
     const LatticeView<Real> view = {{u_[0], u_[1], u_[2]}, {v_[0], v_[1], v_[2]}, layout_.row, layout_.plane, layout_.nodes[1], layout_.nodes[2],
                                     layout_.row_blocks, layout_.first_run.data(), layout_.runs.data(), layout_.spring_entry.data(),
-                                    springs_.data(), node_entry_.data(), nodes_.data(), bounded_, J_.data(),
+                                    springs_.data(), node_entry_.data(), nodes_.data(), bounded_, hourglass_, J_.data(),
                                     layout_.inflow_entry.data(), inflow_.data(),
                                     (own_outflow ? layout_.outflow_entry : layout_.inflow_entry).data(), (own_outflow ? outflow_ : inflow_).data(), static_cast<Real>(layout_.outflow_sign), inverse_lengths_.data(), inflow_ahead_ + 1};
     std::vector<LatticeSums> sums(workers_.count(), {0, 0});
@@ -337,6 +344,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   LatticeKernels<Real> kernels_;
   LatticeLayout layout_;
   bool bounded_ = false;
+  LatticeHourglass<Real> hourglass_ = {};
   AlignedArray<Real> motion_, rings_, springs_, nodes_, inflow_, outflow_, J_, inverse_lengths_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> shared_;  ///< whose J another node has, by the last plane that adds to it
   int inflow_ahead_ = 0;  ///< planes
@@ -353,7 +361,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
 bool LatticeMotion::suits(const MassSpringModel& model) { return is_lattice_of_springs(model); }
 
 LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {
-  if (!suits(model)) throw std::invalid_argument("the lattice kernel is for cubic lattices of springs, with or without volume correction or momentum dispersion");
+  if (!suits(model)) throw std::invalid_argument("the lattice kernel is for cubic lattices of springs, with or without volume and hourglass correction or momentum dispersion");
   if (options.precision == Precision::float64) arrays_ = std::make_unique<ArraysOf<double>>(model, density, options);
   else arrays_ = std::make_unique<ArraysOf<float>>(model, density, options);
 }

@@ -30,7 +30,7 @@ struct ForceNorms {
 class LatticeMotion {
  public:
   /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without volume
-  /// correction or momentum dispersion.
+  /// and hourglass correction or momentum dispersion.
   static bool suits(const MassSpringModel& model);
 
   /// At rest at X, nothing fixed, no load.  Keeps a reference to the network.

