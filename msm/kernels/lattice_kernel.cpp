@@ -205,8 +205,8 @@ ForceRow<Real> first_row(const LatticeView<Real>& l, const LatticeSlab<Real>& sl
   return {p, p + l.row, p + 2 * l.row};
 }
 
-/// to += from, which is left empty.
-template <class Real>
+/// to += from, which may be left empty.
+template <bool empty, class Real>
 void take(const LatticeView<Real>& l, long row, const ForceRow<Real>& from, const ForceRow<Real>& to) {
   Real* const source[3] = {from.x, from.y, from.z};
   Real* const target[3] = {to.x, to.y, to.z};
@@ -214,7 +214,7 @@ void take(const LatticeView<Real>& l, long row, const ForceRow<Real>& from, cons
     for (int i = 0; i < 3; ++i)
       for (long n = long(l.runs[run].begin) * lanes<Real>; n < long(l.runs[run].end) * lanes<Real>; n += lanes<Real>) {
         store<Real>(load(target[i] + n) + load(source[i] + n), target[i] + n);
-        store(Lanes<Real>(0), source[i] + n);
+        if (empty) store(Lanes<Real>(0), source[i] + n);
       }
 }
 
@@ -231,7 +231,7 @@ void sweep(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, int begin,
       }
       const Coefficients<Real> c = {l.spring_entry + row * l.row_blocks, l.springs};
       for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) forces_of_run(l, r, c, y, z, l.runs[run]);
-      if (slab.first && z == slab.begin) take(l, row, r.on[0], first_row(l, slab, y));
+      if (slab.first && z == slab.begin) take<true>(l, row, r.on[0], first_row(l, slab, y));
       else finish_row(l, y, z, r.on[0], step, sums);
     }
 }
@@ -241,7 +241,7 @@ void finish_first(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, con
                   const LatticeStep<Real>& step, LatticeSums& sums) {
   for (int y = 0; y < l.rows; ++y) {
     const ForceRow<Real> f = first_row(l, slab, y);
-    take(l, long(slab.begin) * l.rows + y, ring_row(l, below, long(slab.begin - below.begin) * l.rows + y), f);
+    take<false>(l, long(slab.begin) * l.rows + y, ring_row(l, below, long(slab.begin - below.begin) * l.rows + y), f);
     finish_row(l, y, slab.begin, f, step, sums);
   }
 }

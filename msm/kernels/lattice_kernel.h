@@ -56,8 +56,8 @@ struct LatticeView {
   int kept_planes;
 };
 
-/// Planes of one thread.  Forces live in a ring of rows + 2 rows, three components each, all zero between steps but for
-/// what the plane above `end` has got.
+/// Planes of one thread.  Forces live in a ring of rows + 2 rows, three components each, all zero before a step; after it
+/// only what the plane at `end` has got is left.
 template <class Real>
 struct LatticeSlab {
   int begin, end;

@@ -312,6 +312,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     if (view.J) return dispersed_step(view, step, sums);
     const auto& slabs = slabs_[number % 2];
     const LatticeSlab<Real>& slab = slabs[s];
+    if (s + 1 < workers_.count()) clear_end(slab);
     kernels_.sweep(view, slab, slab.begin, slab.end - 1, step, sums);
     if (s + 1 < workers_.count()) wait_until(progress_[s + 1].first_done, number);
     kernels_.sweep(view, slab, slab.end - 1, slab.end, step, sums);
@@ -320,6 +321,13 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     wait_until(progress_[s - 1].swept, number + 1);
     kernels_.finish_first(view, slab, slabs[s - 1], step, sums);
     progress_[s].first_done.store(number + 1, std::memory_order_release);
+  }
+
+  /// By its own thread: what another one writes has to come from the other's cache.
+  void clear_end(const LatticeSlab<Real>& slab) {
+    const long rows = layout_.nodes[1];
+    for (long row = (slab.end - slab.begin) * rows, end = row + rows; row < end; ++row)
+      std::fill_n(slab.ring + row % (rows + 2) * 3 * layout_.row, 3 * layout_.row, Real(0));
   }
 
   /// J is found some planes ahead of the forces, with positions that have not moved yet.
