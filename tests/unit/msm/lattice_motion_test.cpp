@@ -38,7 +38,7 @@ std::vector<Body> bodies() {
 
 std::vector<ModelParameters> models() {
   std::vector<ModelParameters> all;
-  for (const char* name : {"hybmss_cf", "hybmss", "hybmss_fd", "msm_18", "msm_14", "hybmss_b", "hybmss_bt"}) all.push_back(test::model(name));
+  for (const char* name : {"hybmss_cf", "hybmss", "hybmss_fd", "msm_18", "msm_14", "hybmss_bt"}) all.push_back(test::model(name));
   all.push_back(test::model("hybmss"));
   all.back().volume_energy = VolumeEnergy::paper;
   for (Dispersion form : {Dispersion::symmetric, Dispersion::share_weighted, Dispersion::published, Dispersion::published_transposed}) {
