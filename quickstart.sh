@@ -28,17 +28,19 @@ install_missing() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
 }
 
+# build TARGET...
 build() {
   [ -f build/release/build.ninja ] || cmake --preset release
-  cmake --build build/release
+  cmake --build build/release --target "$@"
 }
 
 install_missing
-build
 if [ "${1:-}" = test ]; then
   shift
+  build all
   ctest --test-dir build/release --output-on-failure -j "$(nproc)" "$@"
 else
+  build meshes/all msm/all fem_reference/all comparisons/all  # the programs, without the tests
   [ $# -gt 0 ] || set -- golec_2019 bodies/rabbit
   build/release/springproof compare --out springproof-report "$@"
   echo "open springproof-report/report.html in a browser"
