@@ -289,15 +289,7 @@ AssembledOperator::AssembledOperator(const ElasticSystem& system, std::optional<
   assemble_stiffness(nullptr);
   state_ = vector();
   if (spaces_->mixed()) {
-    MixedVector mass = vector();
-    spaces_->for_each_cell([&] {
-      const CellShape& shape = spaces_->shape;
-      const Eigen::VectorXd m = shape.pressures.cwiseAbs2().transpose() * shape.weights;
-      for (std::size_t f = 0; f < spaces_->p_indices.size(); ++f) mass.p(spaces_->p_indices[f]) += m[f];
-    });
-    mass.p.compress(dealii::VectorOperation::add);
-    for (double& m : mass.p) m = 1 / m;
-    inverse_mass_ = mass.p;
+    assemble_mass();
   }
   if (law_ || spaces_->mixed()) {
     matrices_ = std::make_unique<Matrices>(*spaces_);
@@ -322,6 +314,20 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
   coarse_->spaces.assemble_stiffness(deformed_by ? &at_corners : nullptr, *coarse_->matrix);
   multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping,
                                            LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler});
+}
+
+void AssembledOperator::assemble_mass() {
+  mass_ = empty_matrix(spaces_->p, spaces_->p, spaces_->comm);
+  inverse_mass_ = vector().p;
+  spaces_->for_each_cell([&] {
+    const CellShape& shape = spaces_->shape;
+    const CellMatrix M = shape.pressures.transpose() * shape.weights.asDiagonal() * shape.pressures;
+    mass_->add(spaces_->p_indices, spaces_->p_indices, M.data());
+    for (std::size_t f = 0; f < spaces_->p_indices.size(); ++f) inverse_mass_(spaces_->p_indices[f]) += M(f, f);
+  });
+  mass_->finish();
+  inverse_mass_.compress(dealii::VectorOperation::add);
+  for (double& m : inverse_mass_) m = 1 / m;
 }
 
 MixedVector AssembledOperator::vector() const {
@@ -400,10 +406,26 @@ void AssembledOperator::precondition(MixedVector& z, const MixedVector& r) const
   if (spaces_->mixed()) precondition_pressure(z.p, r.p);
 }
 
+// The inverse mass: Chebyshev's iteration for eigenvalues of the matrix over its diagonal from 1/2 to 5/2, which those of
+// linear tetrahedra are (Wathen 1987).  Four steps leave 4 %; pressures of a cell of its own need one.
 void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) const {
   if (!spaces_->mixed()) return;
+  constexpr double middle = 1.5, half_width = 1;
+  const int steps = system_.body.has_tetrahedra() ? 4 : 1;
   y = x;
   y.scale(inverse_mass_);
+  if (steps > 1) y *= 1 / middle;
+  DofVector change = y, r = x;
+  double rho = half_width / middle;
+  for (int k = 1; k < steps; ++k) {
+    mass_->multiply(r, y);
+    r.sadd(-1, 1, x);
+    r.scale(inverse_mass_);
+    const double next = 1 / (2 * middle / half_width - rho);
+    change.sadd(next * rho, 2 * next / half_width, r);
+    y += change;
+    rho = next;
+  }
   y *= 1 / (1 / system_.lambda + 0.5 / system_.mu);
 }
 

@@ -38,6 +38,7 @@ class AssembledOperator {
   struct Matrices;
   struct CoarseSpaces;
   void assemble_stiffness(const DofVector* deformed_by);
+  void assemble_mass();
 
   const ElasticSystem& system_;
   std::optional<Law> law_;
@@ -47,7 +48,8 @@ class AssembledOperator {
   std::unique_ptr<SparseMatrix> smoothed_;  ///< the stiffness that the multigrid is of
   std::unique_ptr<CoarseSpaces> coarse_;    ///< of quadratic elements: the linear ones
   std::unique_ptr<Multigrid> multigrid_;
-  DofVector inverse_mass_;               ///< of the pressures, diagonal
+  std::unique_ptr<SparseMatrix> mass_;      ///< of the pressures
+  DofVector inverse_mass_;                  ///< its diagonal, inverted
   mutable int cycles_ = 0;               ///< since prepare()
   int cycles_when_new_ = 0;              ///< in the first solve after the set-up
 };
