@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <map>
-#include <sstream>
 
 #include "comparisons/bench/bodies.h"
 #include "comparisons/bench/interrupt.h"
@@ -102,7 +102,7 @@ Lammps::Lammps(const Network& network)
   write_data(network, folder_.path / "data");
 }
 
-std::string Lammps::output_of(const std::string& commands) const {
+double Lammps::seconds_of(const std::string& commands) const {
   std::ofstream(folder_.path / "input") << fmt::format(
       "units lj\natom_style bond\natom_modify sort 0 0.0\nboundary f f f\nnewton on\nspecial_bonds lj/coul 1 1 1\n"
       "bond_style harmonic\nneighbor {0:.6g} bin\ncomm_modify cutoff {0:.6g}\nread_data data\n"
@@ -112,31 +112,25 @@ std::string Lammps::output_of(const std::string& commands) const {
   fs::remove(log);
   const ChildEnd end = run_child({program(), {"-in", "input", "-log", "none"}, folder_.path, log, log});
   throw_if_interrupted();
-  const std::string output = text_of_file(log);
-  if (!end.ok()) throw std::runtime_error(fmt::format("lmp {}: {}", words_for(end), last_words(output)));
-  return output;
+  if (!end.ok()) throw std::runtime_error(fmt::format("lmp {}: {}", words_for(end), last_words(text_of_file(log))));
+  return end.seconds;
 }
 
-double Lammps::seconds_per_step(double seconds_of_a_run, int runs) const {
-  const long steps = std::max(1L, std::lround(seconds_of_a_run / (6e-9 * double(springs_))));
-  std::string commands = "run 2\n";
-  for (int r = 0; r < runs; ++r) commands += fmt::format("run {} pre no\n", steps);
-  std::istringstream lines(output_of(commands));
-  std::vector<double> seconds;
-  double loop = 0;
-  long of = 0;
-  for (std::string line; std::getline(lines, line);) {
-    double share = 0;
-    int processes = 0;
-    if (std::sscanf(line.c_str(), "Loop time of %lf on %d procs for %ld steps", &loop, &processes, &of) == 3) continue;
-    if (of == steps && std::sscanf(line.c_str(), "%lf%% CPU use", &share) == 1) seconds.push_back(loop * share / 100 / double(of));
+double Lammps::seconds_per_step(double seconds_of_steps, int runs) const {
+  const std::string few = "run 1\n";
+  double short_run = seconds_of(few), long_run = std::numeric_limits<double>::infinity();
+  const long steps = std::max(20L, std::lround(std::max(seconds_of_steps, short_run) / (6e-9 * double(springs_))));
+  const std::string many = fmt::format("run {}\n", 1 + steps);
+  for (int r = 0; r < runs; ++r) {
+    if (r > 0) short_run = std::min(short_run, seconds_of(few));
+    long_run = std::min(long_run, seconds_of(many));
   }
-  if (seconds.empty()) throw std::runtime_error("lmp printed no loop time");
-  return *std::min_element(seconds.begin(), seconds.end());  // on a busy machine its share is off both ways: the least favours LAMMPS
+  if (!(long_run > short_run)) throw std::runtime_error(fmt::format("lmp takes no longer for {} steps than for one", 1 + steps));
+  return (long_run - short_run) / double(steps);
 }
 
 NodalVectors Lammps::forces() const {
-  output_of("dump 1 all custom 1 forces id fx fy fz\ndump_modify 1 sort id format float %.17g\nrun 0\n");
+  seconds_of("dump 1 all custom 1 forces id fx fy fz\ndump_modify 1 sort id format float %.17g\nrun 0\n");
   std::ifstream in(folder_.path / "forces");
   std::string line;
   while (std::getline(in, line) && !line.starts_with("ITEM: ATOMS")) {

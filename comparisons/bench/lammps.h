@@ -18,15 +18,16 @@ class Lammps {
   /// different masses all get the mean one, since LAMMPS has masses per type.
   explicit Lammps(const Network& network);
 
-  /// Least time of one step [s] of some runs: LAMMPS' loop time times the share of a processor that it says it had.
+  /// CPU time of one step [s]: what its process takes for many steps more than for one, over their number; of each the least of
+  /// some runs.  The steps take about so many seconds, or as long as reading the data, whichever is longer.
   /// @throws std::runtime_error if it fails, with its last words.
-  double seconds_per_step(double seconds_of_a_run, int runs) const;
+  double seconds_per_step(double seconds_of_steps, int runs) const;
 
   /// Its forces at moved() [N].
   NodalVectors forces() const;
 
  private:
-  std::string output_of(const std::string& commands) const;
+  double seconds_of(const std::string& commands) const;  ///< CPU time of the whole process
 
   TemporaryFolder folder_;
   double cutoff_, time_step_;

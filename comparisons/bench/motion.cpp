@@ -1,12 +1,14 @@
 #include "comparisons/bench/motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
 #include "comparisons/bench/bench_kernel_choice.h"
 #include "comparisons/bench/bodies.h"
 #include "msm/kernels/lattice_motion.h"
-#include "msm/kernels/list_forces.h"
+#include "msm/kernels/list_motion.h"
 #include "msm/solve/time_step.h"
 
 namespace springproof::bench {
@@ -72,17 +74,19 @@ Motion lattice_motion(const MassSpringModel& model, const MotionOptions& options
 }
 
 /// Entries of the kernel are nearly as many as springs.
-Motion list_motion(const MassSpringModel& model) {
+template <class Real>
+Motion list_motion(const MassSpringModel& model, const MotionOptions& options) {
   const double dt = 0.5 * safe_time_step(model, density);
   const Eigen::VectorXd mass = masses(model.network, density);
-  const auto kernel = std::make_shared<ListMotion<double>>(model, mass.cwiseInverse(), dt, 0);
+  const auto kernel = std::make_shared<ListMotion<Real>>(model, mass.cwiseInverse(), ListMotionOptions{.time_step = dt, .threads = options.threads});
   kernel->load(clamped_bottom(model.network, 0.5 * edge));
-  Motion motion = new_motion("list kernel, " + name_of(instruction_set()), model, Precision::float64);
-  const double m = double(motion.springs), n = double(motion.nodes);
+  const int threads = kernel->threads();
+  Motion motion = new_motion(fmt::format("list kernel, {}{}", name_of(instruction_set()), threads == 1 ? "" : fmt::format(", {} threads", threads)), model, options.precision);
+  const double m = double(motion.springs), n = double(motion.nodes), real = sizeof(Real);
   const bool disperses = dispersion_of(model) != nullptr;
-  motion.work.streamed = (disperses ? 98 : 21) * m + (disperses ? 424 : 352) * n;
-  motion.work.kept = (disperses ? 73 : 33) * m + (disperses ? 236 : 220) * n;
-  motion.advance = [kernel](long steps) { for (; steps > 0; --steps) kernel->step(); };
+  motion.work.streamed = disperses ? (10 * real + 10) * m + 49 * real * n : (2 * real + 5) * m + 20 * real * n;
+  motion.work.kept = disperses ? (8 * real + 9) * m + (26 * real + 28) * n : (2 * real + 9) * m + (24 * real + 28) * n;
+  motion.advance = [kernel](long steps) { kernel->advance(steps); };
   return motion;
 }
 
@@ -100,8 +104,9 @@ Motion forces_motion(const MassSpringModel& model) {
 
 std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
   if (LatticeMotion::suits(model)) return lattice_motion(model, options);
+  if (ListForces<double>::covers(model))
+    return options.precision == Precision::float64 ? list_motion<double>(model, options) : list_motion<float>(model, options);
   if (options.threads > 1 || options.precision != Precision::float64) return {};
-  if (ListForces<double>::covers(model)) return list_motion(model);
   return forces_motion(model);
 }
 

@@ -117,6 +117,11 @@ void ListForces<Real>::add(const Padded<Real>* x, Padded<Real>* f, bool lagged) 
 }
 
 template <class Real>
+void ListForces<Real>::add_springs(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const {
+  kernels_->spring_forces(blocks_.pattern(begin, end), {k_.data() + block_springs * begin, kL_.data() + block_springs * begin, nullptr}, x, f);
+}
+
+template <class Real>
 void ListForces<Real>::at(const NodalVectors& x, NodalVectors& f) {
   by_place(blocks_, x, x_);
   std::fill(f_.begin(), f_.end(), Padded<Real>{});
@@ -126,74 +131,7 @@ void ListForces<Real>::at(const NodalVectors& x, NodalVectors& f) {
     for (int d = 0; d < 3; ++d) f(blocks_.order[p], d) = f_[p].v[d];
 }
 
-template <class Real>
-ListMotion<Real>::ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping,
-                             bool lagged, InstructionSet set)
-    : forces_(model, set), X_(model.network.X), inverse_mass_(inverse_mass), time_step_(time_step), damping_(damping), lagged_(lagged) {
-  x_ = v_ = f_ = gain_ = external_ = prescribed_ = zeros<Real>(forces_.blocks());
-  by_place(forces_.blocks(), X_, x_);
-}
-
-template <class Real>
-void ListMotion<Real>::load(const BoundaryConditions& conditions) {
-  const std::vector<int>& order = forces_.blocks().order;
-  by_place(forces_.blocks(), conditions.external, external_);
-  for (std::size_t p = 0; p < order.size(); ++p)
-    for (int d = 0; d < 3; ++d) {
-      const int n = order[p];
-      const bool fixed = conditions.fixed[3 * n + d];
-      gain_[p].v[d] = fixed ? 0 : static_cast<Real>(time_step_ * inverse_mass_[n] / (1 + time_step_ * damping_));
-      prescribed_[p].v[d] = static_cast<Real>(X_(n, d) + conditions.prescribed(n, d));
-    }
-  moved_ = true;
-}
-
-template <class Real>
-void ListMotion<Real>::place_prescribed() {
-  for (std::size_t p = 0; p < x_.size(); ++p)
-    for (int d = 0; d < 3; ++d)
-      if (gain_[p].v[d] == 0) x_[p].v[d] = prescribed_[p].v[d];
-  moved_ = false;
-}
-
-template <class Real>
-SquaredForces ListMotion<Real>::step() {
-  forces_.add(x_.data(), f_.data(), lagged_);
-  ListStep<Real> s;
-  s.nodes = static_cast<long>(x_.size());
-  s.dt = static_cast<Real>(time_step_);
-  s.decay = static_cast<Real>(1 / (1 + time_step_ * damping_));
-  s.gain = gain_.data();
-  s.external = external_.data();
-  s.x = x_.data();
-  s.v = v_.data();
-  s.f = f_.data();
-  const SquaredForces squared = forces_.kernels().step(s);
-  if (moved_) place_prescribed();
-  return squared;
-}
-
-template <class Real>
-NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>& v) const {
-  NodalVectors out(X_.rows(), 3);
-  for (std::size_t p = 0; p < v.size(); ++p)
-    for (int d = 0; d < 3; ++d) out(forces_.blocks().order[p], d) = v[p].v[d];
-  return out;
-}
-
-template <class Real>
-NodalVectors ListMotion<Real>::positions() const {
-  return in_network_order(x_);
-}
-
-template <class Real>
-NodalVectors ListMotion<Real>::velocities() const {
-  return in_network_order(v_);
-}
-
 template class ListForces<double>;
 template class ListForces<float>;
-template class ListMotion<double>;
-template class ListMotion<float>;
 
 }  // namespace springproof

@@ -1,9 +1,8 @@
-// Forces and explicit steps of networks without a lattice, by the list kernels.
+// Forces of networks without a lattice, by the list kernels.
 #pragma once
 
 #include <vector>
 
-#include "msm/boundary.h"
 #include "msm/kernels/instruction_set.h"
 #include "msm/kernels/spring_blocks.h"
 #include "msm/laws/laws.h"
@@ -46,6 +45,10 @@ class ListForces {
   /// f += internal forces, by place.  `lagged`: nodes disperse the J of the call before.
   void add(const Padded<Real>* x, Padded<Real>* f, bool lagged = false);
 
+  /// f += forces of the springs of some blocks only, by place; nothing is dispersed.
+  void add_springs(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
+
+  bool disperses() const { return !dispersion_.empty(); }
   const SpringBlocks& blocks() const { return blocks_; }
   const ListKernels<Real>& kernels() const { return *kernels_; }
 
@@ -58,34 +61,7 @@ class ListForces {
   std::vector<Padded<Real>> x_, f_;
 };
 
-/// A model in motion: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the order of the kernels.
-template <class Real>
-class ListMotion {
- public:
-  ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping,
-             bool lagged = false, InstructionSet set = instruction_set());
-
-  /// Loads from here on; prescribed unknowns are moved at the end of the next step.
-  void load(const BoundaryConditions& conditions);
-  void place_prescribed();           ///< moves them at once
-  SquaredForces step();
-  NodalVectors positions() const;    ///< [m]
-  NodalVectors velocities() const;   ///< [m/s]
-
- private:
-  NodalVectors in_network_order(const std::vector<Padded<Real>>& v) const;
-
-  ListForces<Real> forces_;
-  NodalVectors X_;
-  Eigen::VectorXd inverse_mass_;
-  double time_step_, damping_;
-  bool lagged_, moved_ = false;
-  std::vector<Padded<Real>> x_, v_, f_, gain_, external_, prescribed_;
-};
-
 extern template class ListForces<double>;
 extern template class ListForces<float>;
-extern template class ListMotion<double>;
-extern template class ListMotion<float>;
 
 }  // namespace springproof

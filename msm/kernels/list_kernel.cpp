@@ -172,26 +172,29 @@ void dispersed_forces(const ListPattern& p, const ListSprings<Real>& springs, co
   }
 }
 
-template <class Real>
-SquaredForces step(const ListStep<Real>& s) {
-  Four<Real> unbalanced = all<Real>(0), support = unbalanced;
-  SquaredForces sum;
+template <bool forces_apart, class Real>
+inline double step_nodes(const ListStep<Real>& s) {
+  Four<Real> squares = all<Real>(0);
   for (long n = 0; n < s.nodes; ++n) {
     const int node = static_cast<int>(n);
-    const Four<Real> gain = four(s.gain, node), force = four(s.f, node) + four(s.external, node);
-    const Four<Real> square = force * force;
-    unbalanced += gain > all<Real>(0) ? square : all<Real>(0);
-    support += gain > all<Real>(0) ? all<Real>(0) : square;
-    const Four<Real> v = s.decay * four(s.v, node) + gain * force;
-    four(s.v, node) = v;
-    four(s.x, node) += s.dt * v;
-    four(s.f, node) = all<Real>(0);
+    const Four<Real> given = four(s.external, node);
+    const Four<Real> external = __builtin_shufflevector(given, all<Real>(0), 0, 1, 2, 4);
+    Four<Real> sum = four(s.s, node) + external;
+    if constexpr (forces_apart) {
+      const Four<Real> f = four(s.f, node), force = f + external;
+      squares += force * force;
+      sum += f;
+      four(s.f, node) = all<Real>(0);
+    }
+    four(s.x, node) += (s.dt * given[3]) * sum;
+    four(s.s, node) = s.decay * sum;
   }
-  for (int d = 0; d < 3; ++d) {
-    sum.unbalanced += unbalanced[d];
-    sum.support += support[d];
-  }
-  return sum;
+  return double(squares[0]) + double(squares[1]) + double(squares[2]);
+}
+
+template <class Real>
+double step(const ListStep<Real>& s) {
+  return s.f ? step_nodes<true>(s) : step_nodes<false>(s);
 }
 
 template <class Real>

@@ -37,20 +37,16 @@ struct ListDispersion {
   const Real* c_j = nullptr;
 };
 
-/// One step of semi-implicit Euler: v = decay v + gain (f + external), x += dt v; gain = 0 where held.
+/// One step of semi-implicit Euler on nodes that have all their forces: s + external = v / gain, x += dt v, and for the next
+/// step s = decay (s + external), to which the forces then add up.  No array of forces is needed, and none is swept.
 template <class Real>
 struct ListStep {
   long nodes = 0;
-  Real dt = 0, decay = 1;
-  const Padded<Real>* gain = nullptr;      ///< dt / m / (1 + dt damping)
-  const Padded<Real>* external = nullptr;  ///< [N]
+  Real dt = 0, decay = 1;                  ///< decay = 1 / (1 + dt damping)
+  const Padded<Real>* external = nullptr;  ///< [N]; the fourth number is the gain dt / m / (1 + dt damping)
   Padded<Real>* x = nullptr;
-  Padded<Real>* v = nullptr;
-  Padded<Real>* f = nullptr;               ///< internal forces; 0 afterwards
-};
-
-struct SquaredForces {
-  double unbalanced = 0, support = 0;  ///< [N^2] on free and on held unknowns
+  Padded<Real>* s = nullptr;               ///< [N]
+  Padded<Real>* f = nullptr;               ///< internal forces, if they are not in s yet; 0 afterwards
 };
 
 /// One step of a Chebyshev smoother over 3x3 node blocks D: r -= y, z = old z + new D^-1 r, x += z, y = 0.
@@ -75,7 +71,8 @@ struct ListKernels {
   /// f += forces of springs and dispersion together, with the inverse lengths of inflow() at the same x.
   void (*dispersed_forces)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&, const Padded<Real>* x,
                            const Real* J, const Real* inverse_length, Padded<Real>* f);
-  SquaredForces (*step)(const ListStep<Real>&);
+  /// Sum of (f + external)^2 [N^2]; 0 without f.
+  double (*step)(const ListStep<Real>&);
 
   // Small displacements u about a state; m = sqrt(k) times the direction, per entry.
   /// y += sum m (m . du).

@@ -1,24 +1,24 @@
 #include "msm/kernels/spring_blocks.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
+#include <array>
 #include <numeric>
 
 namespace springproof {
 namespace {
 
-/// The lowest 21 bits, two zeros after each.
-std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
+// Of a layer, of a strip in it, of a step along the strip, in mean spring lengths: nodes of three layers are what a sweep
+// through the springs has in hand, and those of three strips what it has in the nearest cache.
+constexpr double thickness[3] = {1.33, 3.3, 0.33};
+
+/// The axes of the body, the longest first.
+std::array<int, 3> by_extent(const Eigen::RowVector3d& extent) {
+  std::array<int, 3> axes = {2, 1, 0};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return extent[a] > extent[b]; });
+  return axes;
 }
 
-/// Along a Z-curve through cubes of the mean spring length.
+/// Layer by layer along the longest axis, in a layer strip by strip.
 std::vector<int> spatial_order(const Network& network) {
   std::vector<int> order(network.nodes());
   std::iota(order.begin(), order.end(), 0);
@@ -26,11 +26,10 @@ std::vector<int> spatial_order(const Network& network) {
   double edge = 0;
   for (const Spring& s : network.springs) edge += s.rest_length / static_cast<double>(network.springs.size());
   const Eigen::RowVector3d lower = network.X.colwise().minCoeff();
-  std::vector<std::uint64_t> key(order.size());
-  for (int n = 0; n < network.nodes(); ++n) {
-    const Eigen::RowVector3d at = (network.X.row(n) - lower) / edge;
-    for (int d = 0; d < 3; ++d) key[n] |= spread(static_cast<std::uint64_t>(at[d])) << d;
-  }
+  const std::array<int, 3> axes = by_extent(network.X.colwise().maxCoeff() - lower);
+  std::vector<std::array<long, 3>> key(order.size());
+  for (int n = 0; n < network.nodes(); ++n)
+    for (int d = 0; d < 3; ++d) key[n][d] = static_cast<long>((network.X(n, axes[d]) - lower[axes[d]]) / (thickness[d] * edge));
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
   return order;
 }

@@ -8,8 +8,9 @@
 
 namespace springproof {
 
-/// Nodes along a Z-curve through space, so that neighbours lie close in memory; springs in blocks of four that share their
-/// first node.  Which end of a spring comes first is chosen such that nearly all blocks are full.
+/// Nodes in layers across the longest axis of the body and in strips of a layer, so that neighbours lie close in memory and a
+/// sweep is done with a layer two layers later; springs in blocks of four that share their first node.  Which end of a spring
+/// comes first is chosen such that nearly all blocks are full.
 struct SpringBlocks {
   std::vector<int> order;   ///< per place the network's node
   std::vector<int> i, j;    ///< places: i per block, j per entry (four a block)
@@ -19,7 +20,8 @@ struct SpringBlocks {
 
   int nodes() const { return static_cast<int>(order.size()); }
   std::size_t entries() const { return j.size(); }
-  ListPattern pattern() const { return {static_cast<long>(i.size()), i.data(), j.data()}; }
+  ListPattern pattern() const { return pattern(0, static_cast<long>(i.size())); }
+  ListPattern pattern(long begin, long end) const { return {end - begin, i.data() + begin, j.data() + 4 * begin}; }  ///< of some blocks
 
   /// 0 if the spring of an entry has its node i first in the block, else 1.
   int end_of_i(const Network& network, std::size_t e) const { return network.springs[spring[e]].i == order[i[e / 4]] ? 0 : 1; }

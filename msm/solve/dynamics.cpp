@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "msm/kernels/list_forces.h"
+#include "msm/kernels/list_motion.h"
 #include "msm/solve/cost.h"
 #include "msm/solve/time_step.h"
 
@@ -102,20 +102,17 @@ class PlainMotion : public Motion {
 template <class Real>
 class MotionOfList : public Motion {
  public:
-  MotionOfList(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping, bool lagged)
-      : motion_(model, inverse_mass, time_step, damping, lagged) {}
+  MotionOfList(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options)
+      : motion_(model, inverse_mass, options) {}
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
   void move_supports() override { motion_.place_prescribed(); }
-  ForceNorms advance(long steps) override {
-    SquaredForces squared;
-    for (; steps > 0; --steps) squared = motion_.step();
-    return {std::sqrt(squared.unbalanced), std::sqrt(squared.support)};
-  }
+  ForceNorms advance(long steps) override { return motion_.advance(steps); }
   NodalVectors positions() const override { return motion_.positions(); }
   NodalVectors velocities() const override { return motion_.velocities(); }
   std::string description() const override {
-    return fmt::format("list kernel, {}, {}", sizeof(Real) == 4 ? "FP32" : "FP64", name_of(instruction_set()));
+    return fmt::format("list kernel, {}, {}, {}", sizeof(Real) == 4 ? "FP32" : "FP64", name_of(instruction_set()),
+                       motion_.threads() == 1 ? "1 thread" : fmt::format("{} threads", motion_.threads()));
   }
 
  private:
@@ -144,9 +141,9 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
   if (!options.lagged && LatticeMotion::suits(model)) return std::make_unique<MotionOfLattice>(model, density, dt, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
   if (!ListForces<double>::covers(model)) return std::make_unique<PlainMotion>(model, inverse_mass, dt, options.damping, options.lagged);
-  if (options.precision == Precision::float32)
-    return std::make_unique<MotionOfList<float>>(model, inverse_mass, dt, options.damping, options.lagged);
-  return std::make_unique<MotionOfList<double>>(model, inverse_mass, dt, options.damping, options.lagged);
+  const ListMotionOptions of_list{.time_step = dt, .damping = options.damping, .lagged = options.lagged, .threads = options.threads};
+  if (options.precision == Precision::float32) return std::make_unique<MotionOfList<float>>(model, inverse_mass, of_list);
+  return std::make_unique<MotionOfList<double>>(model, inverse_mass, of_list);
 }
 
 constexpr long steps_between_looks = 10;  // at whether the nodes are at rest, or lost

@@ -17,7 +17,7 @@ struct DynamicsOptions {
   double duration = 10;              ///< [s]
   double rest_tolerance = 0;         ///< stop when unbalanced and inertial forces fall below this fraction; 0 = never
   Precision precision = Precision::float64;  ///< of the kernels; the plain loops have float64 only
-  int threads = 1;                   ///< of the lattice kernel
+  int threads = 1;                   ///< of the kernels; the plain loops and momentum dispersion have one
   bool lagged = false;               ///< nodes disperse the J of the step before; Kot & Nagahashi (2015), sec. 7
   /// Called after every step with the time, positions [m] and the velocity of the step [m/s].
   std::function<void(double time, const NodalVectors& x, const NodalVectors& v)> after_step = {};

@@ -22,6 +22,8 @@ for what in dynamics statics; do
 done
 grep -q '"name": "DRAM"' "$work/dynamics.json" || fail "no limits of the memory"
 grep -q '"flops_per_byte"' "$work/dynamics.json" || fail "no roofline"
+grep -q '"what": "random network over the plain loop"' "$work/dynamics.json" || fail "no disordered network"
+grep -q '2 threads.*random network' "$work/dynamics.json" || fail "no word on a disordered network's threads"
 if command -v lmp >/dev/null; then grep -q '"name": "LAMMPS"' "$work/dynamics.json" || fail "no row against LAMMPS"; fi
 SPRINGPROOF_LAMMPS=/bin/false "$program" bench dynamics --quick >"$work/out" 2>&1 && fail "a LAMMPS that fails passes unnoticed"
 "$program" bench nothing >/dev/null 2>"$work/err"
@@ -30,7 +32,7 @@ SPRINGPROOF_LAMMPS=/bin/false "$program" bench dynamics --quick >"$work/out" 2>&
 # Interrupted: what is measured is kept.
 "$program" bench dynamics --json "$work/half.json" >"$work/out" 2>&1 &
 pid=$!
-for _ in $(seq 100); do grep -q "HybMSS-CF, 15" "$work/out" && break; sleep 0.2; done
+for _ in $(seq 300); do grep -q "HybMSS-CF, 15" "$work/out" && break; sleep 0.2; done
 kill -INT $pid
 wait $pid
 [ $? -eq 130 ] || fail "an interrupted bench ended with $?"

@@ -49,6 +49,14 @@ TEST(Lammps, HasOurForces) {
   }
 }
 
+TEST(Lammps, TakesLongerForMoreSprings) {
+  if (!Lammps::available()) GTEST_SKIP() << "no lmp";
+  const auto seconds = [](int n) { return Lammps(lattice("hybmss_cf", {n, n, n}, 0.25).network).seconds_per_step(0.2, 3); };
+  const double ratio = seconds(16) / seconds(8);  // of springs: 7.6
+  EXPECT_GT(ratio, 4);
+  EXPECT_LT(ratio, 16);
+}
+
 TEST(Gamg, FindsOurEquilibrium) {
   if (!has_gamg()) GTEST_SKIP() << "no PETSc";
   const MassSpringModel model = lattice("hybmss", {6, 5, 4}, 0.3);

@@ -1,10 +1,11 @@
 // The list kernels against the plain loops of the laws.
-#include "msm/kernels/list_stiffness.h"
+#include "msm/kernels/list_motion.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "msm/kernels/list_stiffness.h"
 #include "msm/solve/dynamics.h"
 #include "msm/solve/time_step.h"
 #include "msm/topology/random_network.h"
@@ -159,8 +160,10 @@ TEST(SpringBlocks, HoldEverySpringOnceInNearlyFullBlocks) {
   EXPECT_LE(double(blocks.entries()), 1.02 * double(seen.size()));
 }
 
-TEST(ListMotion, IsThePlainMotion) {
-  const Network network = random_network(region_of(block_mesh({6, 5, 5}, {6, 5, 5})), spacing_one());
+namespace {
+
+/// Held at x < 0.5 in two components, one of them displaced; a load on every node.
+BoundaryConditions pulled(const Network& network) {
   BoundaryConditions full;
   full.fixed.assign(3 * network.nodes(), 0);
   full.prescribed = NodalVectors::Zero(network.nodes(), 3);
@@ -170,6 +173,22 @@ TEST(ListMotion, IsThePlainMotion) {
       full.fixed[3 * n] = full.fixed[3 * n + 2] = 1;
       full.prescribed(n, 2) = 0.1;
     }
+  return full;
+}
+
+/// Unbalanced forces on free and on held unknowns.
+ForceNorms plain_norms(const MassSpringModel& model, const NodalVectors& x, const BoundaryConditions& bc) {
+  const NodalVectors f = forces(model, x) + bc.external;
+  ForceNorms squares;
+  for (Eigen::Index i = 0; i < f.size(); ++i) (bc.fixed[i] ? squares.support : squares.unbalanced) += f.data()[i] * f.data()[i];
+  return {std::sqrt(squares.unbalanced), std::sqrt(squares.support)};
+}
+
+}  // namespace
+
+TEST(ListMotion, IsThePlainMotion) {
+  const Network network = random_network(region_of(block_mesh({6, 5, 5}, {6, 5, 5})), spacing_one());
+  const BoundaryConditions full = pulled(network);
   const LoadPath path = [&](double factor) {
     BoundaryConditions bc = full;
     bc.prescribed *= factor;
@@ -195,4 +214,69 @@ TEST(ListMotion, IsThePlainMotion) {
         EXPECT_LE((result.state.displacement - u).cwiseAbs().maxCoeff(), 1e-11 * u.cwiseAbs().maxCoeff());
         EXPECT_LE((last_v - v).cwiseAbs().maxCoeff(), 1e-11 * v.cwiseAbs().maxCoeff());
       }
+}
+
+TEST(ListMotion, StepsThatFollowEachOtherAreThePlainStepsOnAnyNumberOfThreads) {
+  const Network network = random_network(region_of(block_mesh({26, 8, 9}, {26, 8, 9})), spacing_one());
+  const MassSpringModel model{network, {Springs{}}};
+  const BoundaryConditions bc = pulled(network);
+  const LoadPath path = [&](double) { return bc; };
+  DynamicsOptions o;
+  o.damping = 0.3;
+  o.time_step = 0.2 * safe_time_step(model, 1);
+  NodalVectors x, v, before, unused, first_x, first_v;
+  plain_steps(model, masses(network, 1), path, o, 41, x, v);
+  plain_steps(model, masses(network, 1), path, o, 40, before, unused);
+  const ForceNorms expected = plain_norms(model, before, bc);
+  for (const InstructionSet set : usable_instruction_sets())
+    for (const int threads : {1, 2, 3}) {
+      ListMotion<double> motion(model, masses(network, 1).cwiseInverse(),
+                                {.time_step = *o.time_step, .damping = o.damping, .threads = threads, .instructions = set});
+      motion.load(bc);
+      motion.place_prescribed();
+      for (const long steps : {7, 1, 2}) motion.advance(steps);
+      const ForceNorms norms = motion.advance(31);
+      EXPECT_EQ(motion.threads(), threads);
+      const NodalVectors at = motion.positions(), speed = motion.velocities();
+      const NodalVectors u = x - network.X;
+      EXPECT_LE((at - x).cwiseAbs().maxCoeff(), 1e-12 * u.cwiseAbs().maxCoeff());
+      EXPECT_LE((speed - v).cwiseAbs().maxCoeff(), 1e-12 * v.cwiseAbs().maxCoeff());
+      EXPECT_NEAR(norms.unbalanced, expected.unbalanced, 1e-11 * expected.unbalanced);
+      EXPECT_NEAR(norms.support, expected.support, 1e-11 * expected.support);
+      if (threads == 1) {
+        first_x = at;
+        first_v = speed;
+      }
+      EXPECT_TRUE(at == first_x && speed == first_v) << threads << " threads, " << name_of(set);
+    }
+}
+
+TEST(Wavefront, FollowsAFewLayersBehind) {
+  const Network network = random_network(region_of(block_mesh({10, 50, 10}, {10, 50, 10})), spacing_one());
+  const SpringBlocks blocks(network);
+  const Wavefront w(blocks);
+  ASSERT_EQ(w.complete.size(), w.begin.size());
+  EXPECT_EQ(w.complete.front(), 0);
+  EXPECT_EQ(w.complete.back(), network.nodes());
+  EXPECT_LE(w.lag, std::max(3L, w.pieces() / 8));
+  for (long piece = 0; piece < w.pieces(); ++piece)
+    for (long b = w.begin[piece]; b < w.begin[piece + 1]; ++b)
+      for (int lane = 0; lane < block_springs; ++lane)
+        for (const int node : {blocks.i[b], blocks.j[block_springs * b + lane]}) {
+          EXPECT_GE(node, w.complete[piece]);                                        // not moved before its last spring
+          EXPECT_LT(node, w.complete[std::min(piece + w.lag, w.pieces())]);          // moved before its next one
+        }
+}
+
+TEST(Dynamics, OfANetworkDoesNotDependOnThreads) {
+  const Network network = random_network(region_of(block_mesh({14, 7, 7}, {14, 7, 7})), spacing_one());
+  const MassSpringModel model{network, {Springs{}}};
+  const LoadPath path = [&](double) { return pulled(network); };
+  DynamicsOptions options{.damping = 0.2, .duration = 3};
+  const DynamicsResult one = run_dynamics(model, 1, path, options);
+  options.threads = 2;
+  const DynamicsResult two = run_dynamics(model, 1, path, options);
+  EXPECT_TRUE(one.state.displacement == two.state.displacement);
+  EXPECT_EQ(one.kinetic_energy, two.kinetic_energy);
+  EXPECT_NE(two.state.solver.find("2 threads"), std::string::npos) << two.state.solver;
 }
