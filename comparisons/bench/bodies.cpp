@@ -10,9 +10,10 @@
 
 namespace springproof::bench {
 
-MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells, double poisson_ratio) {
+MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells, double poisson_ratio,
+                        const decltype(ModelChoice::options)& options) {
   const Mesh mesh = block_mesh(edge * Vec3(cells[0], cells[1], cells[2]), cells);
-  return build_model(resolve({name, {}, name, {}}), mesh, {youngs_modulus, poisson_ratio, density});
+  return build_model(resolve({name, options, name, {}}), mesh, {youngs_modulus, poisson_ratio, density});
 }
 
 MassSpringModel random_springs(int nodes) {

@@ -6,13 +6,15 @@
 
 #include "msm/boundary.h"
 #include "msm/laws/laws.h"
+#include "problem/experiment.h"
 
 namespace springproof::bench {
 
 inline constexpr double edge = 0.1, youngs_modulus = 1e4, density = 1000;  // [m], [Pa], [kg/m^3]
 
-/// A block of so many cubes as a model of the table (msm/models.h) at a Poisson's ratio.
-MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells, double poisson_ratio);
+/// A block of so many cubes as a model of the table (msm/models.h) at a Poisson's ratio, with options as in case files.
+MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells, double poisson_ratio,
+                        const decltype(ModelChoice::options)& options = {});
 
 /// A cube of about so many nodes joined at random, <S> = 15, nu = 1/4.
 MassSpringModel random_springs(int nodes);
