@@ -272,7 +272,9 @@ TEST(Dynamics, OfANetworkDoesNotDependOnThreads) {
   const Network network = random_network(region_of(block_mesh({14, 7, 7}, {14, 7, 7})), spacing_one());
   const MassSpringModel model{network, {Springs{}}};
   const LoadPath path = [&](double) { return pulled(network); };
-  DynamicsOptions options{.damping = 0.2, .duration = 3};
+  DynamicsOptions options;
+  options.damping = 0.2;
+  options.duration = 3;
   const DynamicsResult one = run_dynamics(model, 1, path, options);
   options.threads = 2;
   const DynamicsResult two = run_dynamics(model, 1, path, options);
