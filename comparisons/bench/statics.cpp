@@ -30,8 +30,8 @@ struct Problem {
   BoundaryConditions conditions;
 };
 
-Problem cube(int n, double poisson_ratio) {
-  Problem p{lattice("hybmss", {n, n, n}, poisson_ratio), {}};
+Problem cube(int n, double poisson_ratio, const char* name = "hybmss") {
+  Problem p{lattice(name, {n, n, n}, poisson_ratio), {}};
   p.conditions = clamped_bottom(p.model.network);
   return p;
 }
@@ -57,8 +57,8 @@ Problem rabbit(int voxels) {
   return {build_model(resolve(choice), mesh, {youngs_modulus, 0.25, density}), transfer(loads, mesh, density, Kinematics::linear)};
 }
 
-Equilibrium solve(const Problem& p) {
-  Equilibrium e = solve_linear(p.model, p.conditions, {.tolerance = tolerance});
+Equilibrium solve(const Problem& p, LinearSolver solver = LinearSolver::automatic) {
+  Equilibrium e = solve_linear(p.model, p.conditions, {solver, tolerance});
   if (!e.ok) throw std::runtime_error(e.message);
   return e;
 }
@@ -107,6 +107,27 @@ void blocks(const BenchOptions& options, Findings& findings) {
           findings.rows.push_back({subject, "nu = 0.499 over nu = 0.25", row.size, "CPU s", seconds, "nu = 0.25", quarter, at_most(4)});
       });
     }
+  }
+}
+
+/// Momentum dispersion: few iterations, and what the pressures as unknowns gain near nu = 1/2.
+void dispersion_blocks(int n, double gain, Findings& findings) {
+  for (const double nu : {0.25, 0.499}) {
+    const BenchRow row = iterations_row(fmt::format("emsm block, nu = {:g}", nu), fmt::format("{}^3", n), iteration_limit(nu));
+    const auto work = [&] {
+      const Problem p = cube(n, nu, "emsm");
+      return Json{{"chosen", answer(solve(p))}, {"displacements", answer(solve(p, LinearSolver::multigrid))}};
+    };
+    measure(findings, row, work, [&](const Json& a) {
+      const double chosen = a.at("chosen").at("seconds"), displacements = a.at("displacements").at("seconds");
+      BenchRow found = row;
+      found.value = a.at("chosen").at("iterations");
+      found.note = fmt::format("{}, {:.3g} CPU s", a.at("chosen").at("solver").get<std::string>(), chosen);
+      findings.rows.push_back(found);
+      if (nu == 0.25) return;
+      findings.rows.push_back({subject, row.what + ", over displacements alone", row.size, "CPU s", chosen, "CG + network multigrid", displacements, at_least(gain), {},
+                               fmt::format("{} iterations", a.at("displacements").at("iterations").get<int>())});
+    });
   }
 }
 
@@ -179,6 +200,7 @@ void bench_statics(const BenchOptions& options, Findings& findings) {
   against_gamg("block, nu = 0.25, over GAMG", fmt::format("{}^3", n), 50, [&] { return cube(n, 0.25); }, findings);
   against_dynamics(n, findings);
   blocks(options, findings);
+  dispersion_blocks(quick ? 10 : 20, quick ? 3 : 8, findings);
   rabbits(options, findings);
   against_gamg("random network over GAMG", fmt::format("{} nodes", nodes), 5, [&] { return network(nodes); }, findings);
   large(quick ? 16 : 100, findings);

@@ -18,6 +18,14 @@ struct CellRow {
   int length = 0;
 };
 
+/// A run of parallel springs, from a row of points to a row of points.
+struct SpringRun {
+  long i = 0, j = 0;    ///< points of its first spring; those of the next are the next ones
+  long spring = 0;      ///< number of its first spring
+  int length = 0;       ///< at most longest_cell_row
+  int direction = 0;
+};
+
 /// A cell's stiffness in the sign patterns of its corners.  A cell with three mirror planes couples component a of pattern
 /// t xor e_a (e_a: the sign changes along a) with no other than the two of the same class t: eight symmetric 3x3 blocks.
 template <class Real>
@@ -45,6 +53,12 @@ struct CellKernels {
                      Real* divergence);
   /// y += fill gradient^T p.
   void (*gradient)(Real gradient, const CellRow* rows, long count, const Real* p, const Real* fill, const PlanePair<Real>& y);
+
+  // Weights w of either end of each spring; `directions`: three components each; u, y: three arrays.
+  /// J += w e of the ends' points, e = direction . (u_j - u_i).
+  void (*inflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* const* u, Real* J);
+  /// y += the transpose of that, of p.
+  void (*outflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* p, Real* const* y);
 
   // Along n values.
   /// r -= y; z = a z + b d r; x += z.

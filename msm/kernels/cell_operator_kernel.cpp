@@ -205,6 +205,52 @@ void gradient_of(Real gradient, const CellRow* rows, long count, const Real* p, 
 
 // Simple enough for the compiler.
 
+/// y += a b.
+template <class Real>
+inline void add_products(int n, const Real* __restrict a, const Real* __restrict b, Real* __restrict y) {
+  for (int i = 0; i < n; ++i) y[i] += a[i] * b[i];
+}
+
+/// y += c a.
+template <class Real>
+inline void add_multiple(int n, Real c, const Real* __restrict a, Real* __restrict y) {
+  for (int i = 0; i < n; ++i) y[i] += c * a[i];
+}
+
+template <class Real>
+void inflow(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* const* u, Real* J) {
+  alignas(64) Real e[longest_cell_row];
+  for (const SpringRun* run = runs; run != runs + count; ++run) {
+    const int n = run->length;
+    for (int s = 0; s < n; ++s) e[s] = 0;
+    for (int a = 0; a < 3; ++a) {
+      const Real d = directions[3 * run->direction + a];
+      if (d == 0) continue;
+      const Real *from = u[a] + run->i, *to = u[a] + run->j;
+      for (int s = 0; s < n; ++s) e[s] += d * (to[s] - from[s]);
+    }
+    // One end after the other: along x a spring's second point is the next spring's first.
+    add_products<Real>(n, w_i + run->spring, e, J + run->i);
+    add_products<Real>(n, w_j + run->spring, e, J + run->j);
+  }
+}
+
+template <class Real>
+void outflow(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* p, Real* const* y) {
+  alignas(64) Real t[longest_cell_row];
+  for (const SpringRun* run = runs; run != runs + count; ++run) {
+    const int n = run->length;
+    const Real *at_i = w_i + run->spring, *at_j = w_j + run->spring, *p_i = p + run->i, *p_j = p + run->j;
+    for (int s = 0; s < n; ++s) t[s] = at_i[s] * p_i[s] + at_j[s] * p_j[s];
+    for (int a = 0; a < 3; ++a) {
+      const Real d = directions[3 * run->direction + a];
+      if (d == 0) continue;
+      add_multiple<Real>(n, -d, t, y[a] + run->i);
+      add_multiple<Real>(n, d, t, y[a] + run->j);
+    }
+  }
+}
+
 template <class Real>
 void chebyshev(long n, const Real* __restrict y, const Real* __restrict d, Real a, Real b, Real* __restrict r, Real* __restrict z,
                Real* __restrict x) {
@@ -277,7 +323,7 @@ void prolongate_row(int fine_points, bool odd, Real weight, const Real* const* c
 }
 
 template <class Real>
-constexpr CellKernels<Real> all = {cells<Real>, divergence_of<Real>, gradient_of<Real>, chebyshev<Real>,
+constexpr CellKernels<Real> all = {cells<Real>, divergence_of<Real>, gradient_of<Real>, inflow<Real>, outflow<Real>, chebyshev<Real>,
                                    schur_step<Real>, restrict_row<Real>, prolongate_row<Real>};
 
 }  // namespace

@@ -182,6 +182,8 @@ double dispersed_fraction(double lame_lambda, double shear_modulus, int dimensio
   return (lame_lambda - shear_modulus) / (2 * (1 + 2.0 / dimensions) * shear_modulus);
 }
 
+double added_lambda(const MomentumDispersion& law, int dimensions) { return 2 * (1 + 2.0 / dimensions) * law.q; }
+
 std::vector<double> spring_shares(const Network& network) {
   std::map<long, double> full;  // by rest length, to one part in a million
   const auto length_class = [](const Spring& s) { return std::lround(1e6 * std::log(s.rest_length)); };

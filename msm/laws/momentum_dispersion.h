@@ -63,6 +63,9 @@ struct MomentumDispersion {
 /// Q = (lambda - mu) / ((1 + 2/d) mu).
 double dispersed_fraction(double lame_lambda, double shear_modulus, int dimensions = 3);
 
+/// The reverse: what dispersion adds to lambda, over G.
+double added_lambda(const MomentumDispersion& law, int dimensions = 3);
+
 /// Share that each spring of a superposed lattice has of the full spring of its length inside, 0 < share <= 1.
 std::vector<double> spring_shares(const Network& network);
 

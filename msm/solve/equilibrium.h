@@ -27,7 +27,7 @@ struct Equilibrium {
 enum class LinearSolver { automatic, cholesky, multigrid, mixed_multigrid };
 
 struct LinearOptions {
-  LinearSolver solver = LinearSolver::automatic;  ///< Cholesky when small, else multigrid; lattices with a volume correction mixed above nu = 0.4
+  LinearSolver solver = LinearSolver::automatic;  ///< Cholesky when small, else multigrid; lattices with a volume correction or the energy form of dispersion mixed above nu = 0.4
   double tolerance = 1e-10;                       ///< relative residual
   int max_iterations = 2000;
 };

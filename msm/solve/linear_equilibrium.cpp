@@ -6,9 +6,9 @@
 #include "msm/calibrate.h"
 #include "msm/solve/cell_stiffness.h"
 #include "msm/solve/cost.h"
+#include "msm/solve/dispersion_multigrid.h"
 #include "msm/solve/equilibrium.h"
 #include "msm/solve/krylov.h"
-#include "msm/solve/mixed_multigrid.h"
 #include "msm/solve/tangent_solver.h"
 
 namespace springproof {
@@ -69,11 +69,11 @@ void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
   finish(p, u, Ku, result);
 }
 
-void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Equilibrium& result) {
-  const double l = p.model.network.cell_edge, unit = G * l;
-  MixedMultigrid multigrid(lattice_levels(p.model.network, p.conditions.fixed), in_units(cell, G, l));
+/// `unit` of stiffness, `volumes` how many pressures there are.
+template <class Mixed>
+void solve_mixed(const LinearProblem& p, Mixed&& multigrid, double unit, std::size_t volumes, Equilibrium& result) {
   // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
-  const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.model.network.cells.size()));
+  const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(volumes));
   Eigen::VectorXd f = p.external / unit - multigrid.force(p.prescribed, no_pressure), du, pressure;
   keep(p.conditions.fixed, false, f);
   const KrylovResult k = multigrid.solve(f, -multigrid.volume_change(p.prescribed), p.options.tolerance,
@@ -81,6 +81,21 @@ void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Eq
   report(k, "GMRES + mixed multigrid", result);
   const Eigen::VectorXd u = p.prescribed + du;
   finish(p, u, unit * multigrid.force(u, pressure), result);
+}
+
+/// A pressure per node of a lattice with momentum dispersion, else one per cell.
+void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Equilibrium& result) {
+  const Network& network = p.model.network;
+  const double l = network.cell_edge, unit = G * l;
+  if (dispersion_of(p.model))
+    solve_mixed(p, DispersionMultigrid(p.model, p.conditions.fixed, G), unit, network.volume.size(), result);
+  else
+    solve_mixed(p, MixedMultigrid(lattice_levels(network, p.conditions.fixed), in_units(cell, G, l)), unit, network.cells.size(), result);
+}
+
+/// What the springs leave to a volume term of a lattice [Pa], where there is a mixed multigrid for it.
+double volume_stiffness(const MassSpringModel& model, const CellStiffness& cell, double G) {
+  return NodalVolumes::covers(model) ? added_lambda(*dispersion_of(model)) * G : cell.kappa;
 }
 
 }  // namespace
@@ -96,10 +111,10 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   const bool has_cells = consists_of_cells(model);
   const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
-    if (result.unknowns <= (has_cells ? lattice_cholesky_limit : cholesky_limit))
+    if (result.unknowns <= (has_cells || NodalVolumes::covers(model) ? lattice_cholesky_limit : cholesky_limit))
       solver = LinearSolver::cholesky;
     else
-      solver = cell.kappa > mixed_above_kappa * G ? LinearSolver::mixed_multigrid : LinearSolver::multigrid;
+      solver = volume_stiffness(model, cell, G) > mixed_above_kappa * G ? LinearSolver::mixed_multigrid : LinearSolver::multigrid;
   }
   try {
     if (solver == LinearSolver::mixed_multigrid)

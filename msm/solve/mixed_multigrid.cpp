@@ -12,7 +12,7 @@ double corner_gradient(const CellStiffness& cell) { return cell.volume_gradient.
 
 }  // namespace
 
-MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_network)
+MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_network, bool may_float)
     : lattice_(std::move(levels)), inner_steps_(of_network.kappa > 1000 ? 12 : 6),
       K_(lattice_.levels[0], reorder(of_network.without_volume, lattice_.axes), corner_gradient(of_network)) {
   if (!(of_network.kappa > 0)) throw std::invalid_argument("the mixed form needs kappa > 0 (nu > 1/4)");
@@ -28,7 +28,7 @@ MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_net
   compliance_ = levels_[0].compliance.cast<double>();
   const LatticeLevel& finest = lattice_.levels[0];
   for (long c = 0; c < finest.cells(); ++c) compliance_[c] = cell.volume / cell.kappa * (finest.fill.empty() ? 1 : finest.fill[c]);
-  factor_coarsest(assemble(lattice_.levels.back(), cell.total), lattice_, false, coarsest_);
+  factor_coarsest(assemble(lattice_.levels.back(), cell.total), lattice_, may_float, coarsest_);
 }
 
 MixedMultigrid::Level MixedMultigrid::make_level(const LatticeLevel& lattice, const CellStiffness& cell) const {

@@ -14,8 +14,9 @@ inline constexpr double mixed_above_kappa = 4;
 /// (shear modulus, edge) so that both equations have entries of order one.
 class MixedMultigrid {
  public:
+  /// A lattice that `may_float` needs no hold of its own.
   /// @throws std::invalid_argument unless cell.kappa > 0.
-  MixedMultigrid(LatticeLevels levels, const CellStiffness& cell);
+  MixedMultigrid(LatticeLevels levels, const CellStiffness& cell, bool may_float = false);
 
   /// (u, p) of the system, u = 0 on the fixed unknowns.
   KrylovResult solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
@@ -29,7 +30,6 @@ class MixedMultigrid {
   /// B u: first-order volume change of each cell.
   Eigen::VectorXd volume_change(const Eigen::VectorXd& u);
 
- private:
   struct Level {
     LatticeOperator<float> K;                 ///< of the springs, and the gradient of volumes
     Eigen::VectorXf compliance;               ///< V / kappa per cell
@@ -41,6 +41,12 @@ class MixedMultigrid {
     std::unique_ptr<ThinParts> thin;          ///< null: none
   };
 
+  /// The finest level and the cycle on it, (u, p) of its (f, g): for cycles that go on above it.
+  Level& finest() { return levels_[0]; }
+  const LatticeLevel& finest_lattice() const { return lattice_.levels[0]; }
+  void cycle() { cycle(0); }
+
+ private:
   Level make_level(const LatticeLevel& lattice, const CellStiffness& cell) const;
   void bound_schur(Level& level) const;
   void schur_step(Level& level, const ChebyshevStep& step) const;  ///< r -= S z; z = a z + b D r; q += z
