@@ -57,7 +57,6 @@ DispersionMultigrid::DispersionMultigrid(const MassSpringModel& model, LatticeLe
   const Eigen::VectorXd schur = volumes_.compliance + volumes_.schur_diagonal(level, inverse_diagonal_);
   inverse_schur_diagonal_ = (volumes_.compliance.array() > 0).select(1 / schur.array(), 0).cast<float>().matrix();
   compliance_ = volumes_.compliance.cast<float>();
-  shares_ = volumes_.shares_of_parents(level, below_.finest_lattice().parent);
   f_ = u_ = d_ = y_ = Eigen::VectorXf::Zero(3 * level.stride());
   g_ = p_ = Bu_ = r_ = z_ = q_ = Eigen::VectorXf::Zero(level.stride());
   bound_schur();
@@ -129,19 +128,15 @@ void DispersionMultigrid::cycle() {
   if (thin_) correct_thin_parts();
   residual();
   lattice_.levels[0].clear_fixed(d_);
-  B_.change(u_.data(), Bu_.data());
-  r_ = g_ - Bu_ + compliance_.cwiseProduct(p_);
   MixedMultigrid::Level& below = below_.finest();
   below.f.setZero();
   below.g.setZero();
   restrict_field(below_.finest_lattice(), K_.kernels(), K_.stride(), d_.data(), below.f.data());
   below_.finest_lattice().clear_fixed(below.f);
-  below.g.head(shares_.cols()) = shares_.transpose() * r_;
   below_.cycle();
   prolongate_field(below_.finest_lattice(), K_.kernels(), below.u.data(), K_.stride(), d_.data());
   lattice_.levels[0].clear_fixed(d_);
   u_ += d_;
-  p_ += shares_ * below.p.head(shares_.cols());
   if (thin_) correct_thin_parts();
   for (int s = 0; s < sweeps; ++s) sweep(false);
 }

@@ -50,7 +50,6 @@ class DispersionMultigrid {
   NodalVolumeOperator<float> B_;
   NodalVolumeOperator<double> B_double_;
   std::unique_ptr<ThinParts> thin_;  ///< null: none
-  Eigen::SparseMatrix<float, Eigen::RowMajor> shares_;  ///< of the cells below in each point
   Eigen::VectorXf compliance_, inverse_diagonal_, inverse_schur_diagonal_;
   double schur_bound_ = 1;
   Eigen::VectorXf f_, g_, u_, p_, d_, y_, Bu_, r_, z_, q_;

@@ -133,25 +133,6 @@ Eigen::VectorXd NodalVolumes::schur_diagonal(const LatticeLevel& level, const Ei
   return diagonal;
 }
 
-Eigen::SparseMatrix<float, Eigen::RowMajor> NodalVolumes::shares_of_parents(const LatticeLevel& level, const std::vector<int>& parent) const {
-  std::vector<int> sink(level.points()), cells(level.points(), 0);
-  for (long p = 0; p < level.points(); ++p) sink[p] = static_cast<int>(p);
-  for (const auto& [member, of] : members) sink[member] = static_cast<int>(of);
-  const auto each_corner = [&](const auto& visit) {
-    for (const CellRow& row : level.rows)
-      for (int i = 0; i < row.length; ++i)
-        for (int n = 0; n < 8; ++n) visit(sink[LatticeLevel::corner(row, i, n)], parent[row.cell + i]);
-  };
-  each_corner([&](int point, int) { ++cells[point]; });
-  std::vector<Eigen::Triplet<float>> entries;
-  entries.reserve(8 * level.cells());
-  each_corner([&](int point, int cell) { entries.emplace_back(point, cell, 1.0f / static_cast<float>(cells[point])); });
-  const int coarse = parent.empty() ? 0 : *std::max_element(parent.begin(), parent.end()) + 1;
-  Eigen::SparseMatrix<float, Eigen::RowMajor> shares(level.stride(), coarse);
-  shares.setFromTriplets(entries.begin(), entries.end());
-  return shares;
-}
-
 template <class Real>
 NodalVolumeOperator<Real>::NodalVolumeOperator(const NodalVolumes& volumes, long stride, InstructionSet set)
     : kernels_(&cell_kernels<Real>(set)), runs_(volumes.runs), members_(volumes.members), pressure_(Vector::Zero(stride)), stride_(stride) {

@@ -2,7 +2,6 @@
 // nodes' volumes.
 #pragma once
 
-#include <Eigen/SparseCore>
 #include <array>
 #include <vector>
 
@@ -28,9 +27,6 @@ struct NodalVolumes {
 
   /// Diagonal of B D B^T, D a nodal field of the level.
   Eigen::VectorXd schur_diagonal(const LatticeLevel& level, const Eigen::VectorXf& D) const;
-
-  /// Per point with a volume the cells of the next coarser level that this lies in, as fractions.
-  Eigen::SparseMatrix<float, Eigen::RowMajor> shares_of_parents(const LatticeLevel& level, const std::vector<int>& parent) const;
 };
 
 /// B and its transpose.  Nodal fields hold three arrays of `stride` values, volumes and pressures one.
