@@ -143,7 +143,7 @@ TEST(PartFile, ComesBackWholeOrNotAtAll) {
   part.rows = one_row(0.1, 0.2, 0.003).rows;
   part.rows.push_back({"case", "linear", "fem", 0.25, {4, 4, 4}, "volume_change", 0.1, "1", {}, {}, {}});
   part.references = {{0.25, "volume_change", "1", {{1, 1, 1}}, {0.1, 0.2}, {}, 0.2, 0.1, "note", "p1"}};
-  part.pictures = {{"fem", 0.25, {4, 4, 4}, {0, 1, 2}, {3, 4, 5}, {}, {0, 0, 0, 0}}};
+  part.pictures = {{"fem", 0.25, {4, 4, 4}, {0, 1, 2}, {3, 4, 5}, {}, {0, 0, 0, 0}, {}, "cells"}};
   save_part(file, "stamp", part);
   const std::optional<Part> back = load_part(file, "stamp");
   ASSERT_TRUE(back);
