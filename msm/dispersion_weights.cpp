@@ -13,168 +13,89 @@
 namespace springproof {
 namespace {
 
+// Conditions of a node: six for xx yy zz yz xz xy of sum w L n n^T = V I, three for the gradient of sum J.
+constexpr int per_node = 9;
 constexpr double smallest_slack = 1e-3;
 constexpr double largest_residual = 0.2;
 constexpr double largest_lean = 0.3;  // |sum k d| / sum k |d| of a node: 0 in the middle of a lattice, some 0.5 on its faces
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Block = Eigen::Matrix<double, per_node, per_node>;
+using Condition = Eigen::Matrix<double, per_node, 1>;
 
-/// Values of the conditions: per node six moments, xx yy zz yz xz xy of sum w L n n^T = V I, and three pulls, the gradient
-/// of sum J.
-struct Values {
-  Eigen::VectorXd moment, pull;
-
-  explicit Values(int nodes) : moment(Eigen::VectorXd::Zero(6 * nodes)), pull(Eigen::VectorXd::Zero(3 * nodes)) {}
-  double norm() const { return std::hypot(moment.norm(), pull.norm()); }
-};
-
-/// What the iterations need of a spring.
-struct Ends {
-  int node[2], sink[2];
-  Vec3 direction;  ///< i to j
-  double length;
-  double D[2];     ///< how far each end's weight follows
-
-  Vector6 moment() const {  ///< of a unit weight
-    const Vec3& e = direction;
-    Vector6 m;
-    m << e[0] * e[0], e[1] * e[1], e[2] * e[2], e[1] * e[2], e[0] * e[2], e[0] * e[1];
-    return length * m;
-  }
-};
-
-/// Inverse on the range.
-Matrix6 pseudo_inverse(const Matrix6& A) {
-  const Eigen::LDLT<Matrix6> factors(A);
-  const Vector6 pivots = factors.vectorD();
-  if (factors.info() == Eigen::Success && pivots.minCoeff() > 1e-10 * pivots.maxCoeff()) return factors.solve(Matrix6::Identity());
-  return A.completeOrthogonalDecomposition().pseudoInverse();
-}
-
-/// The linear conditions A w on the weights of spring ends, and the normal equations A D A^T y = r of the smallest change of
-/// w that meets them; the moments of a node share no weight with another's, so their part of y is eliminated.
-/// Lengths in units of `unit`.
+/// The linear conditions on the weights of spring ends, matrix-free.  Lengths in units of `unit`.
 struct Conditions {
-  int nodes;
+  const Network& network;
   std::vector<int> group;
   double unit;
-  std::vector<Ends> springs;
-  std::vector<Matrix6> moment_inverse;  ///< per node
-  Eigen::VectorXd pull_diagonal;        ///< times the slack
-  std::vector<Eigen::Matrix3d> pull_inverse;
+  std::vector<Vec3> direction;  ///< of each spring, i to j
 
   explicit Conditions(const Network& n)
-      : nodes(n.nodes()), group(volume_groups(n)), unit(std::cbrt(n.volume.sum() / std::max<double>(1, static_cast<double>((n.volume.array() > 0).count())))) {
-    for (const Spring& s : n.springs) {
-      const int i = n.master(s.i), j = n.master(s.j);
-      springs.push_back({{i, j}, {group[i], group[j]}, (n.X.row(s.j) - n.X.row(s.i)).transpose().normalized(), s.rest_length / unit, {0, 0}});
+      : network(n), group(volume_groups(n)), unit(std::cbrt(n.volume.sum() / std::max<double>(1, static_cast<double>((n.volume.array() > 0).count())))) {
+    for (const Spring& s : n.springs) direction.push_back((n.X.row(s.j) - n.X.row(s.i)).transpose().normalized());
+  }
+
+  double length(std::size_t s) const { return network.springs[s].rest_length / unit; }
+
+  /// What a unit weight adds to the six conditions of its own node.
+  Eigen::Matrix<double, 6, 1> moment(std::size_t s) const {
+    const Vec3& e = direction[s];
+    Eigen::Matrix<double, 6, 1> m;
+    m << e[0] * e[0], e[1] * e[1], e[2] * e[2], e[1] * e[2], e[0] * e[2], e[0] * e[1];
+    return length(s) * m;
+  }
+
+  int end(std::size_t s, int side) const { return network.master(side == 0 ? network.springs[s].i : network.springs[s].j); }
+  int sink(std::size_t s, int side) const { return group[end(s, side)]; }
+
+  /// r = A w.
+  void apply(const std::vector<double>& w, Eigen::VectorXd& r) const {
+    r.setZero(per_node * network.nodes());
+    for (std::size_t s = 0; s < direction.size(); ++s) {
+      const int i = end(s, 0), j = end(s, 1);
+      const auto m = moment(s);
+      r.segment<6>(per_node * sink(s, 0)) += w[2 * s] * m;
+      r.segment<6>(per_node * sink(s, 1)) += w[2 * s + 1] * m;
+      const Vec3 pull = (w[2 * s] + w[2 * s + 1]) * direction[s];
+      r.segment<3>(per_node * i + 6) -= pull;
+      r.segment<3>(per_node * j + 6) += pull;
     }
   }
 
-  void apply(const std::vector<double>& w, Values& r) const {
-    r.moment.setZero();
-    r.pull.setZero();
-    for (std::size_t s = 0; s < springs.size(); ++s) {
-      const Ends& ends = springs[s];
-      const Vector6 m = ends.moment();
-      for (int side = 0; side < 2; ++side) r.moment.segment<6>(6 * ends.sink[side]) += w[2 * s + side] * m;
-      const Vec3 pull = (w[2 * s] + w[2 * s + 1]) * ends.direction;
-      r.pull.segment<3>(3 * ends.node[0]) -= pull;
-      r.pull.segment<3>(3 * ends.node[1]) += pull;
+  /// w = D A^T y.
+  void transpose(const Eigen::VectorXd& y, const std::vector<double>& D, std::vector<double>& w) const {
+    w.resize(2 * direction.size());
+    for (std::size_t s = 0; s < direction.size(); ++s) {
+      const int i = end(s, 0), j = end(s, 1);
+      const auto m = moment(s);
+      const double both = direction[s].dot(y.segment<3>(per_node * j + 6) - y.segment<3>(per_node * i + 6));
+      w[2 * s] = D[2 * s] * (m.dot(y.segment<6>(per_node * sink(s, 0))) + both);
+      w[2 * s + 1] = D[2 * s + 1] * (m.dot(y.segment<6>(per_node * sink(s, 1))) + both);
     }
   }
 
-  /// w += D A^T y.
-  void add_transpose(const Values& y, std::vector<double>& w) const {
-    for (std::size_t s = 0; s < springs.size(); ++s) {
-      const Ends& ends = springs[s];
-      const Vector6 m = ends.moment();
-      const double both = stretch(ends, y.pull);
-      for (int side = 0; side < 2; ++side) w[2 * s + side] += ends.D[side] * (m.dot(y.moment.segment<6>(6 * ends.sink[side])) + both);
-    }
-  }
-
-  static double stretch(const Ends& ends, const Eigen::VectorXd& v) {
-    return ends.direction.dot(v.segment<3>(3 * ends.node[1]) - v.segment<3>(3 * ends.node[0]));
-  }
-
-  /// Takes D, and a slack of all conditions as a fraction of what a unit change of a node's weights does to them.
-  void prepare(const std::vector<double>& D, double slack) {
-    moment_inverse.assign(nodes, Matrix6::Zero());
-    pull_inverse.assign(nodes, Eigen::Matrix3d::Zero());
-    for (std::size_t s = 0; s < springs.size(); ++s) {
-      Ends& ends = springs[s];
-      const Vector6 m = ends.moment();
+  /// Inverses of the node blocks of A D A^T, and its diagonal; the conditions of a node that can say nothing are left out.
+  std::vector<Block> inverse_blocks(const std::vector<double>& D, Eigen::VectorXd& diagonal) const {
+    std::vector<Block> blocks(network.nodes(), Block::Zero());
+    for (std::size_t s = 0; s < direction.size(); ++s)
       for (int side = 0; side < 2; ++side) {
-        ends.D[side] = D[2 * s + side];
-        moment_inverse[ends.sink[side]] += ends.D[side] * m * m.transpose();
-        pull_inverse[ends.node[side]] += (D[2 * s] + D[2 * s + 1]) * ends.direction * ends.direction.transpose();
+        Condition own;
+        own << moment(s), (side == 0 ? -1.0 : 1.0) * direction[s];
+        Condition pull = Condition::Zero();
+        pull.tail<3>() = direction[s];
+        if (sink(s, side) != end(s, side)) {  // the moment is another node's business
+          Condition elsewhere = own;
+          elsewhere.tail<3>().setZero();
+          blocks[sink(s, side)] += D[2 * s + side] * elsewhere * elsewhere.transpose();
+          own.head<6>().setZero();
+        }
+        blocks[end(s, side)] += D[2 * s + side] * own * own.transpose();
+        blocks[end(s, side)] += D[2 * s + 1 - side] * pull * pull.transpose();  // the far end's weight pulls here too
       }
+    for (int n = 0; n < network.nodes(); ++n) diagonal.segment<per_node>(per_node * n) = blocks[n].diagonal();
+    for (Block& b : blocks) {
+      const double floor = 1e-10 * b.trace() + 1e-300;
+      b = (b + floor * Block::Identity()).inverse().eval();
     }
-    pull_diagonal.resize(3 * nodes);
-    for (int n = 0; n < nodes; ++n) {
-      pull_diagonal.segment<3>(3 * n) = slack * pull_inverse[n].diagonal();
-      pull_inverse[n].diagonal() *= 1 + slack;
-      pull_inverse[n].diagonal().array() += 1e-10 * pull_inverse[n].trace() + 1e-300;
-      pull_inverse[n] = pull_inverse[n].inverse().eval();
-      moment_inverse[n].diagonal() *= 1 + slack;
-      if (moment_inverse[n].trace() > 0) moment_inverse[n] = pseudo_inverse(moment_inverse[n]);
-    }
-  }
-
-  /// y = inverse x of the moments.
-  void solve_moments(Eigen::VectorXd& x) const {
-    for (int n = 0; n < nodes; ++n) x.segment<6>(6 * n) = (moment_inverse[n] * x.segment<6>(6 * n)).eval();
-  }
-
-  /// Moments that pulls v cause.
-  void moments_of(const Eigen::VectorXd& v, Eigen::VectorXd& moment) const {
-    moment.setZero(6 * nodes);
-    for (const Ends& ends : springs) {
-      const double both = stretch(ends, v);
-      const Vector6 m = ends.moment();
-      for (int side = 0; side < 2; ++side) moment.segment<6>(6 * ends.sink[side]) += ends.D[side] * both * m;
-    }
-  }
-
-  /// r = (pulls of both) - (pulls of moments), minus what the moments take back.
-  void reduced(const Eigen::VectorXd& v, Eigen::VectorXd& moment, Eigen::VectorXd& r) const {
-    moments_of(v, moment);
-    solve_moments(moment);
-    moment = -moment;
-    pulls_of(moment, v, r);
-    r += pull_diagonal.cwiseProduct(v);
-  }
-
-  /// Pulls that moments and pulls cause.
-  void pulls_of(const Eigen::VectorXd& moment, const Eigen::VectorXd& v, Eigen::VectorXd& r) const {
-    r.setZero(3 * nodes);
-    for (const Ends& ends : springs) {
-      const Vector6 m = ends.moment();
-      const double both = stretch(ends, v);
-      const double w = ends.D[0] * (both + m.dot(moment.segment<6>(6 * ends.sink[0]))) + ends.D[1] * (both + m.dot(moment.segment<6>(6 * ends.sink[1])));
-      r.segment<3>(3 * ends.node[0]) -= w * ends.direction;
-      r.segment<3>(3 * ends.node[1]) += w * ends.direction;
-    }
-  }
-
-  /// y of A D A^T y = r, the residual at most `tolerance` in the unit of r.
-  KrylovResult solve(const Values& r, double tolerance, int max_iterations, Values& y) const {
-    Eigen::VectorXd b, moment = r.moment, none = Eigen::VectorXd::Zero(3 * nodes);
-    solve_moments(moment);
-    pulls_of(moment, none, b);
-    b = r.pull - b;
-    const Operator normal = [&](const Eigen::VectorXd& v, Eigen::VectorXd& out) { reduced(v, moment, out); };
-    const Operator jacobi = [&](const Eigen::VectorXd& in, Eigen::VectorXd& z) {
-      z.resize(in.size());
-      for (int n = 0; n < nodes; ++n) z.segment<3>(3 * n) = pull_inverse[n] * in.segment<3>(3 * n);
-    };
-    y.pull.setZero();
-    const KrylovResult k = conjugate_gradients(normal, jacobi, b, b.norm() > 0 ? tolerance / b.norm() : 1, max_iterations, y.pull);
-    moments_of(y.pull, moment);
-    y.moment = r.moment - moment;
-    solve_moments(y.moment);
-    return k;
+    return blocks;
   }
 };
 
@@ -219,50 +140,62 @@ std::vector<int> volume_groups(const Network& network) {
 }
 
 DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus) {
-  Conditions A(network);
+  const Conditions A(network);
   const int dimensions = network.triangles.empty() ? 3 : 2;
   const std::size_t springs = network.springs.size();
   // Start from k L, each node's scaled to its volume: trace of sum w L n n^T = d V_n.
   Eigen::VectorXd share = Eigen::VectorXd::Zero(network.nodes()), volume = share;
   for (int n = 0; n < network.nodes(); ++n) volume[A.group[network.master(n)]] += network.volume[n] / std::pow(A.unit, 3);
-  const auto kL = [&](std::size_t s) { return network.springs[s].stiffness * A.springs[s].length; };
   for (std::size_t s = 0; s < springs; ++s)
-    for (int sink : A.springs[s].sink) share[sink] += kL(s) * A.springs[s].length;
-  std::vector<double> w(2 * springs);
+    for (int side = 0; side < 2; ++side) share[A.sink(s, side)] += network.springs[s].stiffness * A.length(s) * A.length(s);
+  std::vector<double> w(2 * springs), change;
   for (std::size_t s = 0; s < springs; ++s)
     for (int side = 0; side < 2; ++side) {
-      const int n = A.springs[s].sink[side];
-      w[2 * s + side] = dimensions * volume[n] / share[n] * kL(s);
+      const int n = A.sink(s, side);
+      w[2 * s + side] = dimensions * volume[n] / share[n] * network.springs[s].stiffness * A.length(s);
     }
-  const std::vector<double> start = w;
-  Values target(network.nodes()), met = target, missing = target, y = target;
+  const std::vector<double> D = w;
+  Eigen::VectorXd target = Eigen::VectorXd::Zero(per_node * network.nodes()), met;
   for (int n = 0; n < network.nodes(); ++n) {
     if (A.group[network.master(n)] == n)
-      for (int d = 0; d < dimensions; ++d) target.moment[6 * n + d] = volume[n];
-    target.pull.segment<3>(3 * network.master(n)) += volume_gradient.row(n).transpose() / (A.unit * A.unit);
+      for (int d = 0; d < dimensions; ++d) target[per_node * n + d] = volume[n];
+    target.segment<3>(per_node * network.master(n) + 6) += volume_gradient.row(n).transpose() / (A.unit * A.unit);
   }
-  const auto take_missing = [&] {
-    A.apply(w, met);
-    missing.moment = target.moment - met.moment;
-    missing.pull = target.pull - met.pull;
-    return missing.norm();
+  A.apply(w, met);
+  Eigen::VectorXd diagonal(target.size());
+  const std::vector<Block> inverse = A.inverse_blocks(D, diagonal);
+  std::vector<double> scratch;
+  double slack = 0;  // of the conditions, as a fraction of what a unit change of a node's weights does to them
+  const Operator normal = [&](const Eigen::VectorXd& y, Eigen::VectorXd& r) {
+    A.transpose(y, D, scratch);
+    A.apply(scratch, r);
+    if (slack > 0) r += slack * diagonal.cwiseProduct(y);
   };
-  const double first = take_missing();
+  const Operator jacobi = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    z.resize(r.size());
+    for (int n = 0; n < network.nodes(); ++n)
+      z.segment<per_node>(per_node * n) = inverse[n] * r.segment<per_node>(per_node * n);
+  };
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(target.size());
   DispersionWeights result;
-  const auto correct = [&](double slack, double tolerance, int max_iterations) {
-    w = start;
-    take_missing();
-    A.prepare(start, slack);
-    result.iterations = A.solve(missing, tolerance, max_iterations, y).iterations;
-    A.add_transpose(y, w);
-    return take_missing();
-  };
-  if (first > 1e-13 * target.norm()) {
+  const Eigen::VectorXd missing = target - met;
+  if (missing.norm() > 1e-13 * target.norm()) {
     // At a disordered surface some conditions contradict each other; on a lattice or without a surface they do not.
     const bool consistent = is_lattice(network) || !network.image_of.empty();
-    if (!consistent || !(correct(0, 1e-12 * target.norm(), 2000) < 1e-6 * first)) correct(smallest_slack, 1e-6 * first, 2000);
+    KrylovResult k;
+    k.residual = 1;
+    if (consistent) k = conjugate_gradients(normal, jacobi, missing, 1e-12 * target.norm() / missing.norm(), 500, y);
+    if (!(k.residual < 1e-6)) {
+      slack = smallest_slack;
+      y.setZero();
+      k = conjugate_gradients(normal, jacobi, missing, 1e-6, 2000, y);
+    }
+    result.iterations = k.iterations;
+    A.transpose(y, D, change);
+    for (std::size_t e = 0; e < w.size(); ++e) w[e] += change[e];
   }
-  result.residual = missing.norm() / target.norm();
+  A.apply(w, met);
+  result.residual = (target - met).norm() / target.norm();
   if (!(result.residual < largest_residual))
     throw std::runtime_error(fmt::format("the dispersion weights cannot be made exact (residual {:.1e}): too few springs at too many nodes", result.residual));
   const double scale = 2 * (dimensions + 2) * shear_modulus * A.unit * A.unit;
