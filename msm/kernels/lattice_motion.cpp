@@ -296,7 +296,8 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
                                     layout_.row_blocks, layout_.first_run.data(), layout_.runs.data(), layout_.spring_entry.data(),
                                     springs_.data(), node_entry_.data(), nodes_.data(), bounded_, hourglass_, J_.data(),
                                     layout_.inflow_entry.data(), inflow_.data(),
-                                    (own_outflow ? layout_.outflow_entry : layout_.inflow_entry).data(), (own_outflow ? outflow_ : inflow_).data(), static_cast<Real>(layout_.outflow_sign), inverse_lengths_.data(), inflow_ahead_ + 1};
+                                    (own_outflow ? layout_.outflow_entry : layout_.inflow_entry).data(), (own_outflow ? outflow_ : inflow_).data(),
+                                    static_cast<Real>(layout_.outflow_sign), inverse_lengths_.data(), inflow_ahead_ + 1};
     std::vector<LatticeSums> sums(workers_.count(), {0, 0});
     workers_.run([&](int worker) {
       for (long n = 0; n < steps; ++n) step_of_slab(worker, steps_done_ + n, view, n + 1 < steps ? step : last, sums[worker]);

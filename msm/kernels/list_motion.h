@@ -11,7 +11,8 @@ struct ListMotionOptions {
   double time_step = 0;  ///< [s]
   double damping = 0;    ///< [1/s]
   bool lagged = false;   ///< nodes disperse the J of the step before
-  int threads = 1;       ///< of advance() by several steps; at most one per three layers or so of nodes; momentum dispersion has one
+  int threads = 1;       ///< of advance() by several steps; at most one per three layers or so of nodes; momentum dispersion has one.
+                         ///< Two gain little, if anything (docs/performance.md)
   InstructionSet instructions = instruction_set();
 };
 

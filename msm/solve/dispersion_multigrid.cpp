@@ -1,6 +1,7 @@
 #include "msm/solve/dispersion_multigrid.h"
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 #include "msm/calibrate.h"

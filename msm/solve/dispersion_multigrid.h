@@ -9,7 +9,8 @@ namespace springproof {
 
 /// The saddle-point system  [K_s B^T; B -C] (u, p) = (f, g)  of springs K_s and dispersion's nodal volumes (NodalVolumes).
 /// Inexact Braess-Sarazin sweeps on the lattice itself, in single precision; below it the mixed cycle of HybMSS cells of
-/// twice the edge, with a pressure per cell, springs of the same moduli and the bulk modulus that dispersion adds.
+/// twice the edge, with a pressure per cell, springs of the same moduli and the bulk modulus that dispersion adds;
+/// forces go down to it, displacements come back, pressures stay.
 /// Displacements are 3 per node of the network, pressures and g one per node, 0 where a node has no volume of its own; all
 /// in units of (shear modulus, cell edge).
 class DispersionMultigrid {
@@ -32,7 +33,7 @@ class DispersionMultigrid {
   void bound_schur();
   void schur_step(const ChebyshevStep& step);  ///< r -= S z; z = a z + b D r; q += z
   void sweep(bool from_zero);
-  void residual();                             ///< d = f - K_s u - B^T p, zero on fixed; B u
+  void residual();                             ///< d = f - K_s u - B^T p
   void correct_thin_parts();
   void cycle();                                ///< (u, p) of (f, g)
   void multiply_rows(const double* x, double* y);
