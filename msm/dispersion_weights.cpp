@@ -46,6 +46,23 @@ struct Conditions {
   int end(std::size_t s, int side) const { return network.master(side == 0 ? network.springs[s].i : network.springs[s].j); }
   int sink(std::size_t s, int side) const { return group[end(s, side)]; }
 
+  Eigen::VectorXd target(const NodalVectors& volume_gradient, int dimensions) const {
+    Eigen::VectorXd t = Eigen::VectorXd::Zero(per_node * network.nodes());
+    for (int n = 0; n < network.nodes(); ++n) {
+      const int master = network.master(n), to = group[master];
+      for (int d = 0; d < dimensions; ++d) t[per_node * to + d] += network.volume[n] / std::pow(unit, 3);
+      t.segment<3>(per_node * master + 6) += volume_gradient.row(n).transpose() / (unit * unit);
+    }
+    return t;
+  }
+
+  /// |target - A w| / |target|.
+  double residual(const std::vector<double>& w, const Eigen::VectorXd& target) const {
+    Eigen::VectorXd met;
+    apply(w, met);
+    return (target - met).norm() / target.norm();
+  }
+
   /// r = A w.
   void apply(const std::vector<double>& w, Eigen::VectorXd& r) const {
     r.setZero(per_node * network.nodes());
@@ -99,16 +116,76 @@ struct Conditions {
   }
 };
 
-}  // namespace
-
-namespace {
-
 /// A lattice has springs of three lengths at most.
 bool is_lattice(const Network& network) {
   std::set<long> lengths;
   for (const Spring& s : network.springs)
     if (lengths.insert(std::lround(1e6 * std::log(s.rest_length))).second && lengths.size() > 3) return false;
   return true;
+}
+
+/// An eighth of each cell's volume to each of its corners, by the three edges there: per spring end k of the edges, nothing of the diagonals.
+std::vector<double> edge_weights(const Network& network, double unit) {
+  std::vector<double> w;
+  double sum = 0;
+  for (const Spring& s : network.springs) {
+    const double k = s.rest_length < 1.1 * network.cell_edge ? s.stiffness : 0;
+    w.insert(w.end(), 2, k);
+    sum += 2 * k * s.rest_length;
+  }
+  for (double& e : w) e *= 3 * network.volume.sum() / (unit * unit * sum);
+  return w;
+}
+
+/// k L, each node's scaled to its volume: trace of sum w L n n^T = d V_n.
+std::vector<double> stiffness_weights(const Conditions& A, const Eigen::VectorXd& target, int dimensions) {
+  const auto& springs = A.network.springs;
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(A.network.nodes());
+  for (std::size_t s = 0; s < springs.size(); ++s)
+    for (int side = 0; side < 2; ++side) share[A.sink(s, side)] += springs[s].stiffness * A.length(s) * A.length(s);
+  std::vector<double> w;
+  for (std::size_t s = 0; s < springs.size(); ++s)
+    for (int side = 0; side < 2; ++side) {
+      const int n = A.sink(s, side);
+      w.push_back(dimensions * target[per_node * n] / share[n] * springs[s].stiffness * A.length(s));
+    }
+  return w;
+}
+
+/// Least change of w, relative to w, that meets the conditions.  Returns the iterations.
+int correct(const Conditions& A, const Eigen::VectorXd& target, std::vector<double>& w) {
+  const std::vector<double> D = w;
+  Eigen::VectorXd met, diagonal(target.size());
+  A.apply(w, met);
+  const Eigen::VectorXd missing = target - met;
+  if (!(missing.norm() > 1e-13 * target.norm())) return 0;
+  const std::vector<Block> inverse = A.inverse_blocks(D, diagonal);
+  std::vector<double> change;
+  double slack = 0;  // of the conditions, as a fraction of what a unit change of a node's weights does to them
+  const Operator normal = [&](const Eigen::VectorXd& y, Eigen::VectorXd& r) {
+    A.transpose(y, D, change);
+    A.apply(change, r);
+    if (slack > 0) r += slack * diagonal.cwiseProduct(y);
+  };
+  const Operator jacobi = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    z.resize(r.size());
+    for (int n = 0; n < A.network.nodes(); ++n)
+      z.segment<per_node>(per_node * n) = inverse[n] * r.segment<per_node>(per_node * n);
+  };
+  // At a disordered surface some conditions contradict each other; on a lattice or without a surface they do not.
+  const bool consistent = is_lattice(A.network) || !A.network.image_of.empty();
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(target.size());
+  KrylovResult k;
+  k.residual = 1;
+  if (consistent) k = conjugate_gradients(normal, jacobi, missing, 1e-12 * target.norm() / missing.norm(), 500, y);
+  if (!(k.residual < 1e-6)) {
+    slack = smallest_slack;
+    y.setZero();
+    k = conjugate_gradients(normal, jacobi, missing, 1e-6, 2000, y);
+  }
+  A.transpose(y, D, change);
+  for (std::size_t e = 0; e < w.size(); ++e) w[e] += change[e];
+  return k.iterations;
 }
 
 }  // namespace
@@ -142,66 +219,19 @@ std::vector<int> volume_groups(const Network& network) {
 DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus) {
   const Conditions A(network);
   const int dimensions = network.triangles.empty() ? 3 : 2;
-  const std::size_t springs = network.springs.size();
-  // Start from k L, each node's scaled to its volume: trace of sum w L n n^T = d V_n.
-  Eigen::VectorXd share = Eigen::VectorXd::Zero(network.nodes()), volume = share;
-  for (int n = 0; n < network.nodes(); ++n) volume[A.group[network.master(n)]] += network.volume[n] / std::pow(A.unit, 3);
-  for (std::size_t s = 0; s < springs; ++s)
-    for (int side = 0; side < 2; ++side) share[A.sink(s, side)] += network.springs[s].stiffness * A.length(s) * A.length(s);
-  std::vector<double> w(2 * springs), change;
-  for (std::size_t s = 0; s < springs; ++s)
-    for (int side = 0; side < 2; ++side) {
-      const int n = A.sink(s, side);
-      w[2 * s + side] = dimensions * volume[n] / share[n] * network.springs[s].stiffness * A.length(s);
-    }
-  const std::vector<double> D = w;
-  Eigen::VectorXd target = Eigen::VectorXd::Zero(per_node * network.nodes()), met;
-  for (int n = 0; n < network.nodes(); ++n) {
-    if (A.group[network.master(n)] == n)
-      for (int d = 0; d < dimensions; ++d) target[per_node * n + d] = volume[n];
-    target.segment<3>(per_node * network.master(n) + 6) += volume_gradient.row(n).transpose() / (A.unit * A.unit);
-  }
-  A.apply(w, met);
-  Eigen::VectorXd diagonal(target.size());
-  const std::vector<Block> inverse = A.inverse_blocks(D, diagonal);
-  std::vector<double> scratch;
-  double slack = 0;  // of the conditions, as a fraction of what a unit change of a node's weights does to them
-  const Operator normal = [&](const Eigen::VectorXd& y, Eigen::VectorXd& r) {
-    A.transpose(y, D, scratch);
-    A.apply(scratch, r);
-    if (slack > 0) r += slack * diagonal.cwiseProduct(y);
-  };
-  const Operator jacobi = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    z.resize(r.size());
-    for (int n = 0; n < network.nodes(); ++n)
-      z.segment<per_node>(per_node * n) = inverse[n] * r.segment<per_node>(per_node * n);
-  };
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(target.size());
+  const Eigen::VectorXd target = A.target(volume_gradient, dimensions);
   DispersionWeights result;
-  const Eigen::VectorXd missing = target - met;
-  if (missing.norm() > 1e-13 * target.norm()) {
-    // At a disordered surface some conditions contradict each other; on a lattice or without a surface they do not.
-    const bool consistent = is_lattice(network) || !network.image_of.empty();
-    KrylovResult k;
-    k.residual = 1;
-    if (consistent) k = conjugate_gradients(normal, jacobi, missing, 1e-12 * target.norm() / missing.norm(), 500, y);
-    if (!(k.residual < 1e-6)) {
-      slack = smallest_slack;
-      y.setZero();
-      k = conjugate_gradients(normal, jacobi, missing, 1e-6, 2000, y);
-    }
-    result.iterations = k.iterations;
-    A.transpose(y, D, change);
-    for (std::size_t e = 0; e < w.size(); ++e) w[e] += change[e];
+  result.group = A.group;
+  result.weight = edge_weights(network, A.unit);
+  if (!(A.residual(result.weight, target) < 1e-9)) {
+    result.weight = stiffness_weights(A, target, dimensions);
+    result.iterations = correct(A, target, result.weight);
   }
-  A.apply(w, met);
-  result.residual = (target - met).norm() / target.norm();
+  result.residual = A.residual(result.weight, target);
   if (!(result.residual < largest_residual))
     throw std::runtime_error(fmt::format("the dispersion weights cannot be made exact (residual {:.1e}): too few springs at too many nodes", result.residual));
   const double scale = 2 * (dimensions + 2) * shear_modulus * A.unit * A.unit;
-  for (double& e : w) e *= scale;
-  result.weight = std::move(w);
-  result.group = A.group;
+  for (double& e : result.weight) e *= scale;
   return result;
 }
 

@@ -19,12 +19,15 @@ struct DispersionWeights {
 /// Per node the node whose J it shares.
 std::vector<int> volume_groups(const Network& network);
 
-/// Weights w nearest to k L (in the sum of (w - k L)^2 / (k L)) with two properties, up to a factor 10 G:
+/// Weights w with two properties, up to a factor 10 G:
 ///  - under any affine displacement, J_n = V_n div u (V_n the volume share of the group): no node answers to shear;
 ///  - for any displacement, sum_n J_n is the body's change of volume to first order, `volume_gradient` . u: uniform
 ///    pressure is in equilibrium at every node.
 /// With w = k L the first fails at edges and corners and on disordered nodes, the second on disordered nodes, where the
 /// network relaxes the pressure away.
+/// Superposed cells meet both with w = k c on their edges and none on their diagonals, in any body: each cell gives an eighth
+/// of its volume to each corner by the three edges there.  Other networks get the weights nearest to k L, in the sum of
+/// (w - k L)^2 / (k L).
 /// @param volume_gradient dV/dx of the body at the nodes [m^2], n x 3; zero for periodic networks.
 /// Planar networks: J_n = V_n (the in-plane divergence), the factor is 8 G.
 /// Nodes at the surface of a disordered network may have too few springs to meet all; then all are met as nearly as a

@@ -61,7 +61,7 @@ void inflow_between(const Row<Real>& o, const Row<Real>& r, Real* J_o, Real* J_r
 
 template <int pair, class Real>
 void inflow_of_pair(const LatticeView<Real>& l, int y, int z, const Coefficients<Real>& c, const LatticeRun& run) {
-  const unsigned kinds = run.springs >> (3 * pair - 2) & 7;
+  const unsigned kinds = run.flows >> (3 * pair - 2) & 7;
   const Row<Real> o = row_of(l, y, z), r = row_of(l, y + row_pairs[pair][0], z + row_pairs[pair][1]);
   Real *J_o = l.J + (long(z) * l.rows + y) * l.row, *J_r = J_o + (row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows) * l.row;
   Real* kept = inverse_lengths(l, y, z);
@@ -80,7 +80,7 @@ void inflow(const LatticeView<Real>& l, int z) {
     const Coefficients<Real> c = {l.inflow_entry + row * l.row_blocks, l.inflow};
     for (int number = l.first_run[row]; number < l.first_run[row + 1]; ++number) {
       const LatticeRun& run = l.runs[number];
-      if (run.springs & 1) inflow_along(row_of(l, y, z), l.J + row * l.row, inverse_lengths(l, y, z), c, run.begin, run.end);
+      if (run.flows & 1) inflow_along(row_of(l, y, z), l.J + row * l.row, inverse_lengths(l, y, z), c, run.begin, run.end);
       inflow_of_pair<1>(l, y, z, c, run);
       inflow_of_pair<2>(l, y, z, c, run);
       inflow_of_pair<3>(l, y, z, c, run);

@@ -48,9 +48,9 @@ void springs_along(const Row<Real>& o, const ForceRow<Real>& on_o, const Coeffic
 }
 
 /// Springs to another row, (dy, dz) away.
-template <int pair, bool straight, bool slanted, class Real, class Dispersion>
+template <int pair, bool straight, bool slanted, class Real, class OfStraight, class OfSlanted>
 void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real>& on_o, const ForceRow<Real>& on_r,
-                     const Coefficients<Real>& c, const Dispersion& dispersion, int begin, int end) {
+                     const Coefficients<Real>& c, const OfStraight& of_straight, const OfSlanted& of_slanted, int begin, int end) {
   constexpr int dy = row_pairs[pair][0], dz = row_pairs[pair][1], axes = dy * dy + dz * dz, first = 1 + 3 * (pair - 1);
   Force<Real> rising, falling;  // of the block before, on r and on o
   for (int b = begin; b < end; ++b) {
@@ -61,17 +61,17 @@ void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real
     Force<Real> f_o, f_r;
     if constexpr (straight) {
       const Lanes<Real> x = rx - ox, y = ry - oy, z = rz - oz;
-      const Lanes<Real> t = tension_per_length<axes>(coefficient(k, first), x, y, z, dispersion, b, first, n, n);
+      const Lanes<Real> t = tension_per_length<axes>(coefficient(k, first), x, y, z, of_straight, b, first, n, n);
       add(f_o, t, x, y, z);
       subtract(f_r, t, x, y, z);
     }
     if constexpr (slanted) {
       Lanes<Real> x = load(r.x + n + 1) - ox + Real(1), y = load(r.y + n + 1) - oy, z = load(r.z + n + 1) - oz;
-      Lanes<Real> t = tension_per_length<axes + 1>(coefficient(k, first + 1), x, y, z, dispersion, b, first + 1, n, n + 1);
+      Lanes<Real> t = tension_per_length<axes + 1>(coefficient(k, first + 1), x, y, z, of_slanted, b, first + 1, n, n + 1);
       add(f_o, t, x, y, z);
       const Force<Real> up = {t * x, t * y, t * z};
       x = rx - load(o.x + n + 1) - Real(1), y = ry - (load(o.y + n + 1) - Real(dy)), z = rz - (load(o.z + n + 1) - Real(dz));
-      t = tension_per_length<axes + 1>(coefficient(k, first + 2), x, y, z, dispersion, b, first + 2, n + 1, n);
+      t = tension_per_length<axes + 1>(coefficient(k, first + 2), x, y, z, of_slanted, b, first + 2, n + 1, n);
       subtract(f_r, t, x, y, z);
       const Force<Real> down = {t * x, t * y, t * z};
       f_o = sum(f_o, shifted(falling, down));
@@ -152,39 +152,42 @@ struct Neighbours {
   ForceRow<Real> on[lattice_pairs];
 };
 
-template <int pair, class Real, class Dispersion>
-void pair_of_rows(const Neighbours<Real>& n, const Coefficients<Real>& c, const Dispersion& dispersion, const LatticeRun& run) {
+template <int pair, class Real, class OfStraight, class OfSlanted>
+void pair_of_rows(const Neighbours<Real>& n, const Coefficients<Real>& c, const OfStraight& of_straight, const OfSlanted& of_slanted,
+                  const LatticeRun& run) {
   const unsigned kinds = run.springs >> (3 * pair - 2) & 7;
   const Row<Real>&o = n.at[0], &r = n.at[pair];
   const ForceRow<Real>&on_o = n.on[0], &on_r = n.on[pair];
   if (kinds == 0) return;
-  if (kinds == 1) return springs_between<pair, true, false>(o, r, on_o, on_r, c, dispersion, run.begin, run.end);
-  if (kinds % 2 == 0) return springs_between<pair, false, true>(o, r, on_o, on_r, c, dispersion, run.begin, run.end);
-  springs_between<pair, true, true>(o, r, on_o, on_r, c, dispersion, run.begin, run.end);
+  if (kinds == 1) return springs_between<pair, true, false>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
+  if (kinds % 2 == 0) return springs_between<pair, false, true>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
+  springs_between<pair, true, true>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
 }
 
-/// `dispersion_to(pair)`: of the springs to that row.
-template <class Real, class DispersionTo>
-void springs_of_run(const Neighbours<Real>& r, const Coefficients<Real>& c, const LatticeRun& run, const DispersionTo& dispersion_to) {
-  if (run.springs & 1) springs_along(r.at[0], r.on[0], c, dispersion_to(0), run.begin, run.end);
-  pair_of_rows<1>(r, c, dispersion_to(1), run);
-  pair_of_rows<2>(r, c, dispersion_to(2), run);
-  pair_of_rows<3>(r, c, dispersion_to(3), run);
-  pair_of_rows<4>(r, c, dispersion_to(4), run);
+/// What the springs of row (y, z) to one of its pairs get by dispersion.
+template <class Real>
+Dispersed<Real> dispersed(const LatticeView<Real>& l, int y, int z, int pair) {
+  const long row = long(z) * l.rows + y, other = row + row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows;
+  return {l.J + row * l.row, l.J + other * l.row, inverse_lengths(l, y, z), l.row, {l.outflow_entry + row * l.row_blocks, l.outflow}, l.outflow_sign};
+}
+
+template <int pair, class Real>
+void pair_of_rows(const LatticeView<Real>& l, const Neighbours<Real>& n, const Coefficients<Real>& c, int y, int z, const LatticeRun& run) {
+  const unsigned flows = run.flows >> (3 * pair - 2) & 7;
+  if (flows == 0) return pair_of_rows<pair>(n, c, Undispersed{}, Undispersed{}, run);
+  const Dispersed<Real> d = dispersed(l, y, z, pair);
+  if (flows == 1) return pair_of_rows<pair>(n, c, d, Undispersed{}, run);
+  pair_of_rows<pair>(n, c, d, d, run);
 }
 
 template <class Real>
 void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const Coefficients<Real>& c, int y, int z, const LatticeRun& run) {
-  if (l.J) {
-    const long row = long(z) * l.rows + y;
-    const Coefficients<Real> out = {l.outflow_entry + row * l.row_blocks, l.outflow};
-    springs_of_run(r, c, run, [&](int pair) {
-      const long other = row + row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows;
-      return Dispersed<Real>{l.J + row * l.row, l.J + other * l.row, inverse_lengths(l, y, z), l.row, out, l.outflow_sign};
-    });
-  } else {
-    springs_of_run(r, c, run, [](int) { return Undispersed{}; });
-  }
+  if (run.flows & 1) springs_along(r.at[0], r.on[0], c, dispersed(l, y, z, 0), run.begin, run.end);
+  else if (run.springs & 1) springs_along(r.at[0], r.on[0], c, Undispersed{}, run.begin, run.end);
+  pair_of_rows<1>(l, r, c, y, z, run);
+  pair_of_rows<2>(l, r, c, y, z, run);
+  pair_of_rows<3>(l, r, c, y, z, run);
+  pair_of_rows<4>(l, r, c, y, z, run);
   if (!run.volume && !run.hourglass) return;
   const Row<Real> rows[4] = {r.at[0], r.at[1], r.at[3], r.at[4]};
   const ForceRow<Real> on[4] = {r.on[0], r.on[1], r.on[3], r.on[4]};

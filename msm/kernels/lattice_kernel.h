@@ -21,6 +21,7 @@ constexpr int node_coefficients = 6;     ///< 1 / mass of the three unknowns (0 
 struct LatticeRun {
   int begin, end;
   unsigned springs;   ///< bit d: there are springs of direction d
+  unsigned flows;     ///< the same of those that take part in momentum dispersion; of a pair's, the straight ones with the others
   bool volume, hourglass;  ///< there are cells that start from this row and correct their volume, their hourglass modes
 };
 

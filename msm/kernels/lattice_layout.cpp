@@ -196,12 +196,28 @@ void add_flows(const MomentumDispersion& law, const Network& network, LatticeLay
   l.inflow_entry = flow_coefficients_of(c.in, network, l).table(l.inflow);
 }
 
-/// Adds the runs of a row, given the coefficients of its blocks and which of them hold nodes.
-void add_runs(const LatticeLayout& l, const double* row, const char* has_node, std::vector<LatticeRun>& runs) {
+/// Per block of the lattice the directions whose springs have coefficients: where in tables there are any but 0.
+void mark_flows(const LatticeLayout& l, const std::vector<int>& entries, const std::vector<double>& table, std::vector<unsigned>& flows) {
+  for (std::size_t b = 0; b < entries.size(); ++b)
+    for (int c = 0; c < flow_coefficients * l.lanes; ++c)
+      if (table[entries[b] + c] != 0) flows[b] |= 1u << c / l.lanes / 2;
+}
+
+/// Where a pair's slanted springs take part in dispersion its straight ones do: the kernels have no case for less.
+unsigned with_straight_flows(const LatticeRun& run) {
+  unsigned flows = run.flows;
+  for (int pair = 1; pair < lattice_pairs; ++pair)
+    if (flows >> (3 * pair - 2) & 6) flows |= run.springs & 1u << (3 * pair - 2);
+  return flows;
+}
+
+/// Adds the runs of a row, given the coefficients of its blocks, their flows, and which of them hold nodes.
+void add_runs(const LatticeLayout& l, const double* row, const unsigned* flows, const char* has_node, std::vector<LatticeRun>& runs) {
+  const auto first = runs.size();
   bool open = false, crossing = false;  // crossing: the block before has springs or cells that end in this one
   for (int b = 0; b < l.row_blocks; ++b) {
     const double* block = row + std::size_t(b) * lattice_coefficients * l.lanes;
-    LatticeRun found = {b, b + 1, 0, false, false};
+    LatticeRun found = {b, b + 1, 0, flows[b], false, false};
     bool crosses = false;
     for (int d = 0; d < lattice_coefficients; ++d)
       for (int lane = 0; lane < l.lanes; ++lane) {
@@ -214,6 +230,7 @@ void add_runs(const LatticeLayout& l, const double* row, const char* has_node, s
     if (active && open) {
       runs.back().end = b + 1;
       runs.back().springs |= found.springs;
+      runs.back().flows |= found.flows;
       runs.back().volume = runs.back().volume || found.volume;
       runs.back().hourglass = runs.back().hourglass || found.hourglass;
     } else if (active) {
@@ -222,6 +239,7 @@ void add_runs(const LatticeLayout& l, const double* row, const char* has_node, s
     open = active;
     crossing = crosses;
   }
+  for (auto run = runs.begin() + first; run != runs.end(); ++run) run->flows = with_straight_flows(*run);
 }
 
 }  // namespace
@@ -275,9 +293,12 @@ LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_
   const BlockCoefficients coefficients = spring_coefficients(model, l);
   l.spring_entry = coefficients.table(l.springs);
   if (const MomentumDispersion* dispersion = dispersion_of(model)) add_flows(*dispersion, network, l);
+  std::vector<unsigned> flows(l.spring_entry.size(), 0);
+  mark_flows(l, l.inflow_entry, l.inflow, flows);
+  mark_flows(l, l.outflow_entry, l.outflow, flows);
   l.first_run.push_back(0);
   for (long row = 0; row < l.rows(); ++row) {
-    add_runs(l, coefficients.block(row * l.row_blocks), &has_node[row * l.row_blocks], l.runs);
+    add_runs(l, coefficients.block(row * l.row_blocks), &flows[row * l.row_blocks], &has_node[row * l.row_blocks], l.runs);
     l.first_run.push_back(static_cast<int>(l.runs.size()));
   }
   return l;

@@ -131,7 +131,8 @@ std::vector<double> MomentumDispersion::stiffness_bound(const Network& network, 
   std::vector<double> k(c.in.size());
   for (std::size_t s = 0; s < k.size(); ++s) {
     const Spring& spring = network.springs[s];
-    k[s] = spring.stiffness * (R[sink(network, spring.i)] + R[sink(network, spring.j)]);
+    for (int end = 0; end < 2; ++end)
+      if (c.in[s][end] != 0 || c.out[s][end] != 0) k[s] += spring.stiffness * R[sink(network, end == 0 ? spring.i : spring.j)];
   }
   return k;
 }
