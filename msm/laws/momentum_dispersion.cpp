@@ -163,6 +163,7 @@ void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x,
     const Spring& s = network.springs[n];
     const Vec3 e = (x.row(s.j) - x.row(s.i)).transpose().normalized();
     for (int end = 0; end < 2; ++end) {
+      if (c.in[n][end] == 0 && c.out[n][end] == 0) continue;
       const int node = sink(network, end == 0 ? s.i : s.j);
       for (int d = 0; d < 3; ++d) {
         in.emplace_back(node, 3 * s.j + d, c.in[n][end] * e[d]);

@@ -96,7 +96,7 @@ NodalVolumes::NodalVolumes(const MassSpringModel& model, const LatticeLevels& la
     for (int slot = 0; slot < slots; ++slot)
       for (long p = row; p < end; ++p) {
         const int s = at.spring[slots * p + slot];
-        if (s < 0) continue;
+        if (s < 0 || (c.in[s][0] == 0 && c.in[s][1] == 0)) continue;
         const long j = at.other[slots * p + slot], next = static_cast<long>(weight_i.size());
         const bool goes_on = p > row && !runs.empty() && runs.back().direction == slot && runs.back().i + runs.back().length == p &&
                              runs.back().j + runs.back().length == j && runs.back().length < longest_cell_row;
