@@ -220,7 +220,7 @@ std::vector<SecondOpinion> compare_opinions(const Opinion& calculix, const Opini
     if (const auto other = ours.values.find(measure); other != ours.values.end())
       rows.push_back(second_opinion(measure, value, other->second));
   SecondOpinion field = second_opinion(field_measure, largest(calculix.field), largest(ours.field));
-  field.unit = "m";
+  field.unit = std::string(1, 'm');
   field.difference = (calculix.field.displacement - ours.field.displacement).rowwise().norm().maxCoeff();
   field.agrees = field.difference <= field.calculix.uncertainty + field.ours.uncertainty;
   rows.push_back(field);

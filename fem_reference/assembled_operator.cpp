@@ -306,14 +306,14 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
   spaces_->assemble_stiffness(deformed_by, *smoothed_);
   const dealii::Mapping<3>& mapping = *system_.body.mapping;
   if (!coarse_) {
-    multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping, spaces_->u);
+    multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping, spaces_->u, system_.most_factored);
     return;
   }
   DofVector at_corners;
   if (deformed_by) at_corners = coarse_->restricted(*spaces_, *deformed_by);
   coarse_->spaces.assemble_stiffness(deformed_by ? &at_corners : nullptr, *coarse_->matrix);
   multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping,
-                                           LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler});
+                                           LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler}, system_.most_factored);
 }
 
 void AssembledOperator::assemble_mass() {
@@ -463,9 +463,9 @@ CellPressures AssembledOperator::pressures(const MixedVector& x) const {
 
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
   start_mpi();
-  ElasticAnswer answer =
-      solve_linear(AssembledOperator(system, std::nullopt), system, load, displacement);
-  answer.method = system.form == Form::mixed ? "MINRES, algebraic multigrid" : "CG, algebraic multigrid";
+  const AssembledOperator K(system, std::nullopt);
+  ElasticAnswer answer = solve_linear(K, system, load, displacement);
+  answer.method = (system.form == Form::mixed ? "MINRES, " : "CG, ") + K.preconditioner();
   return answer;
 }
 
@@ -474,7 +474,7 @@ FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, co
   start_mpi();
   AssembledOperator K(system, problem.law);
   FiniteAnswer answer = Newton<AssembledOperator>(K, system, problem, load).solve(displacement);
-  answer.method = "Newton, GMRES, algebraic multigrid";
+  answer.method = "Newton, GMRES, " + K.preconditioner();
   return answer;
 }
 

@@ -33,6 +33,8 @@ class AssembledOperator {
   /// Sets the multigrid up for the deformed body, if the one there is has become slow.
   void prepare(const MixedVector& x);
 
+  const std::string& preconditioner() const { return multigrid_->name(); }  ///< of the displacements, for the report
+
  private:
   struct Spaces;
   struct Matrices;

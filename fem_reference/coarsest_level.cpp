@@ -26,7 +26,7 @@ class LinearElements {
     // What multigrid works on: of the mixed form the shear alone.
     const bool mixed = fine.form == Form::mixed;
     system_.emplace(ElasticSystem{*body_, handler_, held_, {}, 1, mixed ? Form::pointwise : fine.form, fine.mu, mixed ? 0 : fine.lambda,
-                                  fine.tolerance, false, false, {}});
+                                  fine.tolerance, false, false, most_factored_rows, {}});
     operator_.emplace(*system_, std::nullopt);
     r_ = z_ = operator_->vector();
   }

@@ -39,6 +39,10 @@ void sum_over_processes(Matrix& m, MPI_Comm comm) {
 /// zero in the cells of other processes.
 using CellPressures = std::vector<std::array<double, 4>>;
 
+/// Factors of 3-D bodies grow with the power 4/3 of the unknowns, their cost with 2; at so many they cost as much as solving
+/// by GAMG a few times, on cubes.  Thin and ragged bodies, where GAMG is at its worst, have the smallest.
+constexpr int most_factored_rows = 40000;
+
 struct ElasticSystem {
   const Body3& body;
   const dealii::DoFHandler<3>& dof_handler;         ///< with level degrees of freedom, if solved without a matrix
@@ -51,6 +55,7 @@ struct ElasticSystem {
   double tolerance;   ///< relative residual
   bool wide_vectors;  ///< where the processor has them
   bool plain_gamg;    ///< with matrices: no level of linear elements
+  int most_factored;  ///< with matrices: rows up to which that of linear elements is factored
   std::function<void(LevelVector& x, const LevelVector& r)> below = {};  ///< a correction of the coarsest level by something coarser;
                                                                         ///  empty: nothing is
 };

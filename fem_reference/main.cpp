@@ -142,6 +142,9 @@ bool solve_case(const Options& options) {
   Request request;
   request.experiment = read_experiment(options.case_file);
   request.tolerance = options.tolerance;
+  if (request.experiment.body.is_voxels())
+    throw InputError(fmt::format("{}: body.voxels: this program alone solves bodies with cells along their axes; bodies of voxels and the "
+                                 "tetrahedra fitted to them come from `springproof compare`", options.case_file));
   Discretisation grid = options.grid;
   grid.cells = request.experiment.body.cells.front();
   if (!options.cells.empty()) std::copy_n(options.cells.begin(), 3, grid.cells.begin());
@@ -186,7 +189,7 @@ int run(int argc, char** argv) {
   start_processes();
   CLI::App app(
       "Solves an experiment with finite elements (deal.II).  Blocks of hexahedra: matrix-free multigrid; curved\n"
-      "bodies and tetrahedra: algebraic multigrid.  Prints reactions, volume change, displacement and stress at the\n"
+      "bodies and tetrahedra: matrices.  Prints reactions, volume change, displacement and stress at the\n"
       "probes, and what the solver did.");
   Options options;
   app.add_option("case", options.case_file, "experiment, a .toml file");
@@ -207,7 +210,7 @@ int run(int argc, char** argv) {
   const std::map<std::string, Method> methods = {
       {"automatic", Method::automatic}, {"assembled", Method::assembled}, {"gamg", Method::assembled_gamg}};
   app.add_option("--solver", options.method,
-                 "automatic: without a matrix where the cells can be refined, else assembled;\n"
+                 "automatic: without a matrix where the cells can be refined, else assembled, small levels factored;\n"
                  "assembled: matrices, a level of linear elements above algebraic multigrid;\n"
                  "gamg: matrices, algebraic multigrid alone")
       ->transform(CLI::CheckedTransformer(methods));

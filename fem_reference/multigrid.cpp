@@ -54,6 +54,12 @@ MPI_Comm communicator(Mat matrix) {
   return PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
 }
 
+void use_factors(PC preconditioner, Mat matrix) {
+  check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
+  check(PCSetType(preconditioner, PCCHOLESKY));
+  check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
+}
+
 void use_gamg(PC preconditioner, Mat matrix, const dealii::Mapping<3>& mapping,
               const dealii::DoFHandler<3>& dof_handler) {
   check(MatSetBlockSize(matrix, 3));
@@ -61,6 +67,19 @@ void use_gamg(PC preconditioner, Mat matrix, const dealii::Mapping<3>& mapping,
   set_rigid_motions(matrix, mapping, dof_handler);
   check(PCSetType(preconditioner, PCGAMG));
   check(PCSetFromOptions(preconditioner));
+}
+
+/// Factors of a matrix with up to so many rows, GAMG for larger ones.  Returns the name of what is used.
+std::string use_one_of(PC preconditioner, PetscInt most_factored, Mat matrix, const dealii::Mapping<3>& mapping,
+                       const dealii::DoFHandler<3>& dof_handler) {
+  PetscInt rows = 0;
+  check(MatGetSize(matrix, &rows, nullptr));
+  if (rows <= most_factored) {
+    use_factors(preconditioner, matrix);
+    return "Cholesky";
+  }
+  use_gamg(preconditioner, matrix, mapping, dof_handler);
+  return "algebraic multigrid";
 }
 
 }  // namespace
@@ -114,15 +133,16 @@ void SparseMatrix::multiply_transposed_and_add(DofVector& y, const DofVector& x)
   check(MatMultTransposeAdd(matrix_, Wrapped(x), to, to));
 }
 
-Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping,
-                     const dealii::DoFHandler<3>& dof_handler) {
+Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler,
+                     int most_factored) {
   check(PCCreate(communicator(matrix.petsc()), &preconditioner_));
   check(PCSetOperators(preconditioner_, matrix.petsc(), matrix.petsc()));
-  use_gamg(preconditioner_, matrix.petsc(), mapping, dof_handler);
+  name_ = use_one_of(preconditioner_, most_factored, matrix.petsc(), mapping, dof_handler);
   check(PCSetUp(preconditioner_));
 }
 
-Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear) {
+Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear,
+                     int most_factored) {
   check(PCCreate(communicator(matrix.petsc()), &preconditioner_));
   check(PCSetOperators(preconditioner_, matrix.petsc(), matrix.petsc()));
   check(PCSetType(preconditioner_, PCMG));
@@ -132,9 +152,9 @@ Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mappi
   check(PCMGGetCoarseSolve(preconditioner_, &coarse));
   check(KSPSetOperators(coarse, linear.matrix.petsc(), linear.matrix.petsc()));
   check(KSPSetType(coarse, KSPPREONLY));
-  PC gamg = nullptr;
-  check(KSPGetPC(coarse, &gamg));
-  use_gamg(gamg, linear.matrix.petsc(), mapping, linear.dof_handler);
+  PC below = nullptr;
+  check(KSPGetPC(coarse, &below));
+  name_ = "linear elements by " + use_one_of(below, most_factored, linear.matrix.petsc(), mapping, linear.dof_handler);
   check(PCMGGetSmoother(preconditioner_, 1, &smoother));
   check(KSPSetOperators(smoother, matrix.petsc(), matrix.petsc()));
   check(KSPSetType(smoother, KSPCHEBYSHEV));

@@ -6,6 +6,7 @@
 #include <deal.II/fe/mapping.h>
 #include <petscksp.h>
 
+#include <string>
 #include <vector>
 
 #include "fem_reference/elastic_system.h"
@@ -44,21 +45,24 @@ struct LinearLevel {
   const dealii::DoFHandler<3>& dof_handler;
 };
 
-/// One V-cycle: GAMG, smoothed aggregation that knows the rigid motions; of quadratic elements after a level of linear
-/// ones, which makes the set-up several times cheaper.  Symmetric, positive definite if the matrices are.
+/// One V-cycle: GAMG, smoothed aggregation that knows the rigid motions, or factors of a small matrix; of quadratic elements
+/// after a level of linear ones, which makes the set-up several times cheaper.  Symmetric, positive definite if the matrices are.
 class Multigrid {
  public:
-  /// Rows as the degrees of freedom of the handler, three per node; the matrices must outlive the preconditioner.
-  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler);
-  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear);
+  /// Rows as the degrees of freedom of the handler, three per node; the matrices must outlive the preconditioner.  Linear
+  /// elements are factored up to so many rows.
+  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler, int most_factored);
+  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear, int most_factored);
   ~Multigrid();
   Multigrid(const Multigrid&) = delete;
   Multigrid& operator=(const Multigrid&) = delete;
 
   void vmult(DofVector& y, const DofVector& x) const;
+  const std::string& name() const { return name_; }  ///< for the report
 
  private:
   PC preconditioner_ = nullptr;
+  std::string name_;
 };
 
 }  // namespace springproof::fem

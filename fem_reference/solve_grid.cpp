@@ -105,6 +105,7 @@ struct Discrete {
                problem.tolerance,
                problem.wide_vectors,
                problem.method == Method::assembled_gamg,
+               problem.method == Method::automatic ? most_factored_rows : 0,
                {}} {
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
     const dealii::IndexSet& owned = dof_handler.locally_owned_dofs();

@@ -37,7 +37,7 @@ std::string error_in(const std::string& log) {
 /// Fortran leaves out the E of an exponent of three digits.
 double number(std::string text) {
   const auto sign = text.find_first_of("+-", 1);
-  if (sign != std::string::npos && text[sign - 1] != 'E') text.insert(sign, "E");
+  if (sign != std::string::npos && text[sign - 1] != 'E') text.insert(sign, 1, 'E');
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (*end != '\0' || text.empty())
