@@ -57,9 +57,12 @@ Problem rabbit(int voxels) {
   return {build_model(resolve(choice), mesh, {youngs_modulus, 0.25, density}), transfer(loads, mesh, density, Kinematics::linear)};
 }
 
+/// The time of a short one is the least of three.
 Equilibrium solve(const Problem& p, LinearSolver solver = LinearSolver::automatic) {
-  Equilibrium e = solve_linear(p.model, p.conditions, {solver, tolerance});
+  const auto once = [&] { return solve_linear(p.model, p.conditions, {solver, tolerance}); };
+  Equilibrium e = once();
   if (!e.ok) throw std::runtime_error(e.message);
+  for (int more = 0; more < 2 && e.seconds < 3; ++more) e.seconds = std::min(e.seconds, once().seconds);
   return e;
 }
 
