@@ -6,12 +6,50 @@
 #include <deal.II/multigrid/mg_constrained_dofs.h>
 #include <deal.II/multigrid/mg_transfer_matrix_free.h>
 
+#include <Eigen/Cholesky>
 #include <memory>
+#include <optional>
 
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/stiffness.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
+
+// The inverse of a small level, found column by column; none if the level is too large, shared by processes, or hardly positive.
+template <typename Level>
+class DenseInverse {
+ public:
+  explicit DenseInverse(const Level& level) {
+    const Eigen::Index n = level.m();
+    auto x = level.vector(), y = level.vector();
+    if (n > largest || x.locally_owned_size() != level.m()) return;
+    Eigen::MatrixXd K(n, n);
+    for (Eigen::Index column = 0; column < n; ++column) {
+      x.local_element(column) = 1;
+      level.vmult(y, x);
+      x.local_element(column) = 0;
+      for (Eigen::Index row = 0; row < n; ++row) K(row, column) = y.local_element(row);
+    }
+    factors_.compute(0.5 * (K + K.transpose()));
+    there_ = factors_.info() == Eigen::Success;
+  }
+  explicit operator bool() const { return there_; }
+
+  template <typename V>
+  void vmult(V& y, const V& x) const {
+    values_.resize(factors_.rows());
+    for (Eigen::Index i = 0; i < values_.size(); ++i) values_[i] = x.local_element(i);
+    factors_.solveInPlace(values_);
+    for (Eigen::Index i = 0; i < values_.size(); ++i) y.local_element(i) = float(values_[i]);
+  }
+
+ private:
+  static constexpr Eigen::Index largest = 1500;
+
+  Eigen::LLT<Eigen::MatrixXd> factors_;
+  mutable Eigen::VectorXd values_;
+  bool there_ = false;
+};
 
 // A symmetric V-cycle in single precision, Chebyshev smoothing.
 template <int degree>
@@ -36,7 +74,7 @@ class VCycle {
       for (const auto i : system.level_constrained[l]) constrained.push_back(i);
       levels_.push_back(std::make_unique<Level>(*system.body.mapping, dof_handler_, l, std::move(constrained), coefficients));
       smoothers_.push_back(std::make_unique<Smoother>());
-      smoothers_.back()->initialize(*levels_.back(), smoother_data(l));
+      prepare(l);
       x_[l] = b_[l] = t_[l] = levels_.back()->vector();
     }
   }
@@ -52,11 +90,16 @@ class VCycle {
     transfer_.interpolate_to_mg(dof_handler_, t_, u);
     for (unsigned int l = 0; l < levels_.size(); ++l) {
       levels_[l]->deform(t_[l]);
-      smoothers_[l]->initialize(*levels_[l], smoother_data(l));
+      prepare(l);
     }
   }
 
  private:
+  void prepare(unsigned int level) {
+    if (level == 0) coarsest_.emplace(*levels_[0]);
+    if (level > 0 || !*coarsest_) smoothers_[level]->initialize(*levels_[level], smoother_data(level));
+  }
+
   typename Smoother::AdditionalData smoother_data(unsigned int level) const {
     typename Smoother::AdditionalData data;
     const bool solves = level == 0 && !below_ && levels_[0]->m() < largest_coarse_system;
@@ -70,6 +113,7 @@ class VCycle {
 
   // x_[l] from b_[l]
   void cycle(unsigned int l) const {
+    if (l == 0 && *coarsest_) return coarsest_->vmult(x_[0], b_[0]);
     smoothers_[l]->vmult(x_[l], b_[l]);
     if (l == 0 && !below_) return;
     levels_[l]->vmult(t_[l], x_[l]);
@@ -95,6 +139,7 @@ class VCycle {
   dealii::MGTransferMatrixFree<3, float> transfer_;
   std::vector<std::unique_ptr<Level>> levels_;
   std::vector<std::unique_ptr<Smoother>> smoothers_;
+  std::optional<DenseInverse<Level>> coarsest_;
   mutable dealii::MGLevelObject<Vector<float>> x_, b_, t_;
   mutable Vector<float> correction_;
 };
