@@ -223,11 +223,12 @@ DispersionWeights volume_weights(const Network& network, const NodalVectors& vol
   DispersionWeights result;
   result.group = A.group;
   result.weight = edge_weights(network, A.unit);
-  if (!(A.residual(result.weight, target) < 1e-9)) {
+  result.residual = A.residual(result.weight, target);
+  if (!(result.residual < 1e-9)) {
     result.weight = stiffness_weights(A, target, dimensions);
     result.iterations = correct(A, target, result.weight);
+    result.residual = A.residual(result.weight, target);
   }
-  result.residual = A.residual(result.weight, target);
   if (!(result.residual < largest_residual))
     throw std::runtime_error(fmt::format("the dispersion weights cannot be made exact (residual {:.1e}): too few springs at too many nodes", result.residual));
   const double scale = 2 * (dimensions + 2) * shear_modulus * A.unit * A.unit;
