@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "fem_reference/elastic_system.h"
+#include "fem_reference/processes.h"
 #include "fem_reference/stiffness.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
@@ -22,7 +23,7 @@ class DenseInverse {
   explicit DenseInverse(const Level& level) {
     const Eigen::Index n = level.m();
     auto x = level.vector(), y = level.vector();
-    if (n > largest || dealii::Utilities::MPI::n_mpi_processes(x.get_mpi_communicator()) > 1) return;  // products are of all processes
+    if (n > largest || process_count() > 1) return;  // products are of all processes
     Eigen::MatrixXd K(n, n);
     for (Eigen::Index column = 0; column < n; ++column) {
       x.local_element(column) = 1;
