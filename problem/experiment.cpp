@@ -206,6 +206,14 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   return reference;
 }
 
+/// A weight needs a mass.
+void require_density(const TomlTable& document, const Experiment& experiment) {
+  const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
+                                  [](const Load& load) { return std::holds_alternative<Gravity>(load); });
+  if (weighs && !TomlTable(document.at("material"), material_schema).find("density_kg_m3"))
+    missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
+}
+
 /// A body force is known for small strains, and only the finite elements take it.
 void check_body_forces(const Experiment& experiment) {
   for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
@@ -234,6 +242,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
       experiment.loads.push_back(load);
       experiment.load_locations.push_back(location_of(value));
     }
+  require_density(document, experiment);
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);
   if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference, experiment.body.is_voxels());
