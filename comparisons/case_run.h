@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "comparisons/patch_mean.h"
 #include "comparisons/results.h"
 #include "meshes/mesh.h"
 #include "msm/models.h"
@@ -32,6 +33,7 @@ struct PreparedCase {
   NodalVectors body_points = NodalVectors(0, 3);    ///< and where its finite elements are asked for their displacement,
   std::vector<BodySample> body_samples;             ///< from which each lattice node takes its own
   std::vector<std::string> notes;                   ///< what was mended or left out of the body
+  std::vector<PatchSamples> patch_samples;          ///< of the body's patches, where mean_displacement is measured
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids
   std::set<std::string> sharing;                    ///< patches whose separate forces are a convention
@@ -53,6 +55,7 @@ struct Part {
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
   std::vector<ErrorSplit> splits;
+  std::vector<Deformation> deformations;
 };
 
 /// Runs everything for experiment.materials[material]; writes one VTU per run into `vtu_folder` (empty: none).

@@ -4,6 +4,7 @@
 
 #include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
+#include "comparisons/reference_grids.h"
 #include "comparisons/voxel_body.h"
 #include "msm/calibrate.h"
 #include "msm/measure/block_moduli.h"
@@ -93,8 +94,7 @@ ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const 
   if (!sample.state.ok) return sample;
   sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  const NodalVectors probes = at_probes(prepared, lattice, sample.field.displacement);
-  sample.scalars = scalar_measures(sample.field, e.probes, probes);
+  sample.scalars = field_measures(prepared, sample.field, at_measured_points(prepared, lattice, sample.field.displacement));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);

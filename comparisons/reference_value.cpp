@@ -43,7 +43,7 @@ double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) {
 TrustedOrder trusted_order(const std::string& measure, const std::string& element, bool smooth) {
   if (!smooth) return {};
   const double degree = element.back() - '0', suspicious = 2 * degree + 0.5;
-  if (measure.starts_with("displacement.")) return {degree + 1, suspicious};
+  if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return {degree + 1, suspicious};
   if (measure.starts_with("stress.")) return {degree, suspicious};
   return {};
 }

@@ -203,6 +203,8 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
     CaseResult result;
     result.experiment = p.experiment;
     result.notes = p.notes;
+    for (std::size_t m = 0; m < p.models.size(); ++m)
+      if (const auto own = own_poisson_ratio(p.models[m].row)) result.own_poisson_ratios[p.experiment.models[m].label] = *own;
     for (const Task& task : tasks) {
       if (task.prepared != &p) continue;
       append(task.part.runs, result.runs);
@@ -211,6 +213,7 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
       append(task.part.pictures, result.pictures);
       append(task.part.lines, result.lines);
       append(task.part.splits, result.splits);
+      append(task.part.deformations, result.deformations);
     }
     judge(result);
     results.push_back(std::move(result));
@@ -242,8 +245,8 @@ nlohmann::json document(const std::vector<CaseResult>& results) {
           {"cases", cases}};
 }
 
-/// Writes everything; returns the number of expectations that do not hold.
-int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
+/// Writes everything; true if every expectation holds and every case was compared.
+bool write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   const nlohmann::json doc = document(results);
   nlohmann::json pictures = nlohmann::json::array();
   for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
@@ -251,12 +254,8 @@ int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   write_file(out / "results.csv", to_csv(results));
   write_report(out / "report.html", doc, pictures);
   const Headline h = headline(doc);
-  fmt::print("\n");
-  for (const ModelVerdict& v : h.models) fmt::print("{:<28} {}\n", v.model, v.sentence);
-  for (const std::string& line : h.failed_runs) fmt::print("no result: {}\n", line);
-  for (const std::string& line : h.failed_checks) fmt::print("FAILED: {}\n", line);
-  fmt::print("\n{}\nreport: {}\n", expectations_sentence(h), (out / "report.html").string());
-  return h.failed + h.no_result + h.no_reference + h.reference_too_coarse;
+  fmt::print("{}report: {}\n", terminal_text(h), (out / "report.html").string());
+  return success(h);
 }
 
 /// @throws InputError if two cases would write the same files, or one no files.
@@ -330,7 +329,7 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
                done, tasks.size(), options.out.string());
     return 130;
   }
-  return write_results(collect(prepared, tasks), options.out) == 0 ? 0 : 1;
+  return write_results(collect(prepared, tasks), options.out) ? 0 : 1;
 }
 
 }  // namespace springproof

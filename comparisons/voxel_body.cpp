@@ -233,11 +233,11 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
   return out;
 }
 
-NodalVectors at_probes(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& displacement) {
+NodalVectors at_measured_points(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& displacement) {
   const Experiment& e = prepared.experiment;
   const Mesh& mesh = *prepared.meshes[lattice];
-  const NodalVectors points = probe_points(e);
-  if (!e.body.is_voxels()) return interpolate(mesh, displacement, points);
+  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // for a probe outside
+  const NodalVectors points = measured_points(prepared);
   const Locator locator(mesh);
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {

@@ -89,6 +89,10 @@ const std::vector<std::string>& mesh_file_extensions() {
   return extensions;
 }
 
+double size_ratio(const Mesh& coarse, const Mesh& fine) {
+  return std::cbrt(double(fine.tetrahedra.size()) / double(coarse.tetrahedra.size()));
+}
+
 MeshedBody mesh_body(const MeshRequest& request) {
   check(request);
   const double seconds = time_limit();
