@@ -194,6 +194,11 @@ GridRatios ratios_of(const ElementGrids& e) {
   return {ratio(0, 1), ratio(1, 2)};
 }
 
+void widen(double spread, ReferenceField& field) {
+  field.uncertainty += spread;
+  field.nodal_uncertainty += spread * field.displacement.rowwise().norm();
+}
+
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
@@ -204,6 +209,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
     limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
                                   noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
                                   trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+  for (auto& [measure, limit] : limits) limit.uncertainty += prepared.load_spread * std::abs(limit.value);
   return limits;
 }
 

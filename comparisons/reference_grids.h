@@ -67,6 +67,9 @@ NodalVectors exact_at_nodes(const PreparedCase& prepared);
 /// By which the cell sizes of the three grids fall; of tetrahedra as their number grows.
 GridRatios ratios_of(const ElementGrids& e);
 
+/// Adds a relative uncertainty.
+void widen(double spread, ReferenceField& field);
+
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);
 

@@ -109,7 +109,8 @@ std::vector<std::string> elements_of(const Experiment& e, char shape) {
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
-  const std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {
     out.elements.push_back({element, {at, at + 3}});
