@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "comparisons/calibration.h"
 #include "comparisons/case_run.h"
 #include "comparisons/headline.h"
 #include "comparisons/part_file.h"
@@ -85,7 +86,7 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
       const std::string key = key_of(p.experiment.file);
       const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
-      const std::string stamp = fmt::format("{} | {} | {} | {} | {:016x}", SPRINGPROOF_VERSION, fem, nu, options.vtu,
+      const std::string stamp = fmt::format("{} | {} | {} | {} | {} | {:016x}", SPRINGPROOF_VERSION, fem, nu, options.vtu, options.finer,
                                             std::hash<std::string>()(p.experiment.text + read_text(p.geo)));
       tasks.push_back({&p, m, options.out / "parts" / (key + "-" + nu + ".cbor"),
                        options.vtu ? options.out / "vtu" / key : fs::path(), stamp,
@@ -112,10 +113,22 @@ Experiment only(const std::vector<double>& wanted, Experiment e) {
   return e;
 }
 
-std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const std::vector<double>& poisson_ratios) {
+/// Multiplies the cells of the reference's grids along each direction, but for layers of one cell.
+/// @throws InputError if the case leaves its reference to the program.
+Experiment finer(int times, Experiment e) {
+  if (times == 1) return e;
+  if (e.reference.cells[0] == 0 && e.reference.edge == 0)
+    throw InputError(fmt::format("--finer: {} leaves its reference grids to the program; give it [reference] cells or edge_m", e.file.string()));
+  for (int& n : e.reference.cells)
+    if (n > 1) n *= times;
+  e.reference.edge /= times;
+  return e;
+}
+
+std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
   for (const fs::path& file : cases) try {
-      if (!interrupted) prepared.push_back(prepare(only(poisson_ratios, read_experiment(file))));
+      if (!interrupted) prepared.push_back(prepare(finer(options.finer, only(options.poisson_ratios, read_experiment(file)))));
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
     }
@@ -210,6 +223,12 @@ nlohmann::json host() {
           {"cores", std::thread::hardware_concurrency()}};
 }
 
+std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
+  std::vector<KnownQuantity> all;
+  for (const CaseResult& r : results) append(known_quantities(r), all);
+  return all;
+}
+
 nlohmann::json document(const std::vector<CaseResult>& results) {
   nlohmann::json cases = nlohmann::json::array();
   for (const CaseResult& r : results) cases.push_back(to_json(r));
@@ -217,7 +236,8 @@ nlohmann::json document(const std::vector<CaseResult>& results) {
   return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", fem}}},
           {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"host", host()},
-          {"cases", cases}};
+          {"cases", cases},
+          {"calibration", calibration_json(known_quantities(results))}};
 }
 
 /// Writes everything; returns the number of expectations that do not hold.
@@ -233,6 +253,7 @@ int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   for (const ModelVerdict& v : h.models) fmt::print("{:<28} {}\n", v.model, v.sentence);
   for (const std::string& line : h.failed_runs) fmt::print("no result: {}\n", line);
   for (const std::string& line : h.failed_checks) fmt::print("FAILED: {}\n", line);
+  fmt::print("\n{}", calibration_table(known_quantities(results)));
   fmt::print("\n{}\nreport: {}\n", expectations_sentence(h), (out / "report.html").string());
   return h.failed + h.no_result + h.no_reference + h.reference_too_coarse;
 }
@@ -271,7 +292,7 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  const std::vector<PreparedCase> prepared = prepare_all(cases, options.poisson_ratios);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (interrupted) {
     fmt::print(stderr, "interrupted before any part was run\n");
     return 130;
