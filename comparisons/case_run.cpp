@@ -99,13 +99,13 @@ void build_reference(PartRun& run) {
     const Mesh& mesh = *run.prepared.meshes[i];
     std::vector<NodalVectors> fields;
     for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
-    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first)), scalars};
+    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), most_converge(scalars)), scalars};
     widen(run.prepared.load_spread, run.reference[i]->field);
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
     ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, f.note,
-                           first.element};
+                           first.element, f.sequence != Sequence::not_converging, f.correlation};
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
       record.values.push_back(displacement_error(fields[g], f.displacement, nodal_volumes(mesh)));

@@ -188,15 +188,26 @@ std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared) 
 }
 
 GridRatios ratios_of(const ElementGrids& e) {
-  const auto is_count = [](const fem::Solution& s) { return s.grid.cells[1] == 0; };   // {n, 0, 0}: n tetrahedra
-  if (!std::all_of(e.grids.begin(), e.grids.end(), is_count)) return {};
-  const auto ratio = [&](int coarse, int fine) { return std::cbrt(double(e.grids[fine].grid.cells[0]) / e.grids[coarse].grid.cells[0]); };
+  const Cells& finest = e.grids[2].grid.cells;
+  const auto refined = is_tetrahedra(finest) ? 3 : std::count_if(finest.begin(), finest.end(), [](int n) { return n > 1; });
+  const auto ratio = [&](int coarse, int fine) {
+    return std::pow(cell_count(e.grids[fine].grid.cells) / cell_count(e.grids[coarse].grid.cells), 1.0 / static_cast<double>(std::max(refined, 1L)));
+  };
   return {ratio(0, 1), ratio(1, 2)};
 }
 
 void widen(double spread, ReferenceField& field) {
   field.uncertainty += spread;
   field.nodal_uncertainty += spread * field.displacement.rowwise().norm();
+}
+
+bool most_converge(const std::map<std::string, ReferenceValue>& limits) {
+  std::map<std::string, double> largest;
+  for (const auto& [measure, limit] : limits) largest[kind_of(measure)] = std::max(largest[kind_of(measure)], std::abs(limit.value));
+  int balance = 0;
+  for (const auto& [measure, limit] : limits)
+    if (std::abs(limit.value) >= 0.1 * largest[kind_of(measure)]) balance += limit.sequence == Sequence::not_converging ? -1 : 1;
+  return balance >= 0;
 }
 
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
@@ -209,6 +220,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
     limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
                                   noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
                                   trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+  raise_to_usual(limits);
   for (auto& [measure, limit] : limits) limit.uncertainty += prepared.load_spread * std::abs(limit.value);
   return limits;
 }
@@ -223,7 +235,7 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
     std::vector<double> sequence;
     for (const fem::Solution& s : e.grids) sequence.push_back(measures_of(prepared, s).at(measure));
     records.push_back({nu, measure, unit_of(measure), {}, sequence, limit.observed_order, limit.value, limit.uncertainty,
-                       limit.note, e.element});
+                       limit.note, e.element, limit.sequence != Sequence::not_converging});
   }
   if (!experiment.exact.empty())
     for (const ReferenceRecord& r : exact_records(prepared, nu, e))

@@ -64,11 +64,14 @@ std::optional<double> reaction_error(const PreparedCase& prepared, const std::ma
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
 
-/// By which the cell sizes of the three grids fall; of tetrahedra as their number grows.
+/// By which the cell sizes of the three grids fall, as the number of cells grows; layers of one cell stay so.
 GridRatios ratios_of(const ElementGrids& e);
 
 /// Adds a relative uncertainty.
 void widen(double spread, ReferenceField& field);
+
+/// True if most of the values that matter do: those of a tenth or more of the largest of their kind.
+bool most_converge(const std::map<std::string, ReferenceValue>& limits);
 
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);

@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "comparisons/calibration.h"
 #include "comparisons/case_run.h"
 #include "comparisons/checksum.h"
 #include "comparisons/folder_lock.h"
@@ -99,7 +100,7 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
       const std::string key = key_of(p.experiment.file);
       const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
-      const std::string stamp = fmt::format("{} | {} | {} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu, sum);
+      const std::string stamp = fmt::format("{} | {} | {} | {} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu, options.finer, sum);
       tasks.push_back({&p, m, options.out / "parts" / (key + "-" + nu + ".cbor"),
                        options.vtu ? options.out / "vtu" / key : fs::path(), stamp,
                        fmt::format("{}  {}", case_name(p.experiment.file), nu), {}});
@@ -125,11 +126,23 @@ Experiment only(const std::vector<double>& wanted, Experiment e) {
   return e;
 }
 
+/// Multiplies the cells of the reference's grids along each direction, but for layers of one cell.
+/// @throws InputError if the case leaves its reference to the program.
+Experiment finer(int times, Experiment e) {
+  if (times == 1) return e;
+  if (e.reference.cells[0] == 0 && e.reference.edge == 0)
+    throw InputError(fmt::format("--finer: {} leaves its reference grids to the program; give it [reference] cells or edge_m", e.file.string()));
+  for (int& n : e.reference.cells)
+    if (n > 1) n *= times;
+  e.reference.edge /= times;
+  return e;
+}
+
 /// Those before an interrupt, which ends the mesher too.
-std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const std::vector<double>& poisson_ratios) {
+std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
   for (const fs::path& file : cases) try {
-      if (!interrupted) prepared.push_back(prepare(only(poisson_ratios, read_experiment(file))));
+      if (!interrupted) prepared.push_back(prepare(finer(options.finer, only(options.poisson_ratios, read_experiment(file)))));
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
     }
@@ -235,6 +248,12 @@ nlohmann::json host() {
           {"cores", std::thread::hardware_concurrency()}};
 }
 
+std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
+  std::vector<KnownQuantity> all;
+  for (const CaseResult& r : results) append(known_quantities(r), all);
+  return all;
+}
+
 nlohmann::json document(const std::vector<CaseResult>& results) {
   nlohmann::json cases = nlohmann::json::array();
   for (const CaseResult& r : results) cases.push_back(to_json(r));
@@ -242,7 +261,8 @@ nlohmann::json document(const std::vector<CaseResult>& results) {
   return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", fem}}},
           {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"host", host()},
-          {"cases", cases}};
+          {"cases", cases},
+          {"calibration", calibration_json(known_quantities(results))}};
 }
 
 /// Writes everything; true if every expectation holds and every case was compared.
@@ -254,7 +274,7 @@ bool write_results(const std::vector<CaseResult>& results, const fs::path& out) 
   write_file(out / "results.csv", to_csv(results));
   write_report(out / "report.html", doc, pictures);
   const Headline h = headline(doc);
-  fmt::print("{}report: {}\n", terminal_text(h), (out / "report.html").string());
+  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known_quantities(results)), (out / "report.html").string());
   return success(h);
 }
 
@@ -312,7 +332,7 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   check_names(cases);
-  const std::vector<PreparedCase> prepared = prepare_all(cases, options.poisson_ratios);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (interrupted) {
     fmt::print(stderr, "interrupted before any part was run\n");
     return 130;

@@ -14,6 +14,7 @@ struct SuiteOptions {
   bool resume = false;   ///< take finished parts from `out`
   bool vtu = true;       ///< write a VTU per run
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
+  int finer = 1;         ///< reference grids with so many times the cells along each direction
 };
 
 /// Case files named by paths: files, folders (the *.toml right in them), or folders of the built-in experiments

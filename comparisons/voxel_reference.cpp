@@ -149,6 +149,7 @@ std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t 
   VoxelLimit out{at_lattice(prepared, lattice, peer.displacement), 2 * u2 - u1, 3 * (u2 - u1).rowwise().norm(), measures_of(prepared, peer), {}};
   const auto coarse = measures_of(prepared, h), fine = measures_of(prepared, half);
   for (const auto& [measure, value] : fine) out.limits[measure] = extrapolate_two(coarse.at(measure), value);
+  raise_to_usual(out.limits);
   return out;
 }
 
