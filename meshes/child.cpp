@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 // The programs under way, for interrupt_children().
 std::array<std::atomic<pid_t>, 64> children;
+std::atomic<bool> interrupted = false;
 
 class ChildSlot {
  public:
@@ -130,9 +131,12 @@ ChildEnd run_child(const Child& child) {
 }
 
 void interrupt_children() {
+  interrupted = true;
   for (const auto& c : children)
     if (const pid_t child = c; child > 0) kill(child, SIGTERM);
 }
+
+bool children_interrupted() { return interrupted; }
 
 std::string words_for(const ChildEnd& end, double time_limit) {
   switch (end.kind) {
