@@ -14,6 +14,7 @@
 #include "comparisons/voxel_reference.h"
 #include "meshes/mesher.h"
 #include "msm/solve/equilibrium.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -97,7 +98,7 @@ void build_reference(PartRun& run) {
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
-    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, f.note,
+    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, with_note(first, f.note),
                            first.element};
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
@@ -344,9 +345,13 @@ PreparedCase prepare(const Experiment& experiment) try {
   check_expectations(experiment);
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   prepared.geo = find_geo(experiment.body, experiment.file);
+  progress::phase("cutting the body");
   experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
   check_fineness(prepared.experiment);
-  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) try_lattice(prepared, lattice);
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    progress::phase(fmt::format("trying loads and models on {} cells", cells_text(prepared.experiment.body.cells[lattice], " x ")));
+    try_lattice(prepared, lattice);
+  }
   return prepared;
 } catch (const InputError& e) {
   const std::string message = e.what(), file = experiment.file.string();

@@ -15,6 +15,7 @@
 #include "meshes/select_patches.h"
 #include "meshes/volume.h"
 #include "meshes/voxelise.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -79,6 +80,7 @@ void cut_lattices(PreparedCase& prepared) {
   body.size = region->upper - region->lower;
   for (const double edge : voxel_edges(body, region->volume)) {
     const VoxelGrid grid = voxel_grid(true_body, edge);
+    progress::detail(fmt::format("voxels of {:.4g} m", edge));
     Voxels voxels = voxelise(grid, true_body);
     for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
     compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);

@@ -8,6 +8,7 @@
 
 #include "fem_reference/exchange.h"
 #include "meshes/child.h"
+#include "problem/progress.h"
 
 namespace springproof::fem {
 namespace {
@@ -35,14 +36,16 @@ std::vector<Solution> solve(const Request& request) {
   const fs::path file = program_or_throw();
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor",
-                 errors = folder.path / "errors";
+                 errors = folder.path / "errors", progress = folder.path / "progress";
   {
     std::ofstream out(question, std::ios::binary);
     nlohmann::json::to_cbor(to_json(request), out);
     if (!out.flush()) throw std::runtime_error("cannot write " + question.string());
   }
-  const ChildEnd end = run_child({file, {"--request", question.string(), "--answer", answer.string()}, {},
-                                  folder.path / "output", errors});
+  progress::phase("finite elements");
+  const progress::Relay relay(progress);
+  const ChildEnd end = run_child({file, {"--request", question.string(), "--answer", answer.string(), "--progress", progress.string()},
+                                  {}, folder.path / "output", errors});
   const std::string last_words = trimmed(text_of_file(errors));
   if (end.kind == ChildEnd::exited && end.status == exit_status_input_error) throw InputError(last_words);
   if (!end.ok()) throw std::runtime_error(fmt::format("springproof-fem {}: {}", words_for(end), last_words));

@@ -10,6 +10,7 @@
 
 #include "meshes/child.h"
 #include "meshes/mesher_exchange.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -78,6 +79,7 @@ const std::vector<std::string>& mesh_file_extensions() {
 MeshedBody mesh_body(const MeshRequest& request) {
   check(request);
   const double seconds = time_limit();
+  progress::detail("meshing " + request.file.filename().string());
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.json", answer = folder.path / "answer.cbor",
                  log = folder.path / "log";
