@@ -82,6 +82,7 @@ int main(int argc, char** argv) try {
   compare_command->add_option("--finer", options.finer, "reference grids with so many times the cells along each direction (known values for a calibration)")
       ->check(CLI::Range(1, 16));
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
+  compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
   compare_command->add_flag("!--no-vtu", options.vtu, "write no VTU files");
   compare_command->footer("Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, or nothing was compared, 2 the input is unusable, 130 interrupted.");
 

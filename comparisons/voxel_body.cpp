@@ -17,6 +17,7 @@
 #include "meshes/select_patches.h"
 #include "meshes/volume.h"
 #include "meshes/voxelise.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -110,6 +111,7 @@ void cut_lattices(PreparedCase& prepared) {
   check_counts(edges, region->volume);
   for (const double edge : edges) {
     const VoxelGrid grid = voxel_grid(true_body, edge);
+    progress::detail(fmt::format("voxels of {:.4g} m", edge));
     Voxels voxels = voxelise(grid, true_body);
     for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
     compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);
