@@ -12,8 +12,10 @@
 #include "comparisons/reference_grids.h"
 #include "comparisons/voxel_body.h"
 #include "comparisons/voxel_reference.h"
+#include "meshes/child.h"
 #include "meshes/mesher.h"
 #include "msm/solve/equilibrium.h"
+#include "problem/file_name.h"
 
 namespace springproof {
 namespace {
@@ -197,8 +199,7 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu_folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  std::string name = fmt::format("{}_nu{}_{}x{}x{}.vtu", model, run.material.poisson_ratio, cells[0], cells[1], cells[2]);
-  std::replace(name.begin(), name.end(), ' ', '_');
+  const std::string name = fmt::format("{}_nu{}_{}x{}x{}.vtu", file_name(model), run.material.poisson_ratio, cells[0], cells[1], cells[2]);
   write_vtu(run.vtu_folder / name, field, extra);
 }
 
@@ -225,10 +226,10 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const std::string kind = e.model_kinematics() == Kinematics::linear ? "linear" : "finite";
-  const std::vector<Sample> samples = run_samples(run.prepared, lattice, number, run.material);
+  const std::vector<ModelSample> samples = run_samples(run.prepared, lattice, number, run.material);
   std::vector<NodalVectors> fields;
   std::vector<std::map<std::string, double>> scalars;
-  for (const Sample& sample : samples) {
+  for (const ModelSample& sample : samples) {
     const Equilibrium& s = sample.state;
     run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message, s.solver,
                              s.iterations, s.residual, sample.times.solve, s.unknowns, s.memory_MiB, sample.times.set_up});
@@ -285,9 +286,6 @@ void check_expectations(const Experiment& experiment) {
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   prepared.reference_cells = reference_cells(e);
-  for (int n : prepared.reference_cells)
-    if (n % 4 != 0 && n != 1)
-      throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", e.file.string(), n));
   check_fineness(e);
   for (const Cells& cells : e.body.cells) {
     prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells)));
@@ -348,9 +346,13 @@ PreparedCase prepare(const Experiment& experiment) try {
   check_fineness(prepared.experiment);
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) try_lattice(prepared, lattice);
   return prepared;
+} catch (const NoRoom&) {  // no fault of the case
+  throw;
 } catch (const InputError& e) {
   const std::string message = e.what(), file = experiment.file.string();
   throw InputError(message.starts_with(file) ? message : file + ": " + message);
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(experiment.file.string() + ": " + e.what());
 }
 
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {

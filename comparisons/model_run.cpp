@@ -80,14 +80,14 @@ Solved solve_and_count(const PreparedCase& prepared, std::size_t lattice, const 
 }
 
 /// One network of the model, solved and measured.
-Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
                   const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
   const auto& mesh = prepared.meshes[lattice];
   const auto solve = e.cost ? solve_and_count : solve_network;
   const auto [built, conditions, state, times] = solve(prepared, lattice, parameters, material);
   const Network& network = built.model.network;
-  Sample sample;
+  ModelSample sample;
   sample.state = state;
   sample.times = times;
   if (!sample.state.ok) return sample;
@@ -106,8 +106,8 @@ Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const Model
 
 }  // namespace
 
-std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
-  std::vector<Sample> samples;
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
+  std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
     try {

@@ -6,6 +6,7 @@
 
 #include "comparisons/measures.h"
 #include "comparisons/voxel_reference.h"
+#include "meshes/child.h"
 #include "problem/exact_field.h"
 
 namespace springproof {
@@ -113,6 +114,8 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
     out.peers.resize(prepared.meshes.size());
     for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;
+  } catch (const NoRoom&) {  // no fault of the case
+    throw;
   } catch (const std::runtime_error& e) {
     return {{}, {}, {}, e.what()};
   }

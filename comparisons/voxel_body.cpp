@@ -31,13 +31,23 @@ MeshRequest body_request(const PreparedCase& prepared) {
   return request;
 }
 
-void mesh_the_body(MeshRequest request, PreparedCase& prepared) {
+/// For files in millimetres that are taken as metres; empty: there is no reason to think so.
+std::string scale_hint(const Mesh& mesh, const Body& body) {
+  constexpr double large = 10;  // [m]
+  const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
+  if (body.is_script() || body.scale != 1 || !(span > large)) return {};
+  return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+}
+
+void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
   const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
   request.tetrahedra = finest_tetrahedra;
   if (!e.reference.elements.empty()) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
   MeshedBody body = mesh_body(request);
   prepared.notes = body.notes;
+  hint = scale_hint(body.mesh, e.body);
+  if (!hint.empty()) prepared.notes.push_back(hint);
   body.coarser.push_back(std::move(body.mesh));
   for (Mesh& mesh : body.coarser) {
     select_patches(e.patches, mesh);
@@ -50,6 +60,15 @@ std::vector<double> voxel_edges(const Body& body, double volume) {
   std::vector<double> edges;
   for (const int count : body.voxel_counts) edges.push_back(std::cbrt(volume / count));
   return edges;
+}
+
+/// @throws std::invalid_argument, before the work, if the body holds more cubes than a lattice may have.
+void check_counts(const std::vector<double>& edges, double volume) {
+  constexpr double most_cubes = 4e6;
+  for (const double edge : edges)
+    if (const double cubes = volume / std::pow(edge, 3); !(cubes < 1.1 * most_cubes))
+      throw std::invalid_argument(fmt::format("voxels: about {:.3g} cubes of {:.3g} m fill the body (allowed: up to {:.0g}; a lattice takes some 3 kB per cube); "
+                                              "take larger voxels", cubes, edge, most_cubes));
 }
 
 /// @throws std::invalid_argument if the cubes fill more than twice or less than half of the body's volume.
@@ -77,7 +96,9 @@ void cut_lattices(PreparedCase& prepared) {
   const Mesh& true_body = *prepared.tetrahedra.back();
   const auto region = std::make_shared<Region>(region_of(true_body));
   body.size = region->upper - region->lower;
-  for (const double edge : voxel_edges(body, region->volume)) {
+  const std::vector<double> edges = voxel_edges(body, region->volume);
+  check_counts(edges, region->volume);
+  for (const double edge : edges) {
     const VoxelGrid grid = voxel_grid(true_body, edge);
     Voxels voxels = voxelise(grid, true_body);
     for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
@@ -172,12 +193,10 @@ void check_probes(const PreparedCase& prepared) {
   }
 }
 
-}  // namespace
-
-void prepare_voxel_body(PreparedCase& prepared) try {
+void prepare_body(PreparedCase& prepared, std::string& hint) {
   const Experiment& e = prepared.experiment;
   const MeshRequest request = body_request(prepared);
-  mesh_the_body(request, prepared);
+  mesh_the_body(request, prepared, hint);
   std::vector<std::string> patches;
   for (const Patch& p : prepared.tetrahedra.back()->patches) patches.push_back(p.name);
   check_patches(e, patches);
@@ -186,8 +205,22 @@ void prepare_voxel_body(PreparedCase& prepared) try {
   set_wrenches(prepared);
   check_probes(prepared);
   if (!e.reference.elements.empty()) place_samples(prepared);
-} catch (const std::invalid_argument& e) {
-  throw InputError(prepared.experiment.body.where, e.what());
+}
+
+}  // namespace
+
+void prepare_voxel_body(PreparedCase& prepared) {
+  std::string hint;
+  const auto with_hint = [&](const std::exception& e) { return hint.empty() ? std::string(e.what()) : fmt::format("{}; {}", e.what(), hint); };
+  try {
+    prepare_body(prepared, hint);
+    if (!hint.empty()) fmt::print(stderr, "note: {}: {}\n", prepared.experiment.file.string(), hint);
+  } catch (const InputError& e) {
+    if (hint.empty()) throw;
+    throw InputError(with_hint(e));
+  } catch (const std::invalid_argument& e) {
+    throw InputError(prepared.experiment.body.where, with_hint(e));
+  }
 }
 
 NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshes/gmsh/file_kind.h"
 #include "meshes/gmsh/quality.h"
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/mesher_exchange.h"
@@ -217,6 +218,7 @@ MeshedBody mesh_one_by_one(const MeshRequest& request) {
 }  // namespace
 
 MeshedBody mesh_file(const MeshRequest& r) try {
+  require_kind(r.file);
   const std::string extension = extension_of(r.file);
   MeshedBody body = extension == ".geo"                            ? mesh_script(r)
                     : extension == ".stl" || extension == ".msh" ? mesh_one_by_one(r)
