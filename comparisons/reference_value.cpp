@@ -61,8 +61,9 @@ double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) { re
 
 double trusted_order(const std::string& measure, const std::string& element, bool smooth) {
   const double degree = element.back() - '0';
-  if (smooth && kind_of(measure) == "displacement") return degree + 1;
-  if (smooth && kind_of(measure) == "stress") return degree;
+  const std::string kind = kind_of(measure);
+  if (smooth && (kind == "displacement" || kind == "mean_displacement")) return degree + 1;
+  if (smooth && kind == "stress") return degree;
   return clamped_order;
 }
 

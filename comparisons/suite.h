@@ -30,7 +30,8 @@ std::vector<std::filesystem::path> built_in_cases();
 
 /// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out.
 /// Progress goes to stderr.
-/// @return 0: every expectation holds; 1: one does not, or cannot be judged; 130: interrupted (finished parts are kept).
+/// @return 0: every expectation holds; 1: one does not, or cannot be judged, or a case had no reference, no result or nothing to
+/// compare; 130: interrupted (finished parts are kept).
 /// @throws InputError for unusable input or output folder, before anything is computed.
 int compare(const std::vector<std::filesystem::path>& cases, const SuiteOptions& options);
 
