@@ -14,7 +14,7 @@
 namespace springproof {
 
 /// Finds the .geo file of a body: beside the case file, else among the built-in bodies (meshes/geo/).
-/// @throws InputError listing the built-in bodies.
+/// @throws InputError listing the built-in bodies; at another script where $SPRINGPROOF_NO_SCRIPTS is set.
 std::filesystem::path find_geo(const Body& body, const std::filesystem::path& case_file);
 
 /// What a .geo is to be cut into.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshes/gmsh/file_kind.h"
 #include "meshes/quality.h"
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/refined_meshes.h"
@@ -205,6 +206,7 @@ MeshedBody mesh_solid(const MeshRequest& request) {
 }
 
 MeshedBody mesh_file(const MeshRequest& r) try {
+  require_kind(r.file);
   const std::string extension = extension_of(r.file);
   MeshedBody body = extension == ".geo"   ? mesh_script(r)
                     : extension == ".stl" ? mesh_stl(r)

@@ -115,7 +115,7 @@ MeshedBody mesh_msh(const MeshRequest& r) {
   std::optional<MeshedBody> own;
   {
     GmshSession session({});
-    gmsh::open(r.file.string());
+    gmsh::merge(r.file.string());  // open() would also run FILE.opt beside it
     session.stop_on_error(r.file);
     gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
     if (const auto blocks = volume_elements(); !blocks.empty()) {
