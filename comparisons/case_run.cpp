@@ -15,9 +15,12 @@
 #include "comparisons/reference_grids.h"
 #include "comparisons/voxel_body.h"
 #include "comparisons/voxel_reference.h"
+#include "meshes/child.h"
 #include "meshes/mesher.h"
 #include "msm/solve/equilibrium.h"
+#include "problem/file_name.h"
 #include "problem/measures.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -97,12 +100,13 @@ void build_reference(PartRun& run) {
     const Mesh& mesh = *run.prepared.meshes[i];
     std::vector<NodalVectors> fields;
     for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
-    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first)), scalars};
+    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), most_converge(scalars)), scalars};
+    widen(run.prepared.load_spread, run.reference[i]->field);
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
-    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, f.note,
-                           first.element};
+    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, with_note(first, f.note),
+                           first.element, f.sequence != Sequence::not_converging, f.correlation};
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
       record.values.push_back(displacement_error(fields[g], f.displacement, nodal_volumes(mesh)));
@@ -222,8 +226,7 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu_folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  std::string name = fmt::format("{}_nu{}_{}x{}x{}.vtu", model, run.material.poisson_ratio, cells[0], cells[1], cells[2]);
-  std::replace(name.begin(), name.end(), ' ', '_');
+  const std::string name = fmt::format("{}_nu{}_{}x{}x{}.vtu", file_name(model), run.material.poisson_ratio, cells[0], cells[1], cells[2]);
   write_vtu(run.vtu_folder / name, field, extra);
 }
 
@@ -250,10 +253,10 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const std::string kind = e.model_kinematics() == Kinematics::linear ? "linear" : "finite";
-  const std::vector<Sample> samples = run_samples(run.prepared, lattice, number, run.material);
+  const std::vector<ModelSample> samples = run_samples(run.prepared, lattice, number, run.material);
   std::vector<NodalVectors> fields;
   std::vector<std::map<std::string, double>> scalars;
-  for (const Sample& sample : samples) {
+  for (const ModelSample& sample : samples) {
     const Equilibrium& s = sample.state;
     run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message, s.solver,
                              s.iterations, s.residual, sample.times.solve, s.unknowns, s.memory_MiB, sample.times.set_up});
@@ -300,9 +303,6 @@ void check_fineness(const Experiment& e) {
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   prepared.reference_cells = reference_cells(e);
-  for (int n : prepared.reference_cells)
-    if (n % 4 != 0 && n != 1)
-      throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", e.file.string(), n));
   check_fineness(e);
   for (const Cells& cells : e.body.cells) {
     prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells)));
@@ -370,14 +370,22 @@ PreparedCase prepare(const Experiment& experiment) try {
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   check_kinematics(experiment, prepared.models);
   prepared.geo = find_geo(experiment.body, experiment.file);
+  progress::phase("cutting the body");
   experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
   check_fineness(prepared.experiment);
   sample_patches(prepared);
-  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) try_lattice(prepared, lattice);
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    progress::phase(fmt::format("trying loads and models on {} cells", cells_text(prepared.experiment.body.cells[lattice], " x ")));
+    try_lattice(prepared, lattice);
+  }
   return prepared;
+} catch (const NoRoom&) {  // no fault of the case
+  throw;
 } catch (const InputError& e) {
   const std::string message = e.what(), file = experiment.file.string();
   throw InputError(message.starts_with(file) ? message : file + ": " + message);
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(experiment.file.string() + ": " + e.what());
 }
 
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {

@@ -1,5 +1,7 @@
 #include "comparisons/model_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "comparisons/line_measure.h"
@@ -11,6 +13,7 @@
 #include "msm/measure/statistics.h"
 #include "msm/solve/cost.h"
 #include "problem/measures.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -81,14 +84,14 @@ Solved solve_and_count(const PreparedCase& prepared, std::size_t lattice, const 
 }
 
 /// One network of the model, solved and measured.
-Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
                   const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
   const auto& mesh = prepared.meshes[lattice];
   const auto solve = e.cost ? solve_and_count : solve_network;
   const auto [built, conditions, state, times] = solve(prepared, lattice, parameters, material);
   const Network& network = built.model.network;
-  Sample sample;
+  ModelSample sample;
   sample.state = state;
   sample.times = times;
   if (!sample.state.ok) return sample;
@@ -106,10 +109,12 @@ Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const Model
 
 }  // namespace
 
-std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
-  std::vector<Sample> samples;
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
+  std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
+    progress::phase(fmt::format("{} on {} cells{}", prepared.experiment.models[number].label, cells_text(prepared.experiment.body.cells[lattice], " x "),
+                                parameters.seeds > 1 ? fmt::format(", network {} of {}", seed + 1, parameters.seeds) : ""));
     try {
       samples.push_back(run_sample(prepared, lattice, parameters, material));
     } catch (const InputError&) {

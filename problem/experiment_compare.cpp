@@ -5,6 +5,7 @@
 
 #include "problem/exact_field.h"
 #include "problem/experiment_parts.h"
+#include "problem/file_name.h"
 #include "problem/measures.h"
 #include "problem/nearest_name.h"
 
@@ -103,6 +104,20 @@ ModelChoice read_model(const TomlValue& value) {
   return choice;
 }
 
+/// Labels are names of files too.
+void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others) {
+  const bool unseen = std::any_of(label.begin(), label.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+  if (unseen || label.size() > longest_file_name)
+    refuse(item, fmt::format("the label '{}' cannot name a file", label), fmt::format("up to {} letters, no control characters", longest_file_name));
+  const std::string key = file_name_key(label);
+  if (is_fem(key)) refuse(item, fmt::format("the label '{}' is taken", label), "a label of its own for each model");
+  for (const ModelChoice& other : others) {
+    if (file_name_key(other.label) != key) continue;
+    const std::string same = other.label == label ? "" : fmt::format(" as the name of a file, by '{}'", other.label);
+    refuse(item, fmt::format("the label '{}' is taken{}", label, same), "a label of its own for each model");
+  }
+}
+
 /// An empty list is a case for the reference alone, which must then name its elements.
 std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& document) {
   std::vector<ModelChoice> models;
@@ -113,10 +128,7 @@ std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& do
   }
   for (const TomlValue& item : as_list(value, "a list of model names and { model = \"...\" } tables")) {
     const ModelChoice choice = read_model(item);
-    const bool taken =
-        std::any_of(models.begin(), models.end(), [&](const auto& m) { return m.label == choice.label; });
-    if (taken || is_fem(choice.label))
-      refuse(item, fmt::format("the label '{}' is taken", choice.label), "a label of its own for each model");
+    refuse_label(item, choice.label, models);
     models.push_back(choice);
   }
   return models;

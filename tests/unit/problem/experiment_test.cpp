@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "problem/measures.h"
@@ -175,6 +176,22 @@ TEST(Experiment, StringsSurviveQuoting) {
   Experiment e = parse(small_case);
   e.cite = "a \"quote\", a \\ backslash,\na line, a\ttab, \x01\x7f and an umlaut \xc3\xbc = [x] # no comment";
   EXPECT_EQ(parse(to_toml(e)).cite, e.cite);
+}
+
+TEST(Experiment, IntegersThatNoDoubleHoldsAreRounded) {
+  std::string text = small_case;
+  const std::string old = "youngs_modulus_Pa = 1e4";
+  text.replace(text.find(old), old.size(), "youngs_modulus_Pa = 9223372036854775807");
+  EXPECT_EQ(parse(text).materials[0].youngs_modulus, 0x1p63);
+}
+
+TEST(Experiment, NegativeZeroKeepsItsSign) {
+  Experiment e = parse(small_case);
+  e.materials[0].poisson_ratio = -0.0;
+  e.probes.push_back({"a", {0, -0.0, 1}});
+  const Experiment back = parse(to_toml(e));
+  EXPECT_TRUE(std::signbit(back.materials[0].poisson_ratio));
+  EXPECT_TRUE(std::signbit(back.probes.back().at.y()));
 }
 
 TEST(Experiment, AnyTwoModuliAndListsInPairs) {
