@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "comparisons/status.h"
 #include "msm/calibrate.h"
 #include "msm/measure/homogenise.h"
 #include "msm/measure/periodic_model.h"
@@ -59,6 +60,17 @@ Sample measure(ModelParameters p, const IsotropicMaterial& material, double spac
   const MassSpringModel model = periodic_model(p, material, spacing, nodes);
   const NetworkStatistics s = statistics(model.network);
   return {seed, s.nodes, s.springs_per_node, homogenise(model)};
+}
+
+std::vector<Sample> measure_seeds(const ModelParameters& p, const IsotropicMaterial& material, double spacing, int nodes) {
+  std::vector<Sample> samples;
+  Status status;
+  const Status::Working working(status, fmt::format("homogenise {}", p.row.name));
+  for (int i = 0; i < p.seeds; ++i) {
+    progress::phase(fmt::format("network {} of {}, about {} nodes", i + 1, p.seeds, nodes));
+    samples.push_back(measure(p, material, spacing, nodes, p.random.seed + static_cast<std::uint64_t>(i)));
+  }
+  return samples;
 }
 
 bool stable(const Homogenised& h) {
@@ -167,9 +179,7 @@ int HomogeniseCommand::run() const {
   }
   const ModelParameters p = resolve(choice_);
   const int nodes = nodes_.value_or(p.row.topology == Topology::random ? random_nodes : lattice_nodes);
-  std::vector<Sample> samples;
-  for (int i = 0; i < p.seeds; ++i)
-    samples.push_back(measure(p, m, spacing_, nodes, p.random.seed + static_cast<std::uint64_t>(i)));
+  const std::vector<Sample> samples = measure_seeds(p, m, spacing_, nodes);
   if (json_)
     fmt::print("{}\n", to_json(samples, p, m, spacing_).dump(2));
   else

@@ -14,13 +14,18 @@ json bytes(const void* data, std::size_t size) {
   return json::binary({first, first + size});
 }
 
+/// An empty list may have no address, and memcpy wants one.
+void copy(const json::binary_t& from, void* to) {
+  if (!from.empty()) std::memcpy(to, from.data(), from.size());
+}
+
 json points(const NodalVectors& x) { return bytes(x.data(), sizeof(double) * x.size()); }
 
 NodalVectors to_points(const json& j) {
   const auto& binary = j.get_binary();
   NodalVectors x(static_cast<Eigen::Index>(binary.size() / (3 * sizeof(double))), 3);
   if (sizeof(double) * x.size() != binary.size()) throw std::runtime_error("a mesh with a cut-off list of points");
-  std::memcpy(x.data(), binary.data(), binary.size());
+  copy(binary, x.data());
   return x;
 }
 
@@ -34,7 +39,7 @@ std::vector<std::array<int, n>> to_tuples(const json& j) {
   const auto& binary = j.get_binary();
   std::vector<std::array<int, n>> values(binary.size() / sizeof(std::array<int, n>));
   if (sizeof(std::array<int, n>) * values.size() != binary.size()) throw std::runtime_error("a mesh with a cut-off list of numbers");
-  std::memcpy(values.data(), binary.data(), binary.size());
+  copy(binary, values.data());
   return values;
 }
 

@@ -236,8 +236,9 @@ constexpr Signature signatures[] = {
 
 }  // namespace
 
-Surface read_stl(const fs::path& file) {
-  const std::string bytes = contents_of(file);
+Surface read_stl(const fs::path& file) { return parse_stl(contents_of(file), file); }
+
+Surface parse_stl(std::string_view bytes, const fs::path& file) {
   if (is_binary_by_size(bytes)) return read_binary(file, bytes);
   std::string_view text = bytes;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark

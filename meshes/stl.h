@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "meshes/surface.h"
 
@@ -13,5 +14,8 @@ namespace springproof {
 /// @throws InputError with the file and the line and column (ASCII) or facet (binary, from 1): no file, empty, no STL, cut off, a count that
 ///         is not that of the file's size, coordinates that are no finite numbers.
 Surface read_stl(const std::filesystem::path& file);
+
+/// As read_stl, from the file's bytes; `file` is used for messages.
+Surface parse_stl(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace springproof

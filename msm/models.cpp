@@ -102,6 +102,10 @@ AngularSprings angular(const Network& network, const IsotropicMaterial& material
 
 const std::vector<ModelRow>& model_table() { return table; }
 
+std::optional<double> own_poisson_ratio(const ModelRow& row) {
+  return row.extension == none ? std::optional(0.25) : std::nullopt;
+}
+
 bool exact_volumes(const ModelParameters& p, const IsotropicMaterial& material) {
   return p.exact_volumes ? *p.exact_volumes : material.poisson_ratio >= springs_poisson_ratio(p);
 }
@@ -127,7 +131,7 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   if (p.row.bending_correction) {
     model.laws.push_back(HourglassCorrection{shear_modulus(material), material.poisson_ratio, p.face_to_cube,
                                              p.row.torsion_correction});
-    model.small_displacements_only = true;
+    model.small_displacements_only = !holds_at_large_displacement(p.row);
   }
   return built;
 } catch (const std::invalid_argument& e) {

@@ -43,6 +43,12 @@ struct ModelRow {
 
 const std::vector<ModelRow>& model_table();
 
+/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4; empty: it takes any.
+std::optional<double> own_poisson_ratio(const ModelRow& row);
+
+/// Whether the model holds under finite kinematics; hourglass corrections are those of small displacements.
+inline bool holds_at_large_displacement(const ModelRow& row) { return !row.bending_correction; }
+
 /// A model choice with every option settled.
 struct ModelParameters {
   ModelRow row;

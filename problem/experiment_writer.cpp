@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "problem/experiment.h"
@@ -22,14 +23,19 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-/// Shortest text that reads back to the same bits.
+/// Shortest text that reads back to the same bits; "-0" would be read as an integer, which has no sign.
 std::string number(double x) {
-  return fmt::format("{}", x);
+  return x == 0 && std::signbit(x) ? "-0.0" : fmt::format("{}", x);
 }
 
-std::string row(const Vec3& v) {
-  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+template <class Numbers>
+std::string list(const Numbers& numbers) {
+  std::vector<std::string> items;
+  for (const double x : numbers) items.push_back(number(x));
+  return fmt::format("[{}]", fmt::join(items, ", "));
 }
+
+std::string row(const Vec3& v) { return list(v); }
 
 std::string row(const Cells& cells) {
   return fmt::format("[{}]", fmt::join(cells, ", "));
@@ -62,7 +68,7 @@ void write_body(const Body& body, Writer& out) {
   if (!body.voxel_counts.empty())
     out.line("voxels", fmt::format("[{}]", fmt::join(body.voxel_counts, ", ")));
   else if (!body.voxel_edges.empty())
-    out.line("voxel_edge_m", fmt::format("[{}]", fmt::join(body.voxel_edges, ", ")));
+    out.line("voxel_edge_m", list(body.voxel_edges));
   else
     out.line("cells", fmt::format("[{}]", fmt::join(cells, ", ")));
 }
@@ -86,8 +92,8 @@ void write_materials(const std::vector<IsotropicMaterial>& materials, Writer& ou
     nu.push_back(m.poisson_ratio);
   }
   out.heading("[material]");
-  out.line("youngs_modulus_Pa", fmt::format("[{}]", fmt::join(E, ", ")));
-  out.line("poisson_ratio", fmt::format("[{}]", fmt::join(nu, ", ")));
+  out.line("youngs_modulus_Pa", list(E));
+  out.line("poisson_ratio", list(nu));
   if (!materials.empty()) out.line("density_kg_m3", number(materials.front().density));
 }
 

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# kill -9 at random moments: --resume goes on from there, to the numbers of an undisturbed run; no child survives, and the next
+# start leaves nothing in the temporary folder.                                 kill.sh PROGRAM [KILLS [SEED]]
+set -u
+program=$1 kills=${2:-50} seed=${3:-$(date +%s)}
+RANDOM=$((seed % 32768))
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/tmp"
+export TMPDIR=$work/tmp SPRINGPROOF_KILL_TEST=$work
+cat >"$work/case.toml" <<'TOML'
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [2, 2, 2]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = [-0.5, 0.0, 0.25, 0.4]
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+displacement_m = [0, 0, 0.01]
+[reference]
+cells = [4, 4, 4]
+[[expect]]
+model = "hybmss"
+measure = "displacement_error"
+source = "extrapolated FEM"
+within = 10
+TOML
+fail() {
+  echo "FAILED after $killed kills (seed $seed): $1"
+  cat "$work/log"
+  exit 1
+}
+start() { "$program" $arguments --out "$work/$1" >"$work/log" 2>&1; }
+# Everything but times and memory.
+numbers() { cat "$work/$1/results.csv" && grep -vE '"(generated|seconds|set_up_seconds|memory_MiB)"' "$work/$1/results.json"; }
+compare() {
+  numbers "$1" >"$work/numbers" || fail "no results"
+  cmp "$work/undisturbed" "$work/numbers" || fail "other numbers than those of an undisturbed run"
+}
+# Programs that a start has left running: each has inherited the variable.
+survivors() { grep -lzs "^SPRINGPROOF_KILL_TEST=$work\$" /proc/[0-9]*/environ; }
+none_survives() {
+  for _ in $(seq 50); do
+    left=$(for p in $(survivors); do readlink "${p%environ}exe"; done | grep springproof) || return 0
+    sleep 0.1
+  done
+  fail "still running five seconds later: $left"
+}
+
+arguments="compare $work/case.toml --jobs 2 --resume"
+killed=0 finished=0
+begin=$(date +%s%N)
+start whole || fail "the undisturbed run failed"
+milliseconds=$((($(date +%s%N) - begin) / 1000000))
+numbers whole >"$work/undisturbed" || fail "no results of the undisturbed run"
+while [ $killed -lt "$kills" ]; do
+  (exec "$program" $arguments --out "$work/out" >"$work/log" 2>&1) &
+  pid=$!
+  moment=$((RANDOM * milliseconds / 32768))
+  sleep "$(printf '%d.%03d' $((moment / 1000)) $((moment % 1000)))"
+  kill -9 $pid 2>/dev/null
+  wait $pid 2>/dev/null
+  status=$?
+  if [ $status -eq 137 ]; then
+    killed=$((killed + 1))
+    none_survives
+  else
+    [ $status -eq 0 ] || fail "a resumed run ended with $status"
+    finished=$((finished + 1))
+    compare out
+    rm -rf "$work/out"
+  fi
+done
+start out || fail "resuming failed"
+compare out
+[ -z "$(ls -A "$TMPDIR")" ] || fail "left in the temporary folder: $(ls "$TMPDIR")"
+echo "$killed kills, $((finished + 1)) runs finished with the same numbers (seed $seed)"
