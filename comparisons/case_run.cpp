@@ -20,6 +20,7 @@
 #include "msm/solve/equilibrium.h"
 #include "problem/file_name.h"
 #include "problem/measures.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -99,12 +100,13 @@ void build_reference(PartRun& run) {
     const Mesh& mesh = *run.prepared.meshes[i];
     std::vector<NodalVectors> fields;
     for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
-    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first)), scalars};
+    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), most_converge(scalars)), scalars};
+    widen(run.prepared.load_spread, run.reference[i]->field);
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
-    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, f.note,
-                           first.element};
+    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, with_note(first, f.note),
+                           first.element, f.sequence != Sequence::not_converging, f.correlation};
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
       record.values.push_back(displacement_error(fields[g], f.displacement, nodal_volumes(mesh)));
@@ -371,10 +373,14 @@ PreparedCase prepare(const Experiment& experiment) try {
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   check_kinematics(experiment, prepared.models);
   prepared.geo = find_geo(experiment.body, experiment.file);
+  progress::phase("cutting the body");
   experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
   check_fineness(prepared.experiment);
   sample_patches(prepared);
-  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) try_lattice(prepared, lattice);
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    progress::phase(fmt::format("trying loads and models on {} cells", cells_text(prepared.experiment.body.cells[lattice], " x ")));
+    try_lattice(prepared, lattice);
+  }
   return prepared;
 } catch (const NoRoom&) {  // no fault of the case
   throw;

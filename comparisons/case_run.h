@@ -28,6 +28,8 @@ struct PreparedCase {
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
   std::vector<std::shared_ptr<const Region>> regions;  ///< beside them: the true body where cubes stand for it, else empty
   std::vector<std::shared_ptr<const Mesh>> tetrahedra;  ///< of a body of voxels: three meshes, coarse to fine (the last is the true body)
+  std::vector<int> uncut;  ///< numbers of their tetrahedra before borders of patches were cut: these tell the meshes' ratios
+  double load_spread = 0;  ///< relative: what loads by area or volume differ by between the two finest
   std::vector<std::shared_ptr<const Mesh>> fitted;  ///< of it, per resolution tetrahedra with the cubes' edges, where elements on them are compared
   std::vector<double> voxel_edges;                  ///< of a body of voxels, one per resolution [m]
   NodalVectors body_points = NodalVectors(0, 3);    ///< and where its finite elements are asked for their displacement,

@@ -27,7 +27,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Row, case_name, kinematics, model, poisson_ra
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Run, model, kind, poisson_ratio, cells, kinematics, ok, message, solver, iterations,
                                    residual, seconds, unknowns, memory_MiB, set_up_seconds)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, poisson_ratio, measure, unit, cells, values, observed_order, value,
-                                   uncertainty, note, element)
+                                   uncertainty, note, element, converging, correlation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Picture, model, poisson_ratio, cells, rest, displacement, difference, quads,
                                    volume_change, surface)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LineRecord, model, poisson_ratio, cells, first, last, distance, strain, stress, exact_strain, exact_stress)

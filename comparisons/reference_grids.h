@@ -14,7 +14,11 @@ namespace springproof {
 struct ElementGrids {
   std::string element;
   std::vector<fem::Solution> grids;
+  std::string note = {};  ///< why these are not the grids asked for
 };
+
+/// The note of a limit, and that of the grids that it comes from.
+std::string with_note(const ElementGrids& e, const std::string& note);
 
 /// True if all three grids have a result.
 bool complete(const ElementGrids& e);
@@ -29,6 +33,7 @@ struct ReferenceGrids {
 };
 
 /// Displacements are asked for at the nodes of every lattice and at the measured points, stresses at the probes if the case measures them.
+/// An element without a result on some graded grid is solved on uniform ones; an element that the program dies of is alone in that.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
 /// Row of Solution::displacement that the nodes of a lattice begin at; of the one past the last, that of the measured points.
@@ -64,8 +69,14 @@ std::optional<double> reaction_error(const PreparedCase& prepared, const std::ma
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
 
-/// By which the cell sizes of the three grids fall; of tetrahedra as their number grows.
+/// By which the cell sizes of the three grids fall, as the number of cells grows; layers of one cell stay so.
 GridRatios ratios_of(const ElementGrids& e);
+
+/// Adds a relative uncertainty.
+void widen(double spread, ReferenceField& field);
+
+/// True if most of the values that matter do: those of a tenth or more of the largest of their kind.
+bool most_converge(const std::map<std::string, ReferenceValue>& limits);
 
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);

@@ -182,7 +182,9 @@ Json json_of(const ReferenceRecord& r) {
           {"value", number(r.value)},
           {"uncertainty", number(r.uncertainty)},
           {"note", r.note},
-          {"element", r.element}};
+          {"element", r.element},
+          {"converging", r.converging},
+          {"correlation", number(r.correlation)}};
 }
 
 Json json_of(const Check& c) {

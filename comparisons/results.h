@@ -61,6 +61,8 @@ struct ReferenceRecord {
   double uncertainty = 0;
   std::string note;                ///< "Richardson", "not monotone: spread of the three grids", ...
   std::string element = "q2";      ///< of [reference] elements
+  bool converging = true;          ///< false: the grids tell no order, the value is the finest
+  std::optional<double> correlation = {};  ///< of a field: how far its two differences point the same way, -1 to 1
 };
 
 enum class Verdict { pass, fail, reference_too_coarse, no_reference, no_result };

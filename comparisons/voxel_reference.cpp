@@ -9,10 +9,6 @@
 namespace springproof {
 namespace {
 
-// Cubes of a lattice up to which they are also cut into eight, and up to which finite elements run on them at all: some
-// million unknowns of elements with 27 and with 8 nodes.
-constexpr std::size_t most_refined_cubes = 8000, most_cubes = 200000;
-
 NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
   NodalVectors both(a.rows() + b.rows(), 3);
   both << a, b;
@@ -109,7 +105,8 @@ std::vector<std::string> elements_of(const Experiment& e, char shape) {
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
-  const std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {
     out.elements.push_back({element, {at, at + 3}});
@@ -148,6 +145,7 @@ std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t 
   VoxelLimit out{at_lattice(prepared, lattice, peer.displacement), 2 * u2 - u1, 3 * (u2 - u1).rowwise().norm(), measures_of(prepared, peer), {}};
   const auto coarse = measures_of(prepared, h), fine = measures_of(prepared, half);
   for (const auto& [measure, value] : fine) out.limits[measure] = extrapolate_two(coarse.at(measure), value);
+  raise_to_usual(out.limits);
   return out;
 }
 
