@@ -122,6 +122,9 @@ std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t l
     } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli
       samples.emplace_back();
       samples.back().state.message = e.what();
+    } catch (const std::invalid_argument& e) {  // it jams, with this seed
+      samples.emplace_back();
+      samples.back().state.message = e.what();
     }
   }
   return samples;

@@ -360,6 +360,8 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  constexpr int most_jobs = 1024;
+  if (options.jobs > most_jobs) throw InputError(fmt::format("--jobs: is {} (allowed: 0 to {})", options.jobs, most_jobs));
   check_names(cases);
   const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (interrupted) {
