@@ -1,15 +1,19 @@
 #include "comparisons/model_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
+#include "comparisons/reference_grids.h"
 #include "comparisons/voxel_body.h"
 #include "msm/calibrate.h"
 #include "msm/measure/block_moduli.h"
 #include "msm/measure/statistics.h"
 #include "msm/solve/cost.h"
 #include "problem/measures.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -93,8 +97,7 @@ ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const 
   if (!sample.state.ok) return sample;
   sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  const NodalVectors probes = at_probes(prepared, lattice, sample.field.displacement);
-  sample.scalars = scalar_measures(sample.field, e.probes, probes);
+  sample.scalars = field_measures(prepared, sample.field, at_measured_points(prepared, lattice, sample.field.displacement));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);
@@ -110,6 +113,8 @@ std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t l
   std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
+    progress::phase(fmt::format("{} on {} cells{}", prepared.experiment.models[number].label, cells_text(prepared.experiment.body.cells[lattice], " x "),
+                                parameters.seeds > 1 ? fmt::format(", network {} of {}", seed + 1, parameters.seeds) : ""));
     try {
       samples.push_back(run_sample(prepared, lattice, parameters, material));
     } catch (const InputError&) {

@@ -1,5 +1,7 @@
 #include "comparisons/reference_grids.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,14 +10,15 @@
 #include "comparisons/voxel_reference.h"
 #include "meshes/child.h"
 #include "problem/exact_field.h"
+#include "problem/measures.h"
 
 namespace springproof {
 namespace {
 
-/// All points at which the displacement is wanted: the nodes of every lattice, then the probes.
+/// All points at which the displacement is wanted: the nodes of every lattice, then the measured points.
 NodalVectors sample_points(const PreparedCase& prepared) {
-  const NodalVectors probes = probe_points(prepared.experiment);
-  Eigen::Index count = probes.rows();
+  const NodalVectors measured = measured_points(prepared);
+  Eigen::Index count = measured.rows();
   for (const auto& mesh : prepared.meshes) count += mesh->nodes.rows();
   NodalVectors points(count, 3);
   Eigen::Index at = 0;
@@ -23,7 +26,7 @@ NodalVectors sample_points(const PreparedCase& prepared) {
     points.middleRows(at, mesh->nodes.rows()) = mesh->nodes;
     at += mesh->nodes.rows();
   }
-  points.bottomRows(probes.rows()) = probes;
+  points.bottomRows(measured.rows()) = measured;
   return points;
 }
 
@@ -34,12 +37,72 @@ Cells divided(const Cells& cells, int divisor) {
   return coarse;
 }
 
+/// An element's three grids, coarse to fine.
+void add_reference_grids(const PreparedCase& prepared, const std::string& element, double grading, fem::Request& request) {
+  for (int divisor : {4, 2, 1}) request.grids.push_back({divided(prepared.reference_cells, divisor), element, grading});
+}
+
+/// What the program that dies of a request leaves of it.
+std::vector<fem::Solution> without_answer(const fem::Request& request, const std::string& why) {
+  std::vector<fem::Solution> none(request.grids.size());
+  for (std::size_t i = 0; i < none.size(); ++i) {
+    none[i].grid = request.grids[i];
+    none[i].message = why;
+  }
+  return none;
+}
+
+/// Solves on every grid; if the program dies, once more for each element apart.
+/// @throws std::runtime_error if no element has an answer.
+std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
+  return fem::solve(request);
+} catch (const std::runtime_error& e) {
+  std::vector<fem::Solution> all;
+  bool any = false;
+  for (auto from = request.grids.begin(), to = from; from != request.grids.end() && !children_interrupted(); from = to) {
+    to = std::find_if(from, request.grids.end(), [&](const fem::Discretisation& g) { return g.element != from->element; });
+    if (to - from == static_cast<std::ptrdiff_t>(request.grids.size())) throw;
+    fem::Request part = request;
+    part.grids.assign(from, to);
+    std::vector<fem::Solution> solutions;
+    try {
+      solutions = fem::solve(part);
+      any = true;
+    } catch (const std::runtime_error& own) {
+      solutions = without_answer(part, own.what());
+    }
+    all.insert(all.end(), solutions.begin(), solutions.end());
+  }
+  if (!any) throw;
+  return all;
+}
+
+/// Elements that fail on graded grids, whose thin cells turn inside out first, are solved on three uniform ones.
+void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<ElementGrids>& elements) {
+  if (prepared.experiment.reference.grading == 1) return;
+  for (ElementGrids& e : elements) {
+    const auto failed = std::find_if(e.grids.begin(), e.grids.end(), [](const fem::Solution& s) { return !s.ok; });
+    if (failed == e.grids.end()) continue;
+    const std::string why = fmt::format("the graded grid of {} cells has no result ({})", cells_text(failed->grid.cells, " x "), failed->message);
+    request.grids.clear();
+    add_reference_grids(prepared, e.element, 1, request);
+    try {
+      e.grids = fem::solve(request);
+    } catch (const std::runtime_error& error) {
+      e.grids = without_answer(request, error.what());
+    }
+    e.note = "uniform grids: " + why;
+    for (fem::Solution& s : e.grids)
+      if (!s.ok) s.message = fmt::format("on a uniform grid {}; {}", s.message, why);
+  }
+}
+
 /// Round-off of a measure: the solver's tolerance times the largest force (times the body's size for torques, over it
 /// for forces that balance torques), times the largest stress, or times the strain.
 double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
                 double largest_displacement) {
   constexpr double relative = 1e-7;
-  if (measure.starts_with("displacement.")) return relative * largest_displacement;
+  if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return relative * largest_displacement;
   if (measure.starts_with("volume_change")) return relative * largest_displacement / body_size;
   const bool is_stress = measure.starts_with("stress.");
   double force = 0, stress = 0;
@@ -82,8 +145,29 @@ NodalVectors probe_points(const Experiment& e) {
   return points;
 }
 
+NodalVectors measured_points(const PreparedCase& prepared) {
+  NodalVectors points = probe_points(prepared.experiment);
+  for (const PatchSamples& p : prepared.patch_samples) {
+    points.conservativeResize(points.rows() + p.points.rows(), 3);
+    points.bottomRows(p.points.rows()) = p.points;
+  }
+  return points;
+}
+
+std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u) {
+  const std::vector<Probe>& probes = prepared.experiment.probes;
+  const auto count = static_cast<Eigen::Index>(probes.size());
+  auto values = scalar_measures(field, probes, u.topRows(count));
+  values.merge(mean_displacements(prepared.patch_samples, u.bottomRows(u.rows() - count)));
+  return values;
+}
+
 bool complete(const ElementGrids& e) {
   return e.grids.size() == 3 && std::all_of(e.grids.begin(), e.grids.end(), [](const auto& s) { return s.ok; });
+}
+
+std::string with_note(const ElementGrids& e, const std::string& note) {
+  return e.note.empty() || note.empty() ? e.note + note : note + "; " + e.note;
 }
 
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
@@ -91,9 +175,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   if (experiment.body.is_voxels()) return solve_body_grids(prepared, material);
   const bool stresses = wanted("stress", experiment.measures);
   fem::Request request{experiment, material, {}, sample_points(prepared), stresses ? probe_points(experiment) : NodalVectors(0, 3), 1e-8};
-  for (const std::string& element : experiment.reference.elements)
-    for (int divisor : {4, 2, 1})
-      request.grids.push_back({divided(prepared.reference_cells, divisor), element, experiment.reference.grading});
+  for (const std::string& element : experiment.reference.elements) add_reference_grids(prepared, element, experiment.reference.grading, request);
   const std::size_t references = request.grids.size();
   std::vector<std::size_t> lattices;
   if (!experiment.models.empty())
@@ -104,13 +186,14 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
           lattices.push_back(i);
         }
   try {
-    const std::vector<fem::Solution> solutions = fem::solve(request);
+    const std::vector<fem::Solution> solutions = solve_apart(request);
     ReferenceGrids out;
     auto at = solutions.begin();
     for (const std::string& element : experiment.reference.elements) {
       out.elements.push_back({element, {at, at + 3}});
       at += 3;
     }
+    fall_back(prepared, request, out.elements);
     out.peers.resize(prepared.meshes.size());
     for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;
@@ -138,8 +221,8 @@ Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem
 
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
-  auto values = scalar_measures(sampled_field(prepared, 0, s), probes,
-                                s.displacement.bottomRows(static_cast<Eigen::Index>(probes.size())));
+  const Eigen::Index nodes = first_node(prepared, prepared.meshes.size());
+  auto values = field_measures(prepared, sampled_field(prepared, 0, s), s.displacement.bottomRows(s.displacement.rows() - nodes));
   if (s.stress.rows() == static_cast<Eigen::Index>(probes.size())) values.merge(stress_measures(probes, s.stress));
   return values;
 }
@@ -150,6 +233,11 @@ bool comparable(const PreparedCase& prepared, const std::string& measure) {
   return !prepared.sharing.contains(measure.substr(from, measure.rfind('.') - from));
 }
 
+std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
+                                     const std::map<std::string, ReferenceValue>& truth) {
+  return reaction_difference(values, values_of(truth), truth, comparable_moved_patches(prepared), prepared.experiment.body.size.maxCoeff());
+}
+
 NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   if (prepared.experiment.exact.empty()) return NodalVectors(0, 3);
   NodalVectors u = prepared.meshes.front()->nodes;
@@ -158,11 +246,33 @@ NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   return u;
 }
 
+std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared) {
+  std::vector<std::string> patches = moved_patches(prepared.experiment);
+  std::erase_if(patches, [&](const std::string& patch) { return prepared.sharing.contains(patch); });
+  return patches;
+}
+
 GridRatios ratios_of(const ElementGrids& e) {
-  const auto is_count = [](const fem::Solution& s) { return s.grid.cells[1] == 0; };   // {n, 0, 0}: n tetrahedra
-  if (!std::all_of(e.grids.begin(), e.grids.end(), is_count)) return {};
-  const auto ratio = [&](int coarse, int fine) { return std::cbrt(double(e.grids[fine].grid.cells[0]) / e.grids[coarse].grid.cells[0]); };
+  const Cells& finest = e.grids[2].grid.cells;
+  const auto refined = is_tetrahedra(finest) ? 3 : std::count_if(finest.begin(), finest.end(), [](int n) { return n > 1; });
+  const auto ratio = [&](int coarse, int fine) {
+    return std::pow(cell_count(e.grids[fine].grid.cells) / cell_count(e.grids[coarse].grid.cells), 1.0 / static_cast<double>(std::max(refined, 1L)));
+  };
   return {ratio(0, 1), ratio(1, 2)};
+}
+
+void widen(double spread, ReferenceField& field) {
+  field.uncertainty += spread;
+  field.nodal_uncertainty += spread * field.displacement.rowwise().norm();
+}
+
+bool most_converge(const std::map<std::string, ReferenceValue>& limits) {
+  std::map<std::string, double> largest;
+  for (const auto& [measure, limit] : limits) largest[kind_of(measure)] = std::max(largest[kind_of(measure)], std::abs(limit.value));
+  int balance = 0;
+  for (const auto& [measure, limit] : limits)
+    if (std::abs(limit.value) >= 0.1 * largest[kind_of(measure)]) balance += limit.sequence == Sequence::not_converging ? -1 : 1;
+  return balance >= 0;
 }
 
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
@@ -175,6 +285,8 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
     limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
                                   noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
                                   trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+  raise_to_usual(limits);
+  for (auto& [measure, limit] : limits) limit.uncertainty += prepared.load_spread * std::abs(limit.value);
   return limits;
 }
 
@@ -188,13 +300,15 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
     std::vector<double> sequence;
     for (const fem::Solution& s : e.grids) sequence.push_back(measures_of(prepared, s).at(measure));
     records.push_back({nu, measure, unit_of(measure), {}, sequence, limit.observed_order, limit.value, limit.uncertainty,
-                       limit.note, e.element});
+                       limit.note, e.element, limit.sequence != Sequence::not_converging});
   }
   if (!experiment.exact.empty())
     for (const ReferenceRecord& r : exact_records(prepared, nu, e))
       if (wanted(r.measure, experiment.measures)) records.push_back(r);
-  for (ReferenceRecord& r : records)
+  for (ReferenceRecord& r : records) {
+    r.note = with_note(e, r.note);
     for (const fem::Solution& s : e.grids) r.cells.push_back(s.grid.cells);
+  }
   return records;
 }
 

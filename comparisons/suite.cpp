@@ -18,12 +18,15 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "comparisons/calibration.h"
 #include "comparisons/case_run.h"
 #include "comparisons/checksum.h"
 #include "comparisons/folder_lock.h"
 #include "comparisons/headline.h"
 #include "comparisons/part_file.h"
 #include "comparisons/report.h"
+#include "comparisons/status.h"
+#include "comparisons/time_left.h"
 #include "fem_reference/reference.h"
 #include "meshes/child.h"
 #include "meshes/script_files.h"
@@ -99,7 +102,7 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
       const std::string key = key_of(p.experiment.file);
       const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
-      const std::string stamp = fmt::format("{} | {} | {} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu, sum);
+      const std::string stamp = fmt::format("{} | {} | {} | {} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu, options.finer, sum);
       tasks.push_back({&p, m, options.out / "parts" / (key + "-" + nu + ".cbor"),
                        options.vtu ? options.out / "vtu" / key : fs::path(), stamp,
                        fmt::format("{}  {}", case_name(p.experiment.file), nu), {}});
@@ -125,34 +128,72 @@ Experiment only(const std::vector<double>& wanted, Experiment e) {
   return e;
 }
 
+/// Multiplies the cells of the reference's grids along each direction, but for layers of one cell.
+/// @throws InputError if the case leaves its reference to the program.
+Experiment finer(int times, Experiment e) {
+  if (times == 1) return e;
+  if (e.reference.cells[0] == 0 && e.reference.edge == 0)
+    throw InputError(fmt::format("--finer: {} leaves its reference grids to the program; give it [reference] cells or edge_m", e.file.string()));
+  for (int& n : e.reference.cells)
+    if (n > 1) n *= times;
+  e.reference.edge /= times;
+  return e;
+}
+
 /// Those before an interrupt, which ends the mesher too.
-std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const std::vector<double>& poisson_ratios) {
+std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
+  Status status(options.quiet);
   for (const fs::path& file : cases) try {
-      if (!interrupted) prepared.push_back(prepare(only(poisson_ratios, read_experiment(file))));
+      const Status::Working working(status, case_name(file));
+      if (!interrupted) prepared.push_back(prepare(finer(options.finer, only(options.poisson_ratios, read_experiment(file)))));
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
     }
   return prepared;
 }
 
-/// Counts and prints finished parts; safe from several workers.
+/// Shows the parts under way and prints those finished, with the time left; safe from several workers.
 class Progress {
  public:
-  explicit Progress(std::size_t total) : total_(total) {}
+  Progress(const std::vector<Task>& tasks, int jobs, bool quiet)
+      : tasks_(tasks), time_left_(expected(tasks), jobs), status_(quiet, [this] { return time_left_.at(now()); }), quiet_(quiet) {
+    if (const auto all = time_left_.at(0); all && *all > 60 && !quiet)
+      status_.print(fmt::format("about {} for {} parts, {} at once", time_words(*all), tasks.size(), std::min<std::size_t>(tasks.size(), jobs)));
+  }
 
-  void finished(const Task& task, double seconds, bool taken_back) {
+  /// A task for the length of the scope.
+  auto working(std::size_t task) {
+    time_left_.started(task, now());
+    return Status::Working(status_, fmt::format("[{}/{}] {}", task + 1, tasks_.size(), tasks_[task].title));
+  }
+
+  void finished(std::size_t task, double seconds, bool taken_back) {
     const std::lock_guard lock(mutex_);
     ++count_;
-    const auto failed = std::count_if(task.part.runs.begin(), task.part.runs.end(), [](const Run& r) { return !r.ok; });
+    taken_back ? time_left_.kept(task) : time_left_.finished(task, now());
+    const auto& runs = tasks_[task].part.runs;
+    const auto failed = std::count_if(runs.begin(), runs.end(), [](const Run& r) { return !r.ok; });
     std::string remark = taken_back ? "kept from before" : fmt::format("{:.1f} s", seconds);
     if (failed) remark += fmt::format(", {} run{} without a result", failed, failed == 1 ? "" : "s");
-    fmt::print(stderr, "[{}/{}] {:<44} {}\n", count_, total_, task.title, remark);
+    if (!quiet_) status_.print(fmt::format("[{}/{}] {:<44} {}", count_, tasks_.size(), tasks_[task].title, remark));
   }
 
  private:
+  static std::vector<double> expected(const std::vector<Task>& tasks) {
+    std::vector<double> seconds;
+    for (const Task& t : tasks) seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
+    return seconds;
+  }
+  double now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  const std::vector<Task>& tasks_;
   std::mutex mutex_;
-  std::size_t total_, count_ = 0;
+  std::size_t count_ = 0;
+  TimeLeft time_left_;
+  Status status_;
+  const bool quiet_;
 };
 
 /// What was finished before, unless its file has changed since.
@@ -164,30 +205,31 @@ std::optional<Part> kept_part(const Task& task) try {
 }
 
 void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
+  const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::atomic<std::size_t> next = 0;
-  Progress progress(tasks.size());
+  Progress progress(tasks, jobs, options.quiet);
   std::mutex failure_mutex;
   std::exception_ptr failure;
   const auto work = [&] {
     for (std::size_t i; !interrupted && (i = next++) < tasks.size();) try {
         Task& task = tasks[i];
         const auto start = std::chrono::steady_clock::now();
+        const Status::Working working = progress.working(i);
         std::optional<Part> kept;
         if (options.resume) kept = kept_part(task);
         task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu);
         if (interrupted) return;  // its FEM program may have been stopped by the same signal
         if (!kept) save_part(task.file, task.stamp, task.part);
         task.done = true;
-        progress.finished(task, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kept.has_value());
+        progress.finished(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kept.has_value());
       } catch (...) {
         const std::lock_guard lock(failure_mutex);
         if (!failure) failure = std::current_exception();
         next = tasks.size();
       }
   };
-  const std::size_t jobs = options.jobs > 0 ? static_cast<std::size_t>(options.jobs) : std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::thread> workers;
-  for (std::size_t j = 0; j < std::min(jobs, tasks.size()); ++j) workers.emplace_back(work);
+  for (std::size_t j = 0; j < std::min(static_cast<std::size_t>(jobs), tasks.size()); ++j) workers.emplace_back(work);
   for (std::thread& w : workers) w.join();
   if (failure && !interrupted) std::rethrow_exception(failure);
 }
@@ -203,6 +245,8 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
     CaseResult result;
     result.experiment = p.experiment;
     result.notes = p.notes;
+    for (std::size_t m = 0; m < p.models.size(); ++m)
+      if (const auto own = own_poisson_ratio(p.models[m].row)) result.own_poisson_ratios[p.experiment.models[m].label] = *own;
     for (const Task& task : tasks) {
       if (task.prepared != &p) continue;
       append(task.part.runs, result.runs);
@@ -211,6 +255,7 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
       append(task.part.pictures, result.pictures);
       append(task.part.lines, result.lines);
       append(task.part.splits, result.splits);
+      append(task.part.deformations, result.deformations);
     }
     judge(result);
     results.push_back(std::move(result));
@@ -232,6 +277,12 @@ nlohmann::json host() {
           {"cores", std::thread::hardware_concurrency()}};
 }
 
+std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
+  std::vector<KnownQuantity> all;
+  for (const CaseResult& r : results) append(known_quantities(r), all);
+  return all;
+}
+
 nlohmann::json document(const std::vector<CaseResult>& results) {
   nlohmann::json cases = nlohmann::json::array();
   for (const CaseResult& r : results) cases.push_back(to_json(r));
@@ -239,11 +290,12 @@ nlohmann::json document(const std::vector<CaseResult>& results) {
   return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", fem}}},
           {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"host", host()},
-          {"cases", cases}};
+          {"cases", cases},
+          {"calibration", calibration_json(known_quantities(results))}};
 }
 
-/// Writes everything; returns the number of expectations that do not hold.
-int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
+/// Writes everything; true if every expectation holds and every case was compared.
+bool write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   const nlohmann::json doc = document(results);
   nlohmann::json pictures = nlohmann::json::array();
   for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
@@ -251,12 +303,8 @@ int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   write_file(out / "results.csv", to_csv(results));
   write_report(out / "report.html", doc, pictures);
   const Headline h = headline(doc);
-  fmt::print("\n");
-  for (const ModelVerdict& v : h.models) fmt::print("{:<28} {}\n", v.model, v.sentence);
-  for (const std::string& line : h.failed_runs) fmt::print("no result: {}\n", line);
-  for (const std::string& line : h.failed_checks) fmt::print("FAILED: {}\n", line);
-  fmt::print("\n{}\nreport: {}\n", expectations_sentence(h), (out / "report.html").string());
-  return h.failed + h.no_result + h.no_reference + h.reference_too_coarse;
+  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known_quantities(results)), (out / "report.html").string());
+  return success(h);
 }
 
 /// @throws InputError if two cases would write the same files, or one no files.
@@ -313,7 +361,7 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   check_names(cases);
-  const std::vector<PreparedCase> prepared = prepare_all(cases, options.poisson_ratios);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (interrupted) {
     fmt::print(stderr, "interrupted before any part was run\n");
     return 130;
@@ -330,7 +378,7 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
                done, tasks.size(), options.out.string());
     return 130;
   }
-  return write_results(collect(prepared, tasks), options.out) == 0 ? 0 : 1;
+  return write_results(collect(prepared, tasks), options.out) ? 0 : 1;
 }
 
 }  // namespace springproof

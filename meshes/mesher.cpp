@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 #include "meshes/child.h"
 #include "meshes/mesher_exchange.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -31,6 +34,26 @@ double time_limit() {
   return seconds;
 }
 
+/// Of an STL file, by its size: binary ones take 50 bytes each, those in words some 250.
+double facets_in(const fs::path& stl) {
+  std::error_code ignored;
+  const auto bytes = static_cast<double>(fs::file_size(stl, ignored));
+  char start[84] = {};
+  std::ifstream(stl, std::ios::binary).read(start, sizeof start);
+  std::uint32_t count = 0;
+  std::memcpy(&count, start + 80, sizeof count);
+  return bytes == 84 + 50.0 * count ? count : bytes / 250;
+}
+
+/// Checking facets against each other and meshing them anew takes minutes from a million on, and some kB each.
+void check_facets(const fs::path& stl) {
+  constexpr double many = 5e5, most = 5e6;
+  const double facets = facets_in(stl);
+  if (facets > most)
+    refuse(stl, fmt::format("about {:.2g} facets (allowed: up to {:.0g}; thin the surface out, no reference needs as many)", facets, most));
+  if (facets > many) fmt::print(stderr, "note: {}: about {:.2g} facets, which may take minutes and some GB (fewer would do)\n", stl.string(), facets);
+}
+
 void check(const MeshRequest& r) {
   const auto& extensions = mesh_file_extensions();
   const std::string extension = extension_of(r.file);
@@ -38,6 +61,7 @@ void check(const MeshRequest& r) {
     refuse(r.file, fmt::format("cannot read a body from a '{}' file (allowed: {})", extension, fmt::join(extensions, ", ")));
   std::error_code ignored;
   if (!fs::is_regular_file(r.file, ignored)) refuse(r.file, "no such file");
+  if (extension == ".stl") check_facets(r.file);
   if (!r.size.isZero() && !(r.size.allFinite() && r.size.minCoeff() > 0))
     refuse(r.file, "size_m: three positive lengths are needed");
   if (r.cells != Cells{0, 0, 0} && *std::min_element(r.cells.begin(), r.cells.end()) < 1)
@@ -89,9 +113,14 @@ const std::vector<std::string>& mesh_file_extensions() {
   return extensions;
 }
 
+double size_ratio(const Mesh& coarse, const Mesh& fine) {
+  return std::cbrt(double(fine.tetrahedra.size()) / double(coarse.tetrahedra.size()));
+}
+
 MeshedBody mesh_body(const MeshRequest& request) {
   check(request);
   const double seconds = time_limit();
+  progress::detail("meshing " + request.file.filename().string());
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor",
                  log = folder.path / "log";

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "meshes/facet_tree.h"
+#include "meshes/imprint.h"
 
 namespace springproof {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 constexpr double tolerance = 1e-9;  // of the body: boundaries belong to what is selected
 
 /// The outer facets and what rules look at.
-struct Surface {
+struct Facets {
   std::vector<OuterFacet> facets;
   std::vector<Vec3> middle, normal;
   Vec3 low, high;
@@ -26,8 +27,8 @@ struct Surface {
   double slack() const { return tolerance * (high - low).norm(); }
 };
 
-Surface surface_of(const Mesh& mesh) {
-  Surface s{outer_facets(mesh), {}, {}, Vec3::Constant(std::numeric_limits<double>::infinity()), {}};
+Facets facets_of(const Mesh& mesh) {
+  Facets s{outer_facets(mesh), {}, {}, Vec3::Constant(std::numeric_limits<double>::infinity()), {}};
   s.high = -s.low;
   for (const OuterFacet& f : s.facets) {
     const int corners = f.nodes[3] < 0 ? 3 : 4;
@@ -47,21 +48,21 @@ Surface surface_of(const Mesh& mesh) {
 /// How far each facet is from meeting a condition; it does at 0.
 using Miss = std::function<double(std::size_t facet)>;
 
-Miss miss_of(const PatchRule::Box& box, const Surface& s) {
+Miss miss_of(const PatchRule::Box& box, const Facets& s) {
   return [&](std::size_t f) {
     const double off = (box.low - s.middle[f]).cwiseMax(s.middle[f] - box.high).cwiseMax(0).norm();
     return off <= s.slack() ? 0 : off;
   };
 }
 
-Miss miss_of(const PatchRule::Beyond& plane, const Surface& s) {
+Miss miss_of(const PatchRule::Beyond& plane, const Facets& s) {
   return [&](std::size_t f) {
     const double short_by = plane.normal.dot(plane.point - s.middle[f]);
     return short_by <= s.slack() ? 0 : short_by;
   };
 }
 
-Miss miss_of(const PatchRule::Facing& facing, const Surface& s) {
+Miss miss_of(const PatchRule::Facing& facing, const Facets& s) {
   return [&](std::size_t f) {
     const double angle = std::atan2(s.normal[f].cross(facing.direction).norm(), s.normal[f].dot(facing.direction)) * 180 / std::numbers::pi;
     return angle <= facing.within_deg * (1 + tolerance) ? 0 : angle - facing.within_deg;
@@ -93,7 +94,7 @@ std::vector<char> piece_with(std::size_t first, const std::vector<char>& in, con
   return piece;
 }
 
-Miss miss_of(const PatchRule::Near& near, const Surface& s, const Mesh& mesh) {
+Miss miss_of(const PatchRule::Near& near, const Facets& s, const Mesh& mesh) {
   const FacetTree::Nearest nearest = FacetTree(mesh, s.facets).nearest(near.point);
   std::vector<char> in(s.facets.size());
   for (std::size_t f = 0; f < in.size(); ++f) in[f] = (s.middle[f] - nearest.point).norm() <= near.radius + s.slack();
@@ -107,7 +108,7 @@ struct Condition {
   Miss miss;
 };
 
-std::vector<Condition> conditions_of(const PatchRule& rule, const Surface& s, const Mesh& mesh) {
+std::vector<Condition> conditions_of(const PatchRule& rule, const Facets& s, const Mesh& mesh) {
   std::vector<Condition> list;
   if (rule.box) list.push_back({"box_m", "the nearest one has its middle {:.4g} m from the box", miss_of(*rule.box, s)});
   if (rule.beyond) list.push_back({"beyond", "the nearest one has its middle {:.4g} m short of the plane", miss_of(*rule.beyond, s)});
@@ -117,7 +118,7 @@ std::vector<Condition> conditions_of(const PatchRule& rule, const Surface& s, co
 }
 
 /// What one condition alone holds.
-std::string account_of(const Condition& condition, const Surface& s) {
+std::string account_of(const Condition& condition, const Facets& s) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t met = 0;
   for (std::size_t f = 0; f < s.facets.size(); ++f) {
@@ -129,7 +130,7 @@ std::string account_of(const Condition& condition, const Surface& s) {
   return fmt::format("{} holds for none, {}", condition.key, fmt::format(fmt::runtime(condition.nearest), least));
 }
 
-[[noreturn]] void refuse_empty(const PatchRule& rule, const std::vector<Condition>& conditions, const Surface& s) {
+[[noreturn]] void refuse_empty(const PatchRule& rule, const std::vector<Condition>& conditions, const Facets& s) {
   std::vector<std::string> accounts;
   for (const Condition& condition : conditions) accounts.push_back(account_of(condition, s));
   throw InputError(rule.where, fmt::format("patch: '{}' selects no facet of the surface: {} (the body spans ({:.6g}, {:.6g}, {:.6g}) to "
@@ -137,7 +138,7 @@ std::string account_of(const Condition& condition, const Surface& s) {
                                            s.high[0], s.high[1], s.high[2]));
 }
 
-Patch selected(const PatchRule& rule, const Surface& s, const Mesh& mesh) {
+Patch selected(const PatchRule& rule, const Facets& s, const Mesh& mesh) {
   const std::vector<Condition> conditions = conditions_of(rule, s, mesh);
   Patch patch{rule.name, {}};
   for (std::size_t f = 0; f < s.facets.size(); ++f)
@@ -149,17 +150,36 @@ Patch selected(const PatchRule& rule, const Surface& s, const Mesh& mesh) {
 
 }  // namespace
 
-void select_patches(const std::vector<PatchRule>& rules, Mesh& mesh) {
-  if (rules.empty()) return;
-  const Surface surface = surface_of(mesh);
+namespace {
+
+void refuse_taken(const PatchRule& rule, const std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), rule.name) == names.end()) return;
+  throw InputError(rule.where, fmt::format("patch.name: the body already has a patch '{}' (allowed: a name other than {})", rule.name,
+                                           fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::vector<std::string> select_patches(const std::vector<PatchRule>& rules, Mesh& mesh, double coarseness) {
+  if (rules.empty()) return {};
+  std::vector<std::string> names;
+  for (const Patch& p : mesh.patches) names.push_back(p.name);
+  const Facets facets = facets_of(mesh);
+  CutMesh cut(mesh);
   for (const PatchRule& rule : rules) {
-    std::vector<std::string> names;
-    for (const Patch& p : mesh.patches) names.push_back(p.name);
-    if (std::find(names.begin(), names.end(), rule.name) != names.end())
-      throw InputError(rule.where, fmt::format("patch.name: the body already has a patch '{}' (allowed: a name other than {})", rule.name,
-                                               fmt::join(names, ", ")));
-    mesh.patches.push_back(selected(rule, surface, mesh));
+    refuse_taken(rule, names);
+    if (mesh.tetrahedra.empty())
+      mesh.patches.push_back(selected(rule, facets, mesh));
+    else if (imprint(rule, static_cast<int>(names.size()), coarseness, cut) == 0)
+      refuse_empty(rule, conditions_of(rule, facets, mesh), facets);
+    names.push_back(rule.name);
   }
+  if (mesh.tetrahedra.empty()) return {};
+  const std::size_t before = mesh.tetrahedra.size();
+  mesh = cut.mesh(names);
+  if (cut.cells() == before) return {};
+  return {fmt::format("the borders of the patches cut {} tetrahedra into {}; worst shape 6 sqrt(2) V / edge^3 = {:.2g}", before, cut.cells(),
+                      cut.worst_shape())};
 }
 
 }  // namespace springproof

@@ -235,7 +235,8 @@ Voxels voxelise(const VoxelGrid& grid, const Mesh& body) {
   Voxels voxels;
   keep_one_piece(runs, grid, voxels.notes);
   voxels.mesh = CubeMesh(grid, runs).build();
-  transfer_patches(body, facets, voxels.mesh);
+  for (const std::string& name : transfer_patches(body, facets, voxels.mesh))
+    voxels.notes.push_back(fmt::format("patch '{}' is smaller than the cubes' faces of {:.6g} m: one of them stands for it", name, grid.edge));
   return voxels;
 }
 

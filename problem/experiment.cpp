@@ -208,6 +208,14 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   return reference;
 }
 
+/// A weight needs a mass.
+void require_density(const TomlTable& document, const Experiment& experiment) {
+  const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
+                                  [](const Load& load) { return std::holds_alternative<Gravity>(load); });
+  if (weighs && !TomlTable(document.at("material"), material_schema).find("density_kg_m3"))
+    missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
+}
+
 Experiment read_document(const TomlTable& document, Experiment experiment) {
   if (const auto cite = document.find("cite")) experiment.cite = as_text(*cite);
   if (const auto what = document.find("what")) experiment.what = as_text(*what);
@@ -223,6 +231,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
       experiment.loads.push_back(load);
       experiment.load_locations.push_back(location_of(value));
     }
+  require_density(document, experiment);
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);
   if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference, experiment.body.is_voxels());

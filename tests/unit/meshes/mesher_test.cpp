@@ -310,6 +310,13 @@ TEST_F(Mesher, OwnScriptsCanBeRefused) {
   EXPECT_EQ(found("own.geo"), geo);
 }
 
+TEST_F(Mesher, FacetsByTheMillionAreRefusedAtOnce) {
+  const std::uint32_t count = 6'000'000;
+  const fs::path file = write("large.stl", std::string(80, ' ') + std::string(reinterpret_cast<const char*>(&count), 4));
+  fs::resize_file(file, 84 + 50ull * count);  // takes no room
+  EXPECT_SAYS(message_of({.file = file, .edge = 1}), "large.stl: about 6e+06 facets (allowed: up to 5e+06");
+}
+
 TEST_F(Mesher, FileNamesOfAnyBytesAndMeshesBeyondAllMeans) {
   const fs::path folder = folder_.path / "K\xf6rper";
   fs::create_directory(folder);
