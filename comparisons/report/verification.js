@@ -24,6 +24,7 @@ function benchmarkRow(result, check) {
   const shown = displayUnit(measure, unit, [check.expected, check.computed]);
   const text = (x, digits = 5) => number(isNumber(x) ? shown.factor * x : x, digits);
   const off = isNumber(check.computed) && check.expected !== 0 ? 100 * (check.computed / check.expected - 1) : null;
+  const beyond = record && isNumber(check.computed) && Math.abs(check.computed - check.expected) > record.uncertainty;
   const within = check.expected !== 0 ? percent(100 * check.within / Math.abs(check.expected)) : text(check.within, 2);
   return el('tr', {},
     el('td', {}, withUnit(measureText(measure), shown.unit),
@@ -35,7 +36,8 @@ function benchmarkRow(result, check) {
     el('td', {class: 'number'}, el('b', {}, text(check.computed)),
        record ? el('small', {}, '± ' + text(record.uncertainty, 2)) : ''),
     el('td', {class: 'number'}, text(check.expected)),
-    el('td', {class: 'number'}, off === null ? '–' : signed(off, percent(off)), el('small', {}, 'of ± ' + within)),
+    el('td', {class: 'number'}, off === null ? '–' : signed(off, percent(off)), el('small', {}, 'of ± ' + within),
+       beyond ? el('small', {}, 'beyond our uncertainty') : []),
     el('td', {}, verdictChip(check.verdict)));
 }
 
