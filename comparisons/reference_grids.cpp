@@ -82,7 +82,8 @@ void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<E
   for (ElementGrids& e : elements) {
     const auto failed = std::find_if(e.grids.begin(), e.grids.end(), [](const fem::Solution& s) { return !s.ok; });
     if (failed == e.grids.end()) continue;
-    const std::string why = fmt::format("the graded grid of {} cells has no result ({})", cells_text(failed->grid.cells, " x "), failed->message);
+    const std::string why = fmt::format("the graded grid of {} cells has no result ({})",
+                                        cells_text(failed->grid.cells, " x "), failed->message);
     request.grids.clear();
     add_reference_grids(prepared, e.element, 1, request);
     try {
