@@ -55,7 +55,7 @@ std::vector<fem::Solution> without_answer(const fem::Request& request, const std
 /// @throws std::runtime_error if no element has an answer.
 std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
   return fem::solve(request);
-} catch (const std::runtime_error& e) {
+} catch (const std::runtime_error&) {
   std::vector<fem::Solution> all;
   bool any = false;
   for (auto from = request.grids.begin(), to = from; from != request.grids.end() && !children_interrupted(); from = to) {
