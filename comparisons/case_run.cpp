@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "comparisons/case_checks.h"
+#include "comparisons/deformation.h"
 #include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
 #include "comparisons/model_run.h"
@@ -12,8 +15,11 @@
 #include "comparisons/reference_grids.h"
 #include "comparisons/voxel_body.h"
 #include "comparisons/voxel_reference.h"
+#include "meshes/child.h"
 #include "meshes/mesher.h"
 #include "msm/solve/equilibrium.h"
+#include "problem/file_name.h"
+#include "problem/measures.h"
 #include "problem/progress.h"
 
 namespace springproof {
@@ -94,18 +100,30 @@ void build_reference(PartRun& run) {
     const Mesh& mesh = *run.prepared.meshes[i];
     std::vector<NodalVectors> fields;
     for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
-    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first)), scalars};
+    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), most_converge(scalars)), scalars};
+    widen(run.prepared.load_spread, run.reference[i]->field);
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
     ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, with_note(first, f.note),
-                           first.element};
+                           first.element, f.sequence != Sequence::not_converging, f.correlation};
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
       record.values.push_back(displacement_error(fields[g], f.displacement, nodal_volumes(mesh)));
     }
     run.part.references.push_back(record);
   }
+}
+
+/// How far the reference is deformed, on the finest lattice.
+void measure_deformation(PartRun& run) {
+  const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
+  const auto& meshes = run.prepared.meshes;
+  const auto finest = static_cast<std::size_t>(std::max_element(meshes.begin(), meshes.end(), finer) - meshes.begin());
+  if (!run.reference[finest]) return;
+  const DeformationSize size =
+      deformation_size(*meshes[finest], run.reference[finest]->field.displacement, run.experiment().model_kinematics());
+  run.part.deformations.push_back({run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi});
 }
 
 /// Distances from the reference field [their units].
@@ -144,6 +162,22 @@ std::set<std::string> measures_in(const std::vector<std::map<std::string, double
   return names;
 }
 
+/// Distances from the reference, one of each measure for each sample, as rows whose best value is 0.
+void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<std::string, double>>& samples,
+                   const std::map<std::string, double>& uncertainty) {
+  for (const std::string& measure : measures_in(samples)) {
+    if (!wanted(measure, run.experiment().measures)) continue;
+    Row row = blank;
+    row.measure = measure;
+    set_value(samples, measure, row);
+    row.unit = unit_of(measure);
+    row.reference = 0.0;
+    row.reference_uncertainty = uncertainty.at(measure);
+    row.error = row.value;
+    run.part.rows.push_back(row);
+  }
+}
+
 /// One displacement field and one set of scalars per sample.
 void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
               const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
@@ -169,20 +203,14 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
   // What the reference may be off, node by node, measured by the same ruler.
   NodalVectors doubt = reference->field.displacement;
   doubt.col(0) += reference->field.nodal_uncertainty;
-  const std::map<std::string, double> uncertainty = distances(run, lattice, doubt);
+  const auto of_sample = [&](const NodalVectors& field, const std::map<std::string, double>& values) {
+    std::map<std::string, double> out = distances(run, lattice, field);
+    if (const auto error = reaction_error(run.prepared, values, reference->scalars)) out["reaction_error"] = *error;
+    return out;
+  };
   std::vector<std::map<std::string, double>> of_samples;
-  for (const NodalVectors& field : u) of_samples.push_back(distances(run, lattice, field));
-  for (const std::string& measure : measures_in(of_samples)) {
-    if (!wanted(measure, run.experiment().measures)) continue;
-    Row row = blank;
-    row.measure = measure;
-    set_value(of_samples, measure, row);
-    row.unit = unit_of(measure);
-    row.reference = 0.0;
-    row.reference_uncertainty = uncertainty.at(measure);
-    row.error = row.value;
-    run.part.rows.push_back(row);
-  }
+  for (std::size_t s = 0; s < u.size(); ++s) of_samples.push_back(of_sample(u[s], scalars[s]));
+  add_distances(run, blank, of_samples, of_sample(doubt, values_of(reference->scalars, 1)));
 }
 
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
@@ -198,8 +226,7 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu_folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  std::string name = fmt::format("{}_nu{}_{}x{}x{}.vtu", model, run.material.poisson_ratio, cells[0], cells[1], cells[2]);
-  std::replace(name.begin(), name.end(), ' ', '_');
+  const std::string name = fmt::format("{}_nu{}_{}x{}x{}.vtu", file_name(model), run.material.poisson_ratio, cells[0], cells[1], cells[2]);
   write_vtu(run.vtu_folder / name, field, extra);
 }
 
@@ -226,10 +253,10 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const std::string kind = e.model_kinematics() == Kinematics::linear ? "linear" : "finite";
-  const std::vector<Sample> samples = run_samples(run.prepared, lattice, number, run.material);
+  const std::vector<ModelSample> samples = run_samples(run.prepared, lattice, number, run.material);
   std::vector<NodalVectors> fields;
   std::vector<std::map<std::string, double>> scalars;
-  for (const Sample& sample : samples) {
+  for (const ModelSample& sample : samples) {
     const Equilibrium& s = sample.state;
     run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message, s.solver,
                              s.iterations, s.residual, sample.times.solve, s.unknowns, s.memory_MiB, sample.times.set_up});
@@ -273,27 +300,23 @@ void check_fineness(const Experiment& e) {
                                                  c[0], c[1], c[2], total, largest_lattice));
 }
 
-void check_expectations(const Experiment& experiment) {
-  for (const Expectation& e : experiment.expectations) {
-    if (e.value || e.at_least) continue;
-    if (reference_element(experiment, e.model))
-      throw InputError(e.location, "value: an expectation of the reference itself needs one");
-    if (e.relative && is_distance(e.measure))
-      throw InputError(e.location, fmt::format("within_relative: {} is expected to be 0; give an absolute `within`", e.measure));
-  }
-}
-
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   prepared.reference_cells = reference_cells(e);
-  for (int n : prepared.reference_cells)
-    if (n % 4 != 0 && n != 1)
-      throw InputError(fmt::format("{}: reference.cells: {} is not 1 or divisible by 4 (the grid is halved twice)", e.file.string(), n));
   check_fineness(e);
   for (const Cells& cells : e.body.cells) {
     prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells)));
     prepared.regions.push_back(nullptr);
   }
+}
+
+/// The patches of the body itself, where their mean displacement is measured.
+void sample_patches(PreparedCase& prepared) {
+  if (!wanted("mean_displacement", prepared.experiment.measures)) return;
+  const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
+  const auto& meshes = prepared.meshes;
+  const bool voxels = prepared.experiment.body.is_voxels();
+  prepared.patch_samples = samples_of_patches(voxels ? *prepared.tetrahedra.back() : **std::max_element(meshes.begin(), meshes.end(), finer));
 }
 
 /// Tries what the case asks for on one lattice.
@@ -303,6 +326,7 @@ void try_lattice(PreparedCase& prepared, std::size_t lattice) {
   std::vector<std::string> patches;
   for (const Patch& p : mesh.patches) patches.push_back(p.name);
   check_patches(e, patches);
+  check_mean_displacements(e, patches);
   prepared.sharing = patches_sharing_supports(e.loads, mesh, e.model_kinematics());
   if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
     require_supported(transfer(lattice_loads(e), mesh, 1000, e.model_kinematics()), mesh.nodes);
@@ -310,7 +334,7 @@ void try_lattice(PreparedCase& prepared, std::size_t lattice) {
     if (p.row.topology == Topology::cells || lattice == 0) try_model(e, p, mesh, prepared.regions[lattice].get());
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);
-  at_probes(prepared, lattice, u);
+  at_measured_points(prepared, lattice, u);
 }
 
 /// The finite elements' results at the nodes of one lattice.
@@ -344,18 +368,24 @@ PreparedCase prepare(const Experiment& experiment) try {
   prepared.experiment = experiment;
   check_expectations(experiment);
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
+  check_kinematics(experiment, prepared.models);
   prepared.geo = find_geo(experiment.body, experiment.file);
   progress::phase("cutting the body");
   experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
   check_fineness(prepared.experiment);
+  sample_patches(prepared);
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
     progress::phase(fmt::format("trying loads and models on {} cells", cells_text(prepared.experiment.body.cells[lattice], " x ")));
     try_lattice(prepared, lattice);
   }
   return prepared;
+} catch (const NoRoom&) {  // no fault of the case
+  throw;
 } catch (const InputError& e) {
   const std::string message = e.what(), file = experiment.file.string();
   throw InputError(message.starts_with(file) ? message : file + ": " + message);
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(experiment.file.string() + ": " + e.what());
 }
 
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {
@@ -364,6 +394,7 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
   if (!prepared.experiment.reference.elements.empty()) run_fem(run);
   record_elements(run);
   build_reference(run);
+  measure_deformation(run);
   for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
     add_fem(run, lattice);
     if (!small_enough(prepared.experiment, *prepared.meshes[lattice])) continue;

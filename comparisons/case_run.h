@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "comparisons/patch_mean.h"
 #include "comparisons/results.h"
 #include "meshes/mesh.h"
 #include "msm/models.h"
@@ -27,11 +28,14 @@ struct PreparedCase {
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< one per resolution
   std::vector<std::shared_ptr<const Region>> regions;  ///< beside them: the true body where cubes stand for it, else empty
   std::vector<std::shared_ptr<const Mesh>> tetrahedra;  ///< of a body of voxels: three meshes, coarse to fine (the last is the true body)
+  std::vector<int> uncut;  ///< numbers of their tetrahedra before borders of patches were cut: these tell the meshes' ratios
+  double load_spread = 0;  ///< relative: what loads by area or volume differ by between the two finest
   std::vector<std::shared_ptr<const Mesh>> fitted;  ///< of it, per resolution tetrahedra with the cubes' edges, where elements on them are compared
   std::vector<double> voxel_edges;                  ///< of a body of voxels, one per resolution [m]
   NodalVectors body_points = NodalVectors(0, 3);    ///< and where its finite elements are asked for their displacement,
   std::vector<BodySample> body_samples;             ///< from which each lattice node takes its own
   std::vector<std::string> notes;                   ///< what was mended or left out of the body
+  std::vector<PatchSamples> patch_samples;          ///< of the body's patches, where mean_displacement is measured
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};                ///< finest of the three reference grids
   std::set<std::string> sharing;                    ///< patches whose separate forces are a convention
@@ -53,6 +57,7 @@ struct Part {
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
   std::vector<ErrorSplit> splits;
+  std::vector<Deformation> deformations;
 };
 
 /// Runs everything for experiment.materials[material]; writes one VTU per run into `vtu_folder` (empty: none).

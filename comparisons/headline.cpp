@@ -6,28 +6,38 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <tuple>
 
+#include "comparisons/headline_cases.h"
+#include "comparisons/headline_words.h"
 #include "comparisons/results.h"
 
 namespace springproof {
 namespace {
 
-using Json = nlohmann::json;
+using namespace words;
 
 /// The largest error at one Poisson's ratio, over the cases.
 struct Worst {
   double error = -1;
   double uncertainty = 0;
   std::string case_name;
+
+  void take(double other, double its_uncertainty, const std::string& its_case) {
+    if (other > error) *this = {other, its_uncertainty, its_case};
+  }
 };
 
+using ByNu = std::map<double, Worst>;
+
 struct ModelErrors {
-  std::map<double, Worst> displacement, volume;  // by Poisson's ratio
-  std::set<std::string> cases;                   // in which a displacement was compared
+  ByNu displacement, volume, reaction;
+  ByNu springs;                       // displacement: the springs' own part of it, on bodies of voxels
+  ByNu rank;                          // what the closest model is found by
+  std::set<std::string> cases;        // in which a displacement was compared
+  std::optional<double> own_nu;       // the only Poisson's ratio that the model claims
+  bool parts = false, wholes = false; // ranked by the springs' own part somewhere, by the whole error somewhere
 };
 
 struct ModelKey {
@@ -37,67 +47,16 @@ struct ModelKey {
   auto operator<=>(const ModelKey&) const = default;
 };
 
-std::string string_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-std::optional<double> number_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
-}
-
-const Json& list_of(const Json& object, const char* key) {
-  static const Json none = Json::array();
-  const auto found = object.find(key);
-  return found != object.end() && found->is_array() ? *found : none;
-}
-
-Cells cells_of(const Json& item) {
-  const Json& list = list_of(item, "cells");
-  Cells cells = {0, 0, 0};
-  for (std::size_t d = 0; d < 3 && d < list.size(); ++d)
-    if (list[d].is_number()) cells[d] = list[d].get<int>();
-  return cells;
-}
-
-// ---- words
-
-std::string minus(std::string number) {
-  for (std::size_t i = 0; (i = number.find('-', i)) != std::string::npos; ++i) number.replace(i, 1, "−");
-  return number;
-}
-
-std::string number_text(std::optional<double> x) {
-  return x ? minus(fmt::format("{}", *x)) : "nothing";
-}
-
-/// Two significant digits, a fraction as percent: 0.0191 -> "1.9".
-std::string percent(double fraction) {
-  const double x = 100 * fraction;
-  if (x < 1e-3) return "0.001";
-  return x >= 99.5 ? fmt::format("{:.0f}", x) : fmt::format("{:.2g}", x);
-}
-
-/// At most six significant digits: 0.499975.
-std::string nu_text(std::optional<double> nu) {
-  return nu ? minus(fmt::format("{:.6g}", *nu)) : "nothing";
-}
-
-/// "10×10×10 cells" or "812 tets".
-std::string cells_words(const Json& item) {
-  const Cells cells = cells_of(item);
-  return cells_text(cells, "×") + (is_tetrahedra(cells) ? "" : " cells");
-}
-
 std::string range_text(double from, double to) {
   return from == to ? fmt::format("at ν = {}", nu_text(from))
                     : fmt::format("for ν from {} to {}", nu_text(from), nu_text(to));
 }
 
+std::string range_text(const ByNu& errors) { return range_text(errors.begin()->first, errors.rbegin()->first); }
+
 /// The listed Poisson's ratios at which the error stays within `limit`: "for ν from 0 to 0.4 and at ν =
 /// 0.49".
-std::string where_within(const std::map<double, Worst>& errors, double limit) {
+std::string where_within(const ByNu& errors, double limit) {
   std::vector<std::string> parts;
   for (auto it = errors.begin(); it != errors.end();) {
     if (it->second.error > limit) {
@@ -113,7 +72,7 @@ std::string where_within(const std::map<double, Worst>& errors, double limit) {
 }
 
 /// The first of 1 % and 5 % that is held somewhere but not everywhere.
-std::string tighter_clause(const std::map<double, Worst>& errors, double worst) {
+std::string tighter_clause(const ByNu& errors, double worst) {
   for (double limit : {0.01, 0.05}) {
     const std::string where = where_within(errors, limit);
     if (worst > limit && !where.empty()) return fmt::format("; within {} % {}", percent(limit), where);
@@ -121,26 +80,42 @@ std::string tighter_clause(const std::map<double, Worst>& errors, double worst) 
   return "";
 }
 
-const std::pair<const double, Worst>& largest(const std::map<double, Worst>& errors) {
+const std::pair<const double, Worst>& largest(const ByNu& errors) {
   return *std::max_element(errors.begin(), errors.end(),
                            [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
+}
+
+/// Those at the Poisson's ratios that the model claims.
+ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
+  ByNu out = by_nu;
+  if (errors.own_nu) std::erase_if(out, [&](const auto& entry) { return std::abs(entry.first - *errors.own_nu) > 1e-9; });
+  return out;
+}
+
+std::string own_ratio_clause(const ModelErrors& errors) {
+  const ByNu own = claimed(errors, errors.displacement);
+  if (!errors.own_nu || own.size() == errors.displacement.size()) return "";
+  const std::string there = own.empty() ? "which was not run" : fmt::format("there within {} %", percent(largest(own).second.error));
+  return fmt::format("; a solid of ν = {} alone, {}", nu_text(errors.own_nu), there);
 }
 
 std::string sentence(const ModelErrors& errors) {
   if (errors.displacement.empty()) return "no displacement could be compared.";
   const auto& [nu, worst] = largest(errors.displacement);
-  std::string out =
-      fmt::format("displacement within {} % of FEM {} (worst: {} at ν = {}", percent(worst.error),
-                  range_text(errors.displacement.begin()->first, errors.displacement.rbegin()->first),
-                  worst.case_name, nu_text(nu));
+  std::string out = fmt::format("displacement within {} % of FEM {} (worst: {}", percent(worst.error), range_text(errors.displacement),
+                                at_nu(worst.case_name, nu));
   if (worst.error <= worst.uncertainty)
     out += fmt::format(", below the {} % uncertainty of the reference", percent(worst.uncertainty));
   out += ")";
   out += tighter_clause(errors.displacement, worst.error);
+  if (!errors.springs.empty())
+    out += fmt::format("; its springs within {} % of FEM on the same cubes", percent(largest(errors.springs).second.error));
+  if (!errors.reaction.empty())
+    out += fmt::format("; reactions of moved supports within {} %", percent(largest(errors.reaction).second.error));
   if (!errors.volume.empty())
     out += fmt::format("; volume change within {} percentage points",
                        percent(largest(errors.volume).second.error));
-  return out + ".";
+  return out + own_ratio_clause(errors) + ".";
 }
 
 std::string expected_text(const Json& check) {
@@ -165,27 +140,79 @@ std::string run_line(const std::string& case_name, const Json& run) {
                      message.empty() ? "no reason given" : message);
 }
 
-/// The spring model that was compared most widely and, among those, has the smallest largest error.
+// ---- which model comes closest
+
+struct Candidate {
+  std::string name;
+  const ModelErrors* errors;
+  ByNu rank;  ///< where the model claims to hold
+  double error() const { return largest(rank).second.error; }
+  double uncertainty() const { return largest(rank).second.uncertainty; }
+  auto breadth() const { return std::tuple(errors->cases.size(), rank.size()); }
+};
+
+/// The spring models that were compared most widely in linear cases, the closest first.
+std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models) {
+  std::vector<Candidate> all;
+  for (const auto& [key, errors] : models)
+    if (Candidate c{key.name, &errors, claimed(errors, errors.rank)}; !key.large_deformation && !key.fem && !c.rank.empty()) all.push_back(c);
+  if (all.empty()) return all;
+  const auto widest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.breadth() < b.breadth(); })->breadth();
+  std::erase_if(all, [&](const Candidate& c) { return c.breadth() < widest; });
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.error() < b.error(); });
+  return all;
+}
+
+std::string where_text(const Candidate& c) {
+  const auto cases = c.errors->cases.size();
+  return fmt::format("{}, in {} linear case{}", range_text(c.rank), cases, cases == 1 ? "" : "s");
+}
+
+std::string closest_text(const Candidate& best) {
+  const ModelErrors& e = *best.errors;
+  std::string within = fmt::format("its displacements stay within {} % of finite elements", percent(largest(claimed(e, e.displacement)).second.error));
+  if (const ByNu springs = claimed(e, e.springs); e.wholes && e.parts)
+    within = fmt::format("its largest error, of bodies of voxels the springs' own part, is {} %", percent(best.error()));
+  else if (!springs.empty())
+    within = fmt::format("its springs stay within {} % of finite elements on the same cubes ({} % of the reference with coarse cells and staircase)",
+                         percent(largest(springs).second.error), percent(largest(claimed(e, e.displacement)).second.error));
+  if (const ByNu reaction = claimed(e, e.reaction); !reaction.empty())
+    within += fmt::format(", the reactions of moved supports within {} %", percent(largest(reaction).second.error));
+  return fmt::format("Of the spring models {} comes closest: {} {}.", best.name, within, where_text(best));
+}
+
+std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
+  std::vector<std::string> names;
+  for (const Candidate& c : tied) names.push_back(fmt::format("{} ({} %)", c.name, percent(c.error())));
+  const bool parts = tied.front().errors->parts;
+  return fmt::format("Of the spring models {} come closest and cannot be told apart: their largest errors{} differ by no more than the {} % that the "
+                     "reference is uncertain by, {}.",
+                     listed(names), parts ? ", of bodies of voxels the springs' own part," : "", percent(uncertainty), where_text(tied.front()));
+}
+
+/// That every model was run off the only Poisson's ratio that it claims; or nothing.
+std::string no_claim_text(const std::map<ModelKey, ModelErrors>& models) {
+  std::vector<std::string> names;
+  for (const auto& [key, errors] : models)
+    if (!key.large_deformation && !key.fem && errors.own_nu && !errors.rank.empty())
+      names.push_back(fmt::format("{} (a solid of ν = {} alone)", key.name, nu_text(errors.own_nu)));
+  if (names.empty()) return "";
+  return fmt::format("No spring model was compared at a Poisson's ratio that it claims: {}.", listed(names));
+}
+
 std::string answer(const std::map<ModelKey, ModelErrors>& models) {
-  const std::pair<const ModelKey, ModelErrors>* best = nullptr;
-  const auto rank = [](const ModelErrors& e) {
-    return std::tuple(-static_cast<int>(e.cases.size()), -static_cast<int>(e.displacement.size()),
-                      largest(e.displacement).second.error);
-  };
-  for (const auto& entry : models) {
-    if (entry.first.large_deformation || entry.first.fem || entry.second.displacement.empty()) continue;
-    if (!best || rank(entry.second) < rank(best->second)) best = &entry;
+  std::vector<Candidate> all = candidates(models);
+  if (all.empty()) return no_claim_text(models);
+  const Candidate& best = all.front();
+  double uncertainty = 0;
+  std::vector<Candidate> tied;
+  for (const Candidate& c : all) {
+    const double doubt = std::max(best.uncertainty(), c.uncertainty());
+    if (&c != &best && c.error() - best.error() > doubt) continue;
+    tied.push_back(c);
+    uncertainty = std::max(uncertainty, doubt);
   }
-  if (!best) return "";
-  const auto& [key, errors] = *best;
-  const auto cases = errors.cases.size();
-  return fmt::format(
-      "Of the spring models {} comes closest: its displacements stay within {} % of finite elements {}, in "
-      "{} linear "
-      "case{}.",
-      key.name, percent(largest(errors.displacement).second.error),
-      range_text(errors.displacement.begin()->first, errors.displacement.rbegin()->first), cases,
-      cases == 1 ? "" : "s");
+  return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
 }
 
 // ---- collecting
@@ -193,23 +220,20 @@ std::string answer(const std::map<ModelKey, ModelErrors>& models) {
 class Collector {
  public:
   void add_case(const Json& result) {
-    const Json experiment = result.value("experiment", Json::object());
+    const Json& experiment = object_of(result, "experiment");
     case_name_ = string_of(experiment, "name");
     large_ = string_of(experiment, "kinematics") != "linear";
     const Json& measures = list_of(experiment, "measures");
     compares_displacement_ =
         std::find(measures.begin(), measures.end(), "displacement_error") != measures.end();
     for (const Json& check : list_of(result, "checks")) add_check(check);
-    const bool verifies = list_of(experiment, "models").empty();  // the reference alone: no model to be judged
     for (const Json& run : list_of(result, "runs")) add_run(run);
-    if (verifies) return;
-    std::map<std::string, double> finest;
-    for (const Json& row : list_of(result, "rows")) {
-      double& cells = finest[string_of(row, "model")];
-      cells = std::max(cells, cell_count(cells_of(row)));
-    }
-    for (const Json& row : list_of(result, "rows"))
-      if (cell_count(cells_of(row)) == finest[string_of(row, "model")]) add_row(row);
+    append(headline_.failures, failures_of(result));
+    append(headline_.verification, verification_lines(result));
+    append(headline_.deformations, {deformation_line(result)});
+    append(headline_.warnings, {deformation_warning(result)});
+    if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
+    for (const Json& model : list_of(experiment, "models")) models_for(string_of(model, "label"), number_of(model, "own_poisson_ratio"));
   }
 
   Headline take() {
@@ -225,6 +249,15 @@ class Collector {
   }
 
  private:
+  static void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
+    std::copy_if(more.begin(), more.end(), std::back_inserter(lines), [](const std::string& line) { return !line.empty(); });
+  }
+
+  /// What a model claims, where it was compared.
+  void models_for(const std::string& label, std::optional<double> own_nu) {
+    if (const auto found = models_.find({large_, label}); found != models_.end()) found->second.own_nu = own_nu;
+  }
+
   std::size_t order_of(const std::string& model) {
     const auto found = std::find(order_.begin(), order_.end(), model);
     if (found != order_.end()) return found - order_.begin();
@@ -240,15 +273,37 @@ class Collector {
     if (!run.value("ok", false)) headline_.failed_runs.push_back(run_line(case_name_, run));
   }
 
-  void add_row(const Json& row) {
-    const std::string measure = string_of(row, "measure");
+  void add_rows(const Json& result) {
+    std::map<std::string, double> finest;
+    for (const Json& row : list_of(result, "rows")) {
+      double& cells = finest[string_of(row, "model")];
+      cells = std::max(cells, cell_count(cells_of(row)));
+    }
+    const auto is_finest = [&](const Json& item) { return cell_count(cells_of(item)) == finest[string_of(item, "model")]; };
+    std::map<std::tuple<std::string, double, std::string>, double> own_parts;  // by model, nu and measure
+    for (const Json& split : list_of(result, "splits"))
+      if (const auto part = number_of(split, "model_error"), nu = number_of(split, "poisson_ratio"); part && nu && is_finest(split))
+        own_parts[{string_of(split, "model"), *nu, string_of(split, "measure")}] = *part;
+    for (const Json& row : list_of(result, "rows"))
+      if (is_finest(row)) add_row(row, own_parts);
+  }
+
+  void add_row(const Json& row, const std::map<std::tuple<std::string, double, std::string>, double>& own_parts) {
+    const std::string measure = string_of(row, "measure"), model = string_of(row, "model");
     const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
-    if (!nu || !error || (measure != "displacement_error" && measure != "volume_change")) return;
-    ModelErrors& errors = models_[{large_, string_of(row, "model")}];
-    if (measure == "displacement_error") errors.cases.insert(case_name_);
-    Worst& worst = (measure == "volume_change" ? errors.volume : errors.displacement)[*nu];
-    if (std::abs(*error) > worst.error)
-      worst = {std::abs(*error), number_of(row, "reference_uncertainty").value_or(0), case_name_};
+    const bool displacement = measure == "displacement_error", reaction = measure == "reaction_error";
+    if (!nu || !error || !(displacement || reaction || measure == "volume_change")) return;
+    const double uncertainty = number_of(row, "reference_uncertainty").value_or(0);
+    ModelErrors& errors = models_[{large_, model}];
+    ByNu& kind = displacement ? errors.displacement : reaction ? errors.reaction : errors.volume;
+    kind[*nu].take(std::abs(*error), uncertainty, case_name_);
+    if (!displacement && !reaction) return;
+    if (displacement) errors.cases.insert(case_name_);
+    const auto part = own_parts.find({model, *nu, measure});
+    const bool has_part = part != own_parts.end();
+    (has_part ? errors.parts : errors.wholes) = true;
+    if (has_part && displacement) errors.springs[*nu].take(part->second, uncertainty, case_name_);
+    errors.rank[*nu].take(has_part ? part->second : *error, uncertainty, case_name_);
   }
 
   void add_check(const Json& check) {
@@ -276,7 +331,13 @@ class Collector {
 Headline headline(const Json& results) {
   Collector collector;
   for (const Json& result : list_of(results, "cases")) collector.add_case(result);
-  return collector.take();
+  Headline h = collector.take();
+  h.doubt = doubt_sentence(list_of(results, "cases"));
+  return h;
+}
+
+bool success(const Headline& h) {
+  return h.failed + h.no_result + h.no_reference + h.reference_too_coarse == 0 && h.failures.empty();
 }
 
 std::string expectations_sentence(const Headline& h) {

@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 
 #include "comparisons/calculix_command.h"
 #include "comparisons/homogenise_command.h"
@@ -14,6 +16,7 @@
 #include "meshes/child.h"
 #include "msm/models.h"
 #include "problem/experiment.h"
+#include "problem/shortened.h"
 
 namespace {
 
@@ -34,6 +37,8 @@ int list() {
                            "volume_change               (V' - V)/V of the displaced body",
                            "volume_change_magnitude     its absolute value, the papers' e",
                            "volume_change_first_order   integral of div u over V",
+                           "reaction_error              largest relative error of force or torque on a moved support",
+                           "mean_displacement           mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]",
                            "reaction                    force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m]",
                            "probe                       displacement.PROBE.x|y|z|magnitude [m]",
                            "stress                      stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only",
@@ -71,13 +76,15 @@ int main(int argc, char** argv) try {
       "compare", "Run cases with every model and the FEM reference; write results.csv, results.json, VTU files and report.html");
   compare_command->add_option("CASE", names, "case files (*.toml), folders of them, or built-in names (springproof list)")->required();
   compare_command->add_option("--out", options.out, "folder for the results")->capture_default_str();
-  compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")->check(CLI::NonNegativeNumber);
+  compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")->check(CLI::Range(0, 1024));
   compare_command->add_option("--poisson-ratio", options.poisson_ratios, "only these of the cases' Poisson's ratios (0.25,0.49)")
       ->delimiter(',')->take_all();
+  compare_command->add_option("--finer", options.finer, "reference grids with so many times the cells along each direction (known values for a calibration)")
+      ->check(CLI::Range(1, 16));
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
   compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
   compare_command->add_flag("!--no-vtu", options.vtu, "write no VTU files");
-  compare_command->footer("Exit status: 0 every expectation holds, 1 one does not or cannot be judged, 2 the input is unusable, 130 interrupted.");
+  compare_command->footer("Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, or nothing was compared, 2 the input is unusable, 130 interrupted.");
 
   CLI::App* list_command = app.add_subcommand("list", "Built-in cases, models and measures");
 
@@ -108,6 +115,10 @@ int main(int argc, char** argv) try {
   bench_command->set_help_flag();
   bench_command->prefix_command();  // the program that it starts knows its options
 
+  for (CLI::App* command : {compare_command, export_command, cross_check_command})
+    command->add_flag_callback("--no-scripts", [] { setenv("SPRINGPROOF_NO_SCRIPTS", "1", 1); },
+                               "refuse .geo scripts other than the built-in ones: a script can run any command");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -123,6 +134,9 @@ int main(int argc, char** argv) try {
   return material.run();
 } catch (const springproof::InputError& e) {
   fmt::print(stderr, "error: {}\n", e.what());
+  return 2;
+} catch (const std::filesystem::filesystem_error& e) {
+  fmt::print(stderr, "error: {}: {}\n", springproof::shortened(e.path1().string()), e.code().message());
   return 2;
 } catch (const std::exception& e) {
   fmt::print(stderr, "error: {}\n", e.what());

@@ -18,6 +18,25 @@ void add_vector(const std::string& name, const Vec3& v, std::map<std::string, do
   out[name + ".magnitude"] = v.norm();
 }
 
+/// The components of a measure, each as `read` takes it from the map's value.
+template <class Value, class Read>
+std::optional<Vec3> vector_of(const std::map<std::string, Value>& values, const std::string& name, Read read) {
+  const auto x = values.find(name + ".x"), y = values.find(name + ".y"), z = values.find(name + ".z");
+  if (x == values.end() || y == values.end() || z == values.end()) return {};
+  return Vec3(read(x->second), read(y->second), read(z->second));
+}
+
+std::optional<Vec3> vector_of(const std::map<std::string, double>& values, const std::string& name) {
+  return vector_of(values, name, [](double x) { return x; });
+}
+
+/// Size of a reaction of the reference; zero if it is not known, or not beyond its uncertainty.
+double size_of(const std::map<std::string, ReferenceValue>& truth, const std::string& name) {
+  const auto value = vector_of(truth, name, [](const ReferenceValue& r) { return r.value; });
+  const auto uncertainty = vector_of(truth, name, [](const ReferenceValue& r) { return r.uncertainty; });
+  return value && value->norm() > uncertainty->norm() ? value->norm() : 0;
+}
+
 std::string head(const std::string& measure) { return measure.substr(0, measure.find('.')); }
 
 std::vector<int> nodes_on(const Section& section, const Mesh& mesh) {
@@ -57,11 +76,34 @@ std::map<std::string, double> stress_measures(const std::vector<Probe>& probes, 
   return out;
 }
 
+std::optional<double> reaction_difference(const std::map<std::string, double>& a, const std::map<std::string, double>& b,
+                                          const std::map<std::string, ReferenceValue>& truth, const std::vector<std::string>& patches,
+                                          double length) {
+  constexpr double vanishing = 0.1;
+  std::optional<double> largest;
+  for (const std::string& patch : patches) {
+    const double force = size_of(truth, "force." + patch), torque = size_of(truth, "torque." + patch);
+    const auto compare = [&](const std::string& name, double size, double other) {
+      const auto u = vector_of(a, name), v = vector_of(b, name);
+      if (u && v && size > 0 && size > vanishing * other) largest = std::max(largest.value_or(0), (*u - *v).norm() / size);
+    };
+    compare("force." + patch, force, torque / length);
+    compare("torque." + patch, torque, force * length);
+  }
+  return largest;
+}
+
+std::map<std::string, double> values_of(const std::map<std::string, ReferenceValue>& limits, double off) {
+  std::map<std::string, double> values;
+  for (const auto& [measure, limit] : limits) values[measure] = limit.value + off * limit.uncertainty;
+  return values;
+}
+
 std::string unit_of(const std::string& measure) {
   const std::string kind = head(measure);
   if (kind == "force") return "N";
   if (kind == "torque") return "N m";
-  if (kind == "displacement" || kind.starts_with("section_")) return "m";
+  if (kind == "displacement" || kind == "mean_displacement" || kind.starts_with("section_")) return "m";
   if (kind == "stress") return "Pa";
   if (measure.starts_with("moduli.") && measure.ends_with("youngs_modulus")) return "Pa";
   if (measure == "moduli.youngs_modulus_local") return "Pa";
@@ -70,7 +112,8 @@ std::string unit_of(const std::string& measure) {
 }
 
 bool is_distance(const std::string& measure) {
-  return measure == "displacement_error" || measure == "displacement_error_max" || measure.starts_with("section_");
+  return measure == "displacement_error" || measure == "displacement_error_max" || measure == "reaction_error" ||
+         measure.starts_with("section_");
 }
 
 bool is_deviation(const std::string& measure) { return head(measure) == "line" && !measure.ends_with(".order"); }
@@ -79,7 +122,7 @@ bool wanted(const std::string& measure, const std::vector<std::string>& measures
   const std::string kind = head(measure);
   const std::string group = kind == "force" || kind == "torque" ? "reaction"
                             : kind == "displacement"            ? "probe"
-                            : kind == "stress" || kind == "network" || kind == "moduli" || kind == "line" ? kind
+                            : kind == "stress" || kind == "network" || kind == "moduli" || kind == "line" || kind == "mean_displacement" ? kind
                                                                 : measure;
   return std::find(measures.begin(), measures.end(), group) != measures.end();
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "comparisons/reference_value.h"
 #include "meshes/field.h"
 #include "problem/experiment.h"
 
@@ -21,6 +23,16 @@ using ProbeStresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 /// stress.<probe>.<xx|yy|zz|xy|yz|xz>.
 std::map<std::string, double> stress_measures(const std::vector<Probe>& probes, const ProbeStresses& stress);
+
+/// Largest difference of force or torque between two sets of measures on one of the patches, relative to the force or torque of
+/// `truth` [1].  One that vanishes is left out: below its uncertainty, or below a tenth of what the other of the two amounts to with the body's
+/// `length` [m] as lever.  Nothing if none is left.
+std::optional<double> reaction_difference(const std::map<std::string, double>& a, const std::map<std::string, double>& b,
+                                          const std::map<std::string, ReferenceValue>& truth, const std::vector<std::string>& patches,
+                                          double length);
+
+/// value + off * uncertainty of each measure.
+std::map<std::string, double> values_of(const std::map<std::string, ReferenceValue>& limits, double off = 0);
 
 /// "m", "Pa", "N", "N m" or "1".
 std::string unit_of(const std::string& measure);

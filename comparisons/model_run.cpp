@@ -6,6 +6,7 @@
 
 #include "comparisons/line_measure.h"
 #include "comparisons/measures.h"
+#include "comparisons/reference_grids.h"
 #include "comparisons/voxel_body.h"
 #include "msm/calibrate.h"
 #include "msm/measure/block_moduli.h"
@@ -83,21 +84,20 @@ Solved solve_and_count(const PreparedCase& prepared, std::size_t lattice, const 
 }
 
 /// One network of the model, solved and measured.
-Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
                   const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
   const auto& mesh = prepared.meshes[lattice];
   const auto solve = e.cost ? solve_and_count : solve_network;
   const auto [built, conditions, state, times] = solve(prepared, lattice, parameters, material);
   const Network& network = built.model.network;
-  Sample sample;
+  ModelSample sample;
   sample.state = state;
   sample.times = times;
   if (!sample.state.ok) return sample;
   sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  const NodalVectors probes = at_probes(prepared, lattice, sample.field.displacement);
-  sample.scalars = scalar_measures(sample.field, e.probes, probes);
+  sample.scalars = field_measures(prepared, sample.field, at_measured_points(prepared, lattice, sample.field.displacement));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);
@@ -109,8 +109,8 @@ Sample run_sample(const PreparedCase& prepared, std::size_t lattice, const Model
 
 }  // namespace
 
-std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
-  std::vector<Sample> samples;
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material) {
+  std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
     progress::phase(fmt::format("{} on {} cells{}", prepared.experiment.models[number].label, cells_text(prepared.experiment.body.cells[lattice], " x "),

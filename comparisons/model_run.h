@@ -13,7 +13,7 @@
 namespace springproof {
 
 /// What one network gives.
-struct Sample {
+struct ModelSample {
   Equilibrium state;
   RunTimes times;
   Field field;                            ///< on the lattice's mesh; empty where state.ok is false
@@ -22,6 +22,6 @@ struct Sample {
 };
 
 /// Solves model `number` of the case on lattice `lattice`; one sample per seed.
-std::vector<Sample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material);
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number, const IsotropicMaterial& material);
 
 }  // namespace springproof

@@ -10,14 +10,15 @@
 #include "comparisons/voxel_reference.h"
 #include "meshes/child.h"
 #include "problem/exact_field.h"
+#include "problem/measures.h"
 
 namespace springproof {
 namespace {
 
-/// All points at which the displacement is wanted: the nodes of every lattice, then the probes.
+/// All points at which the displacement is wanted: the nodes of every lattice, then the measured points.
 NodalVectors sample_points(const PreparedCase& prepared) {
-  const NodalVectors probes = probe_points(prepared.experiment);
-  Eigen::Index count = probes.rows();
+  const NodalVectors measured = measured_points(prepared);
+  Eigen::Index count = measured.rows();
   for (const auto& mesh : prepared.meshes) count += mesh->nodes.rows();
   NodalVectors points(count, 3);
   Eigen::Index at = 0;
@@ -25,7 +26,7 @@ NodalVectors sample_points(const PreparedCase& prepared) {
     points.middleRows(at, mesh->nodes.rows()) = mesh->nodes;
     at += mesh->nodes.rows();
   }
-  points.bottomRows(probes.rows()) = probes;
+  points.bottomRows(measured.rows()) = measured;
   return points;
 }
 
@@ -102,7 +103,7 @@ void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<E
 double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
                 double largest_displacement) {
   constexpr double relative = 1e-7;
-  if (measure.starts_with("displacement.")) return relative * largest_displacement;
+  if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return relative * largest_displacement;
   if (measure.starts_with("volume_change")) return relative * largest_displacement / body_size;
   const bool is_stress = measure.starts_with("stress.");
   double force = 0, stress = 0;
@@ -145,6 +146,23 @@ NodalVectors probe_points(const Experiment& e) {
   return points;
 }
 
+NodalVectors measured_points(const PreparedCase& prepared) {
+  NodalVectors points = probe_points(prepared.experiment);
+  for (const PatchSamples& p : prepared.patch_samples) {
+    points.conservativeResize(points.rows() + p.points.rows(), 3);
+    points.bottomRows(p.points.rows()) = p.points;
+  }
+  return points;
+}
+
+std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u) {
+  const std::vector<Probe>& probes = prepared.experiment.probes;
+  const auto count = static_cast<Eigen::Index>(probes.size());
+  auto values = scalar_measures(field, probes, u.topRows(count));
+  values.merge(mean_displacements(prepared.patch_samples, u.bottomRows(u.rows() - count)));
+  return values;
+}
+
 bool complete(const ElementGrids& e) {
   return e.grids.size() == 3 && std::all_of(e.grids.begin(), e.grids.end(), [](const auto& s) { return s.ok; });
 }
@@ -180,6 +198,8 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
     out.peers.resize(prepared.meshes.size());
     for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;
+  } catch (const NoRoom&) {  // no fault of the case
+    throw;
   } catch (const std::runtime_error& e) {
     return {{}, {}, {}, e.what()};
   }
@@ -202,8 +222,8 @@ Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem
 
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
-  auto values = scalar_measures(sampled_field(prepared, 0, s), probes,
-                                s.displacement.bottomRows(static_cast<Eigen::Index>(probes.size())));
+  const Eigen::Index nodes = first_node(prepared, prepared.meshes.size());
+  auto values = field_measures(prepared, sampled_field(prepared, 0, s), s.displacement.bottomRows(s.displacement.rows() - nodes));
   if (s.stress.rows() == static_cast<Eigen::Index>(probes.size())) values.merge(stress_measures(probes, s.stress));
   return values;
 }
@@ -214,6 +234,11 @@ bool comparable(const PreparedCase& prepared, const std::string& measure) {
   return !prepared.sharing.contains(measure.substr(from, measure.rfind('.') - from));
 }
 
+std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
+                                     const std::map<std::string, ReferenceValue>& truth) {
+  return reaction_difference(values, values_of(truth), truth, comparable_moved_patches(prepared), prepared.experiment.body.size.maxCoeff());
+}
+
 NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   if (prepared.experiment.exact.empty()) return NodalVectors(0, 3);
   NodalVectors u = prepared.meshes.front()->nodes;
@@ -222,11 +247,33 @@ NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   return u;
 }
 
+std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared) {
+  std::vector<std::string> patches = moved_patches(prepared.experiment);
+  std::erase_if(patches, [&](const std::string& patch) { return prepared.sharing.contains(patch); });
+  return patches;
+}
+
 GridRatios ratios_of(const ElementGrids& e) {
-  const auto is_count = [](const fem::Solution& s) { return s.grid.cells[1] == 0; };   // {n, 0, 0}: n tetrahedra
-  if (!std::all_of(e.grids.begin(), e.grids.end(), is_count)) return {};
-  const auto ratio = [&](int coarse, int fine) { return std::cbrt(double(e.grids[fine].grid.cells[0]) / e.grids[coarse].grid.cells[0]); };
+  const Cells& finest = e.grids[2].grid.cells;
+  const auto refined = is_tetrahedra(finest) ? 3 : std::count_if(finest.begin(), finest.end(), [](int n) { return n > 1; });
+  const auto ratio = [&](int coarse, int fine) {
+    return std::pow(cell_count(e.grids[fine].grid.cells) / cell_count(e.grids[coarse].grid.cells), 1.0 / static_cast<double>(std::max(refined, 1L)));
+  };
   return {ratio(0, 1), ratio(1, 2)};
+}
+
+void widen(double spread, ReferenceField& field) {
+  field.uncertainty += spread;
+  field.nodal_uncertainty += spread * field.displacement.rowwise().norm();
+}
+
+bool most_converge(const std::map<std::string, ReferenceValue>& limits) {
+  std::map<std::string, double> largest;
+  for (const auto& [measure, limit] : limits) largest[kind_of(measure)] = std::max(largest[kind_of(measure)], std::abs(limit.value));
+  int balance = 0;
+  for (const auto& [measure, limit] : limits)
+    if (std::abs(limit.value) >= 0.1 * largest[kind_of(measure)]) balance += limit.sequence == Sequence::not_converging ? -1 : 1;
+  return balance >= 0;
 }
 
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
@@ -239,6 +286,8 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
     limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
                                   noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
                                   trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+  raise_to_usual(limits);
+  for (auto& [measure, limit] : limits) limit.uncertainty += prepared.load_spread * std::abs(limit.value);
   return limits;
 }
 
@@ -252,7 +301,7 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
     std::vector<double> sequence;
     for (const fem::Solution& s : e.grids) sequence.push_back(measures_of(prepared, s).at(measure));
     records.push_back({nu, measure, unit_of(measure), {}, sequence, limit.observed_order, limit.value, limit.uncertainty,
-                       limit.note, e.element});
+                       limit.note, e.element, limit.sequence != Sequence::not_converging});
   }
   if (!experiment.exact.empty())
     for (const ReferenceRecord& r : exact_records(prepared, nu, e))

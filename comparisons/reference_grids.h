@@ -32,11 +32,11 @@ struct ReferenceGrids {
   std::string failure;                 ///< why there is no answer
 };
 
-/// Displacements are asked for at the nodes of every lattice and at the probes, stresses at the probes if the case measures them.
+/// Displacements are asked for at the nodes of every lattice and at the measured points, stresses at the probes if the case measures them.
 /// An element without a result on some graded grid is solved on uniform ones; an element that the program dies of is alone in that.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
-/// Row of Solution::displacement that the nodes of a lattice begin at; of the one past the last, that of the probes.
+/// Row of Solution::displacement that the nodes of a lattice begin at; of the one past the last, that of the measured points.
 Eigen::Index first_node(const PreparedCase& prepared, std::size_t lattice);
 
 /// The part of Solution::displacement that belongs to the nodes of one lattice.
@@ -50,14 +50,33 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
 /// Rest positions of the probes, n x 3 [m].
 NodalVectors probe_points(const Experiment& experiment);
 
+/// Those and after them the points of the patches whose mean displacement is measured.
+NodalVectors measured_points(const PreparedCase& prepared);
+
+/// The measures of a field that have a value of their own; `u` is the displacement at the measured points.
+std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u);
+
 /// False for the force or torque on a patch that shares held nodes with another: no reference can be given.
 bool comparable(const PreparedCase& prepared, const std::string& measure);
+
+/// The supports that are moved and whose reactions are their own.
+std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared);
+
+/// Largest relative error of the force or torque on a moved support; nothing where none is moved, or none can be compared.
+std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
+                                     const std::map<std::string, ReferenceValue>& truth);
 
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
 
-/// By which the cell sizes of the three grids fall; of tetrahedra as their number grows.
+/// By which the cell sizes of the three grids fall, as the number of cells grows; layers of one cell stay so.
 GridRatios ratios_of(const ElementGrids& e);
+
+/// Adds a relative uncertainty.
+void widen(double spread, ReferenceField& field);
+
+/// True if most of the values that matter do: those of a tenth or more of the largest of their kind.
+bool most_converge(const std::map<std::string, ReferenceValue>& limits);
 
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);

@@ -1,5 +1,7 @@
 #include "comparisons/reference_value.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -9,10 +11,9 @@ namespace {
 
 constexpr double lowest_order = 0.5;
 
-/// What f3 - f2 is multiplied by for the step to the limit, and for the uncertainty.
-struct Factors {
-  double limit, uncertainty;
-};
+const char* const equal = "equal on all grids to solver accuracy";
+const char* const richardson = "Richardson, GCI";
+const char* const lucky = "Richardson; order too high to be trusted";
 
 /// Order p for which differences f2 - f1 and f3 - f2 of errors C h^p have this quotient: the root of
 /// (coarse^p - 1) / (1 - fine^-p) = quotient, between 0 and 20.
@@ -25,61 +26,120 @@ double order_of(double quotient, const GridRatios& r) {
   return (low + high) / 2;
 }
 
-Factors factors(double order, const TrustedOrder& trusted, const GridRatios& ratios) {
-  const double limit = 1 / (std::pow(ratios.fine, std::min(order, trusted.highest)) - 1);
-  return {limit, safety_factor * (order > trusted.suspicious ? 1 : limit)};
+/// Error of the finest grid over f3 - f2 at this order.
+double by_last(double order, const GridRatios& r) { return 1 / std::expm1(order * std::log(r.fine)); }
+
+/// Error of the finest grid over f2 - f1 at this order.
+double by_first(double order, const GridRatios& r) { return std::pow(r.fine, -order) / std::expm1(order * std::log(r.coarse)); }
+
+/// False where the limit would lie further from the finest grid than the three are apart.
+bool is_fast_enough(double quotient, double order, const GridRatios& ratios) {
+  return order >= lowest_order && by_last(order, ratios) <= 1 + quotient;
 }
 
-const char* note(double order, const TrustedOrder& trusted) {
-  return order > trusted.suspicious ? "Richardson; order too high to be trusted, full last difference" : "Richardson, GCI";
+std::string not_refined(const GridRatios& r) {
+  return fmt::format("not refined: ratio {:.2f}; finest grid, {:g} times the spread of the three", std::min(r.coarse, r.fine), coarse_safety_factor);
+}
+
+double weighted_product(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights) {
+  return weights.dot(u.cwiseProduct(v).rowwise().sum()) / weights.sum();
+}
+
+/// "force.z_max" of "force.z_max.x"; measures without components are their own.
+std::string vector_of(const std::string& measure) { return measure.substr(0, measure.find('.') == std::string::npos ? std::string::npos : measure.rfind('.')); }
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace
 
-double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) {
-  return std::sqrt((u.rowwise().squaredNorm().array() * weights.array()).sum() / weights.sum());
+double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) { return std::sqrt(weighted_product(u, u, weights)); }
+
+double trusted_order(const std::string& measure, const std::string& element, bool smooth) {
+  const double degree = element.back() - '0';
+  const std::string kind = kind_of(measure);
+  if (smooth && (kind == "displacement" || kind == "mean_displacement")) return degree + 1;
+  if (smooth && kind == "stress") return degree;
+  return clamped_order;
 }
 
-TrustedOrder trusted_order(const std::string& measure, const std::string& element, bool smooth) {
-  if (!smooth) return {};
-  const double degree = element.back() - '0', suspicious = 2 * degree + 0.5;
-  if (measure.starts_with("displacement.")) return {degree + 1, suspicious};
-  if (measure.starts_with("stress.")) return {degree, suspicious};
-  return {};
-}
+bool are_refined(const GridRatios& ratios) { return std::min(ratios.coarse, ratios.fine) >= smallest_ratio; }
 
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrder& trusted, const GridRatios& ratios) {
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order, const GridRatios& ratios) {
   if (values.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const double f1 = values[values.size() - 3], f2 = values[values.size() - 2], f3 = values.back();
-  const double coarse = f2 - f1, fine = f3 - f2;
-  if (std::max(std::abs(coarse), std::abs(fine)) <= noise) return {f3, noise, {}, "equal on all grids to solver accuracy"};
-  const double order = coarse * fine > 0 ? order_of(coarse / fine, ratios) : 0;
-  if (order < lowest_order) {
-    const double spread = std::max({f1, f2, f3}) - std::min({f1, f2, f3});
-    return {f3, safety_factor * spread + noise, {}, "not converging monotonically: finest grid, spread of the three"};
-  }
-  const Factors by = factors(order, trusted, ratios);
-  return {f3 + by.limit * fine, by.uncertainty * std::abs(fine) + noise, order, note(order, trusted)};
+  const double coarse = f2 - f1, fine = f3 - f2, spread = std::max({f1, f2, f3}) - std::min({f1, f2, f3});
+  const auto finest = [&](double factor, double error, std::string note) {
+    return ReferenceValue{f3, factor * error + noise, {}, std::move(note), Sequence::not_converging};
+  };
+  if (spread <= noise) return {f3, noise, {}, equal, Sequence::equal};
+  if (!are_refined(ratios)) return finest(coarse_safety_factor, spread, not_refined(ratios));
+  if (coarse * fine <= 0)
+    return finest(safety_factor, std::max(std::abs(fine), std::abs(coarse) / (ratios.coarse * ratios.fine)), "not converging monotonically: finest grid");
+  const double order = order_of(coarse / fine, ratios);
+  if (!is_fast_enough(coarse / fine, order, ratios))
+    return finest(safety_factor, std::max(spread, by_last(std::max(order, lowest_order), ratios) * std::abs(fine)), "not converging fast enough: finest grid");
+  const double p = std::min(order, highest_order), step = by_last(p, ratios) * fine;
+  return {f3 + step, safety_factor * std::max(std::abs(step), by_first(p, ratios) * std::abs(coarse)) + noise, order, order > p ? lucky : richardson};
 }
 
 ReferenceValue extrapolate_two(double f1, double f2) {
-  return {2 * f2 - f1, 3 * std::abs(f2 - f1), {}, "two grids, first order assumed"};
+  return {2 * f2 - f1, coarse_safety_factor * std::abs(f2 - f1), {}, "two grids, first order assumed"};
 }
 
-ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, const GridRatios& ratios) {
+std::string kind_of(const std::string& measure) {
+  return measure.starts_with("volume_change") ? "volume_change" : measure.substr(0, measure.find('.'));
+}
+
+void raise_to_usual(std::map<std::string, ReferenceValue>& limits) {
+  std::map<std::string, double> size;   // of the vector or tensor; a tensor's shear components count once
+  for (const auto& [measure, limit] : limits)
+    if (!measure.ends_with(".magnitude")) size[vector_of(measure)] = std::hypot(size[vector_of(measure)], limit.value);
+  std::map<std::string, std::vector<double>> relative;
+  for (const auto& [measure, limit] : limits)
+    if (limit.sequence != Sequence::equal && !measure.ends_with(".magnitude") && size[vector_of(measure)] > 0)
+      relative[kind_of(measure)].push_back(limit.uncertainty / size[vector_of(measure)]);
+  for (auto& [measure, limit] : limits)
+    if (limit.sequence != Sequence::equal) limit.uncertainty = std::max(limit.uncertainty, median(relative[kind_of(measure)]) * size[vector_of(measure)]);
+}
+
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, const GridRatios& ratios,
+                           bool scalars_converge) {
   if (fields.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const NodalVectors &u1 = fields[fields.size() - 3], &u2 = fields[fields.size() - 2], &u3 = fields.back();
+  const NodalVectors coarse = u2 - u1, fine = u3 - u2;
   const double size = weighted_norm(u3, weights), noise = 1e-8 * size;
-  const double coarse = weighted_norm(u2 - u1, weights), fine = weighted_norm(u3 - u2, weights);
-  const auto result = [&](double limit, double factor, std::optional<double> order, const char* text) {
-    const Eigen::VectorXd nodal = (factor * (u3 - u2).rowwise().norm()).array() + noise;
-    return ReferenceField{u3 + limit * (u3 - u2), size > 0 ? (factor * fine + noise) / size : 0, nodal, order, text};
+  const double c = weighted_norm(coarse, weights), f = weighted_norm(fine, weights);
+  ReferenceField result;
+  result.displacement = u3;
+  const auto with = [&](const Eigen::VectorXd& nodal, Sequence sequence, std::string note) {
+    result.nodal_uncertainty = nodal.array() + noise;
+    result.uncertainty = size > 0 ? std::sqrt(weights.dot(result.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size : 0;
+    result.sequence = sequence;
+    result.note = std::move(note);
+    return result;
   };
-  if (std::max(coarse, fine) <= noise) return result(0, 0, {}, "equal on all grids to solver accuracy");
-  const double order = order_of(coarse / fine, ratios);
-  if (order < lowest_order) return result(0, safety_factor * std::max(coarse, fine) / fine, {}, "not converging: finest grid, largest difference");
-  const Factors by = factors(order, {}, ratios);
-  return result(by.limit, by.uncertainty, order, note(order, {}));
+  if (std::max(c, f) <= noise) return with(Eigen::VectorXd::Zero(u3.rows()), Sequence::equal, equal);
+  if (std::min(c, f) > noise) result.correlation = weighted_product(coarse, fine, weights) / (c * f);
+  const Eigen::VectorXd first = coarse.rowwise().norm(), last = fine.rowwise().norm();
+  const Eigen::VectorXd spread = first.cwiseMax(last).cwiseMax((u3 - u1).rowwise().norm());
+  const auto finest = [&](const Eigen::VectorXd& nodal, std::string note) { return with(nodal, Sequence::not_converging, std::move(note)); };
+  if (!are_refined(ratios)) return finest(coarse_safety_factor * spread, not_refined(ratios));
+  const double along = result.correlation.value_or(0), quotient = f > 0 ? along * c / f : 0, order = order_of(quotient, ratios);
+  if (along < smallest_correlation)
+    return finest(safety_factor * spread, fmt::format("not converging: the grids' differences point apart (correlation {:.2f}); finest grid", along));
+  if (!scalars_converge) return finest(safety_factor * spread, "not converging: most other values do not; finest grid");
+  if (!is_fast_enough(quotient, order, ratios))
+    return finest(safety_factor * spread.cwiseMax(by_last(std::max(order, lowest_order), ratios) * last), "not converging fast enough: finest grid");
+  const double p = std::min(order, clamped_order);
+  result.displacement += by_last(p, ratios) * fine;
+  result.observed_order = order;
+  return with(safety_factor * (by_last(p, ratios) * last).cwiseMax(by_first(p, ratios) * first), Sequence::converging,
+              fmt::format("{}; correlation {:.2f}", order > p ? lucky : richardson, along));
 }
 
 }  // namespace springproof

@@ -56,7 +56,7 @@ add_custom_command(
   COMMENT "Embedding the report's page and its libraries"
   VERBATIM)
 
-add_library(report STATIC ${report_dir}/report.cpp ${report_dir}/page.cpp ${report_dir}/headline.cpp ${report_dir}/results.cpp ${report_generated})
+add_library(report STATIC ${report_dir}/report.cpp ${report_dir}/page.cpp ${report_dir}/headline.cpp ${report_dir}/headline_cases.cpp ${report_dir}/headline_words.cpp ${report_dir}/terminal.cpp ${report_dir}/results.cpp ${report_generated})
 set(report_view ${CMAKE_BINARY_DIR}/arrows/comparisons)
 file(MAKE_DIRECTORY ${report_view})
 file(CREATE_LINK ${CMAKE_SOURCE_DIR}/comparisons ${report_view}/comparisons SYMBOLIC)

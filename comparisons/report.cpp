@@ -85,15 +85,12 @@ std::string model_list_html(const Headline& head, bool large_deformation) {
 std::string verdicts_html(const Headline& head) {
   const std::string linear = model_list_html(head, false), large = model_list_html(head, true);
   std::string out;
-  if (!head.answer.empty()) out += fmt::format("<p class=\"answer\">{}</p>\n", escaped(head.answer));
-  if (!linear.empty())
-    out += "<h2>Linear elasticity: the largest error of all cases, each at its finest resolution</h2>\n" +
-           linear;
+  const std::string doubt = head.doubt.empty() ? "" : fmt::format("<span class=\"amber\">{}</span> ", escaped(head.doubt));
+  if (const std::string first = doubt + escaped(head.answer); !first.empty()) out += fmt::format("<p class=\"answer\">{}</p>\n", first);
+  for (const std::string& line : head.warnings) out += fmt::format("<p class=\"amber\">{}</p>\n", escaped(line));
+  if (!linear.empty()) out += fmt::format("<h2>{}</h2>\n{}", linear_title, linear);
   if (!large.empty())
-    out += fmt::format(
-        "<details{}><summary>Large deformation, beside a finite-strain law: reported, not part of the "
-        "verdict</summary>\n{}</details>\n",
-        linear.empty() ? " open" : "", large);
+    out += fmt::format("<details{}><summary>{}</summary>\n{}</details>\n", linear.empty() ? " open" : "", large_title, large);
   return out;
 }
 
@@ -111,6 +108,7 @@ std::string headline_html(const Json& results) {
                             count_html("none", head.no_result, "no result");
   out += (chips.empty() ? "none stated" : chips) + "</p>\n";
   out += folded_html("failures", fmt::format("Expectations that fail: {}", head.failed), head.failed_checks);
+  out += folded_html("failures", fmt::format("Not compared: {}", head.failures.size()), head.failures);
   out += folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()),
                      head.failed_runs);
   return out;

@@ -12,6 +12,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "problem/measures.h"
+
 namespace springproof {
 namespace {
 
@@ -180,7 +182,9 @@ Json json_of(const ReferenceRecord& r) {
           {"value", number(r.value)},
           {"uncertainty", number(r.uncertainty)},
           {"note", r.note},
-          {"element", r.element}};
+          {"element", r.element},
+          {"converging", r.converging},
+          {"correlation", number(r.correlation)}};
 }
 
 Json json_of(const Check& c) {
@@ -227,6 +231,12 @@ Json json_of(const ErrorSplit& s) {
           {"voxel_uncertainty", number(s.voxel_uncertainty)}};
 }
 
+Json json_of(const Deformation& d) {
+  return {{"poisson_ratio", number(d.poisson_ratio)},
+          {"principal_strain", number(d.principal_strain)},
+          {"rotation_deg", number(d.rotation_deg)}};
+}
+
 Json json_of(const PublishedRow& p) {
   return {{"model", p.model},
           {"poisson_ratio", number(p.poisson_ratio)},
@@ -262,6 +272,7 @@ Json json_of(const Experiment& e) {
           {"elements", e.elements},
           {"cost", e.cost},
           {"measures", e.measures},
+          {"moved_patches", moved_patches(e)},
           {"probes", list(e.probes)},
           {"section", e.section ? json_of(*e.section) : Json(nullptr)},
           {"line", e.line ? json_of(*e.line) : Json(nullptr)},
@@ -399,7 +410,12 @@ std::string describe(const Load& load) {
 }
 
 Json to_json(const CaseResult& result) {
-  return {{"experiment", json_of(result.experiment)},
+  Json experiment = json_of(result.experiment);
+  for (Json& model : experiment["models"]) {
+    const auto own = result.own_poisson_ratios.find(model["label"]);
+    model["own_poisson_ratio"] = own == result.own_poisson_ratios.end() ? Json(nullptr) : number(own->second);
+  }
+  return {{"experiment", experiment},
           {"runs", list(result.runs)},
           {"rows", list(result.rows)},
           {"references", list(result.references)},
@@ -407,6 +423,7 @@ Json to_json(const CaseResult& result) {
           {"published", list(result.published)},
           {"lines", list(result.lines)},
           {"splits", list(result.splits)},
+          {"deformations", list(result.deformations)},
           {"notes", result.notes}};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -60,6 +61,8 @@ struct ReferenceRecord {
   double uncertainty = 0;
   std::string note;                ///< "Richardson", "not monotone: spread of the three grids", ...
   std::string element = "q2";      ///< of [reference] elements
+  bool converging = true;          ///< false: the grids tell no order, the value is the finest
+  std::optional<double> correlation = {};  ///< of a field: how far its two differences point the same way, -1 to 1
 };
 
 enum class Verdict { pass, fail, reference_too_coarse, no_reference, no_result };
@@ -139,8 +142,16 @@ struct LineRecord {
   LineTensors exact_strain, exact_stress;  ///< Kelvin's
 };
 
+/// How far the reference of a case is deformed at one Poisson's ratio (comparisons/deformation.h).
+struct Deformation {
+  double poisson_ratio = 0;
+  double principal_strain = 0;  ///< [1]
+  double rotation_deg = 0;
+};
+
 struct CaseResult {
   Experiment experiment;
+  std::map<std::string, double> own_poisson_ratios;  ///< of the models, by label, that are solids of one Poisson's ratio only
   std::vector<Run> runs;
   std::vector<Row> rows;
   std::vector<ReferenceRecord> references;
@@ -149,6 +160,7 @@ struct CaseResult {
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
   std::vector<ErrorSplit> splits;
+  std::vector<Deformation> deformations;
   std::vector<std::string> notes;  ///< what was mended or left out of the body
 };
 

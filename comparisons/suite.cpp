@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -16,13 +18,20 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "comparisons/calibration.h"
 #include "comparisons/case_run.h"
+#include "comparisons/checksum.h"
+#include "comparisons/folder_lock.h"
 #include "comparisons/headline.h"
 #include "comparisons/part_file.h"
 #include "comparisons/report.h"
 #include "comparisons/status.h"
 #include "comparisons/time_left.h"
 #include "fem_reference/reference.h"
+#include "meshes/child.h"
+#include "meshes/script_files.h"
+#include "problem/file_name.h"
+#include "problem/shortened.h"
 
 namespace springproof {
 namespace {
@@ -39,8 +48,10 @@ void on_interrupt(int) {
 template <class Iterator>
 std::vector<fs::path> toml_files(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : Iterator(folder))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::error_code error;
+  for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".toml") files.push_back(entry->path());
+  if (error) throw InputError(shortened(fmt::format("{}: cannot be read: {}", folder.string(), error.message())));
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -49,12 +60,14 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
 std::string key_of(const fs::path& file) {
   std::string key = case_name(file);
   std::replace(key.begin(), key.end(), '/', '-');
-  return key;
+  return file_name(key);
 }
 
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+/// Everything that a case is computed from.
+std::string checksum_of(const PreparedCase& p) {
+  std::string all = checksum(p.experiment.text);
+  for (const fs::path& file : files_behind(p.geo)) all += file.filename().string() + checksum(text_of_file(file));
+  return checksum(all);
 }
 
 /// One part of one case: the unit of work.
@@ -74,25 +87,27 @@ void require_writable(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder / "parts", error);
   const fs::path trial = folder / ".writable";
-  if (!error) std::ofstream(trial) << "x";
-  if (error || !fs::exists(trial))
-    throw InputError(fmt::format("--out: cannot write into {}{}", folder.string(), error ? ": " + error.message() : ""));
-  fs::remove(trial);
+  std::ofstream out;
+  if (!error) out.open(trial), out << "x", out.close();
+  if (error || !out)
+    throw InputError(shortened(fmt::format("--out: cannot write into {}: {}", folder.string(), error ? error.message() : std::strerror(errno))));
+  fs::remove(trial, error);
 }
 
 std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const SuiteOptions& options) {
   std::vector<Task> tasks;
   const std::string fem = fem::version();
-  for (const PreparedCase& p : prepared)
+  for (const PreparedCase& p : prepared) {
+    const std::string sum = checksum_of(p);
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
       const std::string key = key_of(p.experiment.file);
       const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
-      const std::string stamp = fmt::format("{} | {} | {} | {} | {:016x}", SPRINGPROOF_VERSION, fem, nu, options.vtu,
-                                            std::hash<std::string>()(p.experiment.text + read_text(p.geo)));
+      const std::string stamp = fmt::format("{} | {} | {} | {} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu, options.finer, sum);
       tasks.push_back({&p, m, options.out / "parts" / (key + "-" + nu + ".cbor"),
                        options.vtu ? options.out / "vtu" / key : fs::path(), stamp,
                        fmt::format("{}  {}", case_name(p.experiment.file), nu), {}});
     }
+  }
   return tasks;
 }
 
@@ -113,13 +128,25 @@ Experiment only(const std::vector<double>& wanted, Experiment e) {
   return e;
 }
 
+/// Multiplies the cells of the reference's grids along each direction, but for layers of one cell.
+/// @throws InputError if the case leaves its reference to the program.
+Experiment finer(int times, Experiment e) {
+  if (times == 1) return e;
+  if (e.reference.cells[0] == 0 && e.reference.edge == 0)
+    throw InputError(fmt::format("--finer: {} leaves its reference grids to the program; give it [reference] cells or edge_m", e.file.string()));
+  for (int& n : e.reference.cells)
+    if (n > 1) n *= times;
+  e.reference.edge /= times;
+  return e;
+}
+
 /// Those before an interrupt, which ends the mesher too.
-std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const std::vector<double>& poisson_ratios, bool quiet) {
+std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
-  Status status(quiet);
+  Status status(options.quiet);
   for (const fs::path& file : cases) try {
       const Status::Working working(status, case_name(file));
-      if (!interrupted) prepared.push_back(prepare(only(poisson_ratios, read_experiment(file))));
+      if (!interrupted) prepared.push_back(prepare(finer(options.finer, only(options.poisson_ratios, read_experiment(file)))));
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
     }
@@ -171,6 +198,14 @@ class Progress {
   const bool quiet_;
 };
 
+/// What was finished before, unless its file has changed since.
+std::optional<Part> kept_part(const Task& task) try {
+  return load_part(task.file, task.stamp);
+} catch (const DamagedPart& e) {
+  fmt::print(stderr, "note: {}; this part is computed anew\n", e.what());
+  return {};
+}
+
 void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
   const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::atomic<std::size_t> next = 0;
@@ -183,7 +218,7 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
         const auto start = std::chrono::steady_clock::now();
         const Status::Working working = progress.working(i);
         std::optional<Part> kept;
-        if (options.resume) kept = load_part(task.file, task.stamp);
+        if (options.resume) kept = kept_part(task);
         task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu);
         if (interrupted) return;  // its FEM program may have been stopped by the same signal
         if (!kept) save_part(task.file, task.stamp, task.part);
@@ -196,7 +231,7 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
       }
   };
   std::vector<std::thread> workers;
-  for (int j = 0; j < jobs; ++j) workers.emplace_back(work);
+  for (std::size_t j = 0; j < std::min(static_cast<std::size_t>(jobs), tasks.size()); ++j) workers.emplace_back(work);
   for (std::thread& w : workers) w.join();
   if (failure && !interrupted) std::rethrow_exception(failure);
 }
@@ -212,6 +247,8 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
     CaseResult result;
     result.experiment = p.experiment;
     result.notes = p.notes;
+    for (std::size_t m = 0; m < p.models.size(); ++m)
+      if (const auto own = own_poisson_ratio(p.models[m].row)) result.own_poisson_ratios[p.experiment.models[m].label] = *own;
     for (const Task& task : tasks) {
       if (task.prepared != &p) continue;
       append(task.part.runs, result.runs);
@@ -220,6 +257,7 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
       append(task.part.pictures, result.pictures);
       append(task.part.lines, result.lines);
       append(task.part.splits, result.splits);
+      append(task.part.deformations, result.deformations);
     }
     judge(result);
     results.push_back(std::move(result));
@@ -241,6 +279,12 @@ nlohmann::json host() {
           {"cores", std::thread::hardware_concurrency()}};
 }
 
+std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
+  std::vector<KnownQuantity> all;
+  for (const CaseResult& r : results) append(known_quantities(r), all);
+  return all;
+}
+
 nlohmann::json document(const std::vector<CaseResult>& results) {
   nlohmann::json cases = nlohmann::json::array();
   for (const CaseResult& r : results) cases.push_back(to_json(r));
@@ -248,11 +292,12 @@ nlohmann::json document(const std::vector<CaseResult>& results) {
   return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", fem}}},
           {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"host", host()},
-          {"cases", cases}};
+          {"cases", cases},
+          {"calibration", calibration_json(known_quantities(results))}};
 }
 
-/// Writes everything; returns the number of expectations that do not hold.
-int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
+/// Writes everything; true if every expectation holds and every case was compared.
+bool write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   const nlohmann::json doc = document(results);
   nlohmann::json pictures = nlohmann::json::array();
   for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
@@ -260,12 +305,20 @@ int write_results(const std::vector<CaseResult>& results, const fs::path& out) {
   write_file(out / "results.csv", to_csv(results));
   write_report(out / "report.html", doc, pictures);
   const Headline h = headline(doc);
-  fmt::print("\n");
-  for (const ModelVerdict& v : h.models) fmt::print("{:<28} {}\n", v.model, v.sentence);
-  for (const std::string& line : h.failed_runs) fmt::print("no result: {}\n", line);
-  for (const std::string& line : h.failed_checks) fmt::print("FAILED: {}\n", line);
-  fmt::print("\n{}\nreport: {}\n", expectations_sentence(h), (out / "report.html").string());
-  return h.failed + h.no_result + h.no_reference + h.reference_too_coarse;
+  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known_quantities(results)), (out / "report.html").string());
+  return success(h);
+}
+
+/// @throws InputError if two cases would write the same files, or one no files.
+void check_names(const std::vector<fs::path>& cases) {
+  for (const fs::path& file : cases)
+    if (key_of(file).size() > longest_file_name)
+      throw InputError(shortened(fmt::format("{}: a name too long for the results' files (allowed: up to {} letters)", key_of(file), longest_file_name)));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (file_name_key(key_of(cases[i])) == file_name_key(key_of(cases[j])))
+        throw InputError(fmt::format("{} and {} have the same name; rename one, or compare them one at a time",
+                                     cases[j].string(), cases[i].string()));
 }
 
 }  // namespace
@@ -282,19 +335,26 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const fs::path built_in = fs::path(SPRINGPROOF_EXPERIMENTS_DIR) / name;
     std::vector<fs::path> found;
+    std::string why;
     for (const fs::path& path : {fs::path(name), built_in, fs::path(built_in.string() + ".toml")}) {
-      if (fs::is_directory(path))
+      std::error_code error;
+      const fs::file_status status = fs::status(path, error);
+      if (fs::is_directory(status))
         found = toml_files<fs::directory_iterator>(path);
-      else if (fs::exists(path))
+      else if (fs::exists(status))
         found = {path};
+      else if (error && status.type() != fs::file_type::not_found && why.empty())
+        why = error.message() + "; ";  // a loop of links, too long a name
       if (!found.empty()) break;
     }
     if (found.empty())
-      throw InputError(fmt::format("{}: no such case file, and no folder with case files (*.toml); `springproof list` "
-                                   "shows the built-in ones", name));
-    for (const fs::path& file : found)
-      if (std::none_of(cases.begin(), cases.end(), [&](const fs::path& c) { return fs::equivalent(c, file); }))
+      throw InputError(shortened(fmt::format("{}: {}no such case file, and no folder with case files (*.toml); `springproof list` "
+                                             "shows the built-in ones", name, why)));
+    for (const fs::path& file : found) {
+      std::error_code ignored;
+      if (std::none_of(cases.begin(), cases.end(), [&](const fs::path& c) { return c == file || fs::equivalent(c, file, ignored); }))
         cases.push_back(file);
+    }
   }
   return cases;
 }
@@ -302,17 +362,14 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  const std::vector<PreparedCase> prepared = prepare_all(cases, options.poisson_ratios, options.quiet);
+  check_names(cases);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (interrupted) {
     fmt::print(stderr, "interrupted before any part was run\n");
     return 130;
   }
-  for (std::size_t i = 0; i < cases.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (key_of(cases[i]) == key_of(cases[j]))
-        throw InputError(fmt::format("{} and {} have the same name; rename one, or compare them one at a time",
-                                     cases[j].string(), cases[i].string()));
   require_writable(options.out);
+  const FolderLock lock(options.out);
   std::vector<Task> tasks = make_tasks(prepared, options);
   if (!fem::available())
     fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
@@ -323,7 +380,7 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
                done, tasks.size(), options.out.string());
     return 130;
   }
-  return write_results(collect(prepared, tasks), options.out) == 0 ? 0 : 1;
+  return write_results(collect(prepared, tasks), options.out) ? 0 : 1;
 }
 
 }  // namespace springproof

@@ -15,6 +15,7 @@ struct SuiteOptions {
   bool vtu = true;       ///< write a VTU per run
   bool quiet = false;    ///< say nothing of what is under way
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
+  int finer = 1;         ///< reference grids with so many times the cells along each direction
 };
 
 /// Case files named by paths: files, folders (the *.toml right in them), or folders of the built-in experiments
@@ -30,7 +31,8 @@ std::vector<std::filesystem::path> built_in_cases();
 
 /// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out.
 /// What is under way goes to stderr (comparisons/status.h), before a run of more than a minute also how long it may take.
-/// @return 0: every expectation holds; 1: one does not, or cannot be judged; 130: interrupted (finished parts are kept).
+/// @return 0: every expectation holds; 1: one does not, or cannot be judged, or a case had no reference, no result or nothing to
+/// compare; 130: interrupted (finished parts are kept).
 /// @throws InputError for unusable input or output folder, before anything is computed.
 int compare(const std::vector<std::filesystem::path>& cases, const SuiteOptions& options);
 

@@ -30,16 +30,17 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
                                             const std::vector<fem::Discretisation>& grids, const Meshes& meshes) {
   if (grids.empty()) return {};
   const Experiment& e = prepared.experiment;
-  const NodalVectors probes = probe_points(e);
+  const NodalVectors measured = measured_points(prepared);
   const bool stresses = wanted("stress", e.measures);
-  const fem::Request request{e, material, grids, stacked(prepared.body_points, probes), stresses ? probes : NodalVectors(0, 3), 1e-8, meshes};
+  const fem::Request request{e,    material, grids, stacked(prepared.body_points, measured), stresses ? probe_points(e) : NodalVectors(0, 3),
+                             1e-8, meshes};
   std::vector<fem::Solution> solutions = fem::solve(request);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     const Mesh& own = *meshes[s.grid.mesh];
     s.reactions = about_true_patches(prepared, own, s.reactions);
     s.displacement = stacked(at_lattice_nodes(prepared, s.displacement.topRows(prepared.body_points.rows())),
-                             s.displacement.bottomRows(probes.rows()));
+                             s.displacement.bottomRows(measured.rows()));
   }
   return solutions;
 }
@@ -62,13 +63,34 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     s.reactions = about_true_patches(prepared, *mesh, s.reactions);
-    const NodalVectors probes = at_probes(prepared, lattice, s.displacement);
-    NodalVectors all = NodalVectors::Zero(nodes + probes.rows(), 3);
+    const NodalVectors measured = at_measured_points(prepared, lattice, s.displacement);
+    NodalVectors all = NodalVectors::Zero(nodes + measured.rows(), 3);
     all.middleRows(first, mesh->nodes.rows()) = s.displacement;
-    all.bottomRows(probes.rows()) = probes;
+    all.bottomRows(measured.rows()) = measured;
     s.displacement = std::move(all);
   }
   return solutions;
+}
+
+/// Of reaction_error; nothing where no support is moved.
+std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const VoxelLimit& voxels, const BodyLimit& body,
+                                             const std::vector<std::map<std::string, double>>& samples, ErrorSplit split) {
+  const std::map<std::string, double> truth = values_of(body.scalars), limit = values_of(voxels.limits);
+  const std::vector<std::string> patches = comparable_moved_patches(prepared);
+  const double length = prepared.experiment.body.size.maxCoeff();
+  const auto distance = [&](const auto& a, const auto& b) { return reaction_difference(a, b, body.scalars, patches, length).value_or(0); };
+  if (samples.empty() || !reaction_difference(samples.front(), truth, body.scalars, patches, length)) return {};
+  split.measure = "reaction_error";
+  split.unit = unit_of(split.measure);
+  for (const auto& sample : samples) {
+    split.total += distance(sample, truth) / static_cast<double>(samples.size());
+    split.model_error += distance(sample, voxels.peer_values) / static_cast<double>(samples.size());
+  }
+  split.discretisation_error = distance(voxels.peer_values, limit);
+  split.geometry_error = distance(limit, truth);
+  split.body_uncertainty = distance(values_of(body.scalars, 1), truth);
+  split.voxel_uncertainty = distance(values_of(voxels.limits, 1), limit);
+  return split;
 }
 
 }  // namespace
@@ -83,7 +105,8 @@ std::vector<std::string> elements_of(const Experiment& e, char shape) {
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
-  const std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {
     out.elements.push_back({element, {at, at + 3}});
@@ -122,6 +145,7 @@ std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t 
   VoxelLimit out{at_lattice(prepared, lattice, peer.displacement), 2 * u2 - u1, 3 * (u2 - u1).rowwise().norm(), measures_of(prepared, peer), {}};
   const auto coarse = measures_of(prepared, h), fine = measures_of(prepared, half);
   for (const auto& [measure, value] : fine) out.limits[measure] = extrapolate_two(coarse.at(measure), value);
+  raise_to_usual(out.limits);
   return out;
 }
 
@@ -149,6 +173,8 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, std::size_t la
   field.voxel_uncertainty = std::sqrt(weights.dot(voxels.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size;
   field.body_uncertainty = body.field.uncertainty;
   splits.push_back(field);
+
+  if (const auto s = split_of_reactions(prepared, voxels, body, values, blank)) splits.push_back(*s);
 
   for (const auto& [measure, limit] : voxels.limits) {
     if (!wanted(measure, e.measures) || !comparable(prepared, measure) || !body.scalars.contains(measure)) continue;

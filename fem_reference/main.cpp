@@ -8,6 +8,7 @@
 #include "fem_reference/bench.h"
 #include "fem_reference/element.h"
 #include "fem_reference/exchange.h"
+#include "fem_reference/plain_words.h"
 #include "fem_reference/processes.h"
 #include "fem_reference/solve_grid.h"
 #include "meshes/mesher.h"
@@ -104,7 +105,7 @@ std::vector<Solution> solve_all(const Request& request, Method method = Method::
       Solution failed;
       failed.grid = grid;
       failed.law = request.experiment.kinematics;
-      failed.message = e.what();
+      failed.message = plain_words(e.what());
       solutions.push_back(failed);
     }
   }
@@ -190,7 +191,7 @@ bool solve_case(const Options& options) {
 // One process speaks for all; of an error that the others do not share, the one that has it.
 int fail(const std::exception& e, int exit_status) {
   const bool everywhere = all_failed();
-  if (!everywhere || process_rank() == 0) fmt::print(stderr, "{}\n", e.what());
+  if (!everywhere || process_rank() == 0) fmt::print(stderr, "{}\n", plain_words(e.what()));
   if (!everywhere) end_all(exit_status);
   return exit_status;
 }

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/exchange.h"
+#include "fem_reference/plain_words.h"
 #include "meshes/child.h"
 #include "problem/progress.h"
 
@@ -30,6 +32,35 @@ fs::path program_or_throw() {
   return file;
 }
 
+/// Whether it can be used for what was asked: a solution per grid, a row per point, the same patches on every grid.
+bool answers(const std::vector<Solution>& solutions, const Request& request) {
+  if (solutions.size() != request.grids.size()) return false;
+  const Solution* first = nullptr;
+  for (std::size_t g = 0; g < solutions.size(); ++g) {
+    const Solution& s = solutions[g];
+    if (s.grid.element != request.grids[g].element) return false;
+    if (!s.ok) continue;
+    if (!first) first = &s;
+    const auto same_patch = [](const PatchReaction& a, const PatchReaction& b) { return a.patch == b.patch; };
+    if (s.displacement.rows() != request.points.rows() || s.stress.rows() != request.stress_points.rows() ||
+        !std::equal(s.reactions.begin(), s.reactions.end(), first->reactions.begin(), first->reactions.end(), same_patch))
+      return false;
+  }
+  return true;
+}
+
+std::vector<Solution> read_answer(const fs::path& answer, const Request& request) {
+  std::string why = "does not fit the question";
+  try {
+    const std::vector<Solution> solutions = solutions_from_json(nlohmann::json::from_cbor(text_of_file(answer)));
+    if (answers(solutions, request)) return solutions;
+  } catch (const std::exception&) {
+    why = fs::exists(answer) ? "cannot be read" : "is missing";
+  }
+  throw std::runtime_error(fmt::format("{}: the answer of springproof-fem ({}) {} (build springproof and springproof-fem together)",
+                                       request.experiment.file.string(), program().string(), why));
+}
+
 }  // namespace
 
 std::vector<Solution> solve(const Request& request) {
@@ -40,17 +71,20 @@ std::vector<Solution> solve(const Request& request) {
   {
     std::ofstream out(question, std::ios::binary);
     nlohmann::json::to_cbor(to_json(request), out);
-    if (!out.flush()) throw std::runtime_error("cannot write " + question.string());
+    if (!out.flush()) folder.require_room();
   }
   progress::phase("finite elements");
   const progress::Relay relay(progress);
   const ChildEnd end = run_child({file, {"--request", question.string(), "--answer", answer.string(), "--progress", progress.string()},
                                   {}, folder.path / "output", errors});
-  const std::string last_words = trimmed(text_of_file(errors));
+  if (!end.ok()) folder.require_room();
+  const std::string last_words = plain_words(text_of_file(errors));
   if (end.kind == ChildEnd::exited && end.status == exit_status_input_error) throw InputError(last_words);
-  if (!end.ok()) throw std::runtime_error(fmt::format("springproof-fem {}: {}", words_for(end), last_words));
-  std::ifstream in(answer, std::ios::binary);
-  return solutions_from_json(nlohmann::json::from_cbor(in));
+  if (!end.ok()) throw std::runtime_error(fmt::format("{}: springproof-fem {}{}{}", request.experiment.file.string(), words_for(end),
+                                                    last_words.empty() ? "" : ": ", last_words));
+  std::vector<Solution> solutions = read_answer(answer, request);
+  for (Solution& s : solutions) s.message = plain_words(s.message);
+  return solutions;
 }
 
 int run_program(const std::vector<std::string>& arguments) {

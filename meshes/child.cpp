@@ -2,8 +2,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,9 +13,11 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 #include <sstream>
 #include <thread>
 
@@ -22,27 +26,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The programs under way, for interrupt_children().
-std::array<std::atomic<pid_t>, 64> children;
-std::atomic<bool> interrupted = false;
+// The programs under way, for interrupt_children(): a list that grows and never shrinks, so that a signal handler may walk it.
+struct Children {
+  std::array<std::atomic<pid_t>, 64> pids{};
+  std::atomic<Children*> next = nullptr;
+};
+Children children;
+std::atomic<unsigned> interrupts = 0;
+
+std::atomic<pid_t>& slot_for(pid_t child) {
+  for (Children* block = &children;; block = block->next) {
+    for (auto& pid : block->pids)
+      if (pid_t free = 0; pid.compare_exchange_strong(free, child)) return pid;
+    if (block->next) continue;
+    auto* more = new Children;
+    if (Children* none = nullptr; !block->next.compare_exchange_strong(none, more)) delete more;
+  }
+}
 
 class ChildSlot {
  public:
-  explicit ChildSlot(pid_t child) {
-    for (auto& c : children)
-      if (pid_t free = 0; c.compare_exchange_strong(free, child)) {
-        slot_ = &c;
-        return;
-      }
-  }
-  ~ChildSlot() {
-    if (slot_) *slot_ = 0;
-  }
+  explicit ChildSlot(pid_t child) : slot_(slot_for(child)) {}
+  ~ChildSlot() { slot_ = 0; }
   ChildSlot(const ChildSlot&) = delete;
   ChildSlot& operator=(const ChildSlot&) = delete;
 
  private:
-  std::atomic<pid_t>* slot_ = nullptr;
+  std::atomic<pid_t>& slot_;
 };
 
 // Between fork and exec only calls that a signal handler may make: other threads may hold any lock.
@@ -99,22 +109,81 @@ bool wait_for(pid_t pid, const Child& child) {
 
 }  // namespace
 
+namespace {
+
+constexpr std::string_view folder_prefix = "springproof-temporary-";  // no name that anybody gives a folder of results
+
+/// Where temporary folders are made.
+fs::path temporary_place() {
+  const char* given = std::getenv("TMPDIR");
+  return given && *given ? given : "/tmp";
+}
+
+[[noreturn]] void no_room(const fs::path& at, int error) {
+  throw NoRoom(fmt::format("TMPDIR: cannot write {}: {} (name a folder with room: TMPDIR=FOLDER springproof ...)", at.string(), std::strerror(error)));
+}
+
+/// The folder, locked as long as this process lives; -1: another one lives in it, or it is not ours.
+int lock_folder(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  struct stat owner{};
+  if (descriptor >= 0 && fstat(descriptor, &owner) == 0 && owner.st_uid == geteuid() && flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+    return descriptor;
+  if (descriptor >= 0) close(descriptor);
+  return -1;
+}
+
+}  // namespace
+
+// Folders named like ours that nobody holds.
+void remove_orphans() {
+  std::error_code error;
+  for (fs::directory_iterator entry(temporary_place(), error), end; !error && entry != end; entry.increment(error)) {
+    if (!entry->path().filename().string().starts_with(folder_prefix)) continue;
+    const int lock = lock_folder(entry->path());
+    if (lock < 0) continue;
+    std::error_code ignored;
+    fs::remove_all(entry->path(), ignored);
+    close(lock);
+  }
+}
+
+// It gets its name once it is locked, so that nobody takes it for an orphan.
 TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "springproof-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error(fmt::format("cannot make {}: {}", name, std::strerror(errno)));
-  path = name;
+  const fs::path place = temporary_place();
+  static std::once_flag first;
+  std::call_once(first, remove_orphans);
+  std::string name = (place / ".springproof-XXXXXX").string();
+  if (!mkdtemp(name.data())) no_room(name, errno);
+  lock_ = lock_folder(name);
+  path = place / fmt::format("{}{}-{}", folder_prefix, getpid(), name.substr(name.size() - 6));
+  if (std::rename(name.c_str(), path.c_str()) != 0) no_room(path, errno);
 }
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   fs::remove_all(path, ignored);
+  if (lock_ >= 0) close(lock_);
+}
+
+void TemporaryFolder::require_room() const {
+  const fs::path trial = path / "trial";
+  std::ofstream out(trial, std::ios::binary);
+  out << std::string(1 << 16, 'x');
+  out.close();
+  const int error = errno;
+  if (!out) no_room(trial, error);
+  std::error_code ignored;
+  fs::remove(trial, ignored);
 }
 
 ChildEnd run_child(const Child& child) {
+  const unsigned before = interrupts;
   const pid_t pid = start(child);
   bool in_time;
   {
     const ChildSlot slot(pid);
+    if (interrupts != before) kill(pid, SIGTERM);  // the handler may not have seen it
     in_time = wait_for(pid, child);
   }
   int status = 0;
@@ -131,12 +200,13 @@ ChildEnd run_child(const Child& child) {
 }
 
 void interrupt_children() {
-  interrupted = true;
-  for (const auto& c : children)
-    if (const pid_t child = c; child > 0) kill(child, SIGTERM);
+  ++interrupts;
+  for (const Children* block = &children; block; block = block->next)
+    for (const auto& pid : block->pids)
+      if (const pid_t child = pid; child > 0) kill(child, SIGTERM);
 }
 
-bool children_interrupted() { return interrupted; }
+bool children_interrupted() { return interrupts > 0; }
 
 std::string words_for(const ChildEnd& end, double time_limit) {
   switch (end.kind) {

@@ -5,19 +5,37 @@
 #include <string>
 #include <vector>
 
+#include "problem/input_error.h"
+
 namespace springproof {
 
-/// A folder of our own, removed with what is in it at the end of the scope.
+/// The folder for temporary files ($TMPDIR) is not there, full or closed: nothing that a case could help.
+class NoRoom : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// A folder of our own in $TMPDIR (/tmp), removed with what is in it at the end of the scope.
 class TemporaryFolder {
  public:
-  /// @throws std::runtime_error
+  /// @throws NoRoom
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  /// For when something failed that writes there.
+  /// @throws NoRoom if nothing can be written.
+  void require_room() const;
+
   std::filesystem::path path;
+
+ private:
+  int lock_ = -1;  ///< of the folder, held by this process alone
 };
+
+/// Removes the temporary folders of programs that were killed; the first TemporaryFolder of a process does.
+void remove_orphans();
 
 /// A program to be run.  Empty paths: as the caller has it.
 struct Child {

@@ -11,8 +11,8 @@
 namespace springproof {
 namespace {
 
-constexpr double surface_tolerance = 1e-3;  // of the shortest edge: far below what separates facets from a smooth surface
-constexpr double smooth = 0.7;              // least cosine between normals of facets of one
+constexpr double surface_tolerance = 3e-2;  // of the shortest edge: far below what separates facets from a smooth surface
+constexpr double smooth = 0.85;             // least cosine between normals of facets of one
 constexpr double border_tolerance = 1e-9;   // of the edges of a patch's border
 constexpr double worse_shape = 0.3;         // of the shape it was, the worst that a moved node may make
 

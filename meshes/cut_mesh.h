@@ -28,7 +28,7 @@ class CutMesh {
   /// Bisects the edge in the middle, longer ones beside it first: shapes stay as they are (Rivara).
   void refine(int a, int b);
 
-  /// Moves a node if that keeps the cells' shapes, the borders of patches and, to 1e-3 of the shortest edge, a smooth surface.
+  /// Moves a node if that keeps the cells' shapes, the borders of patches and, to 0.03 of the shortest edge, a smooth surface.
   bool slide(int node, const Vec3& to);
 
   /// Moves nodes, or none if a cell would turn over.

@@ -14,7 +14,7 @@
 namespace springproof {
 
 /// Finds the .geo file of a body: beside the case file, else among the built-in bodies (meshes/geo/).
-/// @throws InputError listing the built-in bodies.
+/// @throws InputError listing the built-in bodies; at another script where $SPRINGPROOF_NO_SCRIPTS is set.
 std::filesystem::path find_geo(const Body& body, const std::filesystem::path& case_file);
 
 /// What a .geo is to be cut into.
@@ -40,7 +40,7 @@ struct MeshRequest {
   double edge = 0;   ///< [m] > 0: tetrahedra with edges of about this length
   double scale = 1;  ///< multiplies the coordinates of the file
   int tetrahedra = 0;  ///< > 0 and no edge: about so many tetrahedra
-  std::vector<double> coarser = {};  ///< factors > 1: also meshes with edges longer by these
+  std::vector<double> coarser = {};  ///< factors > 1, falling: also meshes whose cells are larger by these (size_ratio)
 };
 
 struct MeshedBody {
@@ -50,12 +50,18 @@ struct MeshedBody {
   std::vector<Mesh> coarser;       ///< one per factor of the request
 };
 
+/// Ratios below it say nothing about a limit: meshes of a reference differ by more.
+inline constexpr double least_ratio = 1.2;
+
+/// Cell size of one mesh of a body over that of a finer one: the cube root of how many times more cells there are.
+double size_ratio(const Mesh& coarse, const Mesh& fine);
+
 /// Extensions of the files that can be read: ".geo", ...
 const std::vector<std::string>& mesh_file_extensions();
 
 /// Meshes a body under a time limit: 300 s, or $SPRINGPROOF_MESH_SECONDS.  Thread-safe.
 /// @throws InputError "FILE: ..." when the file cannot be meshed: unreadable, no body, several parts, mixed or inverted
-/// cells, a mesher that crashed or took too long.
+/// cells, no coarser meshes by least_ratio, a mesher that crashed or took too long.
 /// @throws std::runtime_error if the program cannot be run.
 MeshedBody mesh_body(const MeshRequest& request);
 

@@ -18,6 +18,35 @@ Vec3 to_vec(const json& j) {
   return Vec3(j.at(0), j.at(1), j.at(2));
 }
 
+/// Whether all are numbers of nodes.
+template <std::size_t n>
+bool within(const std::vector<std::array<int, n>>& tuples, Eigen::Index nodes) {
+  return std::all_of(tuples.begin(), tuples.end(), [&](const auto& tuple) {
+    return std::all_of(tuple.begin(), tuple.end(), [&](int node) { return node >= 0 && node < nodes; });
+  });
+}
+
+/// The fourth node of a triangle is -1.
+bool within(const Patch& patch, Eigen::Index nodes) {
+  return std::all_of(patch.facets.begin(), patch.facets.end(), [&](auto f) {
+    if (f[3] == -1) f[3] = f[0];
+    return within(std::vector{f}, nodes);
+  });
+}
+
+/// The mesh itself.
+/// @throws std::runtime_error if its numbers lead outside of it.
+Mesh sound(Mesh mesh) {
+  const Eigen::Index nodes = mesh.nodes.rows();
+  const std::size_t cells = mesh.hexahedra.size();
+  const bool facets_fit = std::all_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch& p) { return within(p, nodes); });
+  if (cells + mesh.tetrahedra.size() == 0 || !mesh.nodes.allFinite() || !within(mesh.hexahedra, nodes) || !within(mesh.tetrahedra, nodes) ||
+      !facets_fit || (mesh.curved.rows() > 0 && static_cast<std::size_t>(mesh.curved.rows()) != 27 * cells) ||
+      (mesh.grid && mesh.grid->cell_index.size() != cells))
+    throw std::runtime_error("a mesh that does not hold together");
+  return mesh;
+}
+
 std::string cbor(const json& j) {
   std::string bytes;
   json::to_cbor(j, bytes);
@@ -26,8 +55,8 @@ std::string cbor(const json& j) {
 
 }  // namespace
 
-json to_json(const MeshRequest& r) {
-  return {{"file", r.file.string()},
+std::string to_cbor(const MeshRequest& r) {
+  return cbor({{"file", r.file.string()},
           {"size", vec(r.size)},
           {"cells", r.cells},
           {"tetrahedra", r.kind.tetrahedra},
@@ -35,10 +64,11 @@ json to_json(const MeshRequest& r) {
           {"edge", r.edge},
           {"about", r.tetrahedra},
           {"coarser", r.coarser},
-          {"scale", r.scale}};
+          {"scale", r.scale}});
 }
 
-MeshRequest mesh_request_from_json(const json& j) {
+MeshRequest mesh_request_from_cbor(const std::string& bytes) {
+  const json j = json::from_cbor(bytes);
   MeshRequest r;
   r.file = std::string(j.at("file"));
   r.size = to_vec(j.at("size"));
@@ -61,17 +91,16 @@ std::string refusal_to_cbor(const std::string& message) {
   return cbor({{"refused", message}});
 }
 
-MeshedBody answer_from_cbor(const std::string& bytes) {
-  json j;
-  try {
-    j = json::from_cbor(bytes);
-  } catch (const json::exception& e) {
-    throw std::runtime_error(std::string("springproof-mesh gave no answer: ") + e.what());
-  }
+MeshedBody answer_from_cbor(const std::string& bytes) try {
+  const json j = json::from_cbor(bytes);
   if (j.contains("refused")) throw InputError(j.at("refused").get<std::string>());
-  MeshedBody body{mesh_from_json(j.at("mesh")), j.at("notes"), j.at("edge"), {}};
-  for (const json& mesh : j.at("coarser")) body.coarser.push_back(mesh_from_json(mesh));
+  MeshedBody body{sound(mesh_from_json(j.at("mesh"))), j.at("notes"), j.at("edge"), {}};
+  for (const json& mesh : j.at("coarser")) body.coarser.push_back(sound(mesh_from_json(mesh)));
   return body;
+} catch (const InputError&) {
+  throw;
+} catch (const std::exception&) {  // the words of a JSON library are no help
+  throw std::runtime_error("the answer of springproof-mesh cannot be used (build springproof and springproof-mesh together)");
 }
 
 std::string extension_of(const std::filesystem::path& file) {

@@ -1,18 +1,17 @@
-// What travels between a caller and `springproof-mesh`: a request as JSON, the answer as CBOR whose arrays are the
-// bytes in memory (both programs run on one machine).
+// What travels between a caller and `springproof-mesh`: CBOR, which takes file names of any bytes, with arrays as the bytes in memory
+// (both programs run on one machine).
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "meshes/mesher.h"
 
 namespace springproof {
 
-nlohmann::json to_json(const MeshRequest& request);
+std::string to_cbor(const MeshRequest& request);
 
-/// @throws std::runtime_error if it is no request.
-MeshRequest mesh_request_from_json(const nlohmann::json& json);
+/// @throws std::exception if it is no request.
+MeshRequest mesh_request_from_cbor(const std::string& bytes);
 
 std::string to_cbor(const MeshedBody& body);
 

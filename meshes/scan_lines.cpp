@@ -63,7 +63,7 @@ void add_triangle(const std::vector<Vec3>& points, const std::array<int, 3>& t, 
 
 }  // namespace
 
-std::vector<Run> runs_inside(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
+std::vector<RowRun> runs_inside(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
                              const std::array<int, 3>& n) {
   std::vector<Vec3> on_planes = points;
   for (Vec3& p : on_planes) p = p.unaryExpr(&snapped);
@@ -71,7 +71,7 @@ std::vector<Run> runs_inside(const std::vector<Vec3>& points, const std::vector<
   for (const auto& t : triangles) add_triangle(on_planes, t, n, crossings);
   std::sort(crossings.begin(), crossings.end(),
             [](const Crossing& a, const Crossing& b) { return a.row != b.row ? a.row < b.row : a.x < b.x; });
-  std::vector<Run> runs;
+  std::vector<RowRun> runs;
   for (std::size_t c = 0; c + 1 < crossings.size(); c += 2) {
     const auto [begin, end] = planes_between(crossings[c].x, crossings[c + 1].x, n[0]);
     const int row = crossings[c].row;

@@ -9,7 +9,7 @@
 namespace springproof {
 
 /// Lattice points (i, j, k) with begin <= i < end, row = k * ny + j.
-struct Run {
+struct RowRun {
   int row;
   int begin, end;
 };
@@ -17,7 +17,7 @@ struct Run {
 /// The points with integer coordinates 0 <= i < n[0] and so on that lie inside, by ascending row and i; runs of a row do not touch.
 /// Lines along x through the lattice points count how often they cross the surface.  Every edge must belong to an even
 /// number of triangles; orientation does not matter.  `points` are in units of the lattice.
-std::vector<Run> runs_inside(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
+std::vector<RowRun> runs_inside(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
                              const std::array<int, 3>& n);
 
 }  // namespace springproof

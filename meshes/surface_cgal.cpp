@@ -101,7 +101,7 @@ std::vector<std::pair<int, int>> intersecting_facets(const Surface& surface, uns
   return pairs;
 }
 
-Surface remesh(const Surface& surface, double edge) {
+Surface remesh(const Surface& surface, double edge, double most_change) {
   if (!(edge > 0)) throw std::runtime_error("remesh: edge must be positive");
   const double facets = area(surface) / (std::sqrt(3.0) / 4 * edge * edge);
   if (!(facets < 4e6))
@@ -120,7 +120,7 @@ Surface remesh(const Surface& surface, double edge) {
 
   const Surface result = from_cgal(mesh);
   const double before = volume(surface), change = std::abs(volume(result) - before) / before;
-  if (!(change < 0.01))
+  if (!(change < most_change))
     throw std::runtime_error(fmt::format("remeshing with edges of {:.3g} changes the volume by {:.2g} %", edge, 100 * change));
   if (!CGAL::is_closed(mesh) || !CGAL::is_triangle_mesh(mesh)) throw std::runtime_error("remeshing left the surface open");
   if (!intersecting_facets(result, 1).empty())

@@ -6,7 +6,8 @@
 namespace springproof {
 
 /// Adds the patches of `from` to `to`: each outer facet of `to` gets those of the outer facet of `from` (`facets`) that is nearest to
-/// its middle (none, if that one has none).
-void transfer_patches(const Mesh& from, const std::vector<OuterFacet>& facets, Mesh& to);
+/// its middle (none, if that one has none).  A patch that no middle is near to gets the facet whose middle is nearest to its centroid.
+/// @return the names of such patches
+std::vector<std::string> transfer_patches(const Mesh& from, const std::vector<OuterFacet>& facets, Mesh& to);
 
 }  // namespace springproof

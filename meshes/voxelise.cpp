@@ -57,7 +57,7 @@ void check_grid(const VoxelGrid& grid, const Mesh& body) {
 }
 
 /// The cubes whose centres lie inside; cube (0,0,0) has its centre at the lattice's origin.
-std::vector<Run> cubes_inside(const VoxelGrid& grid, const Mesh& body, const std::vector<OuterFacet>& facets) {
+std::vector<RowRun> cubes_inside(const VoxelGrid& grid, const Mesh& body, const std::vector<OuterFacet>& facets) {
   std::vector<Vec3> points(body.nodes.rows());
   for (Eigen::Index n = 0; n < body.nodes.rows(); ++n)
     points[n] = (body.nodes.row(n).transpose() - grid.origin) / grid.edge - Vec3::Constant(0.5);
@@ -70,14 +70,14 @@ std::vector<Run> cubes_inside(const VoxelGrid& grid, const Mesh& body, const std
   return runs_inside(points, triangles, grid.cells);
 }
 
-std::size_t cubes_in(const std::vector<Run>& runs) {
+std::size_t cubes_in(const std::vector<RowRun>& runs) {
   std::size_t sum = 0;
-  for (const Run& r : runs) sum += r.end - r.begin;
+  for (const RowRun& r : runs) sum += r.end - r.begin;
   return sum;
 }
 
 /// Which piece each run belongs to, as the number of one of its runs: runs hang together where cubes share a face.
-std::vector<int> pieces_of(const std::vector<Run>& runs, const std::array<int, 3>& cells) {
+std::vector<int> pieces_of(const std::vector<RowRun>& runs, const std::array<int, 3>& cells) {
   std::vector<int> parent(runs.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int r) {
@@ -100,7 +100,7 @@ std::vector<int> pieces_of(const std::vector<Run>& runs, const std::array<int, 3
 }
 
 /// Drops all but the largest piece.
-void keep_one_piece(std::vector<Run>& runs, const VoxelGrid& grid, std::vector<std::string>& notes) {
+void keep_one_piece(std::vector<RowRun>& runs, const VoxelGrid& grid, std::vector<std::string>& notes) {
   const std::vector<int> piece = pieces_of(runs, grid.cells);
   std::vector<std::size_t> size(runs.size(), 0);
   for (std::size_t r = 0; r < runs.size(); ++r) size[piece[r]] += runs[r].end - runs[r].begin;
@@ -123,10 +123,10 @@ void keep_one_piece(std::vector<Run>& runs, const VoxelGrid& grid, std::vector<s
 /// The cubes and their nodes, both x fastest; only points that a cube uses are nodes.
 class CubeMesh {
  public:
-  CubeMesh(const VoxelGrid& grid, const std::vector<Run>& runs) : grid_(grid), runs_(runs), layer_start_(grid.cells[2] + 1) {
+  CubeMesh(const VoxelGrid& grid, const std::vector<RowRun>& runs) : grid_(grid), runs_(runs), layer_start_(grid.cells[2] + 1) {
     for (int k = 0; k <= grid.cells[2]; ++k)
       layer_start_[k] = std::lower_bound(runs.begin(), runs.end(), std::int64_t{k} * grid.cells[1],
-                                         [](const Run& r, std::int64_t row) { return r.row < row; }) - runs.begin();
+                                         [](const RowRun& r, std::int64_t row) { return r.row < row; }) - runs.begin();
   }
 
   Mesh build() {
@@ -158,7 +158,7 @@ class CubeMesh {
   std::vector<int> number_points(int k) {
     std::vector<int> number(point(0, grid_.cells[1] + 1), -1);
     for (const int layer : {k - 1, k})
-      for_layer(layer, [&](const Run& run, int j) {
+      for_layer(layer, [&](const RowRun& run, int j) {
         for (const int row : {j, j + 1}) std::fill(&number[point(run.begin, row)], &number[point(run.end, row)] + 1, 0);
       });
     for (int j = 0; j <= grid_.cells[1]; ++j)
@@ -171,7 +171,7 @@ class CubeMesh {
   }
 
   void add_cubes(int k, const std::vector<int>& below, const std::vector<int>& above) {
-    for_layer(k, [&](const Run& run, int j) {
+    for_layer(k, [&](const RowRun& run, int j) {
       for (int i = run.begin; i < run.end; ++i) {
         Hexahedron cube;
         for (int c = 0; c < 8; ++c) {
@@ -205,7 +205,7 @@ class CubeMesh {
   }
 
   const VoxelGrid& grid_;
-  const std::vector<Run>& runs_;
+  const std::vector<RowRun>& runs_;
   std::vector<std::size_t> layer_start_;  ///< of the runs
   std::vector<std::array<int, 3>> points_, index_;
   Mesh mesh_;
@@ -230,12 +230,13 @@ VoxelGrid voxel_grid(const Mesh& body, double edge) {
 Voxels voxelise(const VoxelGrid& grid, const Mesh& body) {
   check_grid(grid, body);
   const std::vector<OuterFacet> facets = outer_facets(body);
-  std::vector<Run> runs = cubes_inside(grid, body, facets);
+  std::vector<RowRun> runs = cubes_inside(grid, body, facets);
   if (runs.empty()) throw std::invalid_argument(fmt::format("voxels: no cube of {:.6g} m has its centre in the body; take smaller voxels", grid.edge));
   Voxels voxels;
   keep_one_piece(runs, grid, voxels.notes);
   voxels.mesh = CubeMesh(grid, runs).build();
-  transfer_patches(body, facets, voxels.mesh);
+  for (const std::string& name : transfer_patches(body, facets, voxels.mesh))
+    voxels.notes.push_back(fmt::format("patch '{}' is smaller than the cubes' faces of {:.6g} m: one of them stands for it", name, grid.edge));
   return voxels;
 }
 

@@ -6,9 +6,11 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <string_view>
 
 #include "problem/experiment_parts.h"
 #include "problem/nearest_name.h"
+#include "problem/shortened.h"
 
 namespace springproof {
 namespace {
@@ -206,17 +208,12 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   return reference;
 }
 
-/// A body force is known for small strains, and only the finite elements take it.
-void check_body_forces(const Experiment& experiment) {
-  for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
-    if (!std::holds_alternative<FieldBodyForce>(experiment.loads[i])) continue;
-    const char* allowed = experiment.model_kinematics() == Kinematics::finite ? "under kinematics = \"linear\""
-                          : experiment.models.empty()                       ? nullptr
-                                                                            : "with [compare] models = []";
-    if (allowed)
-      throw InputError(experiment.load_locations[i],
-                       fmt::format("load.body_force_of: cannot be applied here (allowed: {})", allowed));
-  }
+/// A weight needs a mass.
+void require_density(const TomlTable& document, const Experiment& experiment) {
+  const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
+                                  [](const Load& load) { return std::holds_alternative<Gravity>(load); });
+  if (weighs && !TomlTable(document.at("material"), material_schema).find("density_kg_m3"))
+    missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
 }
 
 Experiment read_document(const TomlTable& document, Experiment experiment) {
@@ -234,6 +231,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
       experiment.loads.push_back(load);
       experiment.load_locations.push_back(location_of(value));
     }
+  require_density(document, experiment);
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);
   if (const auto reference = document.find("reference")) experiment.reference = read_reference(*reference, experiment.body.is_voxels());
@@ -241,7 +239,8 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   settle_kelvin(experiment);
   read_line(document, experiment);
   read_compare(document, experiment);
-  check_body_forces(experiment);
+  check_loads(experiment);
+  if (experiment.reference.cells[0] > 0) check_reference_cells(document.at("reference"), experiment);
   read_expectations(document, experiment);
   read_published(document, experiment);
   return experiment;
@@ -266,8 +265,24 @@ std::vector<std::string> read_elements(const TomlValue& value, const std::vector
   return elements;
 }
 
+std::string shortened(const std::string& message) {
+  constexpr std::size_t longest = 100, shown = 40;
+  const auto continues_letter = [&](std::size_t at) { return (static_cast<unsigned char>(message[at]) & 0xc0) == 0x80; };
+  std::string out;
+  for (std::size_t begin = 0, end; begin < message.size(); begin = end) {
+    end = std::min(message.find(' ', begin), message.size());
+    std::size_t cut = end;
+    if (end - begin > longest)
+      for (cut = begin + shown; cut > begin && continues_letter(cut);) --cut;
+    for (const char c : std::string_view(message).substr(begin, cut - begin)) out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    if (cut < end) out += fmt::format("... ({} letters)", end - begin);
+    if (end < message.size()) out += message[end++];
+  }
+  return out;
+}
+
 InputError::InputError(const SourceLocation& where, const std::string& message)
-    : std::runtime_error(located(where, message)) {}
+    : std::runtime_error(located(where, shortened(message))) {}
 
 bool Body::is_script() const {
   std::string extension = std::filesystem::path(geo).extension();
@@ -297,6 +312,7 @@ Experiment parse_experiment(const std::string& text, const std::filesystem::path
   experiment.name = file.stem().string();
   experiment.folder = std::filesystem::absolute(file).parent_path().filename().string();
   experiment.text = text;
+  require_bounded(text, file.string());
   toml::table document;
   try {
     document = toml::parse(text, file.string());

@@ -5,6 +5,7 @@
 
 #include "problem/exact_field.h"
 #include "problem/experiment_parts.h"
+#include "problem/file_name.h"
 #include "problem/measures.h"
 #include "problem/nearest_name.h"
 
@@ -103,6 +104,20 @@ ModelChoice read_model(const TomlValue& value) {
   return choice;
 }
 
+/// Labels are names of files too.
+void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others) {
+  const bool unseen = std::any_of(label.begin(), label.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+  if (unseen || label.size() > longest_file_name)
+    refuse(item, fmt::format("the label '{}' cannot name a file", label), fmt::format("up to {} letters, no control characters", longest_file_name));
+  const std::string key = file_name_key(label);
+  if (is_fem(key)) refuse(item, fmt::format("the label '{}' is taken", label), "a label of its own for each model");
+  for (const ModelChoice& other : others) {
+    if (file_name_key(other.label) != key) continue;
+    const std::string same = other.label == label ? "" : fmt::format(" as the name of a file, by '{}'", other.label);
+    refuse(item, fmt::format("the label '{}' is taken{}", label, same), "a label of its own for each model");
+  }
+}
+
 /// An empty list is a case for the reference alone, which must then name its elements.
 std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& document) {
   std::vector<ModelChoice> models;
@@ -113,10 +128,7 @@ std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& do
   }
   for (const TomlValue& item : as_list(value, "a list of model names and { model = \"...\" } tables")) {
     const ModelChoice choice = read_model(item);
-    const bool taken =
-        std::any_of(models.begin(), models.end(), [&](const auto& m) { return m.label == choice.label; });
-    if (taken || is_fem(choice.label))
-      refuse(item, fmt::format("the label '{}' is taken", choice.label), "a label of its own for each model");
+    refuse_label(item, choice.label, models);
     models.push_back(choice);
   }
   return models;
@@ -134,6 +146,8 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
       refuse(item, fmt::format("'{}' needs points", measure), "with at least one [[probe]] in the file");
     if (measure == "displacement_error_order" && experiment.exact.empty())
       refuse(item, "'displacement_error_order' needs the solution", "with exact = \"...\" in [compare]");
+    if (measure == "reaction_error" && moved_patches(experiment).empty())
+      refuse(item, "'reaction_error' needs a support that is moved", "with a displacement or rotation other than zero");
     if (measure == "line" && !experiment.line) refuse(item, "'line' needs one", "with a [line] in the file");
     if (measure == "moduli" && !elongation_along_x(experiment))
       refuse(item, "'moduli' needs a block stretched along x", "with a load that prescribes x on x_min and another on x_max");
@@ -153,7 +167,21 @@ double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) 
   refuse(value, fmt::format("{} is not in the case", nu), fmt::format("{}", fmt::join(known, ", ")));
 }
 
+bool asks_for(const Experiment& experiment, const std::string& measure) {
+  return std::find(experiment.measures.begin(), experiment.measures.end(), measure) != experiment.measures.end();
+}
+
+/// Whether it is a row of mean_displacement.  Of which patch, the body will tell once it is meshed.
+bool is_mean_displacement(const std::string& row) {
+  const std::string patch = patch_of_mean_displacement(row);
+  const auto components = {".x", ".y", ".z", ".magnitude"};
+  return !patch.empty() && std::any_of(components.begin(), components.end(), [&](const char* c) { return row.ends_with(patch + c); });
+}
+
 std::string read_row_name(const TomlValue& value, const Experiment& experiment) {
+  if (const auto* text = value.node->as_string();
+      text && asks_for(experiment, "mean_displacement") && is_mean_displacement(text->get()))
+    return text->get();
   std::vector<std::string> rows;
   for (const std::string& measure : experiment.measures)
     for (const std::string& row : rows_of_measure(measure, experiment)) rows.push_back(row);
@@ -230,14 +258,8 @@ Expectation read_expectation(const TomlValue& value, const Experiment& experimen
   return expect;
 }
 
-}  // namespace
-
-void read_compare(const TomlTable& document, Experiment& experiment) {
-  experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
-  experiment.measures = default_measures;
-  const auto value = document.find("compare");
-  if (!value) return;
-  const TomlTable table(*value, compare_schema);
+void read_compare_table(const TomlValue& value, const TomlTable& document, Experiment& experiment) {
+  const TomlTable table(value, compare_schema);
   if (const auto models = table.find("models")) experiment.models = read_models(*models, document);
   if (const auto exact = table.find("exact")) {
     experiment.exact = as_choice(*exact, exact_field_names());
@@ -248,6 +270,17 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   if (const auto elements = table.find("elements")) experiment.elements = read_elements(*elements, element_names());
   if (const auto most = table.find("most_unknowns")) experiment.most_unknowns = as_number(*most, positive_number);
   if (const auto cost = table.find("cost")) experiment.cost = as_flag(*cost);
+}
+
+}  // namespace
+
+void read_compare(const TomlTable& document, Experiment& experiment) {
+  experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
+  experiment.measures = default_measures;
+  if (const auto value = document.find("compare")) read_compare_table(*value, document, experiment);
+  // Displacements alone cannot judge a body that its supports move.
+  if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
+    experiment.measures.emplace_back("reaction_error");
 }
 
 void read_expectations(const TomlTable& document, Experiment& experiment) {

@@ -22,6 +22,13 @@ void read_line(const TomlTable& document, Experiment& experiment);
 /// @throws InputError at such a load if the case has no such solution, or a finite element reference.
 void settle_kelvin(Experiment& experiment);
 
+/// Held against each other, before any body is known; loads, kinematics and models must have been read.
+/// @throws InputError at a load that cannot be applied, or contradicts another one.
+void check_loads(const Experiment& experiment);
+
+/// The three grids of the reference are halved twice, and no larger than what this machine holds; `value` is [reference].
+void check_reference_cells(const TomlValue& value, const Experiment& experiment);
+
 /// [compare] and, held against it, [[expect]] and [[published]].  Body, materials, loads, probes, section and
 /// reference of the experiment must have been read.
 void read_compare(const TomlTable& document, Experiment& experiment);

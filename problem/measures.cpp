@@ -1,6 +1,7 @@
 #include "problem/measures.h"
 
 #include <algorithm>
+#include <set>
 
 #include "problem/experiment.h"
 
@@ -11,12 +12,45 @@ void add_vector_rows(const std::string& prefix, std::vector<std::string>& rows) 
   for (const char* component : {".x", ".y", ".z", ".magnitude"}) rows.push_back(prefix + component);
 }
 
+const std::string mean_displacement = "mean_displacement.";
+
+/// Whether the load prescribes a displacement other than zero.
+bool moves(const Load& load) {
+  if (const auto* p = std::get_if<PrescribedDisplacement>(&load))
+    return std::any_of(p->displacement.begin(), p->displacement.end(), [](const auto& u) { return u.value_or(0) != 0; });
+  if (const auto* a = std::get_if<PrescribedAffine>(&load)) return !a->gradient.isZero(0) || !a->offset.isZero(0);
+  if (const auto* r = std::get_if<PrescribedRotation>(&load)) return r->angle != 0;
+  return std::holds_alternative<PrescribedField>(load);
+}
+
+/// Patches of the loads that do this, in the file's order, each once.
+std::vector<std::string> patches_of(const Experiment& experiment, bool (*does)(const Load&)) {
+  std::vector<std::string> patches;
+  for (const Load& load : experiment.loads) {
+    if (!does(load)) continue;
+    const std::string& patch = *patch_of(load);
+    if (std::find(patches.begin(), patches.end(), patch) == patches.end()) patches.push_back(patch);
+  }
+  return patches;
+}
+
 std::vector<std::string> reaction_rows(const Experiment& experiment) {
   std::vector<std::string> rows;
   for (const std::string& patch : supported_patches(experiment)) {
     add_vector_rows("force." + patch, rows);
     add_vector_rows("torque." + patch, rows);
   }
+  return rows;
+}
+
+/// Those whose names the case file holds.
+std::vector<std::string> mean_displacement_rows(const Experiment& experiment) {
+  std::set<std::string> patches;
+  for (const Load& load : experiment.loads)
+    if (const std::string* on = patch_of(load)) patches.insert(*on);
+  for (const PatchRule& rule : experiment.patches) patches.insert(rule.name);
+  std::vector<std::string> rows;
+  for (const std::string& patch : patches) add_vector_rows(mean_displacement + patch, rows);
   return rows;
 }
 
@@ -61,7 +95,8 @@ constexpr Measure measures[] = {
     {"displacement_error", nullptr}, {"displacement_error_max", nullptr},    {"section_distance", nullptr},
     {"section_axis_distance", nullptr},
     {"volume_change", nullptr},      {"volume_change_magnitude", nullptr},   {"volume_change_first_order", nullptr},
-    {"reaction", reaction_rows},     {"probe", probe_rows},                  {"stress", stress_rows},
+    {"reaction", reaction_rows},     {"reaction_error", nullptr},            {"mean_displacement", mean_displacement_rows},
+    {"probe", probe_rows},           {"stress", stress_rows},
     {"displacement_error_order", nullptr},
     {"network", network_rows},       {"moduli", moduli_rows},
     {"line", line_rows},
@@ -92,14 +127,13 @@ std::optional<double> elongation_along_x(const Experiment& experiment) {
   return *high - *low;
 }
 
-std::vector<std::string> supported_patches(const Experiment& experiment) {
-  std::vector<std::string> patches;
-  for (const Load& load : experiment.loads) {
-    if (!prescribes_displacement(load)) continue;
-    const std::string& patch = *patch_of(load);
-    if (std::find(patches.begin(), patches.end(), patch) == patches.end()) patches.push_back(patch);
-  }
-  return patches;
+std::vector<std::string> supported_patches(const Experiment& experiment) { return patches_of(experiment, prescribes_displacement); }
+
+std::vector<std::string> moved_patches(const Experiment& experiment) { return patches_of(experiment, moves); }
+
+std::string patch_of_mean_displacement(const std::string& row) {
+  if (!row.starts_with(mean_displacement)) return "";
+  return row.substr(mean_displacement.size(), row.rfind('.') - mean_displacement.size());
 }
 
 }  // namespace springproof

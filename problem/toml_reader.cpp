@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "problem/nearest_name.h"
 
@@ -49,7 +50,64 @@ void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::
   }
 }
 
+/// Walks over TOML, knowing strings and comments, and counts how deep keys, tables and lists lead.
+class DepthCounter {
+ public:
+  DepthCounter(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+
+  void run() {
+    while (at_ < text_.size()) step();
+  }
+
+ private:
+  static constexpr int deepest = 16;
+
+  void step() {
+    const char c = text_[at_];
+    if (c == '"' || c == '\'') return skip_string(c);
+    if (c == '#') return skip_to(text_.find('\n', at_));
+    if (c == '.') count(parts_, "parts of a key");
+    if (c == '[' || c == '{') count(open_, "tables and lists in each other");
+    if (c == ']' || c == '}') open_ = std::max(0, open_ - 1);
+    if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) parts_ = 0;
+    if (c == '\n') ++line_;
+    ++at_;
+  }
+
+  void count(int& counter, const char* what) {
+    if (++counter > deepest)
+      throw InputError(SourceLocation{file_, line_, 1}, fmt::format("more than {} {} (allowed: no more)", deepest, what));
+  }
+
+  // A string that does not end is the parser's to complain about.
+  void skip_string(char quote) {
+    const bool several_lines = text_.substr(at_, 3) == std::string(3, quote);
+    const std::string end = several_lines ? std::string(3, quote) : std::string(1, quote);
+    for (at_ += end.size(); at_ < text_.size() && text_.substr(at_, end.size()) != end; ++at_) {
+      if (text_[at_] == '\\' && quote == '"') ++at_;
+      if (at_ >= text_.size() || text_[at_] != '\n') continue;
+      if (!several_lines) return;
+      ++line_;
+    }
+    skip_to(at_ + end.size());
+  }
+
+  void skip_to(std::size_t place) { at_ = std::min(place, text_.size()); }
+
+  std::string_view text_;
+  const std::string& file_;
+  std::size_t at_ = 0;
+  int line_ = 1, parts_ = 0, open_ = 0;
+};
+
 }  // namespace
+
+void require_bounded(std::string_view text, const std::string& file) {
+  constexpr std::size_t largest_file = 4 << 20;
+  if (text.size() > largest_file)
+    throw InputError(SourceLocation{file, 0, 0}, fmt::format("has {} bytes (allowed: a case file of up to {})", text.size(), largest_file));
+  DepthCounter(text, file).run();
+}
 
 void refuse(const TomlValue& value, const std::string& what, const std::string& allowed,
             const std::string& hint) {
@@ -64,8 +122,11 @@ SourceLocation location_of(const TomlValue& value) {
 
 double as_number(const TomlValue& value, const Range& range) {
   if (!value.node->is_number()) wrong_type(value, range.words);
-  const double x = *value.node->value<double>();
+  const auto* integer = value.node->as_integer();  // value<double>() has nothing for one that no double holds exactly
+  const double x = integer ? static_cast<double>(integer->get()) : value.node->ref<double>();
   if (!range.contains(x)) refuse(value, fmt::format("is {}", x), range.words);
+  if (x != 0 && (std::abs(x) < smallest_number || std::abs(x) > largest_number))
+    refuse(value, fmt::format("is {}", x), fmt::format("{}, 0 or {:g} to {:g} in size", range.words, smallest_number, largest_number));
   return x;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "problem/experiment.h"
@@ -34,6 +35,9 @@ struct Range {
   }
 };
 
+/// Numbers that are not 0 lie between these in size: squares and products of a few of them are numbers too.
+inline constexpr double smallest_number = 1e-30, largest_number = 1e30;
+
 inline constexpr Range any_number{"a finite number"};
 inline constexpr Range positive_number{"a finite number > 0", 0};
 inline constexpr Range not_negative{"a finite number >= 0", 0, std::numeric_limits<double>::infinity(), true};
@@ -53,6 +57,11 @@ struct Key {
                          const std::string& hint = "");
 
 SourceLocation location_of(const TomlValue& value);
+
+/// Refuses what a parser would run out of stack or patience with: files beyond 4 MiB, keys of more than 16 parts, tables and lists more
+/// than 16 deep.
+/// @throws InputError
+void require_bounded(std::string_view text, const std::string& file);
 
 double as_number(const TomlValue& value, const Range& range = any_number);
 bool as_flag(const TomlValue& value);

@@ -13,10 +13,15 @@ const costs = {
 
 // ---- points, lines and fronts
 
+/// What is drawn, one row of panels each: displacements, beside them the reactions where a support is moved, and volume changes where
+/// they are measured.
+const costRows = costCases.flatMap(result => ['displacement_error', 'reaction_error', 'volume_change']
+  .filter(measure => result.rows.some(row => row.measure === measure && isNumber(row.error))).map(measure => ({result, measure})));
+
 /// The runs of one case at one Poisson's ratio [{model, x, y (at least the uncertainty), error, below, row, run}].
-function costPoints(result, nu, cost) {
-  return result.rows.filter(row => row.measure === 'displacement_error' && row.poisson_ratio === nu).map(row => {
-    const run = findRun(result, row), error = row.error, uncertainty = row.reference_uncertainty ?? 0;
+function costPoints({result, measure}, nu, cost) {
+  return result.rows.filter(row => row.measure === measure && row.poisson_ratio === nu && isNumber(row.error)).map(row => {
+    const run = findRun(result, row), error = Math.abs(row.error), uncertainty = row.reference_uncertainty ?? 0;
     return {model: row.model, x: run ? cost.of(run) : 0, y: Math.max(error, uncertainty), error, below: error <= uncertainty, row, run};
   }).filter(point => point.x > 0 && point.y > 0);
 }
@@ -47,19 +52,20 @@ function costToReach(line, level) {
 // ---- drawing
 
 const panelHeight = 236, panelGap = 14, costMargins = {left: 62, right: 8, top: 28, bottom: 46, legend: 58};
-const panelTitle = (result, nu) => `${result.name}, ν = ${nuText(nu)}`;
+const shortNames = {displacement_error: 'displacement', reaction_error: 'reactions', volume_change: 'volume change'};
+const panelTitle = ({result, measure, nu}) => `${result.name}, ${shortNames[measure]}, ν = ${nuText(nu)}`;
 const costModels = () => models.filter(model => costCases.some(c => c.models.includes(model)));
 const costNus = () => distinct(costCases.flatMap(c => c.nus)).sort((a, b) => a - b);
 
 /// One box per case and Poisson's ratio, with the axes that all share in x, and each row in y.
 function costPanels(cost, width) {
   const nus = costNus(), {left, right, top, legend} = costMargins;
-  const rows = costCases.map(result => nus.map(nu => costPoints(result, nu, cost)));
+  const rows = costRows.map(row => nus.map(nu => costPoints(row, nu, cost)));
   const x = decadeRange(rows.flat(2).map(point => point.x));
   const panelWidth = (width - left - right - panelGap * (nus.length - 1)) / nus.length;
-  return costCases.flatMap((result, i) => {
+  return costRows.flatMap((row, i) => {
     const y = decadeRange(rows[i].flat().map(point => 100 * point.y));
-    return nus.map((nu, j) => ({result, nu, points: rows[i][j], x, y, first: j === 0, last: i === costCases.length - 1,
+    return nus.map((nu, j) => ({...row, nu, points: rows[i][j], x, y, first: j === 0, last: i === costRows.length - 1,
       box: {left: left + j * (panelWidth + panelGap), top: legend + i * (panelHeight + panelGap + top) + top, width: panelWidth, height: panelHeight}}));
   });
 }
@@ -70,7 +76,7 @@ function decadeRange(values) {
   return {min: low / 1.4, max: high * 1.4};
 }
 
-const costHeight = () => costMargins.legend + costCases.length * (panelHeight + panelGap + costMargins.top) - panelGap + costMargins.bottom;
+const costHeight = () => costMargins.legend + costRows.length * (panelHeight + panelGap + costMargins.top) - panelGap + costMargins.bottom;
 
 const along = ({min, max}, value) => Math.log(value / min) / Math.log(max / min);
 const placeOf = ({box, x, y}, point) => [box.left + box.width * along(x, point.x), box.top + box.height * (1 - along(y, 100 * point.y))];
@@ -116,7 +122,7 @@ function drawAxes(ctx, panel, cost) {
   ctx.fillStyle = ink;
   ctx.textAlign = 'left';
   ctx.font = `600 13px ${paperFont}`;
-  ctx.fillText(panelTitle(panel.result, panel.nu), box.left, box.top - 8);
+  ctx.fillText(panelTitle(panel), box.left, box.top - 8);
   ctx.font = `13px ${paperFont}`;
   ctx.textAlign = 'center';
   if (last) ctx.fillText(cost.axis, box.left + box.width / 2, box.top + box.height + 36);
@@ -140,7 +146,7 @@ function drawDoubt(ctx, panel) {
 
 /// The front as a stair: what can be had for so much and no more.
 function drawFront(ctx, panel) {
-  const front = paretoFront(panel.points).map(point => placeOf(panel, point)), {box} = panel;
+  const front = paretoFront(panel.points.filter(point => claims(panel.result, point.model, panel.nu))).map(point => placeOf(panel, point)), {box} = panel;
   const stair = front.flatMap(([x, y], i) => i === 0 ? [[x, box.top], [x, y]] : [[x, front[i - 1][1]], [x, y]]);
   if (stair.length === 0) return;
   stair.push([box.left + box.width, stair[stair.length - 1][1]]);
@@ -220,8 +226,9 @@ function drawCost(ctx, width, cost) {
   return panels;
 }
 
-const costNotes = ['Displacement error against the extrapolated finite element reference, each line one method refined. Yellow: the front, what no other ' +
-  'run beats in both. Grey: the uncertainty of the reference; points in it are hollow and stand at its edge.'];
+const costNotes = ['Error against the extrapolated finite element reference, each line one method refined: of the displacement, and of the force or torque ' +
+  'on supports that are moved. Yellow: the front, what no other ' +
+  'run beats in both, of models at the Poisson’s ratios that they claim. Grey: the uncertainty of the reference; points in it are hollow and stand at its edge.'];
 
 function costDrawing(kind) {
   const cost = costs[kind];
@@ -276,16 +283,17 @@ const costLevels = [0.1, 0.03, 0.01, 0.003];
 
 const shortTime = t => t < 0.1 ? number(1e3 * t, 2) + ' ms' : seconds(t);
 
-/// The cheapest models that reach a level, cheapest first [{model, x, unknowns}].
-function cheapest(points, level) {
-  return costModels().map(model => ({model, ...costToReach(costLine(points, model), level)}))
+/// The cheapest models that reach a level, cheapest first [{model, x, unknowns}].  Off the Poisson's ratio that it claims a model has a
+/// small error by accident only.
+function cheapest(result, nu, points, level) {
+  return costModels().filter(model => claims(result, model, nu)).map(model => ({model, ...costToReach(costLine(points, model), level)}))
     .filter(entry => entry.x > 0).sort((a, b) => a.x - b.x);
 }
 
-function levelCell(result, nu, level) {
-  const points = costPoints(result, nu, costs.time);
+function levelCell({result, measure}, nu, level) {
+  const points = costPoints({result, measure}, nu, costs.time);
   if (points.every(point => (point.row.reference_uncertainty ?? 0) > level)) return el('td', {}, el('small', {}, 'reference too coarse'));
-  const [best, ...others] = cheapest(points, level);
+  const [best, ...others] = cheapest(result, nu, points, level);
   if (!best) return el('td', {}, '–');
   const text = entry => `${shortTime(entry.x)}, ${number(Number(entry.unknowns.toPrecision(2)))} unknowns`;
   const rival = others.find(entry => isFem(entry.model) !== isFem(best.model));
@@ -294,12 +302,12 @@ function levelCell(result, nu, level) {
 }
 
 function costTable() {
-  const rows = costCases.flatMap(result => result.nus.map((nu, i) => el('tr', {class: i === 0 ? 'group' : ''},
-    el('td', {}, i === 0 ? el('a', {href: '#' + result.id}, el('b', {}, result.name)) : ''), el('td', {}, nuText(nu)),
-    costLevels.map(level => levelCell(result, nu, level)))));
+  const rows = costRows.flatMap(row => row.result.nus.map((nu, i) => el('tr', {class: i === 0 ? 'group' : ''},
+    el('td', {}, i === 0 ? [el('a', {href: '#' + row.result.id}, el('b', {}, row.result.name)), el('small', {}, shortNames[row.measure])] : ''),
+    el('td', {}, nuText(nu)), costLevels.map(level => levelCell(row, nu, level)))));
   return [el('h3', {}, 'What an accuracy costs'),
-    el('p', {class: 'note'}, 'The cheapest method, by CPU time of set-up and solve, that has no more than this displacement error, read off between its ' +
-       'runs; below it the cheapest of the other kind, springs or finite elements.'),
+    el('p', {class: 'note'}, 'The cheapest method, by CPU time of set-up and solve, that has no more than this error, read off between its ' +
+       'runs; below it the cheapest of the other kind, springs or finite elements. Models count at the Poisson’s ratios that they claim.'),
     table('cost', ['case', 'ν', ...costLevels.map(level => `${number(100 * level, 2)} %`)], rows)];
 }
 

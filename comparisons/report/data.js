@@ -103,8 +103,8 @@ function percent(x) {
 
 const signed = (x, text) => (x > 0 && !text.startsWith('<') ? '+' : '') + text;
 
-const isDistance = measure => /^displacement_error(_max)?$|_distance$|^line\.\w+\.(all|[xyz]{2})$/.test(measure);
-const inPercent = (measure, unit) => unit === '1' && /^displacement|^volume|^line/.test(measure) && !/[_.]order$/.test(measure);
+const isDistance = measure => /^displacement_error(_max)?$|^reaction_error$|_distance$|^line\.\w+\.(all|[xyz]{2})$/.test(measure);
+const inPercent = (measure, unit) => unit === '1' && /^displacement|^reaction_error|^volume|^line/.test(measure) && !/[_.]order$/.test(measure);
 
 /// The unit a set of values is shown in: percent, a fitting length unit, or the unit itself.
 function displayUnit(measure, unit, values) {
@@ -155,6 +155,7 @@ const bySize = (a, b) => cellCount(a) - cellCount(b);
 const measureNames = {
   displacement_error: 'displacement error',
   displacement_error_max: 'largest displacement error',
+  reaction_error: 'reaction error of moved supports',
   displacement_error_order: 'observed order of the displacement error',
   volume_change: 'volume change',
   volume_change_magnitude: 'size of the volume change',
@@ -166,6 +167,7 @@ const measureNames = {
 const measureMeanings = {
   displacement_error: '|u − u_fem| in the L2 norm over the body, divided by |u_fem|',
   displacement_error_max: 'largest |u − u_fem| over the nodes, divided by the largest |u_fem|',
+  reaction_error: '|F − F_fem| / |F_fem| or |T − T_fem| / |T_fem|, the largest over the supports that are moved; those that vanish are left out',
   volume_change: '(V′ − V) / V of the deformed cells, exact; errors in percentage points',
   volume_change_magnitude: '|V′ − V| / V, as the paper prints it; errors in percentage points',
   volume_change_first_order: 'integral of div u over V; errors in percentage points',
@@ -182,7 +184,7 @@ function measureText(measure) {
     `${where} deviation${component === 'all' ? '' : ', ' + component}`;
   const words = what.replace(/_/g, ' ');
   if (!where) return words;
-  return `${words} ${/force|torque|reaction/.test(what) ? 'on' : 'at'} ${where}` + (component ? `, ${component}` : '');
+  return `${words} ${/force|torque|reaction|mean/.test(what) ? 'on' : 'at'} ${where}` + (component ? `, ${component}` : '');
 }
 
 const distinct = items => [...new Map(items.map(item => [String(item), item])).values()];
@@ -210,7 +212,7 @@ function prepareCase(data) {
     verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
     checks: data.checks || [], published: data.published || [], lines: data.lines || [],
-    splits: data.splits || [],
+    splits: data.splits || [], deformations: data.deformations || [],
   };
   const at = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;
   result.runAt = new Map(result.runs.map(run => [at(run), run]));
@@ -362,6 +364,10 @@ function modelStyle(model) {
   return {color: palette[index % palette.length], marker: markers[index % markers.length],
           dash: dashes[Math.min(2, Math.floor(index / markers.length))]};
 }
+
+/// The only Poisson's ratio that a model claims in a case, or null: it takes any.
+const ownRatio = (result, model) => ((result.experiment.models || []).find(m => m.label === model) || {}).own_poisson_ratio ?? null;
+const claims = (result, model, nu) => { const own = ownRatio(result, model); return own === null || Math.abs(own - nu) < 1e-9; };
 
 function modelName(model) {
   return el('span', {class: 'model'}, swatch(model), model);

@@ -43,7 +43,13 @@ function worstCell(result, model) {
   const lost = failed ? el('small', {class: 'lost'}, `${failed} without result`) : null;
   if (!worst) return el('td', {class: 'number'}, failed ? lost : '–');
   return el('td', {class: 'number ' + tint(result, worst.row)}, percent(worst.error),
-            el('small', {}, `ν = ${nuText(worst.row.poisson_ratio)}`), lost);
+            el('small', {}, `ν = ${nuText(worst.row.poisson_ratio)}`), reactionNote(result, model), lost);
+}
+
+/// The largest reaction error of a model, where a support is moved.
+function reactionNote(result, model) {
+  const worst = worstOf(result, rowsAt(result, 'reaction_error').filter(row => row.model === model));
+  return worst ? el('small', {}, `reactions ${percent(worst.error)}`) : null;
 }
 
 function worstUncertainty(result) {
@@ -87,7 +93,7 @@ function casesSection(section) {
   const head = ['Case', 'Expectations', 'Kinematics, time', right('Reference'),
                 ...split.leading.map(model => right(modelName(model))), ...(split.others.length > 0 ? ['Other models'] : [])];
   section.append(
-    el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution; ' +
+    el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution, and the largest reaction error where a support is moved; ' +
        'beside it the largest uncertainty of the reference, and the time of all runs.'),
     table('cases', head, cases.map(result => caseRow(result, split))), tintLegend());
 }
@@ -106,11 +112,11 @@ function bodyText({geo, size = [], cells = []}) {
   return [geo, edges, cells.length > 0 ? 'cells ' + cells.map(cellsText).join(', ') : ''].filter(Boolean).join('; ');
 }
 
-function materialText(materials = []) {
-  const moduli = distinct(materials.map(m => m.youngs_modulus)), densities = distinct(materials.map(m => m.density));
+function materialText(materials = [], weighs) {
+  const moduli = distinct(materials.map(m => m.youngs_modulus)), densities = weighs ? distinct(materials.map(m => m.density)) : [];
   const list = values => values.map(v => number(v)).join(', ');
-  return `E = ${list(moduli)} Pa; ν = ${materials.map(m => nuText(m.poisson_ratio)).join(', ')}; ` +
-    `density ${list(densities)} kg/m³`;
+  return `E = ${list(moduli)} Pa; ν = ${materials.map(m => nuText(m.poisson_ratio)).join(', ')}` +
+    (weighs ? `; density ${list(densities)} kg/m³` : '');
 }
 
 const bullets = items => items.length > 0 ? el('ul', {}, items.map(item => el('li', {}, item))) : null;
@@ -120,9 +126,10 @@ function kinematicsText(result) {
   return result.linear ? 'linear (small displacements)' : `finite; the reference follows the law “${law}”, the springs their own`;
 }
 
-function modelText({name, label, options = {}}) {
+function modelText({name, label, options = {}, own_poisson_ratio}) {
   const list = Object.entries(options).map(([key, value]) => `${key} = ${value}`).join(', ');
-  return [modelName(label || name), list && (label || name) !== list ? ` ${list}` : ''];
+  return [modelName(label || name), list && (label || name) !== list ? ` ${list}` : '',
+    isNumber(own_poisson_ratio) ? ` (a solid of ν = ${nuText(own_poisson_ratio)} alone)` : ''];
 }
 
 function problemPart(result) {
@@ -131,7 +138,7 @@ function problemPart(result) {
     definition('Question', e.what),
     definition('Source', e.cite),
     definition('Body', e.body ? bodyText(e.body) : ''),
-    definition('Material', (e.materials || []).length > 0 ? materialText(e.materials) : ''),
+    definition('Material', (e.materials || []).length > 0 ? materialText(e.materials, (e.loads || []).some(load => load.includes('gravity'))) : ''),
     definition('Loads', bullets(e.loads || [])),
     definition('Kinematics', e.kinematics ? kinematicsText(result) : ''),
     definition('Models', bullets((e.models || []).map(modelText))),
@@ -169,7 +176,18 @@ function referencePart(result) {
       : el('p', {class: 'note'}, 'Finite elements on successively finer grids; where their values fall into a regular ' +
            'sequence, the limit is extrapolated (Richardson), and the uncertainty is the grid convergence index.'),
     tables(measures.filter(m => !result.minor.has(m))),
-    minorFold(measures.filter(m => result.minor.has(m)), tables)];
+    minorFold(measures.filter(m => result.minor.has(m)), tables), deformationTable(result)];
+}
+
+/// How far the reference is deformed; amber where linear theory does not hold.
+function deformationTable(result) {
+  if (result.deformations.length === 0) return null;
+  const limits = {principal_strain: 0.05, rotation_deg: 5};
+  const cell = (d, key, text) => el('td', {class: 'number' + (result.linear && d[key] > limits[key] ? ' coarse' : '')}, text);
+  return [el('h5', {}, 'Largest principal strain and rotation', el('small', {}, '99 % of the volume stay below' +
+      (result.linear ? '; linear theory is for a few per cent and a few degrees: marked beyond 5 % or 5°' : ''))),
+    table('deformation', ['ν', right('principal strain'), right('rotation')], result.deformations.map(d => tr(nuText(d.poisson_ratio),
+      cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°'))))];
 }
 
 function minorFold(measures, tables) {

@@ -86,9 +86,38 @@ function orderPart() {
       right('order'), right('theory'), 'verdict'], records.map(({result, record}) => orderRow(result, record)))];
 }
 
+// ---- calibration
+
+const kindNames = {hexahedra: 'hexahedra', tetrahedra: 'tetrahedra', 'near-incompressible': 'ν ≥ 0.45', 'finite strain': 'finite strain', all: 'all'};
+const numberCell = text => el('td', {class: 'number'}, text);
+const shareText = share => percent(100 * share.inside / share.quantities);
+
+function outsideRow(q) {
+  const shown = displayUnit(q.measure, q.unit, [q.known, q.value]);
+  const text = (x, digits = 6) => number(shown.factor * x, digits);
+  return tr(q.case, nuText(q.poisson_ratio), elementCell(q.element), withUnit(measureText(q.measure), shown.unit),
+    numberCell(text(q.value)), numberCell('± ' + text(q.uncertainty, 2)), numberCell(text(q.known)),
+    numberCell(number(Math.abs(q.value - q.known) / q.uncertainty, 3)), q.where, q.note);
+}
+
+function calibrationPart() {
+  const calibration = results.calibration;
+  if (!calibration) return [];
+  const outside = calibration.quantities.filter(q => Math.abs(q.value - q.known) > q.uncertainty);
+  return [el('h3', {}, 'Are the stated uncertainties right?'),
+    el('p', {class: 'note'}, 'Quantities of the reference whose values are exact, or known from far finer grids: how many lie within their stated ' +
+       'uncertainty, and |error| / uncertainty. A median far below 1 means bars that are too wide.'),
+    table('calibration', ['reference', right('quantities'), right('inside'), right('share'), right('median |error| / uncertainty'), right('largest')],
+      calibration.shares.map(s => tr(kindNames[s.kind], numberCell(String(s.quantities)), numberCell(String(s.inside)), numberCell(shareText(s)),
+        numberCell(number(s.median_ratio, 2)), numberCell(number(s.largest_ratio, 3))))),
+    outside.length === 0 ? [] : [el('h4', {}, 'Outside their uncertainty'),
+      table('outside', ['case', 'ν', 'element', 'quantity', right('value'), right('uncertainty'), right('known'), right('|error| / uncertainty'), 'known from', 'how'],
+        outside.map(outsideRow))]];
+}
+
 function verificationSection(section) {
   if (verifications.length === 0 && cases.length > 0) return leaveOut(section);
   if (verifications.length === 0) return section.append(notice('No verification case was run.'));
   section.append(el('p', {class: 'lead'}, 'Can the reference itself be trusted? Finite elements alone, against answers that ' +
-    'are known.'), ...[benchmarkPart(), orderPart()].flat(Infinity));
+    'are known.'), ...[benchmarkPart(), orderPart(), calibrationPart()].flat(Infinity));
 }

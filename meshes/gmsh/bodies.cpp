@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meshes/gmsh/quality.h"
+#include "meshes/gmsh/file_kind.h"
+#include "meshes/quality.h"
 #include "meshes/gmsh/read_mesh.h"
+#include "meshes/refined_meshes.h"
 #include "meshes/mesher_exchange.h"
 
 namespace springproof {
@@ -118,23 +120,38 @@ double model_volume() {
   return sum;
 }
 
-/// The finest mesh and the coarser ones of one model, made with an edge of `drawn` [m]; all lengths scale together, those for
-/// round parts too.  A coarser mesh that gmsh cannot make is made with half the step.
-MeshedBody mesh_at_factors(const MeshRequest& r, const GmshSession& session, double drawn) {
-  MeshedBody body;
-  body.edge = r.edge;
-  const auto at = [&](double factor) {
+/// Meshes of one model as drawn with an edge of `drawn` [m]; all lengths scale together, those for round parts too.
+MeshAt model_at(const MeshRequest& r, const GmshSession& session, double drawn) {
+  return [&r, &session, drawn](double edge, double) {
     gmsh::model::mesh::clear();
-    gmsh::option::setNumber("Mesh.MeshSizeFactor", factor * r.edge / drawn);
-    return fill_with_tetrahedra(r.file, session);
+    gmsh::option::setNumber("Mesh.MeshSizeFactor", edge / drawn);
+    return OneMesh{fill_with_tetrahedra(r.file, session), {}, edge};
   };
-  body.mesh = at(1);
-  for (const double factor : r.coarser) try {
-      body.coarser.push_back(at(factor));
-    } catch (const InputError&) {
-      body.coarser.push_back(at(std::sqrt(factor)));
-    }
-  return body;
+}
+
+void open_script(const MeshRequest& r, const GmshSession& session) {
+  gmsh::option::setNumber("Mesh.MeshSizeMax", r.edge / r.scale);  // unless the script says otherwise
+  gmsh::open(r.file.string());
+  session.stop_on_error(r.file);
+}
+
+/// A structured script, whose layers know nothing of factors.
+MeshAt script_at(const MeshRequest& r) {
+  return [&r](double edge, double) {
+    MeshRequest own = r;
+    own.edge = edge;
+    GmshSession session(parameters_of(own));
+    open_script(own, session);
+    return OneMesh{fill_with_tetrahedra(r.file, session), {}, edge};
+  };
+}
+
+/// Whether the edge has no say in how many cells there are.
+bool is_structured(const MeshAt& at, double edge) try {
+  const auto count = [&](double times) { return at(times * edge, times).mesh.tetrahedra.size(); };
+  return count(4) == count(2) && count(2) == count(1);
+} catch (const InputError&) {
+  return false;
 }
 
 }  // namespace
@@ -153,26 +170,15 @@ MeshedBody mesh_script(const MeshRequest& request) {
   const double drawn = r.edge > 0 ? r.edge : edge_for(r.tetrahedra, 0.4 * box);
   r.edge = drawn;
   if (box > 0) refuse_too_many(r, box);
-  MeshedBody body;
   {
     GmshSession session(parameters_of(r));
-    gmsh::option::setNumber("Mesh.MeshSizeMax", r.edge / r.scale);  // unless the script says otherwise
-    gmsh::open(r.file.string());
-    session.stop_on_error(r.file);
+    open_script(r, session);
     const double volume = std::pow(r.scale, 3) * model_volume();
     if (request.edge == 0 && volume > 0) r.edge = edge_for(r.tetrahedra, volume);
-    body = mesh_at_factors(r, session, drawn);
+    const MeshAt at = model_at(r, session, drawn);
+    if (r.coarser.empty() || !is_structured(at, r.edge)) return mesh_refined(r, at);
   }
-  const auto as_fine = [&](const Mesh& mesh) { return mesh.tetrahedra.size() == body.mesh.tetrahedra.size(); };
-  if (std::none_of(body.coarser.begin(), body.coarser.end(), as_fine)) return body;
-  // A structured script, whose layers know nothing of factors.
-  for (std::size_t i = 0; i < r.coarser.size(); ++i) {
-    MeshRequest own = request;
-    own.coarser.clear();
-    own.edge = r.coarser[i] * r.edge;
-    body.coarser[i] = mesh_script(own).mesh;
-  }
-  return body;
+  return mesh_refined(r, script_at(r));
 }
 
 MeshedBody mesh_solid(const MeshRequest& request) {
@@ -196,35 +202,19 @@ MeshedBody mesh_solid(const MeshRequest& request) {
     gmsh::model::setPhysicalName(2, group, fmt::format("surface_{}", ++number));
   }
   want_edge(r.edge / r.scale);
-  return mesh_at_factors(r, session, r.edge);
+  return mesh_refined(r, model_at(r, session, r.edge));
 }
-
-namespace {
-
-/// Of STL and mesh files, one edge after the other.
-MeshedBody mesh_one_by_one(const MeshRequest& request) {
-  const auto mesh = [&](const MeshRequest& r) { return extension_of(r.file) == ".stl" ? mesh_stl(r) : mesh_msh(r); };
-  MeshedBody body = mesh(request);
-  MeshRequest coarser = request;
-  coarser.coarser.clear();
-  for (const double factor : request.coarser) {
-    coarser.edge = factor * body.edge;
-    body.coarser.push_back(mesh(coarser).mesh);
-  }
-  return body;
-}
-
-}  // namespace
 
 MeshedBody mesh_file(const MeshRequest& r) try {
+  require_kind(r.file);
   const std::string extension = extension_of(r.file);
-  MeshedBody body = extension == ".geo"                            ? mesh_script(r)
-                    : extension == ".stl" || extension == ".msh" ? mesh_one_by_one(r)
-                                                                   : mesh_solid(r);
+  MeshedBody body = extension == ".geo"   ? mesh_script(r)
+                    : extension == ".stl" ? mesh_stl(r)
+                    : extension == ".msh" ? mesh_msh(r)
+                                          : mesh_solid(r);
   if (r.scale != 1) scale(body.mesh, r.scale);
   for (Mesh& mesh : body.coarser)
     if (r.scale != 1) scale(mesh, r.scale);
-  if (body.edge > 0) body.notes.push_back(words_for(body.mesh, quality_of(body.mesh)));
   return body;
 } catch (const std::string& message) {
   refuse(r.file, "gmsh: " + message);

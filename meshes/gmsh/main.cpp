@@ -5,8 +5,8 @@
 
 #include <fstream>
 #include <new>
-#include <nlohmann/json.hpp>
 
+#include "meshes/child.h"
 #include "meshes/gmsh/bodies.h"
 #include "meshes/mesher_exchange.h"
 
@@ -34,12 +34,11 @@ std::string answer_to(const MeshRequest& request) try {
 
 int run(int argc, char** argv) try {
   if (argc != 3) {
-    fmt::print(stderr, "usage: springproof-mesh REQUEST.json ANSWER.cbor   (run by springproof and springproof-fem)\n");
+    fmt::print(stderr, "usage: springproof-mesh REQUEST.cbor ANSWER.cbor   (run by springproof and springproof-fem)\n");
     return 2;
   }
   limit_memory();
-  std::ifstream in(argv[1]);
-  const std::string answer = answer_to(mesh_request_from_json(nlohmann::json::parse(in)));
+  const std::string answer = answer_to(mesh_request_from_cbor(text_of_file(argv[1])));
   std::ofstream out(argv[2], std::ios::binary);
   out.write(answer.data(), static_cast<std::streamsize>(answer.size()));
   if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", argv[2]));

@@ -73,8 +73,13 @@ Surface outside_of(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
 MeshedBody filled_anew(const MeshRequest& r, const MeshedBody& own) {
   const std::vector<OuterFacet> facets = outer_facets(own.mesh);
   MeshedBody body = fill_surface(r, outside_of(own.mesh, facets));
-  body.mesh.patches.clear();
-  transfer_patches(own.mesh, facets, body.mesh);
+  body.coarser.push_back(std::move(body.mesh));
+  for (Mesh& mesh : body.coarser) {
+    mesh.patches.clear();
+    transfer_patches(own.mesh, facets, mesh);
+  }
+  body.mesh = std::move(body.coarser.back());
+  body.coarser.pop_back();
   body.notes.insert(body.notes.begin(), own.notes.begin(), own.notes.end());
   body.notes.push_back("the body is the surface of the file's cells, filled with tetrahedra of the length asked for");
   return body;
@@ -110,7 +115,7 @@ MeshedBody mesh_msh(const MeshRequest& r) {
   std::optional<MeshedBody> own;
   {
     GmshSession session({});
-    gmsh::open(r.file.string());
+    gmsh::merge(r.file.string());  // open() would also run FILE.opt beside it
     session.stop_on_error(r.file);
     gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
     if (const auto blocks = volume_elements(); !blocks.empty()) {

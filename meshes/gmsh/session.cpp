@@ -54,8 +54,12 @@ GmshSession::~GmshSession() {
 void GmshSession::stop_on_error(const std::filesystem::path& file) const {
   std::vector<std::string> log;
   gmsh::logger::get(log);
-  for (const std::string& line : log)
-    if (line.rfind("Error", 0) == 0) refuse(file, "gmsh: " + line);
+  const auto is_error = [](const std::string& line) { return line.rfind("Error", 0) == 0; };
+  const auto error = std::find_if(log.begin(), log.end(), is_error);
+  if (error == log.end()) return;
+  gmsh::logger::stop();  // a next try begins without it
+  gmsh::logger::start();
+  refuse(file, "gmsh: " + *error);
 }
 
 std::vector<ElementBlock> elements(int dimension, const std::vector<int>& entities) {

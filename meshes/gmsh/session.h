@@ -20,7 +20,7 @@ class GmshSession {
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
 
-  /// @throws InputError with the first error since the start, if there is one.
+  /// @throws InputError with the first error since the start or the last one thrown, if there is one.
   void stop_on_error(const std::filesystem::path& file) const;
 };
 

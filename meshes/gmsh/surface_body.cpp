@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "meshes/gmsh/bodies.h"
+#include "meshes/refined_meshes.h"
 #include "meshes/stl.h"
 #include "meshes/surface_check.h"
 
@@ -52,30 +53,56 @@ Mesh fill(const MeshRequest& r, const Surface& surface) {
 
 }  // namespace
 
+namespace {
+
+constexpr double most_change = 0.01;  ///< of the volume by remeshing, of the finest mesh
+
+/// Fills the surface, with even triangles of the edge.  What remeshing cuts off falls as the edge squared: coarser meshes may lose
+/// more.
+MeshAt surface_at(const MeshRequest& r, const Surface& surface) {
+  return [&r, &surface](double edge, double times) {
+    MeshRequest own = r;
+    own.edge = edge;
+    if (suits(surface, edge / r.scale)) return OneMesh{fill(own, surface), {}, edge};
+    Surface even;
+    try {
+      even = remesh(surface, edge / r.scale, most_change * times * times);
+    } catch (const std::runtime_error& e) {
+      refuse(r.file, e.what());
+    }
+    const std::string note =
+        fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %", surface.triangles.size(),
+                    even.triangles.size(), edge, 100 * (volume(even) / volume(surface) - 1));
+    return OneMesh{fill(own, even), {note}, edge};
+  };
+}
+
+/// The last resort of a body without coarser meshes.
+MeshAt facets_at(const MeshRequest& r, const Surface& surface, const std::string& failure) {
+  return [&r, &surface, &failure](double edge, double) {
+    MeshRequest own = r;
+    own.edge = edge;
+    return OneMesh{fill(own, surface), {"the facets of the file are kept, as remeshing them failed: " + failure}, edge};
+  };
+}
+
+MeshedBody filled(const MeshRequest& r, const Surface& surface) try {
+  return mesh_refined(r, surface_at(r, surface));
+} catch (const InputError& e) {
+  if (!r.coarser.empty()) throw;
+  return mesh_refined(r, facets_at(r, surface, e.what()));
+}
+
+}  // namespace
+
 MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   const auto [surface, mended] = check_surface(raw, request.file.string());
   const double inside = volume(surface);
   MeshRequest r = request;
   if (r.edge == 0) r.edge = r.scale * edge_for(r.tetrahedra, inside);
-  MeshedBody body{{}, mended, r.edge, {}};
   refuse_too_many(r, inside * std::pow(r.scale, 3));
-  if (suits(surface, r.edge / r.scale)) {
-    body.mesh = fill(r, surface);
-    return body;
-  }
-  std::string failure;
-  for (const double shorter : {1.0, 0.7, 0.5}) try {  // a body may be too thin or too round for its edge
-      const Surface even = remesh(surface, shorter * r.edge / r.scale);
-      body.mesh = fill(r, even);
-      body.notes.push_back(fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %",
-                                       surface.triangles.size(), even.triangles.size(), shorter * r.edge,
-                                       100 * (volume(even) / inside - 1)));
-      return body;
-    } catch (const std::runtime_error& e) {
-      if (failure.empty()) failure = e.what();
-    }
-  body.notes.push_back(fmt::format("the facets of the file are kept, as remeshing them failed: {}", failure));
-  body.mesh = fill(r, surface);
+  MeshedBody body = filled(r, surface);
+  body.notes.insert(body.notes.begin(), mended.begin(), mended.end());
   return body;
 }
 

@@ -52,6 +52,8 @@ edited "E < 0" "case.toml:6:.*youngs_modulus" 's/1e4/-1e4/'
 edited "E is text" "case.toml:6:.*youngs_modulus" 's/1e4/"soft"/'
 edited "cells = 0" "case.toml:4:.*cells" 's/\[2, 2, 2\]/[2, 0, 2]/'
 edited "not cubes" "cubes" 's/\[2, 2, 2\]/[2, 2, 3]/'
+edited "gravity without density" "case.toml:5:1: material.density_kg_m3: is missing" 's/^on = "z_max"$/gravity_m_s2 = [0, 0, -9.81]/; s/^displacement_m = \[0, 0, 0.01\]$//'
+edited "model off its kinematics" "case.toml:16:.*hybmss_bt.*linear.*hencky.*allowed: msm_18.*hybmss_cf" 's/^\[body\]/kinematics = "hencky"\n[body]/; s/"hybmss"/"hybmss_bt"/'
 edited "no such patch" "z_top" 's/z_max/z_top/'
 edited "unconstrained body" "not held" 's/\[0, 0, 0\]/["free", "free", 0]/; s/\[0, 0, 0\.01\]/["free", "free", 0.01]/'
 edited "no such model" "hybms.*did you mean 'hybmss'" 's/"hybmss"/"hybms"/'
@@ -74,6 +76,51 @@ expect "homogenise: planar" "planar" homogenise -E 1 --nu 0.3 --model msm_hexago
 expect "homogenise: seeds of a lattice" "unknown option 'seeds'" homogenise -E 1 --nu 0.3 --model hybmss --seeds 3
 expect "homogenise: half a seed" "whole number" homogenise -E 1 --nu 0.3 --seed 1.5
 expect "homogenise: box too small" "three times" homogenise -E 1 --nu 0.3 --nodes 8
+
+# Names: loops of links, thousands of letters, other encodings.
+long=$(printf 'x%.0s' $(seq 5000))
+ln -s loop.toml "$work/loop.toml"
+ln -s loop "$work/loop"
+expect "loop of links" "loop.toml: .*no such case file" compare "$work/loop.toml" --out "$work/out"
+expect "folder in a loop of links" "no such case file" compare "$work/loop/case.toml" --out "$work/out"
+expect "name of 5000 letters" "5[0-9]{3} letters" compare "$long.toml" --out "$work/out"
+expect "output in a loop of links" "cannot write into" compare "$work/good.toml" --out "$work/loop/out"
+expect "output of 5000 letters" "cannot write into.*letters" compare "$work/good.toml" --out "$work/$long"
+edited "body of 5000 letters" "case.toml:2:7: .*5004 letters" "s/block.geo/$long.geo/"
+edited "label of 5000 letters" "case.toml:16.*cannot name a file" "s/\"hybmss\"\]/{ model = \"hybmss\", label = \"$long\" }]/"
+cp "$work/good.toml" "$work/${long:0:200}.toml"
+expect "case of 200 letters" "name too long" compare "$work/${long:0:200}.toml" --out "$work/out"
+latin=$(printf 'K\xf6rper')
+mkdir "$work/$latin"
+sed 's/^cells/cell/' "$work/good.toml" >"$work/$latin/case.toml"
+expect "mistake in a Latin-1 folder" "case.toml:4:1: " compare "$work/$latin/case.toml" --out "$work/out"
+
+# More than a parser, a machine or a person can hold.
+{ printf 'a.%.0s' $(seq 50000); echo 'a = 1'; echo "$good"; } >"$work/case.toml"
+expect "50,000 dotted keys" "case.toml:1:1: more than 16 parts of a key" compare "$work/case.toml" --out "$work/out"
+expect "100,000 jobs" "jobs.*1024" compare "$work/good.toml" --jobs 100000 --out "$work/out"
+expect "export of a thousand million cells" "1e\+09 cells .allowed: up to" export "$work/good.toml" --to calculix --cells 1000 1000 1000 --out "$work/out"
+edited "a lattice of a thousand million cells" "case.toml:2:7: cells: .*1e\+09 cells .allowed" 's/\[2, 2, 2\]/[1000, 1000, 1000]/'
+edited "a reference of a thousand million cells" "case.toml:18:9: reference.cells: .*GB" '$s/$/\n[reference]\ncells = [1000, 1000, 1000]/'
+edited "a reference that cannot be refined" "case.toml:18:9: reference.cells: is 1 along x, which cannot be refined" '$s/$/\n[reference]\ncells = [1, 1, 1]/'
+edited "E = 1e300" "case.toml:6:21: .*is 1e\+300 .allowed" 's/1e4/1e300/'
+edited "a force of 1e300" "load.displacement_m: is 1e\+300" 's/0\.01/1e300/'
+edited "contradictory loads" "case.toml:14:1: load: the displacement of 'z_min' along x is prescribed by the load in line 9 too" '$s/$/\n/; s/^\[compare\]/[[load]]\non = "z_min"\ndisplacement_m = [1, 0, 0]\n[compare]/'
+
+# Scripts, where they are not wanted, and files that are scripts under another name.
+echo "SystemCall \"touch $work/trace\";" >"$work/own.geo"
+sed 's/block.geo/own.geo/' "$work/good.toml" >"$work/script.toml"
+expect "a script of one's own" "script.toml:2:7: body.geo: 'own.geo' is a script, which may run any command" compare --no-scripts "$work/script.toml" --out "$work/out"
+expect "a script of one's own, exported" "is a script" export --no-scripts "$work/script.toml" --to calculix --out "$work/out"
+for name in own.msh own.step own.brep own.stl; do
+  cp "$work/own.geo" "$work/$name"
+  sed -e "s/block.geo/$name/" -e 's/^size_m.*/voxels = 100/' -e '/^cells/d' "$work/good.toml" >"$work/script.toml"
+  expect "a script called $name" "$name: " compare "$work/script.toml" --out "$work/out"
+done
+[ -e "$work/trace" ] && { echo "FAILED: a command was run"; failures=$((failures + 1)); }
+
+# What is no fault of the case.
+TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
 
 [ $failures -eq 0 ] && echo "all refused as they should be"
 exit $((failures > 0))

@@ -41,6 +41,12 @@ models = ["hybmss", "emsm", "emsm_random", "msm_18"]
 measures = ["displacement_error", "volume_change", "reaction"]
 [reference]
 $6
+[[expect]]
+model = "hybmss"
+measure = "force.held.x"
+source = "analytic"
+value = -3
+within = 1e-6
 TOML
 }
 

@@ -49,4 +49,52 @@ kept=$(ls "$work/out/parts" | wc -l)
 cp "$work/out/results.csv" "$work/resumed.csv"
 "$program" compare "$work/case.toml" --out "$work/out" 2>"$work/log" >/dev/null || fail "running afresh failed"
 cmp -s "$work/resumed.csv" "$work/out/results.csv" || fail "a resumed run gives other numbers than a fresh one"
+
+# A flipped bit is found wherever it lies, and the part computed anew; the others are kept.
+part=$(ls "$work"/out/parts/*nu0.25* | head -1)
+size=$(stat -c %s "$part")
+for at in 3 25 $((size / 2)) $((size - 1)); do
+  byte=$(od -An -tu1 -j "$at" -N 1 "$part")
+  printf "\\x$(printf %x $((byte ^ 1)))" | dd of="$part" bs=1 seek="$at" conv=notrunc status=none
+  "$program" compare "$work/case.toml" --out "$work/out" --resume 2>"$work/log" >/dev/null || fail "resuming with a damaged part failed"
+  grep -q "nu0.25.cbor is damaged; this part is computed anew" "$work/log" || fail "byte $at: the damage is not said"
+  [ "$(grep -c 'kept from before' "$work/log")" -eq 7 ] || fail "byte $at: not all other parts were taken back"
+  cmp -s "$work/resumed.csv" "$work/out/results.csv" || fail "byte $at: a damaged part gives other numbers"
+done
+
+# Folders in use; the lock of a killed program holds nobody.
+"$program" compare "$work/case.toml" --out "$work/busy" --jobs 1 2>/dev/null >/dev/null &
+pid=$!
+for _ in $(seq 600); do
+  [ -n "$(ls "$work/busy/parts" 2>/dev/null)" ] && break
+  sleep 0.1
+done
+"$program" compare "$work/case.toml" --out "$work/busy" --resume 2>"$work/log" >/dev/null
+[ $? -eq 2 ] && grep -q "^error: --out: .*busy is in use by another springproof" "$work/log" || fail "two at a time in one folder"
+kill -KILL $pid
+wait $pid 2>/dev/null
+"$program" compare "$work/case.toml" --out "$work/busy" --resume 2>"$work/log" >/dev/null || fail "the lock of a killed program holds"
+
+# What a script includes counts as its own text.
+sed -i 's/\[-0.5.*\]/0.25/; s/block.geo/own.geo/' "$work/case.toml"
+block=$(dirname "$0")/../../meshes/geo/block.geo
+cp "$block" "$work/deep.geo"
+echo 'Include "between.geo";' >"$work/own.geo"
+echo 'Include "deep.geo";' >"$work/between.geo"
+again() { "$program" compare "$work/case.toml" --out "$work/script" --resume 2>"$work/log" >/dev/null || fail "the script's case failed"; }
+again
+again
+grep -q 'kept from before' "$work/log" || fail "nothing has changed, but the part is not taken back"
+echo '// changed' >>"$work/deep.geo"
+again
+grep -q 'kept from before' "$work/log" && fail "a part is kept although a file that its script includes has changed"
+
+# Any bytes in a name; the results are UTF-8.
+latin=$work/$(printf 'K\xf6rper')
+mkdir "$latin"
+sed 's/own.geo/block.geo/' "$work/case.toml" >"$latin/case.toml"
+"$program" compare "$latin/case.toml" --out "$latin/out" 2>"$work/log" >/dev/null || fail "a folder with a name in Latin-1"
+iconv -f UTF-8 -t UTF-8 "$latin/out/results.json" >/dev/null || fail "results.json is no UTF-8"
+iconv -f UTF-8 -t UTF-8 "$latin/out/report.html" >/dev/null || fail "report.html is no UTF-8"
+
 echo "resumed after $kept of 8 parts"

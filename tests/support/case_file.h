@@ -61,7 +61,7 @@ displacement_gradient = [[0, 0, 0], [0, 0, 0], [0, 0, 1e-3]]
 displacement_m = [1, 2, 3]
 
 [[load]]
-on = "x_max"
+on = "y_max"
 rotation_deg = 45
 axis = [0, 3, 4]
 about_m = [1, 0.2, 0.2]

@@ -141,6 +141,23 @@ Surface sphere(double radius, int times) {
   return s;
 }
 
+Surface globe(double radius, int rings, int around) {
+  Surface s;
+  s.points = {{0, 0, radius}, {0, 0, -radius}};
+  const auto number = [&](int ring, int j) { return ring == 0 ? 0 : ring == rings ? 1 : 2 + (ring - 1) * around + j % around; };
+  for (int i = 1; i < rings; ++i)
+    for (int j = 0; j < around; ++j) {
+      const double down = pi * i / rings, turn = 2 * pi * j / around;
+      s.points.push_back(radius * Vec3(std::sin(down) * std::cos(turn), std::sin(down) * std::sin(turn), std::cos(down)));
+    }
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < around; ++j) {
+      if (i > 0) s.triangles.push_back({number(i, j), number(i + 1, j), number(i, j + 1)});
+      if (i < rings - 1) s.triangles.push_back({number(i, j + 1), number(i + 1, j), number(i + 1, j + 1)});
+    }
+  return s;
+}
+
 Surface noisy_sphere(double radius, int times, double noise, unsigned seed) {
   Surface s = sphere(radius, times);
   std::mt19937 random(seed);

@@ -10,7 +10,10 @@ namespace springproof::test {
 /// Icosahedron cut `times` times, its points on the sphere about zero: 20 * 4^times facets, volume below 4/3 pi r^3 by O(h^2).
 Surface sphere(double radius, int times);
 
-/// The same with each point moved along its radius by up to +-noise * radius.
+/// Of parallels and meridians: needles at the poles, 2 * around * (rings - 1) facets.
+Surface globe(double radius, int rings, int around);
+
+/// sphere() with each point moved along its radius by up to +-noise * radius.
 Surface noisy_sphere(double radius, int times, double noise, unsigned seed);
 
 /// About the z axis, 2 * around * across facets; volume tends to 2 pi^2 R r^2.

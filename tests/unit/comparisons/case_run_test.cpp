@@ -2,12 +2,17 @@
 #include "comparisons/case_run.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
+#include "comparisons/folder_lock.h"
 #include "comparisons/measures.h"
 #include "comparisons/part_file.h"
+#include "meshes/child.h"
 
 namespace springproof {
 namespace {
@@ -156,10 +161,45 @@ TEST(PartFile, ComesBackWholeOrNotAtAll) {
   EXPECT_EQ(back->references.at(0).element, "p1");
   EXPECT_EQ(back->pictures.at(0).displacement, (std::vector<float>{3, 4, 5}));
   EXPECT_FALSE(load_part(file, "other stamp"));
-  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-  EXPECT_FALSE(load_part(file, "stamp"));
+  const std::string bytes = text_of_file(file);
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string flipped = bytes;
+    flipped[at] ^= 1 << at % 8;
+    write_file(file, flipped);
+    EXPECT_THROW(load_part(file, "stamp"), DamagedPart) << "byte " << at << " of " << bytes.size();
+  }
+  for (const std::size_t length : {std::size_t{0}, std::size_t{10}, bytes.size() / 2, bytes.size() - 1}) {
+    write_file(file, bytes.substr(0, length));
+    EXPECT_THROW(load_part(file, "stamp"), DamagedPart) << length << " bytes left";
+  }
+  write_file(file, bytes + bytes);
+  EXPECT_THROW(load_part(file, "stamp"), DamagedPart);
   std::filesystem::remove(file);
   EXPECT_FALSE(load_part(file, "stamp"));
+}
+
+TEST(FolderLock, IsOneProcessAtATimeAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path / "out";
+  std::filesystem::create_directory(path);
+  {
+    const FolderLock first(path);
+    try {
+      const FolderLock second(path);
+      FAIL() << "held twice";
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("--out: " + path + " is in use"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_NO_THROW(FolderLock{path});
+  EXPECT_TRUE(std::filesystem::is_empty(path));
+  const pid_t killed = fork();
+  if (killed == 0) {
+    const FolderLock held(path);
+    raise(SIGKILL);
+  }
+  waitpid(killed, nullptr, 0);
+  EXPECT_NO_THROW(FolderLock{path}) << "the lock of a killed process";
 }
 
 }  // namespace

@@ -229,6 +229,40 @@ TEST_F(ReportInBrowser, SetsErrorsAgainstCost) {
   EXPECT_NE(part.find("<td>–</td></tr>"), std::string::npos) << "0.3 %: no one does";
 }
 
+TEST_F(ReportInBrowser, SetsReactionsBesideDisplacementsWhereASupportMoves) {
+  CaseResult c = timed_case();
+  for (int n : {1, 2})
+    for (const auto& [model, error] : {std::pair("hybmss", 0.8), std::pair("fem_q2", 0.4)})
+      c.rows.push_back({"compress", "linear", model, 0.25, {n, n, n}, "reaction_error", error / n, "1", 0.0, 0.001, error / n});
+  const std::string dom = open({c});
+  expect_no_complaint(dom);
+  const std::string part = dom.substr(dom.find("<section id=\"cost\">"), dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  EXPECT_NE(part.find("<small>displacement</small>"), std::string::npos);
+  EXPECT_NE(part.find("<small>reactions</small></td><td>0.25</td><td>–</td>"), std::string::npos) << "20 % and 40 %: none to 10 %";
+  const std::string table = dom.substr(dom.find("<section id=\"cases\">"), dom.find("<section id=\"poisson\">") - dom.find("<section id=\"cases\">"));
+  EXPECT_NE(table.find("<small>reactions 40 %</small>"), std::string::npos);
+}
+
+TEST_F(ReportInBrowser, NamesNoModelOffItsOwnPoissonsRatioAsCheapest) {
+  CaseResult c = timed_case();
+  c.own_poisson_ratios["hybmss"] = 0.3;
+  const std::string dom = open({c});
+  expect_no_complaint(dom);
+  const std::string part = dom.substr(dom.find("<section id=\"cost\">"), dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  EXPECT_EQ(part.find("hybmss</span><small>6.7 ms"), std::string::npos);
+  EXPECT_NE(part.find("fem_q2</span><small>17 ms, 1700 unknowns</small><small>no springs do</small>"), std::string::npos);
+}
+
+TEST_F(ReportInBrowser, StatesHowFarTheReferenceIsDeformed) {
+  CaseResult c = sample_case();
+  c.deformations = {{0.25, 0.02, 3.5}, {0.4, 0.08, 6.5}};
+  const std::string dom = open({c}, "#case-golec_2019-compress");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("<td class=\"number\">2.0 %</td><td class=\"number\">3.5°</td>"), std::string::npos);
+  EXPECT_NE(dom.find("<td class=\"number coarse\">8.0 %</td><td class=\"number coarse\">6.5°</td>"), std::string::npos);
+  EXPECT_NE(dom.find("<p class=\"amber\">compress: principal strains of 8 % and rotations of 6.5°"), std::string::npos);
+}
+
 TEST_F(ReportInBrowser, WithoutTimesThereIsNoCost) {
   EXPECT_NE(open({sample_case()}).find("<section id=\"cost\" hidden"), std::string::npos);
 }

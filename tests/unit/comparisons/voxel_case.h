@@ -39,6 +39,7 @@ beyond = {{ point_m = [0.1, 0.1, 0.15], normal = [0.5, 0.3, 1] }}
 [material]
 youngs_modulus_Pa = 1e4
 poisson_ratio = 0.3
+density_kg_m3 = 1000
 [[load]]
 on = "low"
 displacement_m = [0, 0, 0]

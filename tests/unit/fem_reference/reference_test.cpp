@@ -4,8 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
 
+#include "fem_reference/exchange.h"
 #include "fem_reference/solve_grid.h"
+#include "meshes/child.h"
 
 namespace springproof {
 namespace {
@@ -77,6 +83,59 @@ TEST(FemReference, PassesOnThatTheInputIsWrong) {
     EXPECT_NE(std::string(e.what()).find("lid"), std::string::npos);
     EXPECT_NE(std::string(e.what()).find("z_max"), std::string::npos);
   }
+}
+
+/// What solve() says when this shell script is the program.
+std::string with_program(const std::string& script) {
+  const TemporaryFolder folder;
+  const std::filesystem::path program = folder.path / "program";
+  std::ofstream(program) << "#!/bin/sh\n" << script << "\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  setenv("SPRINGPROOF_FEM_PROGRAM", program.c_str(), 1);
+  std::string says = "accepted";
+  try {
+    fem::solve(request());
+  } catch (const std::runtime_error& e) {
+    says = e.what();
+  }
+  unsetenv("SPRINGPROOF_FEM_PROGRAM");
+  return says;
+}
+
+// --request FILE --answer FILE: the answer's name is the fourth word.
+TEST(FemReference, OddAnswersAreOneSentenceThatNamesProgramAndCase) {
+  const auto answers = [](const std::string& text, const char* why) {
+    const std::string says = with_program("printf '" + text + "' > \"$4\"");
+    EXPECT_EQ(says.rfind("cube.toml: the answer of springproof-fem (", 0), 0u) << says;
+    EXPECT_NE(says.find(why), std::string::npos) << says;
+    EXPECT_EQ(says.find("json"), std::string::npos) << says;
+  };
+  answers("", "cannot be read");
+  answers("nonsense", "cannot be read");
+  answers("\\200", "does not fit the question");      // []
+  answers("\\202\\240\\240", "cannot be read");      // [{}, {}]
+  answers("\\366", "does not fit the question");      // null
+  EXPECT_NE(with_program("exit 0").find("cube.toml: the answer of springproof-fem ("), std::string::npos);
+  EXPECT_EQ(with_program("echo out of luck >&2; kill -SEGV $$"), "cube.toml: springproof-fem was killed by signal 11 (Segmentation fault): out of luck");
+}
+
+TEST(FemReference, AnswersOfAnotherQuestionAreRefused) {
+  const TemporaryFolder folder;
+  const std::vector<fem::Solution> fits = fem::solve(request());
+  const auto says = [&](const std::function<void(std::vector<fem::Solution>&)>& spoil) {
+    std::vector<fem::Solution> solutions = fits;
+    spoil(solutions);
+    std::ofstream out(folder.path / "answer", std::ios::binary);
+    nlohmann::json::to_cbor(to_json(solutions), out);
+    out.close();
+    return with_program("cp '" + (folder.path / "answer").string() + "' \"$4\"");
+  };
+  EXPECT_EQ(says([](auto&) {}), "accepted");
+  EXPECT_NE(says([](auto& s) { s.pop_back(); }), "accepted");
+  EXPECT_NE(says([](auto& s) { s[0].displacement.resize(0, 3); }), "accepted");
+  EXPECT_NE(says([](auto& s) { s[1].stress.resize(3, 6); }), "accepted");
+  EXPECT_NE(says([](auto& s) { s[1].reactions.pop_back(); }), "accepted");
+  EXPECT_NE(says([](auto& s) { s[0].grid.element = "p2"; }), "accepted");
 }
 
 TEST(FemReference, SaysWhyTheProgramFailed) {

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
+#include <vector>
 
 namespace springproof {
 namespace {
@@ -71,6 +76,28 @@ TEST(Child, IsInterrupted) {
   EXPECT_LT(seconds_since(begin), 30);
 }
 
+TEST(Child, AreAllInterruptedHoweverMany) {
+  constexpr int count = 200;
+  std::atomic<int> ended = 0, terminated = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    std::vector<std::jthread> others;
+    for (int i = 0; i < count; ++i)
+      others.emplace_back([&] {
+        const ChildEnd end = run_child(shell("exec sleep 20"));
+        terminated += end.kind == ChildEnd::killed && end.status == SIGTERM;
+        ++ended;
+      });
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    interrupt_children();  // some have not been started yet
+    while (ended < count && seconds_since(begin) < 19) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      interrupt_children();
+    }
+  }
+  EXPECT_EQ(terminated, count);
+}
+
 TEST(Child, UsesProcessorTimeThatIsCounted) {
   const ChildEnd end = run_child(shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done"));
   EXPECT_GT(end.seconds, 0.001);
@@ -86,6 +113,45 @@ TEST(TemporaryFolder, IsGoneAfterwards) {
     EXPECT_EQ(text_of_file(path / "file"), "text");
   }
   EXPECT_FALSE(fs::exists(path));
+}
+
+std::size_t folders_in(const fs::path& place) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(place), fs::directory_iterator()));
+}
+
+class Temporary : public testing::Test {
+ protected:
+  void SetUp() override { setenv("TMPDIR", place_.path.c_str(), 1); }
+  void TearDown() override { unsetenv("TMPDIR"); }
+  TemporaryFolder place_;
+};
+
+TEST_F(Temporary, FoldersOfTheKilledAreClearedAndThoseOfTheLivingAreNot) {
+  fs::create_directory(place_.path / "springproof-report");
+  const TemporaryFolder living;
+  std::ofstream(living.path / "file") << "text";
+  const pid_t killed = fork();
+  if (killed == 0) {
+    const TemporaryFolder folder;
+    std::ofstream(folder.path / "file") << "text";
+    raise(SIGKILL);
+  }
+  waitpid(killed, nullptr, 0);
+  EXPECT_EQ(folders_in(place_.path), 3u);
+  remove_orphans();
+  EXPECT_EQ(folders_in(place_.path), 2u);
+  EXPECT_EQ(text_of_file(living.path / "file"), "text");
+  EXPECT_TRUE(fs::exists(place_.path / "springproof-report"));
+}
+
+TEST_F(Temporary, APlaceThatIsNotThereIsNamed) {
+  setenv("TMPDIR", "/nowhere/at/all", 1);
+  try {
+    const TemporaryFolder folder;
+    FAIL() << "made";
+  } catch (const NoRoom& e) {
+    EXPECT_EQ(std::string(e.what()).rfind("TMPDIR: cannot write /nowhere/at/all", 0), 0u) << e.what();
+  }
 }
 
 }  // namespace

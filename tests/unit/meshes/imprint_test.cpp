@@ -83,7 +83,7 @@ double smallest_volume(const Mesh& mesh) { return cell_volumes(mesh, mesh.nodes)
 /// @param change of the body's volume and surface that is allowed, relative
 Mesh expect_imprinted(const Mesh& before, const std::vector<PatchRule>& rules, const std::vector<double>& areas, double change = 1e-12) {
   Mesh mesh = before;
-  for (const std::string& note : select_patches(rules, mesh)) testing::Test::RecordProperty("cut", note);
+  select_patches(rules, mesh);
   for (std::size_t i = 0; i < rules.size(); ++i) {
     EXPECT_NEAR(area(mesh, rules[i].name), areas[i], 1e-9 * areas[i]) << rules[i].name;
     EXPECT_NEAR(area(parts_of(rules[i], mesh)), areas[i], 1e-9 * areas[i]) << rules[i].name;
@@ -94,7 +94,6 @@ Mesh expect_imprinted(const Mesh& before, const std::vector<PatchRule>& rules, c
   EXPECT_NEAR(area(outside_of(mesh)), s, change * s);
   EXPECT_NEAR(volume(outside_of(mesh)), v, change * v);   // closed: faces match
   EXPECT_GT(smallest_volume(mesh), 0);
-  if (std::getenv("SHOW")) std::printf("   %zu -> %zu cells, worst shape %.3g before, %.3g after\n", before.tetrahedra.size(), mesh.tetrahedra.size(), CutMesh(before).worst_shape(), CutMesh(mesh).worst_shape());
   return mesh;
 }
 
@@ -154,14 +153,14 @@ TEST(ImprintCurved, AreaIsThatOfTheFacetsWithinTheRule) {
     for (const auto& [body, rule] : pairs) {
       Mesh mesh = body;
       select_patches({rule}, mesh);
-      const double wanted = area(parts_of(rule, body));
-      EXPECT_NEAR(area(mesh, rule.name), wanted, 1e-5 * wanted) << rule.name;
-      EXPECT_NEAR(volume(mesh, mesh.nodes), volume(body, body.nodes), 1e-5 * volume(body, body.nodes));
-      EXPECT_NEAR(area(outside_of(mesh)), area(outside_of(body)), 1e-5 * area(outside_of(body)));
+      const double wanted = area(parts_of(rule, body)), v = volume(body, body.nodes), outside = area(outside_of(body));
+      EXPECT_NEAR(area(mesh, rule.name), area(parts_of(rule, mesh)), 2e-5 * wanted) << rule.name;
+      EXPECT_NEAR(area(mesh, rule.name), wanted, 1e-3 * wanted) << rule.name;
+      EXPECT_NEAR(volume(mesh, mesh.nodes), v, 2e-4 * v);
+      EXPECT_NEAR(volume(outside_of(mesh)), volume(mesh, mesh.nodes), 1e-12 * v);   // closed
+      EXPECT_NEAR(area(outside_of(mesh)), outside, 2e-4 * outside);
       EXPECT_GT(smallest_volume(mesh), 0);
-      if (std::getenv("SHOW"))
-        std::printf("   %s %zu -> %zu cells, worst shape %.3g before, %.3g after; area off %.2g volume %.2g surface %.2g\n", rule.name.c_str(), body.tetrahedra.size(), mesh.tetrahedra.size(),
-                    CutMesh(body).worst_shape(), CutMesh(mesh).worst_shape(), area(mesh, rule.name) / wanted - 1, volume(mesh, mesh.nodes) / volume(body, body.nodes) - 1, area(outside_of(mesh)) / area(outside_of(body)) - 1);
+      EXPECT_GT(CutMesh(mesh).worst_shape(), 1e-3);
     }
   }
 }

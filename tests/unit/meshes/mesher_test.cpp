@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <numbers>
 
 #include "meshes/child.h"
+#include "meshes/mesher_exchange.h"
 #include "meshes/outer_facets.h"
 #include "meshes/volume.h"
 #include "support/tolerances.h"
@@ -202,6 +205,27 @@ TEST_F(Mesher, BadFilesOfEachKindAreRefusedByName) {
   EXPECT_SAYS(message_of({.file = write("cut.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9"), .edge = 0.1}), "cut.msh");
 }
 
+TEST_F(Mesher, OnlyScriptsRunCommands) {
+  const fs::path trace = folder_.path / "trace";
+  const std::string command = "SystemCall \"touch '" + trace.string() + "'\";\n";
+  for (const std::string name : {"mesh.msh", "mesh.MSH", "part.step", "part.stp", "part.brep", "skin.stl"}) {
+    SCOPED_TRACE(name);
+    for (const std::string& text : {command, "\n" + command, "// $MeshFormat\n" + command, " $MeshFormat\n" + command,
+                                    "solid x\nendsolid x\n" + command, "$PostFormat\n" + command, "View \"x\" {};\n" + command}) {
+      const std::string message = message_of({.file = write(name, text), .edge = 0.1});
+      EXPECT_EQ(message.rfind((folder_.path / name).string(), 0), 0u) << message;
+      EXPECT_FALSE(fs::exists(trace)) << text;
+    }
+  }
+}
+
+TEST_F(Mesher, OptionsBesideAMeshAreNotRun) {
+  const fs::path file = saved("box.msh", std::string(hexahedra) + "Mesh 3;"), trace = folder_.path / "trace";
+  write("box.msh.opt", "SystemCall \"touch '" + trace.string() + "'\";\n");
+  EXPECT_EQ(mesh_body({.file = file}).mesh.hexahedra.size(), 8u);
+  EXPECT_FALSE(fs::exists(trace));
+}
+
 TEST_F(Mesher, RefusesWhatItCannotRead) {
   const std::string message = message_of({.file = write("body.obj", "v 0 0 0\n"), .edge = 0.1});
   EXPECT_SAYS(message, "cannot read a body from a '.obj' file (allowed: .geo, .stl, .msh, .step, .stp, .brep)");
@@ -227,10 +251,79 @@ TEST_F(Mesher, AMesherThatCrashesIsAnInputError) {
   EXPECT_SAYS(message_of({.file = geo, .edge = 1}), "box.geo: the mesher was killed by signal 6 (Aborted) out of luck");
   use_program("exit 4");
   EXPECT_SAYS(message_of({.file = geo, .edge = 1}), "box.geo: the mesher failed with status 4");
-  use_program("echo nonsense > \"$2\"");
-  EXPECT_THROW(mesh_body({.file = geo, .edge = 1}), std::runtime_error);
-  use_program("exit 0");
-  EXPECT_THROW(mesh_body({.file = geo, .edge = 1}), std::runtime_error);
+}
+
+TEST_F(Mesher, OddAnswersAreOneSentenceThatNamesProgramAndBody) {
+  const fs::path geo = write("box.geo", box_solid);
+  // Nothing, no CBOR, null, [], {}, {"mesh": {}}, a mesh with numbers for its nodes.
+  for (const char* answer : {"", "nonsense", "\\366", "\\200", "\\240", "\\241dmesh\\240", "\\241dmesh\\241enodes\\001"}) {
+    use_program("printf '" + std::string(answer) + "' > \"$2\"");
+    try {
+      mesh_body({.file = geo, .edge = 1});
+      ADD_FAILURE() << "accepted: " << answer;
+    } catch (const std::runtime_error& e) {
+      EXPECT_EQ(std::string(e.what()), geo.string() + ": the answer of springproof-mesh cannot be used (build springproof and springproof-mesh together)");
+    }
+  }
+}
+
+TEST_F(Mesher, AnswersThatLeadOutsideTheMeshAreRefused) {
+  const fs::path geo = write("box.geo", box_solid);
+  const auto accepted = [&](const std::function<void(MeshedBody&)>& spoil) {
+    MeshedBody body{block_mesh({1, 1, 1}, {2, 1, 1}), {}, 0, {}};
+    spoil(body);
+    std::ofstream(folder_.path / "answer", std::ios::binary) << to_cbor(body);
+    use_program("cp '" + (folder_.path / "answer").string() + "' \"$2\"");
+    try {
+      mesh_body({.file = geo, .edge = 1});
+      return true;
+    } catch (const std::runtime_error&) {
+      return false;
+    }
+  };
+  EXPECT_TRUE(accepted([](auto&) {}));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra[1][7] = 12; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra[0][0] = -1; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.patches[0].facets[0][2] = 99; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.nodes(3, 1) = std::nan(""); }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra.clear(); }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.curved = NodalVectors::Zero(5, 3); }));
+  EXPECT_FALSE(accepted([](auto& b) { b.coarser.push_back(Mesh()); }));
+}
+
+TEST_F(Mesher, OwnScriptsCanBeRefused) {
+  const fs::path geo = write("own.geo", box_solid), shadow = write("block.geo", box_solid);
+  write("part.stl", "");
+  setenv("SPRINGPROOF_NO_SCRIPTS", "1", 1);
+  const auto found = [&](const std::string& name) -> std::string {
+    try {
+      return find_geo({name, {}, {}, {"case.toml", 2, 7}}, folder_.path / "case.toml");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  };
+  EXPECT_SAYS(found("own.geo"), "case.toml:2:7: body.geo: 'own.geo' is a script, which may run any command");
+  EXPECT_SAYS(found("block.geo"), "is a script");
+  EXPECT_EQ(found("part.stl"), folder_.path / "part.stl");
+  EXPECT_EQ(fs::path(found("sphere.geo")).filename(), "sphere.geo");
+  unsetenv("SPRINGPROOF_NO_SCRIPTS");
+  EXPECT_EQ(found("own.geo"), geo);
+}
+
+TEST_F(Mesher, FacetsByTheMillionAreRefusedAtOnce) {
+  const std::uint32_t count = 6'000'000;
+  const fs::path file = write("large.stl", std::string(80, ' ') + std::string(reinterpret_cast<const char*>(&count), 4));
+  fs::resize_file(file, 84 + 50ull * count);  // takes no room
+  EXPECT_SAYS(message_of({.file = file, .edge = 1}), "large.stl: about 6e+06 facets (allowed: up to 5e+06");
+}
+
+TEST_F(Mesher, FileNamesOfAnyBytesAndMeshesBeyondAllMeans) {
+  const fs::path folder = folder_.path / "K\xf6rper";
+  fs::create_directory(folder);
+  fs::copy_file(write("box.geo", box_solid), folder / "box.geo");
+  EXPECT_GT(mesh_body({.file = folder / "box.geo", .edge = 1}).mesh.tetrahedra.size(), 0u);
+  const fs::path block = find_geo({"block.geo", {}, {}, {}}, "case.toml");
+  EXPECT_SAYS(message_of({.file = block, .size = {1, 1, 1}, .cells = {1000, 1000, 1000}}), "1000 x 1000 x 1000 = 1e+09 cells (allowed: up to 5e+06");
 }
 
 }  // namespace

@@ -50,6 +50,24 @@ TEST(Experiment, SmallestCaseHasTheDefaults) {
   EXPECT_TRUE(e.probes.empty() && e.expectations.empty() && e.published.empty());
 }
 
+TEST(Experiment, AMovedSupportBringsTheReactionError) {
+  const auto measures_with = [](const std::string& load, const std::string& more = "") {
+    std::string text = small_case;
+    return parse(text + "[[load]]\non = \"z_max\"\n" + load + "\n" + more).measures;
+  };
+  const std::vector<std::string> held = {"displacement_error", "volume_change", "reaction"};
+  std::vector<std::string> moved = held;
+  moved.emplace_back("reaction_error");
+  EXPECT_EQ(measures_with("displacement_m = [0, \"free\", 0.1]"), moved);
+  EXPECT_EQ(measures_with("rotation_deg = 5\naxis = [0, 0, 1]\nabout_m = [0, 0, 0]"), moved);
+  EXPECT_EQ(measures_with("displacement_gradient = [[0, 0, 0], [0, 0, 1], [0, 0, 0]]"), moved);
+  EXPECT_EQ(measures_with("rotation_deg = 0\naxis = [0, 0, 1]\nabout_m = [0, 0, 0]"), held);
+  EXPECT_EQ(measures_with("force_N = [0, 0, 1]"), held);
+  EXPECT_EQ(measures_with("displacement_m = [0, 0, 0.1]", "[compare]\nmeasures = [\"volume_change\"]"),
+            (std::vector<std::string>{"volume_change", "reaction_error"}));
+  EXPECT_EQ(measures_with("displacement_m = [0, 0, 0.1]", "[compare]\nmodels = []\n[reference]\nelements = [\"q2\"]"), held);
+}
+
 TEST(Experiment, EveryPartOfAFullCase) {
   const Experiment e = parse(full_case);
   EXPECT_EQ(e.cite, "Golec et al. (2019), \"Table 3\"");
@@ -158,6 +176,13 @@ TEST(Experiment, StringsSurviveQuoting) {
   Experiment e = parse(small_case);
   e.cite = "a \"quote\", a \\ backslash,\na line, a\ttab, \x01\x7f and an umlaut \xc3\xbc = [x] # no comment";
   EXPECT_EQ(parse(to_toml(e)).cite, e.cite);
+}
+
+TEST(Experiment, IntegersThatNoDoubleHoldsAreRounded) {
+  std::string text = small_case;
+  const std::string old = "youngs_modulus_Pa = 1e4";
+  text.replace(text.find(old), old.size(), "youngs_modulus_Pa = 9223372036854775807");
+  EXPECT_EQ(parse(text).materials[0].youngs_modulus, 0x1p63);
 }
 
 TEST(Experiment, NegativeZeroKeepsItsSign) {

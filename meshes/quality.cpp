@@ -1,4 +1,4 @@
-#include "meshes/gmsh/quality.h"
+#include "meshes/quality.h"
 
 #include <fmt/format.h>
 
