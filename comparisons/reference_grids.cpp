@@ -56,7 +56,7 @@ std::vector<fem::Solution> without_answer(const fem::Request& request, const std
 /// @throws std::runtime_error if no element has an answer.
 std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
   return fem::solve(request);
-} catch (const std::runtime_error& e) {
+} catch (const std::runtime_error&) {
   std::vector<fem::Solution> all;
   bool any = false;
   for (auto from = request.grids.begin(), to = from; from != request.grids.end() && !children_interrupted(); from = to) {
@@ -83,7 +83,8 @@ void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<E
   for (ElementGrids& e : elements) {
     const auto failed = std::find_if(e.grids.begin(), e.grids.end(), [](const fem::Solution& s) { return !s.ok; });
     if (failed == e.grids.end()) continue;
-    const std::string why = fmt::format("the graded grid of {} cells has no result ({})", cells_text(failed->grid.cells, " x "), failed->message);
+    const std::string why = fmt::format("the graded grid of {} cells has no result ({})",
+                                        cells_text(failed->grid.cells, " x "), failed->message);
     request.grids.clear();
     add_reference_grids(prepared, e.element, 1, request);
     try {

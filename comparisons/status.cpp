@@ -28,13 +28,15 @@ std::size_t terminal_width() {
 
 /// Characters, not bytes, of UTF-8.
 bool begins_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
-std::size_t length(const std::string& text) { return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character)); }
+std::size_t length(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
+}
 
 std::string cut(const std::string& text, std::size_t width) {
   if (length(text) <= width) return text;
   if (width < 3) return {};
   std::size_t kept = 0, bytes = 0;
-  for (; bytes < text.size() && (kept < width - 3 || !begins_character(text[bytes])); ++bytes) kept += begins_character(text[bytes]);
+  for (; kept < width - 3 || !begins_character(text[bytes]); ++bytes) kept += begins_character(text[bytes]);
   return text.substr(0, bytes) + "...";
 }
 
@@ -44,7 +46,9 @@ std::string joined(const std::string& a, const std::string& separator, const std
 
 std::string words(const Activity& a) { return joined(a.title, ": ", joined(a.phase, ", ", a.detail)); }
 
-std::string left_words(std::optional<double> left) { return left ? fmt::format(", about {} left", time_words(*left)) : ""; }
+std::string left_words(std::optional<double> left) {
+  return left ? fmt::format(", about {} left", time_words(*left)) : "";
+}
 
 /// Whoever dies of a signal leaves the terminal clean.
 void clear_and_die(int signal) {

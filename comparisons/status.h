@@ -1,4 +1,4 @@
-// What runs at the moment, on standard error: on a terminal one line, rewritten in place; elsewhere a line per phase that takes long.
+// What runs at the moment, on standard error: on a terminal one line, rewritten in place; elsewhere a line per long phase.
 #pragma once
 
 #include <condition_variable>
@@ -25,7 +25,7 @@ struct Activity {
   double phase_seconds = 0;   ///< since its phase began
 };
 
-/// All of it in at most `width` characters: the first (the oldest) with its phase, how many there are besides, the time left.
+/// All of it in at most `width` characters: the first (the oldest) with its phase, the time left, how many there are besides.
 std::string live_line(const std::vector<Activity>& running, std::optional<double> left, std::size_t width);
 
 /// "  golec_2019/bending  nu0.3: finite elements 2 of 5, ... (10 s so far, about 3 min left)".

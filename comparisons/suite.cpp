@@ -158,8 +158,9 @@ class Progress {
  public:
   Progress(const std::vector<Task>& tasks, int jobs, bool quiet)
       : tasks_(tasks), time_left_(expected(tasks), jobs), status_(quiet, [this] { return time_left_.at(now()); }), quiet_(quiet) {
+    const std::size_t parts = tasks.size(), at_once = std::min<std::size_t>(parts, jobs);
     if (const auto all = time_left_.at(0); all && *all > 60 && !quiet)
-      status_.print(fmt::format("about {} for {} parts, {} at once", time_words(*all), tasks.size(), std::min<std::size_t>(tasks.size(), jobs)));
+      status_.print(fmt::format("about {} for {} part{}, {} at once", time_words(*all), parts, parts == 1 ? "" : "s", at_once));
   }
 
   /// A task for the length of the scope.
@@ -182,7 +183,8 @@ class Progress {
  private:
   static std::vector<double> expected(const std::vector<Task>& tasks) {
     std::vector<double> seconds;
-    for (const Task& t : tasks) seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
+    for (const Task& t : tasks)
+      seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
     return seconds;
   }
   double now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }

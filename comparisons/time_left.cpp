@@ -7,10 +7,10 @@
 namespace springproof {
 namespace {
 
-// Seconds of one core per unknown.  Matrices: of tetrahedra and of cubes that come from no coarser ones; near nu = 1/2 with pressures.
+// Seconds of one core per unknown.  Matrices: of tetrahedra, and of cubes that come from no coarser ones.
 constexpr double matrix_free = 5e-6, with_matrices = 6e-5, springs = 5e-6;
-constexpr double with_pressures = 4;  // times as much above this Poisson's ratio
-constexpr double pressures_above = 0.4;
+constexpr double with_pressures = 4, pressures_above = 0.4;  // times as much above this Poisson's ratio
+constexpr double start_up = 0.3;      // of the programs
 constexpr double large_strain = 25;   // linear systems that its load steps and Newton steps come to
 
 double unknowns(const Cells& cells, int degree) {
@@ -25,6 +25,12 @@ double unknowns(const Mesh& mesh, int degree) {
   return 3.0 * static_cast<double>(mesh.nodes.rows()) * (degree == 1 ? 1 : added);
 }
 
+double seconds_of(const std::string& element, double unknowns) {
+  return unknowns * (element[0] == 'p' ? with_matrices : matrix_free);
+}
+
+int degree_of(const std::string& element) { return element[1] - '0'; }
+
 double block_seconds(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   double total = 0;
@@ -32,12 +38,12 @@ double block_seconds(const PreparedCase& prepared) {
     for (const int divisor : {4, 2, 1}) {
       Cells cells = prepared.reference_cells;
       for (int& n : cells) n = std::max(1, n / divisor);
-      total += unknowns(cells, element[1] - '0') * (element[0] == 'p' ? with_matrices : matrix_free);
+      total += seconds_of(element, unknowns(cells, degree_of(element)));
     }
   if (e.models.empty()) return total;
   for (const auto& mesh : prepared.meshes)
     for (const std::string& element : e.elements)
-      if (small_enough(e, *mesh, element[1] - '0')) total += unknowns(*mesh, element[1] - '0') * (element[0] == 'p' ? with_matrices : matrix_free);
+      if (small_enough(e, *mesh, degree_of(element))) total += seconds_of(element, unknowns(*mesh, degree_of(element)));
   return total;
 }
 
@@ -45,16 +51,16 @@ double voxel_seconds(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   double total = 0;
   for (const std::string& element : e.reference.elements)
-    for (const auto& mesh : prepared.tetrahedra) total += with_matrices * unknowns(*mesh, element[1] - '0');
+    for (const auto& mesh : prepared.tetrahedra) total += with_matrices * unknowns(*mesh, degree_of(element));
   if (e.reference.elements.empty() || e.models.empty()) return total;
   for (const auto& mesh : prepared.meshes) {
     if (mesh->hexahedra.size() > most_cubes) continue;
     for (const std::string& element : elements_of(e, 'q'))
-      if (small_enough(e, *mesh, element[1] - '0')) total += with_matrices * unknowns(*mesh, element[1] - '0');
+      if (small_enough(e, *mesh, degree_of(element))) total += with_matrices * unknowns(*mesh, degree_of(element));
     if (!e.cost && mesh->hexahedra.size() <= most_refined_cubes) total += with_matrices * 9 * unknowns(*mesh, 2);
   }
   for (const auto& mesh : prepared.fitted)
-    for (const std::string& element : elements_of(e, 'p')) total += with_matrices * unknowns(*mesh, element[1] - '0');
+    for (const std::string& element : elements_of(e, 'p')) total += with_matrices * unknowns(*mesh, degree_of(element));
   return total;
 }
 
@@ -66,7 +72,8 @@ double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& m
   for (const auto& mesh : prepared.meshes)
     if (small_enough(e, *mesh))
       for (const ModelParameters& model : prepared.models) total += springs * model.seeds * unknowns(*mesh, 1);
-  return total * (material.poisson_ratio > pressures_above ? with_pressures : 1) * (e.model_kinematics() == Kinematics::finite ? large_strain : 1);
+  const double incompressible = material.poisson_ratio > pressures_above ? with_pressures : 1;
+  return start_up + total * incompressible * (e.model_kinematics() == Kinematics::finite ? large_strain : 1);
 }
 
 TimeLeft::TimeLeft(std::vector<double> expected, int jobs) : jobs_(std::max(1, jobs)) {

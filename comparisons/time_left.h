@@ -9,7 +9,7 @@
 
 namespace springproof {
 
-/// What a part takes on one core [s], from the unknowns of its finite elements and springs: good to a factor of about three.
+/// What a part takes on one core [s], from the unknowns of its finite elements and springs; a guess.
 double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& material);
 
 /// Parts of a run, by number; times are seconds since it began.  Safe from several threads.
@@ -22,7 +22,7 @@ class TimeLeft {
   void finished(std::size_t part, double now);
   void kept(std::size_t part);   ///< was there already
 
-  /// At the rate of the parts that are done, and no faster than those under way; empty: all have taken longer than expected.
+  /// At the rate of the parts that are done, and no faster than those under way; empty: nothing is known.
   std::optional<double> at(double now) const;
 
  private:
