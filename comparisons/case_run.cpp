@@ -20,6 +20,7 @@
 #include "msm/solve/equilibrium.h"
 #include "problem/file_name.h"
 #include "problem/measures.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -104,7 +105,7 @@ void build_reference(PartRun& run) {
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
-    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, f.note,
+    ReferenceRecord record{run.material.poisson_ratio, "displacement_error", "1", {}, {}, f.observed_order, 0, f.uncertainty, with_note(first, f.note),
                            first.element, f.sequence != Sequence::not_converging, f.correlation};
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
@@ -273,13 +274,15 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
 }
 
 /// Builds the model and puts the loads on it, for what may be wrong with either.
-void try_model(const Experiment& experiment, const ModelParameters& parameters, const Mesh& mesh, const Region* region) try {
+void try_model(const Experiment& experiment, const ModelChoice& choice, const ModelParameters& parameters, const Mesh& mesh, const Region* region) try {
   const auto [model, embedding] = build_embedded(parameters, mesh, experiment.materials.front(), region);
   if (parameters.row.topology == Topology::cells) return;
   const BoundaryConditions bc = transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
   if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
 } catch (const InputError&) {
   throw;
+} catch (const std::invalid_argument& wrong) {  // options that lead to no network
+  throw InputError(choice.where, fmt::format("compare.models: {}: {}", choice.label, wrong.what()));
 } catch (const std::runtime_error&) {
   // No network with this material's moduli: the run will say so.
 }
@@ -329,8 +332,9 @@ void try_lattice(PreparedCase& prepared, std::size_t lattice) {
   prepared.sharing = patches_sharing_supports(e.loads, mesh, e.model_kinematics());
   if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
     require_supported(transfer(lattice_loads(e), mesh, 1000, e.model_kinematics()), mesh.nodes);
-  for (const ModelParameters& p : prepared.models)
-    if (p.row.topology == Topology::cells || lattice == 0) try_model(e, p, mesh, prepared.regions[lattice].get());
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    if (const ModelParameters& p = prepared.models[m]; p.row.topology == Topology::cells || lattice == 0)
+      try_model(e, e.models[m], p, mesh, prepared.regions[lattice].get());
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);
   at_measured_points(prepared, lattice, u);
@@ -369,10 +373,14 @@ PreparedCase prepare(const Experiment& experiment) try {
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   check_kinematics(experiment, prepared.models);
   prepared.geo = find_geo(experiment.body, experiment.file);
+  progress::phase("cutting the body");
   experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
   check_fineness(prepared.experiment);
   sample_patches(prepared);
-  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) try_lattice(prepared, lattice);
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    progress::phase(fmt::format("trying loads and models on {} cells", cells_text(prepared.experiment.body.cells[lattice], " x ")));
+    try_lattice(prepared, lattice);
+  }
   return prepared;
 } catch (const NoRoom&) {  // no fault of the case
   throw;

@@ -12,6 +12,7 @@
 #include "comparisons/case_run.h"
 #include "comparisons/measures.h"
 #include "comparisons/reference_grids.h"
+#include "comparisons/status.h"
 #include "fem_reference/reference.h"
 #include "meshes/mesher.h"
 
@@ -149,15 +150,16 @@ Answer calculix_answer(const Question& q, const calculix::Deck& deck, const calc
           at_common_nodes(q.meshes[0], deck.linear, s.field.displacement)};
 }
 
-std::optional<Opinion> ask_calculix(const Question& q) {
+std::optional<Opinion> ask_calculix(const Question& q, Status& status) {
   std::vector<Answer> answers;
   Noise noise;
   for (int g = 0; g < 3 && !interrupted; ++g) {
     const calculix::Deck deck = calculix::make_deck(q.experiment(), q.material, q.meshes[g]);
+    const std::string run = fmt::format("CalculiX {} {}", deck.element, cells_text(q.cells[g], " x "));
+    progress::phase(run);
     const calculix::Solution s = calculix::solve(deck, q.time_limit);
     if (interrupted) break;
-    fmt::print(stderr, "  CalculiX {} {} x {} x {}: {}\n", deck.element, q.cells[g][0], q.cells[g][1],
-               q.cells[g][2], s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message);
+    status.print(fmt::format("  {}: {}", run, s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
     if (!s.ok) return {};
     answers.push_back(calculix_answer(q, deck, s));
     noise = s.floor;
@@ -178,7 +180,7 @@ Noise our_noise(const Question& q, const Answer& finest) {
   return {relative * force, relative * force * size, relative * u, relative * u / size};
 }
 
-std::optional<Opinion> ask_fem(const Question& q) {
+std::optional<Opinion> ask_fem(const Question& q, Status& status) {
   const NodalVectors& nodes = q.meshes[0].nodes;
   const NodalVectors probes = probe_points(q.experiment());
   NodalVectors points(nodes.rows() + probes.rows(), 3);
@@ -193,12 +195,11 @@ std::optional<Opinion> ask_fem(const Question& q) {
   try {
     solutions = fem::solve(request);
   } catch (const std::runtime_error& e) {
-    if (!interrupted) fmt::print(stderr, "  FEM: {}\n", e.what());
+    if (!interrupted) status.print(fmt::format("  FEM: {}", e.what()));
     return {};
   }
   for (const fem::Solution& s : solutions) {
-    fmt::print(stderr, "  FEM {} {} x {} x {}: {}\n", s.form, s.grid.cells[0], s.grid.cells[1],
-               s.grid.cells[2], s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message);
+    status.print(fmt::format("  FEM {} {}: {}", s.form, cells_text(s.grid.cells, " x "), s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
     if (!s.ok) return {};
     const Field field{nullptr, {}, s.reactions, s.volume_change, s.volume_change_first_order};
     answers.push_back(
@@ -275,9 +276,15 @@ Question question(const PreparedCase& prepared, const IsotropicMaterial& materia
 
 /// The rows that differ, or that nobody answered: at least one then.
 int check_material(const Question& q) {
-  fmt::print(stderr, "{}, nu = {:g}\n", q.experiment().name, q.material.poisson_ratio);
-  const std::optional<Opinion> calculix = ask_calculix(q);
-  const std::optional<Opinion> ours = interrupted ? std::nullopt : ask_fem(q);
+  std::optional<Opinion> calculix, ours;
+  {
+    Status status;
+    const std::string title = fmt::format("{}, nu = {:g}", q.experiment().name, q.material.poisson_ratio);
+    status.print(title);
+    const Status::Working working(status, title);
+    calculix = ask_calculix(q, status);
+    if (!interrupted) ours = ask_fem(q, status);
+  }
   if (interrupted) return 1;
   print_title(q);
   if (!calculix || !ours) {

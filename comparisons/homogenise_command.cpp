@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "comparisons/status.h"
 #include "msm/calibrate.h"
 #include "msm/measure/homogenise.h"
 #include "msm/measure/periodic_model.h"
@@ -61,11 +62,22 @@ Sample measure(ModelParameters p, const IsotropicMaterial& material, double spac
   return {seed, s.nodes, s.springs_per_node, homogenise(model)};
 }
 
+std::vector<Sample> measure_seeds(const ModelParameters& p, const IsotropicMaterial& material, double spacing, int nodes) {
+  std::vector<Sample> samples;
+  Status status;
+  const Status::Working working(status, fmt::format("homogenise {}", p.row.name));
+  for (int i = 0; i < p.seeds; ++i) {
+    progress::phase(fmt::format("network {} of {}, about {} nodes", i + 1, p.seeds, nodes));
+    samples.push_back(measure(p, material, spacing, nodes, p.random.seed + static_cast<std::uint64_t>(i)));
+  }
+  return samples;
+}
+
 bool stable(const Homogenised& h) {
   return Eigen::LLT<Eigen::Matrix<double, 6, 6>>(h.C + h.C.transpose()).info() == Eigen::Success;
 }
 
-/// The modulus that the calibration, which takes the strain as affine, was set to.
+/// The modulus that the calibration was set to.
 double wanted(const Quantity& quantity, const ModelParameters& p, const IsotropicMaterial& m) {
   const IsotropicMaterial aim =
       p.has(Extension::none) ? IsotropicMaterial{2.5 * spring_shear_modulus(p, m), 0.25, m.density} : m;
@@ -122,7 +134,9 @@ void print(const std::vector<Sample>& samples, const ModelParameters& p, const I
   }
   for (const Sample& s : samples)
     if (!stable(s.h)) fmt::print("\nwarning: seed {}: the stiffness is not positive definite; such a body is unstable\n", s.seed);
-  fmt::print("\nThe calibration takes the strain as affine; ratio is what is left once the nodes have found their places.\n");
+  fmt::print("\n{}\n", p.row.topology == Topology::random && p.homogenised
+                            ? "The network that compare uses, calibrated on another sample of the same kind; ratio is what networks of this size scatter."
+                            : "The calibration takes the strain as affine; ratio is what is left once the nodes have found their places.");
 }
 
 }  // namespace
@@ -150,7 +164,9 @@ void HomogeniseCommand::add_options(CLI::App& command) {
   number("--seeds", "seeds", "random: number of networks (default 1)");
   number("--face-to-cube", "face_to_cube", "lattices: A = k_f / k_c");
   word("--dispersion", "dispersion", "eMSM: symmetric, share_weighted, published or published_transposed");
-  word("--weights", "weights", "eMSM, symmetric: volume or kL");
+  word("--weights", "weights", "eMSM, symmetric: volume or kL (default: by the sign of q)");
+  word("--calibration", "calibration", "random: homogenised (default, as compare) or affine (the papers' formulas)");
+  word("--surface", "surface", "random: nodes (default) or cut, whose springs are left as they are made");
   command.add_flag("--json", json_, "print JSON");
 }
 
@@ -163,9 +179,7 @@ int HomogeniseCommand::run() const {
   }
   const ModelParameters p = resolve(choice_);
   const int nodes = nodes_.value_or(p.row.topology == Topology::random ? random_nodes : lattice_nodes);
-  std::vector<Sample> samples;
-  for (int i = 0; i < p.seeds; ++i)
-    samples.push_back(measure(p, m, spacing_, nodes, p.random.seed + static_cast<std::uint64_t>(i)));
+  const std::vector<Sample> samples = measure_seeds(p, m, spacing_, nodes);
   if (json_)
     fmt::print("{}\n", to_json(samples, p, m, spacing_).dump(2));
   else

@@ -76,12 +76,13 @@ int main(int argc, char** argv) try {
       "compare", "Run cases with every model and the FEM reference; write results.csv, results.json, VTU files and report.html");
   compare_command->add_option("CASE", names, "case files (*.toml), folders of them, or built-in names (springproof list)")->required();
   compare_command->add_option("--out", options.out, "folder for the results")->capture_default_str();
-  compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")->check(CLI::Range(0, 1024));
+  compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")->check(CLI::NonNegativeNumber);
   compare_command->add_option("--poisson-ratio", options.poisson_ratios, "only these of the cases' Poisson's ratios (0.25,0.49)")
       ->delimiter(',')->take_all();
   compare_command->add_option("--finer", options.finer, "reference grids with so many times the cells along each direction (known values for a calibration)")
       ->check(CLI::Range(1, 16));
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
+  compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
   compare_command->add_flag("!--no-vtu", options.vtu, "write no VTU files");
   compare_command->footer("Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, or nothing was compared, 2 the input is unusable, 130 interrupted.");
 

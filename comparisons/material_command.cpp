@@ -56,11 +56,7 @@ struct DispersionFacts {
 DispersionFacts facts_of(const ModelParameters& p, const IsotropicMaterial& m, const MassSpringModel& model, double l) {
   DispersionFacts facts{0, 1, block_stability(p, m, l), statistics(model.network)};
   if (const MomentumDispersion* dispersion = dispersion_of(model)) facts.q = dispersion->q;
-  if (p.row.topology == Topology::random && p.homogenised) {
-    ModelParameters settled = p;
-    settled.exact_volumes = exact_volumes(p, m);
-    facts.spring_factor = calibrate_in_bulk(settled, m).spring_shear_modulus / affine_calibration(settled, m).spring_shear_modulus;
-  }
+  facts.spring_factor = bulk_calibration(p, m).spring_shear_modulus / affine_calibration(p, m).spring_shear_modulus;
   return facts;
 }
 
@@ -104,7 +100,8 @@ void MaterialCommand::add_options(CLI::App& command) {
   command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
   command.add_option("--face-to-cube", face_to_cube_, "A = k_f / k_c");
   command.add_option("--dispersion", dispersion_, "eMSM: symmetric, share_weighted, published or published_transposed");
-  command.add_option("--weights", weights_, "eMSM, symmetric: volume or kL");
+  command.add_option("--weights", weights_, "eMSM, symmetric: volume or kL (default: by the sign of q)");
+  command.add_option("--springs-per-node", springs_per_node_, "random: mean number of springs at a node (default 15)");
   command.add_flag("--json", json_, "print JSON");
 }
 
@@ -119,6 +116,7 @@ int MaterialCommand::run() const {
   if (face_to_cube_) choice.options["face_to_cube"] = *face_to_cube_;
   if (dispersion_) choice.options["dispersion"] = *dispersion_;
   if (weights_) choice.options["weights"] = *weights_;
+  if (springs_per_node_) choice.options["springs_per_node"] = *springs_per_node_;
   const ModelParameters p = resolve(choice);
   const double l = cell_size_;
   const MassSpringModel model = build_model(p, sample_mesh(p.row, l), m);

@@ -1,5 +1,7 @@
 #include "comparisons/model_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "comparisons/line_measure.h"
@@ -11,6 +13,7 @@
 #include "msm/measure/statistics.h"
 #include "msm/solve/cost.h"
 #include "problem/measures.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -110,11 +113,16 @@ std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t l
   std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
+    progress::phase(fmt::format("{} on {} cells{}", prepared.experiment.models[number].label, cells_text(prepared.experiment.body.cells[lattice], " x "),
+                                parameters.seeds > 1 ? fmt::format(", network {} of {}", seed + 1, parameters.seeds) : ""));
     try {
       samples.push_back(run_sample(prepared, lattice, parameters, material));
     } catch (const InputError&) {
       throw;
     } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli
+      samples.emplace_back();
+      samples.back().state.message = e.what();
+    } catch (const std::invalid_argument& e) {  // it jams, with this seed
       samples.emplace_back();
       samples.back().state.message = e.what();
     }

@@ -9,6 +9,7 @@
 
 #include "comparisons/png_page.h"
 #include "comparisons/results.h"
+#include "comparisons/status.h"
 #include "problem/experiment.h"
 
 namespace springproof {
@@ -66,20 +67,28 @@ int PicturesCommand::run() const {
   fs::create_directories(out, error);
   if (error) throw InputError(fmt::format("{}: {}", out.string(), error.message()));
   std::size_t written = 0, failed = 0;
-  for (std::size_t i = 0; i < cases.size(); ++i) try {
-      const auto begin = std::chrono::steady_clock::now();
-      const std::string fragment = fmt::format("#png={}{}", i, only_.empty() ? "" : "&only=" + escaped(only_));
-      const PngPage page = png_page(dump_dom(chromium, folder_ / "report.html", fragment, time_limit_));
-      for (const PngFile& file : page.files) write_file(out / file.name, file.bytes);
-      for (const std::string& line : page.failed) fmt::print(stderr, "not drawn: {}\n", line);
-      written += page.files.size();
-      failed += page.failed.size();
-      fmt::print(stderr, "[{}/{}] {:<44} {} pictures, {:.1f} s\n", i + 1, cases.size(), cases[i], page.files.size(),
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    } catch (const std::runtime_error& e) {
-      ++failed;
-      fmt::print(stderr, "[{}/{}] {:<44} no pictures: {}\n", i + 1, cases.size(), cases[i], e.what());
+  {
+    Status status;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const std::string title = fmt::format("[{}/{}] {}", i + 1, cases.size(), cases[i]);
+      const Status::Working working(status, title);
+      progress::phase("drawing");
+      try {
+        const auto begin = std::chrono::steady_clock::now();
+        const std::string fragment = fmt::format("#png={}{}", i, only_.empty() ? "" : "&only=" + escaped(only_));
+        const PngPage page = png_page(dump_dom(chromium, folder_ / "report.html", fragment, time_limit_));
+        for (const PngFile& file : page.files) write_file(out / file.name, file.bytes);
+        for (const std::string& line : page.failed) status.print("not drawn: " + line);
+        written += page.files.size();
+        failed += page.failed.size();
+        status.print(fmt::format("{:<54} {} pictures, {:.1f} s", title, page.files.size(),
+                                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+      } catch (const std::runtime_error& e) {
+        ++failed;
+        status.print(fmt::format("{:<54} no pictures: {}", title, e.what()));
+      }
     }
+  }
   fmt::print("{} pictures in {}\n", written, out.string());
   if (written == 0 && failed == 0) fmt::print(stderr, "no picture has '{}' in its name\n", only_);
   return failed == 0 && written > 0 ? 0 : 1;

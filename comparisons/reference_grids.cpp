@@ -1,5 +1,7 @@
 #include "comparisons/reference_grids.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,6 +35,67 @@ Cells divided(const Cells& cells, int divisor) {
   Cells coarse;
   for (int d = 0; d < 3; ++d) coarse[d] = std::max(1, cells[d] / divisor);
   return coarse;
+}
+
+/// An element's three grids, coarse to fine.
+void add_reference_grids(const PreparedCase& prepared, const std::string& element, double grading, fem::Request& request) {
+  for (int divisor : {4, 2, 1}) request.grids.push_back({divided(prepared.reference_cells, divisor), element, grading});
+}
+
+/// What the program that dies of a request leaves of it.
+std::vector<fem::Solution> without_answer(const fem::Request& request, const std::string& why) {
+  std::vector<fem::Solution> none(request.grids.size());
+  for (std::size_t i = 0; i < none.size(); ++i) {
+    none[i].grid = request.grids[i];
+    none[i].message = why;
+  }
+  return none;
+}
+
+/// Solves on every grid; if the program dies, once more for each element apart.
+/// @throws std::runtime_error if no element has an answer.
+std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
+  return fem::solve(request);
+} catch (const std::runtime_error&) {
+  std::vector<fem::Solution> all;
+  bool any = false;
+  for (auto from = request.grids.begin(), to = from; from != request.grids.end() && !children_interrupted(); from = to) {
+    to = std::find_if(from, request.grids.end(), [&](const fem::Discretisation& g) { return g.element != from->element; });
+    if (to - from == static_cast<std::ptrdiff_t>(request.grids.size())) throw;
+    fem::Request part = request;
+    part.grids.assign(from, to);
+    std::vector<fem::Solution> solutions;
+    try {
+      solutions = fem::solve(part);
+      any = true;
+    } catch (const std::runtime_error& own) {
+      solutions = without_answer(part, own.what());
+    }
+    all.insert(all.end(), solutions.begin(), solutions.end());
+  }
+  if (!any) throw;
+  return all;
+}
+
+/// Elements that fail on graded grids, whose thin cells turn inside out first, are solved on three uniform ones.
+void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<ElementGrids>& elements) {
+  if (prepared.experiment.reference.grading == 1) return;
+  for (ElementGrids& e : elements) {
+    const auto failed = std::find_if(e.grids.begin(), e.grids.end(), [](const fem::Solution& s) { return !s.ok; });
+    if (failed == e.grids.end()) continue;
+    const std::string why = fmt::format("the graded grid of {} cells has no result ({})",
+                                        cells_text(failed->grid.cells, " x "), failed->message);
+    request.grids.clear();
+    add_reference_grids(prepared, e.element, 1, request);
+    try {
+      e.grids = fem::solve(request);
+    } catch (const std::runtime_error& error) {
+      e.grids = without_answer(request, error.what());
+    }
+    e.note = "uniform grids: " + why;
+    for (fem::Solution& s : e.grids)
+      if (!s.ok) s.message = fmt::format("on a uniform grid {}; {}", s.message, why);
+  }
 }
 
 /// Round-off of a measure: the solver's tolerance times the largest force (times the body's size for torques, over it
@@ -104,14 +167,16 @@ bool complete(const ElementGrids& e) {
   return e.grids.size() == 3 && std::all_of(e.grids.begin(), e.grids.end(), [](const auto& s) { return s.ok; });
 }
 
+std::string with_note(const ElementGrids& e, const std::string& note) {
+  return e.note.empty() || note.empty() ? e.note + note : note + "; " + e.note;
+}
+
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
   const Experiment& experiment = prepared.experiment;
   if (experiment.body.is_voxels()) return solve_body_grids(prepared, material);
   const bool stresses = wanted("stress", experiment.measures);
   fem::Request request{experiment, material, {}, sample_points(prepared), stresses ? probe_points(experiment) : NodalVectors(0, 3), 1e-8};
-  for (const std::string& element : experiment.reference.elements)
-    for (int divisor : {4, 2, 1})
-      request.grids.push_back({divided(prepared.reference_cells, divisor), element, experiment.reference.grading});
+  for (const std::string& element : experiment.reference.elements) add_reference_grids(prepared, element, experiment.reference.grading, request);
   const std::size_t references = request.grids.size();
   std::vector<std::size_t> lattices;
   if (!experiment.models.empty())
@@ -122,13 +187,14 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
           lattices.push_back(i);
         }
   try {
-    const std::vector<fem::Solution> solutions = fem::solve(request);
+    const std::vector<fem::Solution> solutions = solve_apart(request);
     ReferenceGrids out;
     auto at = solutions.begin();
     for (const std::string& element : experiment.reference.elements) {
       out.elements.push_back({element, {at, at + 3}});
       at += 3;
     }
+    fall_back(prepared, request, out.elements);
     out.peers.resize(prepared.meshes.size());
     for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;
@@ -240,8 +306,10 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
   if (!experiment.exact.empty())
     for (const ReferenceRecord& r : exact_records(prepared, nu, e))
       if (wanted(r.measure, experiment.measures)) records.push_back(r);
-  for (ReferenceRecord& r : records)
+  for (ReferenceRecord& r : records) {
+    r.note = with_note(e, r.note);
     for (const fem::Solution& s : e.grids) r.cells.push_back(s.grid.cells);
+  }
   return records;
 }
 

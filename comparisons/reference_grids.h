@@ -14,7 +14,11 @@ namespace springproof {
 struct ElementGrids {
   std::string element;
   std::vector<fem::Solution> grids;
+  std::string note = {};  ///< why these are not the grids asked for
 };
+
+/// The note of a limit, and that of the grids that it comes from.
+std::string with_note(const ElementGrids& e, const std::string& note);
 
 /// True if all three grids have a result.
 bool complete(const ElementGrids& e);
@@ -29,6 +33,7 @@ struct ReferenceGrids {
 };
 
 /// Displacements are asked for at the nodes of every lattice and at the measured points, stresses at the probes if the case measures them.
+/// An element without a result on some graded grid is solved on uniform ones; an element that the program dies of is alone in that.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
 /// Row of Solution::displacement that the nodes of a lattice begin at; of the one past the last, that of the measured points.

@@ -25,6 +25,8 @@
 #include "comparisons/headline.h"
 #include "comparisons/part_file.h"
 #include "comparisons/report.h"
+#include "comparisons/status.h"
+#include "comparisons/time_left.h"
 #include "fem_reference/reference.h"
 #include "meshes/child.h"
 #include "meshes/script_files.h"
@@ -141,7 +143,9 @@ Experiment finer(int times, Experiment e) {
 /// Those before an interrupt, which ends the mesher too.
 std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
+  Status status(options.quiet);
   for (const fs::path& file : cases) try {
+      const Status::Working working(status, case_name(file));
       if (!interrupted) prepared.push_back(prepare(finer(options.finer, only(options.poisson_ratios, read_experiment(file)))));
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
@@ -149,23 +153,49 @@ std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const 
   return prepared;
 }
 
-/// Counts and prints finished parts; safe from several workers.
+/// Shows the parts under way and prints those finished, with the time left; safe from several workers.
 class Progress {
  public:
-  explicit Progress(std::size_t total) : total_(total) {}
+  Progress(const std::vector<Task>& tasks, int jobs, bool quiet)
+      : tasks_(tasks), time_left_(expected(tasks), jobs), status_(quiet, [this] { return time_left_.at(now()); }), quiet_(quiet) {
+    const std::size_t parts = tasks.size(), at_once = std::min<std::size_t>(parts, jobs);
+    if (const auto all = time_left_.at(0); all && *all > 60 && !quiet)
+      status_.print(fmt::format("about {} for {} part{}, {} at once", time_words(*all), parts, parts == 1 ? "" : "s", at_once));
+  }
 
-  void finished(const Task& task, double seconds, bool taken_back) {
+  /// A task for the length of the scope.
+  auto working(std::size_t task) {
+    time_left_.started(task, now());
+    return Status::Working(status_, fmt::format("[{}/{}] {}", task + 1, tasks_.size(), tasks_[task].title));
+  }
+
+  void finished(std::size_t task, double seconds, bool taken_back) {
     const std::lock_guard lock(mutex_);
     ++count_;
-    const auto failed = std::count_if(task.part.runs.begin(), task.part.runs.end(), [](const Run& r) { return !r.ok; });
+    taken_back ? time_left_.kept(task) : time_left_.finished(task, now());
+    const auto& runs = tasks_[task].part.runs;
+    const auto failed = std::count_if(runs.begin(), runs.end(), [](const Run& r) { return !r.ok; });
     std::string remark = taken_back ? "kept from before" : fmt::format("{:.1f} s", seconds);
     if (failed) remark += fmt::format(", {} run{} without a result", failed, failed == 1 ? "" : "s");
-    fmt::print(stderr, "[{}/{}] {:<44} {}\n", count_, total_, task.title, remark);
+    if (!quiet_) status_.print(fmt::format("[{}/{}] {:<44} {}", count_, tasks_.size(), tasks_[task].title, remark));
   }
 
  private:
+  static std::vector<double> expected(const std::vector<Task>& tasks) {
+    std::vector<double> seconds;
+    for (const Task& t : tasks)
+      seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
+    return seconds;
+  }
+  double now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  const std::vector<Task>& tasks_;
   std::mutex mutex_;
-  std::size_t total_, count_ = 0;
+  std::size_t count_ = 0;
+  TimeLeft time_left_;
+  Status status_;
+  const bool quiet_;
 };
 
 /// What was finished before, unless its file has changed since.
@@ -177,30 +207,31 @@ std::optional<Part> kept_part(const Task& task) try {
 }
 
 void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
+  const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::atomic<std::size_t> next = 0;
-  Progress progress(tasks.size());
+  Progress progress(tasks, jobs, options.quiet);
   std::mutex failure_mutex;
   std::exception_ptr failure;
   const auto work = [&] {
     for (std::size_t i; !interrupted && (i = next++) < tasks.size();) try {
         Task& task = tasks[i];
         const auto start = std::chrono::steady_clock::now();
+        const Status::Working working = progress.working(i);
         std::optional<Part> kept;
         if (options.resume) kept = kept_part(task);
         task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu);
         if (interrupted) return;  // its FEM program may have been stopped by the same signal
         if (!kept) save_part(task.file, task.stamp, task.part);
         task.done = true;
-        progress.finished(task, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kept.has_value());
+        progress.finished(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kept.has_value());
       } catch (...) {
         const std::lock_guard lock(failure_mutex);
         if (!failure) failure = std::current_exception();
         next = tasks.size();
       }
   };
-  const std::size_t jobs = options.jobs > 0 ? static_cast<std::size_t>(options.jobs) : std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::thread> workers;
-  for (std::size_t j = 0; j < std::min(jobs, tasks.size()); ++j) workers.emplace_back(work);
+  for (std::size_t j = 0; j < std::min(static_cast<std::size_t>(jobs), tasks.size()); ++j) workers.emplace_back(work);
   for (std::thread& w : workers) w.join();
   if (failure && !interrupted) std::rethrow_exception(failure);
 }
@@ -331,6 +362,8 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  constexpr int most_jobs = 1024;
+  if (options.jobs > most_jobs) throw InputError(fmt::format("--jobs: is {} (allowed: 0 to {})", options.jobs, most_jobs));
   check_names(cases);
   const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (interrupted) {

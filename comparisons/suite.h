@@ -13,6 +13,7 @@ struct SuiteOptions {
   int jobs = 0;          ///< parts at once; 0 = one per processor core
   bool resume = false;   ///< take finished parts from `out`
   bool vtu = true;       ///< write a VTU per run
+  bool quiet = false;    ///< say nothing of what is under way
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
   int finer = 1;         ///< reference grids with so many times the cells along each direction
 };
@@ -29,7 +30,7 @@ std::string case_name(const std::filesystem::path& file);
 std::vector<std::filesystem::path> built_in_cases();
 
 /// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out.
-/// Progress goes to stderr.
+/// What is under way goes to stderr (comparisons/status.h), before a run of more than a minute also how long it may take.
 /// @return 0: every expectation holds; 1: one does not, or cannot be judged, or a case had no reference, no result or nothing to
 /// compare; 130: interrupted (finished parts are kept).
 /// @throws InputError for unusable input or output folder, before anything is computed.

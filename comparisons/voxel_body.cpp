@@ -17,6 +17,7 @@
 #include "meshes/select_patches.h"
 #include "meshes/volume.h"
 #include "meshes/voxelise.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -110,6 +111,7 @@ void cut_lattices(PreparedCase& prepared) {
   check_counts(edges, region->volume);
   for (const double edge : edges) {
     const VoxelGrid grid = voxel_grid(true_body, edge);
+    progress::detail(fmt::format("voxels of {:.4g} m", edge));
     Voxels voxels = voxelise(grid, true_body);
     for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
     compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);
@@ -177,12 +179,14 @@ void set_wrenches(PreparedCase& prepared) {
   }
 }
 
-/// How far a quantity of the finest mesh is from that of the next, relative.
-double spread(const PreparedCase& prepared, const std::function<double(const Mesh&)>& quantity) {
+/// How far a quantity of the finest mesh is from that of the next, relative; or, if it does not fall in order, from those of all.
+double spread(const PreparedCase& prepared, bool in_order, const std::function<double(const Mesh&)>& quantity) {
   const auto& meshes = prepared.tetrahedra;
-  if (meshes.size() < 2) return 0;
   const double fine = quantity(*meshes.back());
-  return std::abs(quantity(*meshes[meshes.size() - 2]) / fine - 1);
+  double most = 0;
+  for (std::size_t i = in_order && meshes.size() > 2 ? meshes.size() - 2 : 0; i + 1 < meshes.size(); ++i)
+    most = std::max(most, std::abs(quantity(*meshes[i]) / fine - 1));
+  return most;
 }
 
 /// True if meshes of the body hold it by other facets each.
@@ -198,10 +202,10 @@ void set_load_spread(PreparedCase& prepared) {
     const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load) ||
                          (prescribes_displacement(load) && has_ragged_border(e, *on));
     if (!by_area && !std::holds_alternative<Gravity>(load)) continue;
-    const double off = spread(prepared, [&](const Mesh& m) { return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes); });
+    const double off = spread(prepared, !on || !has_ragged_border(e, *on), [&](const Mesh& m) { return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes); });
     if (off <= least_spread) continue;
     prepared.load_spread = std::max(prepared.load_spread, off);
-    prepared.notes.push_back(fmt::format("the two finest meshes differ by {:.2g} % in {}: so much is added to the uncertainties", 100 * off,
+    prepared.notes.push_back(fmt::format("the meshes differ by {:.2g} % in {}: so much is added to the uncertainties", 100 * off,
                                          on ? "the area of patch '" + *on + "'" : "their volume, and so the weight"));
   }
 }

@@ -9,10 +9,6 @@
 namespace springproof {
 namespace {
 
-// Cubes of a lattice up to which they are also cut into eight, and up to which finite elements run on them at all: some
-// million unknowns of elements with 27 and with 8 nodes.
-constexpr std::size_t most_refined_cubes = 8000, most_cubes = 200000;
-
 NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
   NodalVectors both(a.rows() + b.rows(), 3);
   both << a, b;

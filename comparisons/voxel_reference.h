@@ -9,6 +9,10 @@
 
 namespace springproof {
 
+// Cubes of a lattice up to which they are also cut into eight, and up to which finite elements run on them at all: some
+// million unknowns of elements with 27 and with 8 nodes.
+inline constexpr std::size_t most_refined_cubes = 8000, most_cubes = 200000;
+
 /// Of the elements compared beside the models, those of hexahedra ('q') or of tetrahedra ('p').
 std::vector<std::string> elements_of(const Experiment& experiment, char shape);
 

@@ -1,9 +1,12 @@
 // Linear statics, whatever multiplies by the stiffness.  Part of each solver, as mixed_vector.h.
 #pragma once
 
+#include <fmt/format.h>
+
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/krylov.h"
 #include "fem_reference/mixed_vector.h"
+#include "problem/progress.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
@@ -19,7 +22,12 @@ ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const
                            DofVector& displacement) {
   const bool mixed = system.form == Form::mixed;
   const auto precondition = [&](MixedVector& z, const MixedVector& r) { K.precondition(z, r); };
-  const auto multiply = [&](MixedVector& y, const MixedVector& v) { K.vmult(y, v); };
+  int products = 0;
+  const auto multiply = [&](MixedVector& y, const MixedVector& v) {
+    ++products;
+    progress::detail([&] { return fmt::format("{} unknowns, iteration {}", load.size(), products); });
+    K.vmult(y, v);
+  };
   ElasticAnswer answer;
   MixedVector x = K.vector(), r = x, f = x, z = x, dx = x;
   x.u = displacement;

@@ -12,6 +12,7 @@
 #include "fem_reference/processes.h"
 #include "fem_reference/solve_grid.h"
 #include "meshes/mesher.h"
+#include "problem/progress.h"
 
 namespace springproof::fem {
 namespace {
@@ -76,10 +77,26 @@ Solution solve_one(const Request& request, const Discretisation& grid, Method me
   return solution;
 }
 
+// {812, 0, 0} stands for 812 tetrahedra.
+std::string words_for(const Discretisation& grid) {
+  const auto& [nx, ny, nz] = grid.cells;
+  if (ny == 0) return fmt::format("{} on {} tetrahedra", grid.element, nx);
+  return fmt::format("{} on {} x {} x {} cells{}", grid.element, nx, ny, nz, grid.grading == 1 ? "" : ", graded");
+}
+
+// Graded grids of one element are a sequence, coarse to fine: what fails on one takes minutes to fail on the next.
+bool is_hopeless(const Discretisation& grid, const std::vector<Solution>& before) {
+  return grid.grading != 1 && std::any_of(before.begin(), before.end(), [&](const Solution& s) {
+           return !s.ok && s.grid.element == grid.element && s.grid.grading == grid.grading;
+         });
+}
+
 std::vector<Solution> solve_all(const Request& request, Method method = Method::automatic) {
   std::vector<Solution> solutions;
   for (const Discretisation& grid : request.grids) {
+    progress::phase(fmt::format("finite elements {} of {}, {}", solutions.size() + 1, request.grids.size(), words_for(grid)));
     try {
+      if (is_hopeless(grid, solutions)) throw std::runtime_error("not tried, as the coarser grid has no result");
       solutions.push_back(solve_one(request, grid, method));
     } catch (const InputError&) {
       throw;
@@ -130,7 +147,7 @@ void print(const Request& request, const Solution& s, int digits) {
 }
 
 struct Options {
-  std::string request, answer, case_file;
+  std::string request, answer, progress, case_file;
   std::vector<int> cells;
   double poisson_ratio = std::numeric_limits<double>::quiet_NaN();
   Discretisation grid;
@@ -220,6 +237,7 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--request", options.request, "a request file instead of a case (used by springproof)");
   app.add_option("--answer", options.answer, "where to write the answer to --request");
+  app.add_option("--progress", options.progress, "where to write, again and again, what --request is at");
   BenchOptions bench_options;
   bool benchmark = false;
   app.add_flag("--bench", benchmark, "measure the solvers against each other instead of solving a case");
@@ -245,6 +263,8 @@ int run(int argc, char** argv) {
       return 0;
     }
     if (!options.request.empty()) {
+      std::optional<progress::Listening> listening;
+      if (!options.progress.empty() && process_rank() == 0) listening.emplace(progress::into_file(options.progress));
       answer_request(options.request, options.answer);
       return 0;
     }

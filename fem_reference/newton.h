@@ -2,10 +2,12 @@
 #pragma once
 
 #include <deal.II/grid/grid_tools.h>
+#include <fmt/format.h>
 
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/krylov.h"
 #include "fem_reference/mixed_vector.h"
+#include "problem/progress.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
@@ -102,7 +104,15 @@ class Newton {
     K_.prepare(x_);
     dx_.sadd(0, 0, dx_);
     const auto precondition = [&](MixedVector& z, const MixedVector& r) { K_.precondition(z, r); };
-    const auto multiply = [&](MixedVector& y, const MixedVector& v) { K_.vmult(y, v); };
+    int products = answer.iterations;
+    const auto multiply = [&](MixedVector& y, const MixedVector& v) {
+      ++products;
+      progress::detail([&] {
+        return fmt::format("{} unknowns, {:.3g} % of the load reached, load step {}, Newton step {}, iteration {}", load_.size(),
+                           100 * answer.load_reached, answer.load_steps + 1, answer.newton_iterations + 1, products);
+      });
+      K_.vmult(y, v);
+    };
     const KrylovOutcome outcome = gmres(multiply, precondition, r_, eta, 120, dx_);
     answer.iterations += outcome.iterations;
     return outcome.reduction < 0.2;

@@ -10,6 +10,7 @@
 #include "fem_reference/exchange.h"
 #include "fem_reference/plain_words.h"
 #include "meshes/child.h"
+#include "problem/progress.h"
 
 namespace springproof::fem {
 namespace {
@@ -66,14 +67,16 @@ std::vector<Solution> solve(const Request& request) {
   const fs::path file = program_or_throw();
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor",
-                 errors = folder.path / "errors";
+                 errors = folder.path / "errors", progress = folder.path / "progress";
   {
     std::ofstream out(question, std::ios::binary);
     nlohmann::json::to_cbor(to_json(request), out);
     if (!out.flush()) folder.require_room();
   }
-  const ChildEnd end = run_child({file, {"--request", question.string(), "--answer", answer.string()}, {},
-                                  folder.path / "output", errors});
+  progress::phase("finite elements");
+  const progress::Relay relay(progress);
+  const ChildEnd end = run_child({file, {"--request", question.string(), "--answer", answer.string(), "--progress", progress.string()},
+                                  {}, folder.path / "output", errors});
   if (!end.ok()) folder.require_room();
   const std::string last_words = plain_words(text_of_file(errors));
   if (end.kind == ChildEnd::exited && end.status == exit_status_input_error) throw InputError(last_words);

@@ -13,6 +13,7 @@
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
 #include "fem_reference/triangulate.h"
+#include "problem/progress.h"
 
 namespace springproof::fem {
 
@@ -172,6 +173,7 @@ ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discre
 // `start`: when the mesh was there.
 void solve_into(Solution& solution, const GridProblem& problem, const Body3& body,
                 const dealii::DoFHandler<3>& dof_handler, double start, const std::optional<MemoryGrowth>& memory) {
+  progress::detail(fmt::format("{} unknowns, set-up", dof_handler.n_dofs()));
   const Discrete discrete(problem, body, dof_handler);
   DofVector u = zero_vector(dof_handler);
   const bool linear = problem.law == "linear";
@@ -183,6 +185,7 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
                     dealii::Utilities::MPI::sum(cpu_seconds() - ready, comm)};
   solution.memory_MiB = dealii::Utilities::MPI::max(memory ? memory->most_MiB() : 0, comm);
   solution.unknowns = solution.degrees_of_freedom - dealii::Utilities::MPI::sum(long(discrete.held.size()), comm);
+  progress::detail(fmt::format("{} unknowns, measuring", dof_handler.n_dofs()));
   u.update_ghost_values();
   const std::vector<Location> places = locate(body, problem.points);
   solution.ok = answer.converged;

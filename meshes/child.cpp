@@ -206,6 +206,8 @@ void interrupt_children() {
       if (const pid_t child = pid; child > 0) kill(child, SIGTERM);
 }
 
+bool children_interrupted() { return interrupts > 0; }
+
 std::string words_for(const ChildEnd& end, double time_limit) {
   switch (end.kind) {
     case ChildEnd::out_of_time: return fmt::format("took longer than {:g} s and was ended", time_limit);

@@ -66,6 +66,9 @@ ChildEnd run_child(const Child& child);
 /// Ends every program under way (SIGTERM); may be called in a signal handler.
 void interrupt_children();
 
+/// True once that has been called.
+bool children_interrupted();
+
 /// "was killed by signal 11 (Segmentation fault)", "failed with status 1", "took longer than 120 s and was ended".
 std::string words_for(const ChildEnd& end, double time_limit = 0);
 

@@ -11,6 +11,7 @@
 
 #include "meshes/child.h"
 #include "meshes/mesher_exchange.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -119,6 +120,7 @@ double size_ratio(const Mesh& coarse, const Mesh& fine) {
 MeshedBody mesh_body(const MeshRequest& request) {
   check(request);
   const double seconds = time_limit();
+  progress::detail("meshing " + request.file.filename().string());
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor",
                  log = folder.path / "log";

@@ -119,7 +119,7 @@ MeshedBody mesh_refined(const MeshRequest& r, const MeshAt& at) {
   std::vector<double> times = r.coarser;
   std::sort(times.begin(), times.end());
   Chain chain(r, at);
-  double most = few;
+  double first = 0;
   for (double edge = r.edge;; edge /= step) {
     const bool complete = chain.make(edge, times);
     OneMesh& finest = chain.meshes.front();
@@ -127,8 +127,9 @@ MeshedBody mesh_refined(const MeshRequest& r, const MeshAt& at) {
       finest.notes.push_back(fmt::format("finer than asked for (edges of {:.3g} m instead of {:.3g} m), so that coarser meshes differ enough",
                                          finest.edge, r.edge));
     if (complete) return body_of(r, std::move(chain.meshes));
-    if (edge == r.edge) most = std::max(few, most_growth * cells(finest));
-    if (cells(finest) * std::pow(step, 3) <= most) continue;
+    if (first == 0) first = cells(finest);
+    const double next = first * std::pow(step * r.edge / edge, 3);  // whether or not there were more this time
+    if (std::max(next, cells(finest)) <= std::max(few, most_growth * first)) continue;
     const OneMesh& last = chain.meshes.back();
     throw InputError({r.file.string(), 0, 0},
                      fmt::format("no mesh is coarser than that of {} tetrahedra, edges of {:.3g} m, by {} or more in the size of its cells, as a "

@@ -14,13 +14,13 @@ double sum_kL2(const Network& network) {
   return sum;
 }
 
-/// Per node, half of sum k L^2 over its springs [J]: the node's part of sum_kL2().
+/// Per node, half of sum k L^2 over its springs [J]: the node's part of sum_kL2(); an image's is its master's.
 Eigen::VectorXd shares_of_kL2(const Network& network) {
   Eigen::VectorXd share = Eigen::VectorXd::Zero(network.nodes());
   for (const Spring& s : network.springs) {
     const double half = s.stiffness * s.rest_length * s.rest_length / 2;
-    share[s.i] += half;
-    share[s.j] += half;
+    share[network.master(s.i)] += half;
+    share[network.master(s.j)] += half;
   }
   return share;
 }
@@ -63,16 +63,15 @@ void calibrate(double shear_modulus, Network& network) {
 }
 
 void correct_surface(Network& network, const std::vector<char>& bulk) {
-  if (!network.image_of.empty()) return;
-  const bool known = std::find(bulk.begin(), bulk.end(), 1) != bulk.end();
-  const double c = density_of_kL2(network, known ? bulk : well_connected(network));
+  const bool known = std::find(bulk.begin(), bulk.end(), 1) != bulk.end(), periodic = !network.image_of.empty();
+  const double c = periodic ? sum_kL2(network) / network.volume.sum() : density_of_kL2(network, known ? bulk : well_connected(network));
   const std::vector<Spring> before = network.springs;
   for (int round = 0; round < correction_rounds; ++round) {
     const Eigen::VectorXd factor = (c * network.volume).cwiseQuotient(shares_of_kL2(network));
     for (std::size_t n = 0; n < before.size(); ++n) {
       Spring& s = network.springs[n];
       const double k = before[n].stiffness;
-      s.stiffness = std::clamp(s.stiffness * (factor[s.i] + factor[s.j]) / 2, k / largest_correction, k * largest_correction);
+      s.stiffness = std::clamp(s.stiffness * (factor[network.master(s.i)] + factor[network.master(s.j)]) / 2, k / largest_correction, k * largest_correction);
     }
   }
   const double scale = c * network.volume.sum() / sum_kL2(network);

@@ -18,7 +18,7 @@ void calibrate(double shear_modulus, Network& network);
 /// A node's factor is V_i c / (sum k L^2 / 2 over its springs); springs are scaled by the mean factor of their ends, five
 /// times over, each by no more than a factor of 4 in all.  c is the material's value, from the nodes marked in `bulk`
 /// (bulk_nodes(); empty, or none marked: from those with at least the mean number of springs).  Afterwards
-/// sum k L^2 = c V, that of a bulk network of the same volume.  Periodic networks are left as they are.
+/// sum k L^2 = c V, that of a bulk network of the same volume.  Periodic networks get what the inside of a body gets.
 void correct_surface(Network& network, const std::vector<char>& bulk = {});
 
 }  // namespace springproof

@@ -72,31 +72,19 @@ double grip_of(const ModelParameters& p, const Mesh& mesh) {
   return spacing * p.grip.value_or(layer);
 }
 
-BulkCalibration bulk_calibration(ModelParameters p, const IsotropicMaterial& material) {
-  p.exact_volumes = exact_volumes(p, material);
-  return p.homogenised ? calibrate_in_bulk(p, material) : affine_calibration(p, material);
-}
-
 void calibrate_network(const ModelParameters& p, const IsotropicMaterial& material, double volume_of_body, Network& network) {
   network.volume *= volume_of_body / network.volume.sum();
-  if (p.row.topology != random) return calibrate(spring_shear_modulus(p, material), network);
-  if (p.random.surface_nodes) correct_surface(network);
+  if (p.row.topology == random && p.random.surface_nodes) correct_surface(network);
   calibrate(bulk_calibration(p, material).spring_shear_modulus, network);
 }
 
 MomentumDispersion dispersion(const ModelParameters& p, const MassSpringModel& model, const Embedding& embedding, const Mesh& mesh,
                               const IsotropicMaterial& material) {
-  const int dimensions = model.network.triangles.empty() ? 3 : 2;
-  MomentumDispersion law{dispersed_fraction(lame_lambda(material), shear_modulus(material), dimensions), p.dispersion, {}};
-  double weight_modulus = shear_modulus(material);
-  if (p.row.topology == random) {
-    const BulkCalibration bulk = bulk_calibration(p, material);
-    law.q = bulk.q;
-    weight_modulus = bulk.spring_shear_modulus;
-  }
+  const BulkCalibration bulk = bulk_calibration(p, material);
+  MomentumDispersion law{bulk.q, p.dispersion, {}};
   if (p.dispersion == Dispersion::share_weighted && p.row.topology == cells) law.weight = spring_shares(model.network);
   if (p.dispersion == Dispersion::symmetric && exact_volumes(p, material)) {
-    DispersionWeights exact = volume_weights(model.network, embedding.weights.transpose() * volume_gradient(mesh), weight_modulus);
+    DispersionWeights exact = volume_weights(model.network, embedding.weights.transpose() * volume_gradient(mesh), bulk.spring_shear_modulus);
     law.weight = std::move(exact.weight);
     law.group = std::move(exact.group);
   }
@@ -119,7 +107,7 @@ std::optional<double> own_poisson_ratio(const ModelRow& row) {
 }
 
 bool exact_volumes(const ModelParameters& p, const IsotropicMaterial& material) {
-  return p.exact_volumes.value_or(material.poisson_ratio >= 0.25);
+  return p.exact_volumes ? *p.exact_volumes : material.poisson_ratio >= springs_poisson_ratio(p);
 }
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {

@@ -57,7 +57,7 @@ struct ModelParameters {
   VolumeEnergy volume_energy = VolumeEnergy::bounded;
   Dispersion dispersion = Dispersion::symmetric;
   std::optional<bool> exact_volumes;                  ///< dispersion weights: exact nodal volumes (msm/dispersion_weights.h) or w = k L;
-                                                      ///< empty: exact from nu = 1/4 up
+                                                      ///< empty: exact where q >= 0
   bool homogenised = true;                            ///< random networks: calibrated as measured in bulk; false: by eq. (20)
   RandomParameters random{};                          ///< of random networks; its spacing follows from the mesh
   std::optional<double> node_density;                 ///< of random networks [1/m^3]; empty: one node per cube
@@ -68,9 +68,9 @@ struct ModelParameters {
   bool has(Extension extension) const { return row.extension == extension; }
 };
 
-/// Whether symmetric dispersion takes exact nodal volumes.  k L is proved stable for every nu > -1 on every network; exact
-/// volumes are energies too, but a negative one (nu < 1/4) can outweigh the springs at disordered nodes and where
-/// surface nodes lack springs.
+/// Whether symmetric dispersion takes exact nodal volumes.  k L is proved stable for every q > -1/2 on every network; exact
+/// volumes are energies too, but a negative one (q < 0) can outweigh the springs at disordered nodes and where
+/// surface nodes lack springs.  q has the sign of nu - springs_poisson_ratio(), whatever the weights.
 bool exact_volumes(const ModelParameters& parameters, const IsotropicMaterial& material);
 
 /// @throws InputError (with the place in the case file) for an unknown model or option, the nearest name suggested.

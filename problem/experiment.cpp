@@ -106,7 +106,8 @@ Body read_body(const TomlValue& value) {
   const bool script = body.is_script();
   if (const auto size = table.find("size_m")) {
     if (!script) refuse(*size, "is a parameter of .geo scripts", "scale, to multiply the coordinates of a file");
-    body.size = as_vector(*size, positive_number);
+    // gmsh merges points that are 1e-8 apart.
+    body.size = as_vector(*size, {"a finite number > 0, from 1e-6 to 1e9 [m]", 1e-6, 1e9, true, true});
   } else if (script) {
     missing(value, "size_m", "[x, y, z], lengths > 0");
   }

@@ -43,9 +43,6 @@ void settle_kelvin(Experiment& experiment) {
     if (!load || load->field != "kelvin") continue;
     if (const char* missing = missing_for_kelvin(experiment))
       throw InputError(experiment.load_locations[i], fmt::format("load.field: \"kelvin\" is not known here (needed: {})", missing));
-    if (!experiment.reference.elements.empty())
-      throw InputError(experiment.load_locations[i], "load.field: \"kelvin\" is not known to the finite elements (allowed: with "
-                                                     "[reference] elements = [])");
     load->kelvin = kelvin_of(experiment);
   }
 }

@@ -122,7 +122,8 @@ SourceLocation location_of(const TomlValue& value) {
 
 double as_number(const TomlValue& value, const Range& range) {
   if (!value.node->is_number()) wrong_type(value, range.words);
-  const double x = *value.node->value<double>();
+  const auto* integer = value.node->as_integer();  // value<double>() has nothing for one that no double holds exactly
+  const double x = integer ? static_cast<double>(integer->get()) : value.node->ref<double>();
   if (!range.contains(x)) refuse(value, fmt::format("is {}", x), range.words);
   if (x != 0 && (std::abs(x) < smallest_number || std::abs(x) > largest_number))
     refuse(value, fmt::format("is {}", x), fmt::format("{}, 0 or {:g} to {:g} in size", range.words, smallest_number, largest_number));

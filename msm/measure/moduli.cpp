@@ -3,8 +3,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "msm/calibrate.h"
-#include "msm/measure/bulk_calibration.h"
 #include "msm/measure/homogenise.h"
 #include "msm/measure/periodic_model.h"
 #include "msm/solve/equilibrium.h"
@@ -73,22 +71,9 @@ MeasuredModuli measure_sheet(const ModelParameters& parameters, const IsotropicM
   return {E * (1 - nu * nu), nu, affine_shear(model, volume)};  // plane strain: E / (1 - nu^2), nu / (1 - nu)
 }
 
-MeasuredModuli measure_bulk(ModelParameters parameters, const IsotropicMaterial& material) {
-  const bool random = parameters.row.topology == Topology::random;
-  if (random) ++parameters.random.seed;  // the calibration's sample has seed 1
-  MassSpringModel model = periodic_model(parameters, material, 1, random ? 1000 : 27);
-  if (random) {
-    parameters.exact_volumes = exact_volumes(parameters, material);
-    const BulkCalibration bulk = parameters.homogenised ? calibrate_in_bulk(parameters, material) : affine_calibration(parameters, material);
-    const double factor = bulk.spring_shear_modulus / affine_shear_modulus(model.network);
-    calibrate(bulk.spring_shear_modulus, model.network);
-    for (ForceLaw& law : model.laws)
-      if (auto* dispersion = std::get_if<MomentumDispersion>(&law)) {
-        dispersion->q = bulk.q;
-        for (double& w : dispersion->weight) w *= factor;
-      }
-  }
-  const Homogenised h = homogenise(model, {1e-8, 20000});
+MeasuredModuli measure_bulk(const ModelParameters& parameters, const IsotropicMaterial& material) {
+  const int nodes = parameters.row.topology == Topology::random ? 1000 : 27;
+  const Homogenised h = homogenise(periodic_model(parameters, material, 1, nodes), {1e-8, 20000});
   return {h.youngs_modulus, h.poisson_ratio, h.shear_modulus};
 }
 

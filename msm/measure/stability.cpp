@@ -1,9 +1,13 @@
 #include "msm/measure/stability.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "msm/measure/bulk_calibration.h"
 
 namespace springproof {
 namespace {
@@ -29,6 +33,16 @@ Eigen::MatrixXd in_plane(const Eigen::MatrixXd& K) {
   for (Eigen::Index i = 0; i < 2 * nodes; ++i)
     for (Eigen::Index j = 0; j < 2 * nodes; ++j) A(i, j) = K(3 * (i / 2) + i % 2, 3 * (j / 2) + j % 2);
   return A;
+}
+
+std::string stable_range_of_energy(const ModelParameters& p, const IsotropicMaterial& material) {
+  const double q = bulk_calibration(p, material).q;
+  if (!exact_volumes(p, material))
+    return fmt::format("on every network, as q = {:.4g} > -1/2 with weights kL: J^2 <= sum k L^2 sum k dL^2 at each node (Cauchy-Schwarz)", q);
+  if (q > -1e-12)  // round-off of the formula at nu = 1/4
+    return fmt::format("on every network, as q = {:.4g} >= 0 with exact volumes, a sum of squares; so from nu = {:.4g}, the springs' own, up", q,
+                       springs_poisson_ratio(p));
+  return fmt::format("not proved: q = {:.4g} < 0 with exact volumes; inside lattices it is, elsewhere measured only (weights kL: proved)", q);
 }
 
 }  // namespace
@@ -61,12 +75,8 @@ std::string stable_range(const ModelParameters& p, const IsotropicMaterial& mate
   if (p.has(Extension::volume_correction)) return "-1 < nu < 1/2: every cell is positive (at A = 0: but for zero-energy modes)";
   if (p.has(Extension::angular_springs)) return "-1 < nu_2D < 1 in its plane: a triangle strains affinely, K > 0 and G > 0 suffice";
   if (!p.has(Extension::momentum_dispersion)) return "never negative: springs alone are a sum of squares";
-  if (p.dispersion == Dispersion::symmetric && !exact_volumes(p, material))
-    return "-1 < nu < 1/2 on every network: J^2 <= sum k L^2 sum k dL^2 at each node (Cauchy-Schwarz)";
-  if (p.dispersion == Dispersion::symmetric)
-    return "1/4 <= nu < 1/2 on every network (a sum of squares); below 1/4 proved inside lattices, elsewhere measured only";
-  if (p.row.topology == Topology::random) return "no energy: flutters undamped at every nu but 1/4 (measured on blocks)";
-  if (p.row.topology == Topology::hexagonal) return "no energy: not proved, measured only";
+  if (p.dispersion == Dispersion::symmetric) return stable_range_of_energy(p, material);
+  if (p.row.topology == Topology::random || p.row.topology == Topology::hexagonal) return "no energy: not proved, measured only";
   if (std::isinf(p.face_to_cube))
     return "endless lattice of 18 springs: real frequencies to nu = 0.46, positive real part to 0.4989 (Bloch waves); blocks: measured";
   if (p.face_to_cube == 0) return "endless lattice of 14 springs: zero-energy mode; complex frequencies above nu = 1/4 (Bloch waves)";

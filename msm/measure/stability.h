@@ -14,7 +14,7 @@ struct BlockStability {
 /// All eigenvalues of a free block of 3 x 3 x 3 cells (planar networks: 6 x 6) of edge `cell_edge` [m].
 BlockStability block_stability(const ModelParameters& parameters, const IsotropicMaterial& material, double cell_edge);
 
-/// The range of nu in which the model is stable, and how that is known: one line.
+/// Where the model with this material is stable, and how that is known: one line, of the weights and the q it really has.
 std::string stable_range(const ModelParameters& parameters, const IsotropicMaterial& material);
 
 }  // namespace springproof

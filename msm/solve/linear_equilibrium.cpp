@@ -10,6 +10,7 @@
 #include "msm/solve/equilibrium.h"
 #include "msm/solve/krylov.h"
 #include "msm/solve/tangent_solver.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -105,6 +106,7 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   const double start = cpu_seconds();
   Equilibrium result;
   for (char fixed : conditions.fixed) result.unknowns += !fixed;
+  progress::detail([&] { return fmt::format("{} unknowns", result.unknowns); });
   const LinearProblem problem{model, conditions, options, flat(conditions.prescribed), flat(conditions.external)};
   LinearSolver solver = options.solver;
   const double G = affine_shear_modulus(model.network);

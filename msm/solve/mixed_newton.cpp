@@ -1,9 +1,12 @@
 #include "msm/solve/mixed_newton.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "msm/calibrate.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -125,6 +128,7 @@ bool MixedNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
     if (k > 0 && relative <= tolerance && pressures <= pressure_tolerance * p_.norm()) return true;
     if (k == max_iterations) return false;
     ++iterations_;
+    progress::detail([&] { return fmt::format("{} unknowns, Newton step {} at this load, residual {:.1e}", x.size(), k + 1, relative); });
     Eigen::VectorXd r = at.force, h = at.mismatch, moved = Eigen::VectorXd::Zero(x.size());
     if (k == 0) {  // what the supports move is known
       Eigen::VectorXd Ku;

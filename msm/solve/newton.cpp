@@ -8,6 +8,7 @@
 #include "msm/solve/equilibrium.h"
 #include "msm/solve/mixed_newton.h"
 #include "msm/solve/tangent_solver.h"
+#include "problem/progress.h"
 
 namespace springproof {
 namespace {
@@ -116,6 +117,9 @@ struct Newton {
 
   Outcome step(double factor_of_load, NodalVectors& x, double& relative) {
     const BoundaryConditions bc = path(factor_of_load);
+    progress::detail([&] {
+      return fmt::format("{} unknowns, load step to {:.3g} %, {} Newton steps so far", K.unknowns(), 100 * factor_of_load, iterations);
+    });
     if (mixed) return mixed_step(bc, x, relative);
     NodalVectors trial = predict(x, bc);
     for (int i = 0; i < options.max_iterations; ++i) {
@@ -125,6 +129,9 @@ struct Newton {
       const bool definite = K.take(trial);
       if (relative <= options.tolerance) return judge(trial, definite, x);
       ++iterations;
+      progress::detail([&] {
+        return fmt::format("{} unknowns, load step to {:.3g} %, Newton step {}, residual {:.1e}", K.unknowns(), 100 * factor_of_load, i + 1, relative);
+      });
       if (!definite) return Outcome::unstable;
       if (!solve(r, std::clamp(1e-2 * relative, 1e-8, 1e-3), du)) return Outcome::unstable;
       if (!line_search(r, relative, du, bc.external, trial)) return Outcome::not_converged;

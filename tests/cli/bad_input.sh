@@ -86,8 +86,8 @@ expect "folder in a loop of links" "no such case file" compare "$work/loop/case.
 expect "name of 5000 letters" "5[0-9]{3} letters" compare "$long.toml" --out "$work/out"
 expect "output in a loop of links" "cannot write into" compare "$work/good.toml" --out "$work/loop/out"
 expect "output of 5000 letters" "cannot write into.*letters" compare "$work/good.toml" --out "$work/$long"
-edited "body of 5000 letters" "case.toml:2:7: .*5004 letters" "s/block.geo/$long.geo/"
-edited "label of 5000 letters" "case.toml:16.*cannot name a file" "s/\"hybmss\"\]/{ model = \"hybmss\", label = \"$long\" }]/"
+edited "body of 5000 letters" "case.toml:2:7: .*50[0-9]+ letters" "s/block.geo/$long.geo/"
+edited "label of 5000 letters" "case.toml:15.*cannot name a file" "s/\"hybmss\"\]/{ model = \"hybmss\", label = \"$long\" }]/"
 cp "$work/good.toml" "$work/${long:0:200}.toml"
 expect "case of 200 letters" "name too long" compare "$work/${long:0:200}.toml" --out "$work/out"
 latin=$(printf 'K\xf6rper')
@@ -101,11 +101,11 @@ expect "50,000 dotted keys" "case.toml:1:1: more than 16 parts of a key" compare
 expect "100,000 jobs" "jobs.*1024" compare "$work/good.toml" --jobs 100000 --out "$work/out"
 expect "export of a thousand million cells" "1e\+09 cells .allowed: up to" export "$work/good.toml" --to calculix --cells 1000 1000 1000 --out "$work/out"
 edited "a lattice of a thousand million cells" "case.toml:2:7: cells: .*1e\+09 cells .allowed" 's/\[2, 2, 2\]/[1000, 1000, 1000]/'
-edited "a reference of a thousand million cells" "case.toml:18:9: reference.cells: .*GB" '$s/$/\n[reference]\ncells = [1000, 1000, 1000]/'
-edited "a reference that cannot be refined" "case.toml:18:9: reference.cells: is 1 along x, which cannot be refined" '$s/$/\n[reference]\ncells = [1, 1, 1]/'
+edited "a reference of a thousand million cells" "case.toml:17:9: reference.cells: .*GB" '$s/$/\n[reference]\ncells = [1000, 1000, 1000]/'
+edited "a reference that cannot be refined" "case.toml:17:9: reference.cells: is 1 along x, which cannot be refined" '$s/$/\n[reference]\ncells = [1, 1, 1]/'
 edited "E = 1e300" "case.toml:6:21: .*is 1e\+300 .allowed" 's/1e4/1e300/'
 edited "a force of 1e300" "load.displacement_m: is 1e\+300" 's/0\.01/1e300/'
-edited "contradictory loads" "case.toml:14:1: load: the displacement of 'z_min' along x is prescribed by the load in line 9 too" '$s/$/\n/; s/^\[compare\]/[[load]]\non = "z_min"\ndisplacement_m = [1, 0, 0]\n[compare]/'
+edited "contradictory loads" "case.toml:14:1: load: the displacement of 'z_min' along x is prescribed by the load in line 8 too" '$s/$/\n/; s/^\[compare\]/[[load]]\non = "z_min"\ndisplacement_m = [1, 0, 0]\n[compare]/'
 
 # Scripts, where they are not wanted, and files that are scripts under another name.
 echo "SystemCall \"touch $work/trace\";" >"$work/own.geo"

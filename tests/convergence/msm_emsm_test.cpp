@@ -134,6 +134,54 @@ TEST(BulkCalibration, HoldsForOtherSamples) {
   }
 }
 
+ModelParameters random_emsm(double springs_per_node) {
+  ModelParameters p = test::model("emsm_random");
+  p.random.springs_per_node = springs_per_node;
+  return p;
+}
+
+// Springs alone have nu = 0.28 at 10 springs per node: below that q is negative, and exact volumes can be unstable.
+TEST(BulkCalibration, HoldsForEveryNumberOfSpringsRoundTheirOwnPoissonRatio) {
+  for (double springs_per_node : {10.0, 12.0, 14.0})
+    for (double nu : {0.25, 0.26, 0.29}) {
+      const IsotropicMaterial m{1e4, nu, density};
+      const ModelParameters p = random_emsm(springs_per_node);
+      const MeasuredModuli found = measure_moduli(p, m);
+      EXPECT_NEAR(found.poisson_ratio, nu, 0.01) << springs_per_node;
+      EXPECT_NEAR(found.youngs_modulus / 1e4, 1, 0.04) << springs_per_node << " nu = " << nu;
+      EXPECT_EQ(exact_volumes(p, m), calibrate_in_bulk(p, m).q >= 0) << springs_per_node << " nu = " << nu;
+    }
+}
+
+// The weights change where they say nothing: q = 0.
+TEST(BulkCalibration, IsContinuousWhereTheWeightsChange) {
+  const ModelParameters p = random_emsm(10);
+  const double own = springs_poisson_ratio(p);
+  EXPECT_GT(own, 0.27);
+  const BulkCalibration below = calibrate_in_bulk(p, {1e4, own - 1e-5, density}), above = calibrate_in_bulk(p, {1e4, own + 1e-5, density});
+  EXPECT_FALSE(exact_volumes(p, {1e4, own - 1e-5, density}));
+  EXPECT_TRUE(exact_volumes(p, {1e4, own + 1e-5, density}));
+  EXPECT_NEAR(below.q, 0, 1e-3);
+  EXPECT_NEAR(above.q, 0, 1e-3);
+  EXPECT_NEAR(below.spring_shear_modulus / above.spring_shear_modulus, 1, 1e-3);
+}
+
+TEST(BulkCalibration, ReachesTheEndsOfPoissonsRatio) {
+  for (double nu : {-0.99, 0.49}) EXPECT_NEAR(measure_moduli(random_emsm(15), {1e4, nu, density}).poisson_ratio, nu, 0.005);
+}
+
+// What is claimed is of the q and the weights that the model has, and a free block agrees.
+TEST(BlockStability, IsClaimedOfTheFormInUse) {
+  const IsotropicMaterial m{1e4, 0.26, density};
+  ModelParameters p = random_emsm(10);
+  EXPECT_NE(stable_range(p, m).find("weights kL"), std::string::npos) << stable_range(p, m);
+  EXPECT_GT(block_stability(p, m, 0.1).smallest_eigenvalue, 0);
+  p.homogenised = false;  // eq. (9) has q > 0 here
+  EXPECT_NE(stable_range(p, m).find("sum of squares"), std::string::npos) << stable_range(p, m);
+  p.exact_volumes = true;
+  EXPECT_NE(stable_range(p, {1e4, 0.2, density}).find("not proved"), std::string::npos);
+}
+
 TEST(BulkCalibration, SaysThatWeightsKLSaturate) {
   ModelParameters p = test::model("emsm_random");
   p.exact_volumes = false;

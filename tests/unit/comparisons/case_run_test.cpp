@@ -178,6 +178,35 @@ TEST(PartFile, ComesBackWholeOrNotAtAll) {
   EXPECT_FALSE(load_part(file, "stamp"));
 }
 
+// In the comparison's program, which links everything that a network is made with.
+TEST(Prepare, ANetworkThatJamsIsRefusedAtItsModel) {
+  const Experiment e = parse_experiment(R"([body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [6, 6, 6]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.25
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+displacement_m = [0, 0, 0.01]
+[compare]
+models = [{ model = "msm_random", min_length = 0.95 }]
+[reference]
+elements = []
+)", "jam.toml");
+  try {
+    prepare(e);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("jam.toml:15:11: compare.models: msm_random min_length=0.95: min_length: minL/l = 0.95 was asked for, but random addition jams", 0), 0u)
+        << error.what();
+  }
+}
+
 TEST(FolderLock, IsOneProcessAtATimeAndLeavesNothing) {
   const TemporaryFolder folder;
   const std::string path = folder.path / "out";

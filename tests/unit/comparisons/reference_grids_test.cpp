@@ -1,10 +1,15 @@
 // Three grids of one element: limits, errors against an exact field, observed orders.
 #include "comparisons/reference_grids.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 
+#include "meshes/child.h"
 #include "problem/exact_field.h"
 
 namespace springproof {
@@ -135,6 +140,94 @@ TEST(ReferenceGrids, MostValuesThatMatterMustConverge) {
   EXPECT_TRUE(most_converge({{"force.a.x", good}, {"force.a.y", small}, {"force.b.y", small}}));
   EXPECT_FALSE(most_converge({{"force.a.x", good}, {"force.a.y", bad}, {"force.b.y", bad}}));
   EXPECT_TRUE(most_converge({}));
+}
+
+/// A cube between rough plates, St. Venant-Kirchhoff's law, which softens in compression.
+PreparedCase squeezed_cube(const std::string& elements, double shortening) {
+  return prepare(parse_experiment(fmt::format(R"(
+kinematics = "st_venant_kirchhoff"
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [2, 2, 2]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+displacement_m = [0, 0, -{}]
+[compare]
+models = []
+measures = ["volume_change"]
+[reference]
+cells = [8, 8, 8]
+elements = [{}]
+)", shortening, elements), "cube.toml"));
+}
+
+bool on_grids_of(const ElementGrids& e, double grading) {
+  return std::all_of(e.grids.begin(), e.grids.end(), [&](const fem::Solution& s) { return s.grid.grading == grading; });
+}
+
+TEST(ReferenceGrids, WhatFailsOnGradedGridsIsSolvedOnUniformOnes) {
+  const PreparedCase prepared = squeezed_cube("\"q2\"", 0.2);
+  const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
+  ASSERT_EQ(grids.elements.size(), 1u) << grids.failure;
+  const ElementGrids& q2 = grids.elements[0];
+  ASSERT_TRUE(complete(q2)) << q2.grids[2].message;
+  EXPECT_TRUE(on_grids_of(q2, 1));
+  EXPECT_TRUE(q2.note.starts_with("uniform grids: the graded grid of ")) << q2.note;
+  for (const ReferenceRecord& r : records_of(prepared, prepared.experiment.materials[0], q2))
+    EXPECT_NE(r.note.find(q2.note), std::string::npos) << r.note;
+}
+
+TEST(ReferenceGrids, WhatFailsOnUniformGridsTooSaysBoth) {
+  const PreparedCase prepared = squeezed_cube("\"q2\"", 0.6);
+  const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
+  ASSERT_EQ(grids.elements.size(), 1u) << grids.failure;
+  EXPECT_FALSE(complete(grids.elements[0]));
+  const auto& all = grids.elements[0].grids;
+  const auto failed = std::find_if(all.begin(), all.end(), [](const fem::Solution& s) { return !s.ok; });
+  ASSERT_NE(failed, all.end());
+  EXPECT_TRUE(failed->message.starts_with("on a uniform grid ")) << failed->message;
+  EXPECT_NE(failed->message.find("; the graded grid of "), std::string::npos) << failed->message;
+}
+
+/// The elements' program, ended by a signal if it is asked for one of these.
+class DyingProgram {
+ public:
+  explicit DyingProgram(const std::string& element) {
+    std::ofstream(script_) << "#!/bin/sh\ngrep -aq gelementb" << element << " \"$2\" && kill -9 $$\nexec " << SPRINGPROOF_BINARY_DIR
+                           << "/springproof-fem \"$@\"\n";
+    std::filesystem::permissions(script_, std::filesystem::perms::owner_all);
+    setenv("SPRINGPROOF_FEM_PROGRAM", script_.c_str(), 1);
+  }
+  ~DyingProgram() { unsetenv("SPRINGPROOF_FEM_PROGRAM"); }
+
+ private:
+  TemporaryFolder folder_;
+  std::filesystem::path script_ = folder_.path / "springproof-fem";
+};
+
+TEST(ReferenceGrids, AnElementThatTheProgramDiesOfDiesAlone) {
+  const DyingProgram program("p1");
+  const PreparedCase prepared = squeezed_cube("\"q1\", \"p1\"", 0.02);
+  const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
+  ASSERT_EQ(grids.elements.size(), 2u) << grids.failure;
+  EXPECT_TRUE(complete(grids.elements[0]));
+  EXPECT_FALSE(complete(grids.elements[1]));
+  EXPECT_NE(grids.elements[1].grids[0].message.find("signal 9"), std::string::npos) << grids.elements[1].grids[0].message;
+}
+
+TEST(ReferenceGrids, WithoutTheProgramThereIsAReasonAndNoElement) {
+  const DyingProgram program("q2");
+  const PreparedCase prepared = squeezed_cube("\"q2\"", 0.02);
+  const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
+  EXPECT_TRUE(grids.elements.empty());
+  EXPECT_NE(grids.failure.find("signal 9"), std::string::npos) << grids.failure;
 }
 
 TEST(ReferenceGrids, OneFailedGridLeavesNoReference) {

@@ -61,6 +61,12 @@ TEST(Bounds, NumbersBeyondReasonAreRefusedWithTheirPlace) {
   }
 }
 
+TEST(Bounds, BodiesOfNanometresAreRefused) {
+  std::string text = small_case;
+  text.replace(text.find("[1, 1.0, 2.5]"), 13, "[1e-9, 1e-9, 1e-9]");
+  EXPECT_SAYS(message_of(text), "case.toml:3:11: body.size_m: is 1e-09 (allowed: a finite number > 0, from 1e-6 to 1e9 [m])");
+}
+
 std::string block_case(const std::string& loads, const std::string& reference) {
   return "[body]\ngeo = \"block.geo\"\nsize_m = [1, 1, 1]\ncells = [4, 4, 1]\n[material]\nyoungs_modulus_Pa = 1e4\npoisson_ratio = 0.3\n" + loads +
          "[reference]\ncells = " + reference + "\n";

@@ -178,6 +178,13 @@ TEST(Experiment, StringsSurviveQuoting) {
   EXPECT_EQ(parse(to_toml(e)).cite, e.cite);
 }
 
+TEST(Experiment, IntegersThatNoDoubleHoldsAreRounded) {
+  std::string text = small_case;
+  const std::string old = "youngs_modulus_Pa = 1e4";
+  text.replace(text.find(old), old.size(), "youngs_modulus_Pa = 9223372036854775807");
+  EXPECT_EQ(parse(text).materials[0].youngs_modulus, 0x1p63);
+}
+
 TEST(Experiment, NegativeZeroKeepsItsSign) {
   Experiment e = parse(small_case);
   e.materials[0].poisson_ratio = -0.0;

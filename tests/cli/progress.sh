@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# Long runs speak: a live line on a terminal, a line per long phase elsewhere, an estimate before long runs.   progress.sh PROGRAM
+set -u
+program=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() {
+  echo "FAILED: $1"
+  cat -v "$work/log" | tail -30
+  exit 1
+}
+write_case() {  # NAME REFERENCE_CELLS
+  cat >"$work/$1.toml" <<TOML
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [4, 4, 4]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = [0.3, 0.48]
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+displacement_m = [0, 0, 0.01]
+[reference]
+cells = [$2, $2, $2]
+TOML
+}
+write_case short 8
+write_case seconds 32
+write_case minutes 96
+
+# Not a terminal, short phases: a line per part, nothing else; --quiet: nothing.
+"$program" compare "$work/short.toml" --no-vtu --out "$work/out" 2>"$work/log" >"$work/results" || fail "a short run failed"
+[ "$(wc -l <"$work/log")" -eq 2 ] || fail "a short run should say one line per part"
+"$program" compare "$work/short.toml" --no-vtu --out "$work/out" --quiet 2>"$work/log" >"$work/results" || fail "a quiet run failed"
+[ ! -s "$work/log" ] || fail "--quiet says something"
+
+# Not a terminal, a phase of more than ten seconds: one line.
+cat >"$work/slow" <<SLOW
+#!/usr/bin/env bash
+for ((i = 1; i < \$#; ++i)); do
+  if [ "\${!i}" = --progress ]; then
+    j=\$((i + 1))
+    printf 'a phase\nits detail\n' >"\${!j}.new" && mv "\${!j}.new" "\${!j}"
+    sleep 11.5
+  fi
+done
+exec "$(dirname "$program")/springproof-fem" "\$@"
+SLOW
+chmod +x "$work/slow"
+SPRINGPROOF_FEM_PROGRAM="$work/slow" "$program" compare "$work/short.toml" --poisson-ratio 0.3 --no-vtu --out "$work/out" 2>"$work/log" >"$work/results" ||
+  fail "a slow run failed"
+[ "$(grep -c '^  \[1/1\] short  nu0.3: a phase, its detail (10 s so far' "$work/log")" -eq 1 ] || fail "a phase of 11 s should have one line"
+grep -q 'a phase' "$work/results" && fail "progress went to standard output"
+
+# More than a minute: an estimate before the start.
+"$program" compare "$work/minutes.toml" --no-vtu --out "$work/out" 2>"$work/log" >"$work/results" &
+pid=$!
+for _ in $(seq 300); do grep -q about "$work/log" && break; sleep 0.1; done
+kill -INT $pid
+wait $pid
+[ $? -eq 130 ] || fail "an interrupted run should end with 130"
+head -1 "$work/log" | grep -Eq '^about [0-9]+ (s|min) for 2 parts, [12] at once$' || fail "no estimate before a long run"
+
+# A terminal: the live line says what springproof-fem is at, and is gone at the end, interrupted or not.
+script --version >/dev/null 2>&1 || { echo "no terminal to be had: install util-linux"; exit 77; }
+gone_at_the_end() {
+  local text
+  text=$(cat "$work/log")
+  [[ "${text##*finite elements}" == *$'\r\e[K'* ]] || fail "$1"
+}
+script -qec "'$program' compare '$work/seconds.toml' --jobs 1 --no-vtu --out '$work/out' >'$work/results'" "$work/log" >/dev/null || fail "a run on a terminal failed"
+grep -q 'finite elements 3 of 4, q2 on 32 x 32 x 32 cells, graded' "$work/log" || fail "no live line of the finest grid"
+tr '\r' '\n' <"$work/log" | grep -q 'iteration [0-9]*, [0-9]* s' || fail "no iterations in the live line"
+grep -q 'finite elements' "$work/results" && fail "the live line went to standard output"
+gone_at_the_end "the live line is left behind"
+script -qec "'$program' compare '$work/minutes.toml' --jobs 1 --no-vtu --out '$work/out' & sleep 4; kill -INT \$!; wait \$!" "$work/log" >/dev/null
+[ $? -eq 130 ] || fail "an interrupted run on a terminal should end with 130"
+gone_at_the_end "an interrupt leaves the live line behind"
+echo "long runs speak"
