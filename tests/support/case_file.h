@@ -61,17 +61,17 @@ displacement_gradient = [[0, 0, 0], [0, 0, 0], [0, 0, 1e-3]]
 displacement_m = [1, 2, 3]
 
 [[load]]
-on = "y_max"
+on = "x_max"
 rotation_deg = 45
 axis = [0, 3, 4]
 about_m = [1, 0.2, 0.2]
 
 [[load]]
-on = "x_max"
+on = "y_max"
 traction_Pa = [10, 0, -1e-3]
 
 [[load]]
-on = "x_max"
+on = "y_max"
 force_N = [0, 0, -5]
 
 [[load]]

