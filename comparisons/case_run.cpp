@@ -273,16 +273,22 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   add_splits(run, lattice, label, fields, scalars);
 }
 
+/// @throws InputError at the model's place in the case, if its options lead to no network.
+EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material,
+                           const Region* region) try {
+  return build_embedded(parameters, mesh, material, region);
+} catch (const InputError& e) {
+  throw InputError(choice.where, fmt::format("compare.models: {}", e.what()));
+}
+
 /// Builds the model and puts the loads on it, for what may be wrong with either.
 void try_model(const Experiment& experiment, const ModelChoice& choice, const ModelParameters& parameters, const Mesh& mesh, const Region* region) try {
-  const auto [model, embedding] = build_embedded(parameters, mesh, experiment.materials.front(), region);
+  const auto [model, embedding] = build_chosen(choice, parameters, mesh, experiment.materials.front(), region);
   if (parameters.row.topology == Topology::cells) return;
   const BoundaryConditions bc = transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
   if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
 } catch (const InputError&) {
   throw;
-} catch (const std::invalid_argument& wrong) {  // options that lead to no network
-  throw InputError(choice.where, fmt::format("compare.models: {}: {}", choice.label, wrong.what()));
 } catch (const std::runtime_error&) {
   // No network with this material's moduli: the run will say so.
 }

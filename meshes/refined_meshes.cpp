@@ -138,4 +138,10 @@ MeshedBody mesh_refined(const MeshRequest& r, const MeshAt& at) {
   }
 }
 
+MeshedBody mesh_alone(const MeshRequest& r, OneMesh made) {
+  std::vector<OneMesh> chain;
+  chain.push_back(std::move(made));
+  return body_of(r, std::move(chain));
+}
+
 }  // namespace springproof

@@ -23,4 +23,7 @@ using MeshAt = std::function<OneMesh(double edge, double times)>;
 /// @throws InputError when a mesh cannot be made, or none that is coarser than the next finer one by least_ratio.
 MeshedBody mesh_refined(const MeshRequest& request, const MeshAt& at);
 
+/// One mesh alone, with its notes.
+MeshedBody mesh_alone(const MeshRequest& request, OneMesh made);
+
 }  // namespace springproof

@@ -2,10 +2,12 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 
+#include "meshes/child.h"
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/transfer_patches.h"
@@ -115,7 +117,9 @@ MeshedBody mesh_msh(const MeshRequest& r) {
   std::optional<MeshedBody> own;
   {
     GmshSession session({});
-    gmsh::merge(r.file.string());  // open() would also run FILE.opt beside it
+    const TemporaryFolder alone;  // gmsh would also run FILE.opt beside it
+    std::filesystem::create_symlink(std::filesystem::absolute(r.file), alone.path / "body.msh");
+    gmsh::merge((alone.path / "body.msh").string());
     session.stop_on_error(r.file);
     gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
     if (const auto blocks = volume_elements(); !blocks.empty()) {

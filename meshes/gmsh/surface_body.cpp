@@ -58,39 +58,35 @@ namespace {
 constexpr double most_change = 0.01;  ///< of the volume by remeshing, of the finest mesh
 
 /// Fills the surface, with even triangles of the edge.  What remeshing cuts off falls as the edge squared: coarser meshes may lose
-/// more.
-MeshAt surface_at(const MeshRequest& r, const Surface& surface) {
-  return [&r, &surface](double edge, double times) {
+/// more.  The triangles' edges are `shorter` times the tetrahedra's.
+MeshAt surface_at(const MeshRequest& r, const Surface& surface, double shorter = 1) {
+  return [&r, &surface, shorter](double edge, double times) {
     MeshRequest own = r;
     own.edge = edge;
+    const double side = shorter * edge / r.scale;
     if (suits(surface, edge / r.scale)) return OneMesh{fill(own, surface), {}, edge};
     Surface even;
     try {
-      even = remesh(surface, edge / r.scale, most_change * times * times);
+      even = remesh(surface, side, most_change * times * times);
     } catch (const std::runtime_error& e) {
       refuse(r.file, e.what());
     }
     const std::string note =
         fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %", surface.triangles.size(),
-                    even.triangles.size(), edge, 100 * (volume(even) / volume(surface) - 1));
+                    even.triangles.size(), shorter * edge, 100 * (volume(even) / volume(surface) - 1));
     return OneMesh{fill(own, even), {note}, edge};
   };
 }
 
-/// The last resort of a body without coarser meshes.
-MeshAt facets_at(const MeshRequest& r, const Surface& surface, const std::string& failure) {
-  return [&r, &surface, &failure](double edge, double) {
-    MeshRequest own = r;
-    own.edge = edge;
-    return OneMesh{fill(own, surface), {"the facets of the file are kept, as remeshing them failed: " + failure}, edge};
-  };
-}
-
-MeshedBody filled(const MeshRequest& r, const Surface& surface) try {
-  return mesh_refined(r, surface_at(r, surface));
-} catch (const InputError& e) {
-  if (!r.coarser.empty()) throw;
-  return mesh_refined(r, facets_at(r, surface, e.what()));
+/// One mesh alone: a body may be too thin or too round for its edge.
+MeshedBody filled_alone(const MeshRequest& r, const Surface& surface) {
+  std::string failure;
+  for (const double shorter : {1.0, 0.7, 0.5}) try {
+      return mesh_alone(r, surface_at(r, surface, shorter)(r.edge, 1));
+    } catch (const InputError& e) {
+      if (failure.empty()) failure = e.what();
+    }
+  return mesh_alone(r, {fill(r, surface), {"the facets of the file are kept, as remeshing them failed: " + failure}, r.edge});
 }
 
 }  // namespace
@@ -101,7 +97,7 @@ MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   MeshRequest r = request;
   if (r.edge == 0) r.edge = r.scale * edge_for(r.tetrahedra, inside);
   refuse_too_many(r, inside * std::pow(r.scale, 3));
-  MeshedBody body = filled(r, surface);
+  MeshedBody body = r.coarser.empty() ? filled_alone(r, surface) : mesh_refined(r, surface_at(r, surface));
   body.notes.insert(body.notes.begin(), mended.begin(), mended.end());
   return body;
 }

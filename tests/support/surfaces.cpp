@@ -112,7 +112,10 @@ class SphereMesh {
 };
 
 constexpr double bump = 0.25;
-const Vec3 half_axes(3, 2, 1.5);
+const Vec3& half_axes() {  // used before the globals of other units exist
+  static const Vec3 axes(3, 2, 1.5);
+  return axes;
+}
 
 }  // namespace
 
@@ -210,13 +213,13 @@ Surface scan(int times, double noise, unsigned seed) {
   Surface s = std::move(mesh).result();
   for (Vec3& p : s.points) {
     const double radius = 1 + bump * 3 * std::sqrt(3.0) * p.x() * p.y() * p.z() + noise * share(random);
-    p = half_axes.cwiseProduct(radius * p);
+    p = half_axes().cwiseProduct(radius * p);
   }
   return s;
 }
 
 /// r = 1 + bump * 3 sqrt(3) xyz on the unit sphere; the integral of x^2 y^2 z^2 is 4 pi / 105.
-double scan_volume() { return half_axes.prod() * 4 * pi / 3 * (1 + 81 * bump * bump / 105); }
+double scan_volume() { return half_axes().prod() * 4 * pi / 3 * (1 + 81 * bump * bump / 105); }
 
 Surface box(const Vec3& size, int n) {
   Surface s;

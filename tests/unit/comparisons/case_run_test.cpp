@@ -202,7 +202,7 @@ elements = []
     prepare(e);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).rfind("jam.toml:15:11: compare.models: msm_random min_length=0.95: min_length: minL/l = 0.95 was asked for, but random addition jams", 0), 0u)
+    EXPECT_EQ(std::string(error.what()).rfind("jam.toml:15:11: compare.models: msm_random: min_length: minL/l = 0.95 was asked for, but random addition jams", 0), 0u)
         << error.what();
   }
 }

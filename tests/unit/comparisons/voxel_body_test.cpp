@@ -176,7 +176,7 @@ TEST_P(VoxelMistakes, AreRefusedWithTheirPlace) {
 }
 
 const Mistake mistakes[] = {
-    {"unknown_patch", "on = \"high\"", "on = \"hihg\"", "ball.toml:17:1: load.on: *'hihg'"},
+    {"unknown_patch", "on = \"high\"", "on = \"hihg\"", "ball.toml:18:1: load.on: *'hihg'"},
     {"rule_selects_nothing", "[0.1, 0.1, 0.15]", "[0.1, 0.1, 0.35]", "ball.toml:8:*selects no facet"},
     {"rule_with_a_name_that_is_taken", "name = \"high\"", "name = \"surface\"", "ball.toml:8:*surface"},
     {"voxels_too_coarse", "voxels = 100", "voxel_edge_m = 1", "ball.toml:2:7: voxels: 1 cubes of 1 m fill *times the volume of the body"},
