@@ -15,6 +15,8 @@ using namespace words;
 
 // A reference that is less sure than this is said to be so before anything is said of the models.
 constexpr double doubtful_uncertainty = 0.05;
+// And one that is surer than this decides what is said of them, however its grids approach each other.
+constexpr double harmless_uncertainty = 0.01;
 
 // Beyond these linear theory is off by some per cent itself.
 constexpr double largest_linear_strain = 0.05, largest_linear_rotation_deg = 5;
@@ -45,7 +47,7 @@ struct Doubt {
 void add_doubts(const Json& result, std::vector<Doubt>& doubts) {
   if (!has_models(result)) return;
   const auto add = [&](const Json& item, const char* of, double uncertainty, bool diverges) {
-    if (!diverges && !(uncertainty > doubtful_uncertainty)) return;
+    if (!(uncertainty > (diverges ? harmless_uncertainty : doubtful_uncertainty))) return;
     const std::string where = at_nu(name_of(result), number_of(item, "poisson_ratio"));
     const auto known = std::find_if(doubts.begin(), doubts.end(), [&](const Doubt& d) { return d.where == where; });
     Doubt& doubt = known == doubts.end() ? doubts.emplace_back() : *known;

@@ -130,9 +130,13 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   const auto finest = [&](const Eigen::VectorXd& nodal, std::string note) { return with(nodal, Sequence::not_converging, std::move(note)); };
   if (!are_refined(ratios)) return finest(coarse_safety_factor * spread, not_refined(ratios));
   const double along = result.correlation.value_or(0), quotient = f > 0 ? along * c / f : 0, order = order_of(quotient, ratios);
-  if (along < smallest_correlation)
-    return finest(safety_factor * spread, fmt::format("not converging: the grids' differences point apart (correlation {:.2f}); finest grid", along));
   if (!scalars_converge) return finest(safety_factor * spread, "not converging: most other values do not; finest grid");
+  if (along < smallest_correlation && c < ratios.coarse * f)
+    return finest(safety_factor * spread, fmt::format("not converging: the grids' differences point apart (correlation {:.2f}); finest grid", along));
+  // They fall at first order or faster, in other patterns: no limit to step to, and what is left is at most that order's.
+  if (along < smallest_correlation)
+    return with(safety_factor * by_last(1, ratios) * last, Sequence::converging,
+                fmt::format("the grids' differences point apart (correlation {:.2f}): finest grid, at first order", along));
   if (!is_fast_enough(quotient, order, ratios))
     return finest(safety_factor * spread.cwiseMax(by_last(std::max(order, lowest_order), ratios) * last), "not converging fast enough: finest grid");
   const double p = std::min(order, clamped_order);

@@ -13,7 +13,7 @@ cat "$log"
 awk '
   $1 == "all"                                  { quantities = $2; median = $(NF - 1) }
   /^(hexahedra|tetrahedra|near-|finite|all) /  { share = $(NF - 2); sub("%", "", share)
-                                                 if (share < 95) { print "FAILED: fewer than 95 % inside: " $0; failed = 1 } }
+                                                 if (share + 0 < 95) { print "FAILED: fewer than 95 % inside: " $0; failed = 1 } }
   END {
     if (quantities < 200) { print "FAILED: " quantities + 0 " quantities, 200 wanted"; failed = 1 }
     if (median < 0.05) { print "FAILED: the median |error| is " median + 0 " of the uncertainty: bars 20 times too wide"; failed = 1 }

@@ -165,14 +165,14 @@ TEST(ReferenceField, RecoversTheLimitField) {
               1.25 * weighted_norm(error, weights) / 16 / weighted_norm(limit + error / 16, weights) + 1e-8, 1e-9);
 }
 
-/// Differences of 1 and 1/4 m, of this correlation.
-std::vector<NodalVectors> fields_of(double correlation, NodalVectors& limit) {
+/// Differences of `first` and 1/4 m, of this correlation.
+std::vector<NodalVectors> fields_of(double correlation, NodalVectors& limit, double first = 1) {
   limit = NodalVectors::Constant(40, 3, 5);
   NodalVectors along = NodalVectors::Zero(40, 3), across = NodalVectors::Zero(40, 3);
   along.col(0).setOnes();
   across.col(1).setOnes();
   const NodalVectors u3 = limit - along / 12, u2 = u3 - along / 4;
-  return {u2 - correlation * along - std::sqrt(1 - correlation * correlation) * across, u2, u3};
+  return {u2 - first * (correlation * along + std::sqrt(1 - correlation * correlation) * across), u2, u3};
 }
 
 TEST(ReferenceField, IsExtrapolatedOnlyWhereItsDifferencesPointTheSameWay) {
@@ -182,11 +182,14 @@ TEST(ReferenceField, IsExtrapolatedOnlyWhereItsDifferencesPointTheSameWay) {
     const auto fields = fields_of(correlation, limit);
     const ReferenceField f = extrapolate(fields, weights);
     EXPECT_EQ(f.displacement, fields[2]);
-    EXPECT_EQ(f.sequence, Sequence::not_converging);
-    EXPECT_TRUE(f.note.starts_with("not converging")) << f.note;
+    EXPECT_EQ(f.sequence, Sequence::converging);  // but its limit is not where they point
+    EXPECT_TRUE(f.note.starts_with("the grids' differences point apart")) << f.note;
     EXPECT_NEAR(f.correlation.value(), correlation, 1e-12);
-    EXPECT_GE(f.nodal_uncertainty.minCoeff(), 1.25);   // Fs times the larger difference
-    EXPECT_GE(f.uncertainty, 1.25 / weighted_norm(fields[2], weights));
+    EXPECT_NEAR(f.nodal_uncertainty.minCoeff(), 1.25 * 0.25, 1e-6);   // Fs times the last difference: first order
+    const ReferenceField slow = extrapolate(fields_of(correlation, limit, 0.4), weights);   // falls more slowly than that
+    EXPECT_EQ(slow.sequence, Sequence::not_converging);
+    EXPECT_TRUE(slow.note.starts_with("not converging")) << slow.note;
+    EXPECT_GE(slow.nodal_uncertainty.minCoeff(), 1.25 * 0.4);   // Fs times the largest difference
   }
   const ReferenceField f = extrapolate(fields_of(1, limit), weights);
   EXPECT_EQ(f.sequence, Sequence::converging);
