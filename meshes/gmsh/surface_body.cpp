@@ -56,6 +56,7 @@ Mesh fill(const MeshRequest& r, const Surface& surface) {
 namespace {
 
 constexpr double most_change = 0.01;  ///< of the volume by remeshing, of the finest mesh
+constexpr double slack = 1.5;         ///< of the coarser ones, whose loss is the square of their edges only on average
 
 /// Fills the surface, with even triangles of the edge.  What remeshing cuts off falls as the edge squared: coarser meshes may lose
 /// more.  The triangles' edges are `shorter` times the tetrahedra's.
@@ -67,7 +68,7 @@ MeshAt surface_at(const MeshRequest& r, const Surface& surface, double shorter =
     if (suits(surface, edge / r.scale)) return OneMesh{fill(own, surface), {}, edge};
     Surface even;
     try {
-      even = remesh(surface, side, most_change * times * times);
+      even = remesh(surface, side, times > 1 ? slack * most_change * times * times : most_change);
     } catch (const std::runtime_error& e) {
       refuse(r.file, e.what());
     }
