@@ -63,7 +63,7 @@ between() {
 make alone "elements = []" '"hybmss"' 0.3
 expect 1 alone "nothing was compared, since the case asks for no reference"
 make off 'elements = ["q2"]' '"msm_18"' 0.3
-expect 1 off "there is no reference" SPRINGPROOF_FEM_PROGRAM=/nowhere
+expect 1 off "there is no reference" SPRINGPROOF_FEM_PROGRAM=/bin/false
 
 fem=${SPRINGPROOF_FEM_PROGRAM:-$(dirname "$program")/springproof-fem}
 if [ -x "$fem" ]; then
