@@ -67,7 +67,7 @@ refuse "a model without cells" "no lattice of cells" "$work/block.toml" --model 
 sed 's/\[0, 0, 0\]/["free", "free", 0]/; s/\[0.05, 0.02, -0.2\]/["free", "free", -0.2]/' "$work/block.toml" >"$work/loose.toml"
 refuse "a body that is not held" "is not held" "$work/loose.toml"
 printf '[[load]]\non = "z_max"\ndisplacement_m = ["free", "free", 0]\n' | cat "$work/block.toml" - >"$work/conflict.toml"
-refuse "two values at one node" "conflict.toml: .*already prescribes" "$work/conflict.toml"
+refuse "two values at one node" "conflict.toml:.*is prescribed by the load in line" "$work/conflict.toml"
 printf '[[load]]\non = "x_min"\nforce_N = [1, 0, 0]\n' | cat "$work/block.toml" - >"$work/force.toml"
 refuse "a force over a patch" "not shared out" "$work/force.toml"
 exit $failed
