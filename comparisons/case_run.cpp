@@ -115,14 +115,18 @@ void build_reference(PartRun& run) {
   }
 }
 
+std::size_t finest_lattice(const PreparedCase& prepared) {
+  const auto& meshes = prepared.meshes;
+  const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
+  return static_cast<std::size_t>(std::max_element(meshes.begin(), meshes.end(), finer) - meshes.begin());
+}
+
 /// How far the reference is deformed, on the finest lattice.
 void measure_deformation(PartRun& run) {
-  const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
-  const auto& meshes = run.prepared.meshes;
-  const auto finest = static_cast<std::size_t>(std::max_element(meshes.begin(), meshes.end(), finer) - meshes.begin());
+  const std::size_t finest = finest_lattice(run.prepared);
   if (!run.reference[finest]) return;
   const DeformationSize size =
-      deformation_size(*meshes[finest], run.reference[finest]->field.displacement, run.experiment().model_kinematics());
+      deformation_size(*run.prepared.meshes[finest], run.reference[finest]->field.displacement, run.experiment().model_kinematics());
   run.part.deformations.push_back({run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi});
 }
 
@@ -321,10 +325,8 @@ void prepare_blocks(PreparedCase& prepared) {
 /// The patches of the body itself, where their mean displacement is measured.
 void sample_patches(PreparedCase& prepared) {
   if (!wanted("mean_displacement", prepared.experiment.measures)) return;
-  const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
-  const auto& meshes = prepared.meshes;
   const bool voxels = prepared.experiment.body.is_voxels();
-  prepared.patch_samples = samples_of_patches(voxels ? *prepared.tetrahedra.back() : **std::max_element(meshes.begin(), meshes.end(), finer));
+  prepared.patch_samples = samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.meshes[finest_lattice(prepared)]);
 }
 
 /// Tries what the case asks for on one lattice.

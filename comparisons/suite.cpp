@@ -285,7 +285,7 @@ std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& resul
   return all;
 }
 
-nlohmann::json document(const std::vector<CaseResult>& results) {
+nlohmann::json document(const std::vector<CaseResult>& results, const std::vector<KnownQuantity>& known) {
   nlohmann::json cases = nlohmann::json::array();
   for (const CaseResult& r : results) cases.push_back(to_json(r));
   const std::string fem = fem::version();
@@ -293,19 +293,20 @@ nlohmann::json document(const std::vector<CaseResult>& results) {
           {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"host", host()},
           {"cases", cases},
-          {"calibration", calibration_json(known_quantities(results))}};
+          {"calibration", calibration_json(known)}};
 }
 
 /// Writes everything; true if every expectation holds and every case was compared.
 bool write_results(const std::vector<CaseResult>& results, const fs::path& out) {
-  const nlohmann::json doc = document(results);
+  const std::vector<KnownQuantity> known = known_quantities(results);
+  const nlohmann::json doc = document(results, known);
   nlohmann::json pictures = nlohmann::json::array();
   for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
   write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   write_file(out / "results.csv", to_csv(results));
   write_report(out / "report.html", doc, pictures);
   const Headline h = headline(doc);
-  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known_quantities(results)), (out / "report.html").string());
+  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known), (out / "report.html").string());
   return success(h);
 }
 
