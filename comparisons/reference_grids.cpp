@@ -15,6 +15,8 @@
 namespace springproof {
 namespace {
 
+constexpr double solver_noise = 1e-7;   ///< of a value, relative to its scale
+
 /// All points at which the displacement is wanted: the nodes of every lattice, then the measured points.
 NodalVectors sample_points(const PreparedCase& prepared) {
   const NodalVectors measured = measured_points(prepared);
@@ -98,13 +100,12 @@ void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<E
   }
 }
 
-/// Round-off of a measure: the solver's tolerance times the largest force (times the body's size for torques, over it
-/// for forces that balance torques), times the largest stress, or times the strain.
-double noise_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
+/// What values of a measure are measured by: the largest displacement, the strain, the largest force (also of those that
+/// balance torques, and times the body's size for torques), or the largest stress.
+double scale_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
                 double largest_displacement) {
-  constexpr double relative = 1e-7;
-  if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return relative * largest_displacement;
-  if (measure.starts_with("volume_change")) return relative * largest_displacement / body_size;
+  if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return largest_displacement;
+  if (measure.starts_with("volume_change")) return largest_displacement / body_size;
   const bool is_stress = measure.starts_with("stress.");
   double force = 0, stress = 0;
   for (const auto& [name, value] : values) {
@@ -112,7 +113,7 @@ double noise_of(const std::string& measure, const std::map<std::string, double>&
     if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body_size);
     if (name.starts_with("stress.")) stress = std::max(stress, std::abs(value));
   }
-  return relative * (is_stress ? stress : force * (measure.starts_with("torque.") ? body_size : 1));
+  return is_stress ? stress : force * (measure.starts_with("torque.") ? body_size : 1);
 }
 
 std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double nu, const ElementGrids& e) {
@@ -268,11 +269,9 @@ void widen(double spread, ReferenceField& field) {
 }
 
 bool most_converge(const std::map<std::string, ReferenceValue>& limits) {
-  std::map<std::string, double> largest;
-  for (const auto& [measure, limit] : limits) largest[kind_of(measure)] = std::max(largest[kind_of(measure)], std::abs(limit.value));
   int balance = 0;
   for (const auto& [measure, limit] : limits)
-    if (std::abs(limit.value) >= 0.1 * largest[kind_of(measure)]) balance += limit.sequence == Sequence::not_converging ? -1 : 1;
+    if (limit.matters) balance += limit.sequence == Sequence::not_converging ? -1 : 1;
   return balance >= 0;
 }
 
@@ -282,10 +281,13 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
   const double largest_displacement = e.grids[2].displacement.rowwise().norm().maxCoeff();
   const Experiment& experiment = prepared.experiment;
   std::map<std::string, ReferenceValue> limits;
-  for (const auto& [measure, fine] : values[2])
-    limits[measure] = extrapolate({values[0].at(measure), values[1].at(measure), fine},
-                                  noise_of(measure, values[2], experiment.body.size.norm(), largest_displacement),
-                                  trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+  for (const auto& [measure, fine] : values[2]) {
+    const double scale = scale_of(measure, values[2], experiment.body.size.norm(), largest_displacement);
+    ReferenceValue& limit = limits[measure];
+    limit = extrapolate({values[0].at(measure), values[1].at(measure), fine}, solver_noise * scale,
+                        trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+    limit.matters = std::abs(limit.value) >= 0.1 * scale;
+  }
   raise_to_usual(limits);
   for (auto& [measure, limit] : limits) limit.uncertainty += prepared.load_spread * std::abs(limit.value);
   return limits;

@@ -75,7 +75,7 @@ GridRatios ratios_of(const ElementGrids& e);
 /// Adds a relative uncertainty.
 void widen(double spread, ReferenceField& field);
 
-/// True if most of the values that matter do: those of a tenth or more of the largest of their kind.
+/// True if most of the values that matter do.
 bool most_converge(const std::map<std::string, ReferenceValue>& limits);
 
 /// Limit and uncertainty of every scalar measure.

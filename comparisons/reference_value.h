@@ -20,6 +20,7 @@ struct ReferenceValue {
   std::optional<double> observed_order;  ///< empty: not extrapolated
   std::string note;
   Sequence sequence = Sequence::converging;   ///< equal: on all grids, to solver accuracy
+  bool matters = true;   ///< false where it is less than a tenth of what the body's loads and displacements would allow
 };
 
 inline constexpr double safety_factor = 1.25;   ///< Fs for three grids (Roache)

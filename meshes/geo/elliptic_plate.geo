@@ -1,6 +1,7 @@
 // A quarter of a thick plate between two ellipses: outer half axes size_x, size_y, inner size_x * 2 / 3.25 and
 // size_y / 2.75, thickness size_z.  nx cells from the inner to the outer ellipse, ny around, nz (a multiple of 3)
-// through the thickness; four times smaller where the inner ellipse meets the x axis than at the far ends of both lines.
+// through the thickness; four times smaller where the inner ellipse meets the x axis than at the far ends of both lines,
+// and at the top than at the bottom of the upper third.
 // The outer edge has three patches of equal height: edge_low, edge_middle, edge_high.
 DefineConstant[
   size_x = 3.25, size_y = 2.75, size_z = 0.6,  // [m]
@@ -30,7 +31,7 @@ For k In {0 : 2}
   n = 10 * k;
   For i In {1 : 4}
     Line(40 + n + i) = {n + 1 + i, n + 11 + i};
-    Transfinite Curve{40 + n + i} = nz / 3 + 1;
+    Transfinite Curve{40 + n + i} = nz / 3 + 1 Using Progression (k == 2 ? 4^(-3 / nz) : 1);
   EndFor
   // Opposite sides start at opposite corners: so tetrahedra fit their triangles.
   Curve Loop(n + 41) = {n + 1, n + 42, -(n + 11), -(n + 41)};

@@ -138,7 +138,7 @@ TEST(ReferenceGrids, RatiosAreThoseOfTheNumbersOfCells) {
 }
 
 TEST(ReferenceGrids, MostValuesThatMatterMustConverge) {
-  const ReferenceValue good{1, 0.1, 2, ""}, bad{1, 0.1, {}, "", Sequence::not_converging}, small{0.01, 0.1, {}, "", Sequence::not_converging};
+  const ReferenceValue good{1, 0.1, 2, ""}, bad{1, 0.1, {}, "", Sequence::not_converging}, small{1, 0.1, {}, "", Sequence::not_converging, false};
   EXPECT_TRUE(most_converge({{"force.a.x", good}, {"force.a.y", small}, {"force.b.y", small}}));
   EXPECT_FALSE(most_converge({{"force.a.x", good}, {"force.a.y", bad}, {"force.b.y", bad}}));
   EXPECT_TRUE(most_converge({}));
@@ -184,6 +184,17 @@ TEST(ReferenceGrids, WhatFailsOnGradedGridsIsSolvedOnUniformOnes) {
   EXPECT_TRUE(q2.note.starts_with("uniform grids: the graded grid of ")) << q2.note;
   for (const ReferenceRecord& r : records_of(prepared, prepared.experiment.materials[0], q2))
     EXPECT_NE(r.note.find(q2.note), std::string::npos) << r.note;
+}
+
+/// A torque that vanishes is the largest of its kind, and says nothing about the body.
+TEST(ReferenceGrids, RoundOffOfATorqueDoesNotMatter) {
+  const PreparedCase prepared = squeezed_cube("\"q2\"", 0.01);
+  const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
+  ASSERT_EQ(grids.elements.size(), 1u) << grids.failure;
+  const auto limits = limits_of(prepared, grids.elements[0]);
+  EXPECT_TRUE(limits.at("force.z_max.z").matters);
+  EXPECT_FALSE(limits.at("force.z_max.x").matters);
+  EXPECT_FALSE(limits.at("torque.z_max.z").matters);
 }
 
 TEST(ReferenceGrids, WhatFailsOnUniformGridsTooSaysBoth) {

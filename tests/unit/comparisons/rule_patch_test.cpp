@@ -83,16 +83,19 @@ TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
     const double area = c.area > 0 ? c.area : area_of(prepared.experiment.patches[0], *prepared.tetrahedra.back());
     const Load& load = prepared.experiment.loads[1];
     Vec3 force = wrench_of(load)->value().force;
-    if (const auto* t = std::get_if<Traction>(&load))
+    if (const auto* t = std::get_if<Traction>(&load)) {
       EXPECT_LE((force - area * t->traction).norm(), 1e-6 * force.norm());
-    else if (c.area > 0)
+    } else if (c.area > 0) {
       EXPECT_NEAR(force.norm(), area * std::get<Pressure>(load).pressure, 1e-6 * force.norm());
+    }
     std::vector<std::shared_ptr<const Mesh>> all = prepared.tetrahedra;
     all.insert(all.end(), prepared.fitted.begin(), prepared.fitted.end());
     ASSERT_EQ(all.size(), 4u);
     for (const auto& mesh : all) {
       const double own = nodal_areas(*mesh, patch(*mesh, "spot")).sum();
-      if (c.area > 0) EXPECT_NEAR(own, area, 1e-6 * area);
+      if (c.area > 0) {
+        EXPECT_NEAR(own, area, 1e-6 * area);
+      }
       EXPECT_NEAR(own, area_of(prepared.experiment.patches[0], *mesh), 1e-4 * area);
     }
     all.push_back(prepared.meshes[0]);
@@ -107,7 +110,9 @@ TEST_P(RulePatches, HoldTheRulesAreaOnEveryMesh) {
   const PreparedCase prepared = prepare(experiment_of(GetParam(), 0.15, ""));
   const auto held = [&](const Mesh& m) { return nodal_areas(m, patch(m, "foot")).sum(); };
   for (const auto& mesh : prepared.tetrahedra) {
-    if (GetParam().body == cube) EXPECT_NEAR(held(*mesh), 1 + 4 * 0.23, 1e-9);
+    if (GetParam().body == cube) {
+      EXPECT_NEAR(held(*mesh), 1 + 4 * 0.23, 1e-9);
+    }
     EXPECT_NEAR(held(*mesh), area_of(prepared.experiment.patches[1], *mesh), 1e-9);
   }
 }
@@ -125,7 +130,7 @@ TEST(RulePatchesOnCurvedBodies, SpreadOfTheAreaIsPartOfTheUncertainty) {
   EXPECT_TRUE(says(cap));
   EXPECT_EQ(box.load_spread, 0);
   EXPECT_FALSE(says(box));
-  ReferenceField field{NodalVectors::Constant(2, 3, 2), 0.01, Eigen::Vector2d(0.1, 0.2), {}, ""};
+  ReferenceField field{NodalVectors::Constant(2, 3, 2), 0.01, Eigen::Vector2d(0.1, 0.2), {}, "", Sequence::converging, {}};
   widen(0.25, field);
   EXPECT_NEAR(field.uncertainty, 0.26, 1e-15);
   EXPECT_NEAR(field.nodal_uncertainty[1], 0.2 + 0.25 * std::sqrt(12), 1e-15);
