@@ -100,7 +100,7 @@ void build_reference(PartRun& run) {
     const Mesh& mesh = *run.prepared.meshes[i];
     std::vector<NodalVectors> fields;
     for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
-    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), most_converge(scalars)), scalars};
+    run.reference[i] = Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), doubt_of(scalars)), scalars};
     widen(run.prepared.load_spread, run.reference[i]->field);
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;

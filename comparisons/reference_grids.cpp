@@ -268,13 +268,6 @@ void widen(double spread, ReferenceField& field) {
   field.nodal_uncertainty += spread * field.displacement.rowwise().norm();
 }
 
-bool most_converge(const std::map<std::string, ReferenceValue>& limits) {
-  int balance = 0;
-  for (const auto& [measure, limit] : limits)
-    if (limit.matters) balance += limit.sequence == Sequence::not_converging ? -1 : 1;
-  return balance >= 0;
-}
-
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));

@@ -75,9 +75,6 @@ GridRatios ratios_of(const ElementGrids& e);
 /// Adds a relative uncertainty.
 void widen(double spread, ReferenceField& field);
 
-/// True if most of the values that matter do.
-bool most_converge(const std::map<std::string, ReferenceValue>& limits);
-
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);
 

@@ -107,8 +107,19 @@ void raise_to_usual(std::map<std::string, ReferenceValue>& limits) {
     if (limit.sequence != Sequence::equal) limit.uncertainty = std::max(limit.uncertainty, median(relative[kind_of(measure)]) * size[vector_of(measure)]);
 }
 
+double doubt_of(const std::map<std::string, ReferenceValue>& limits) {
+  std::vector<double> relative;
+  int balance = 0;
+  for (const auto& [measure, limit] : limits) {
+    if (!limit.matters) continue;
+    balance += limit.sequence == Sequence::not_converging ? -1 : 1;
+    relative.push_back(limit.uncertainty / std::abs(limit.value));
+  }
+  return balance < 0 ? median(relative) : 0;
+}
+
 ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, const GridRatios& ratios,
-                           bool scalars_converge) {
+                           double doubt) {
   if (fields.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const NodalVectors &u1 = fields[fields.size() - 3], &u2 = fields[fields.size() - 2], &u3 = fields.back();
   const NodalVectors coarse = u2 - u1, fine = u3 - u2;
@@ -130,13 +141,16 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   const auto finest = [&](const Eigen::VectorXd& nodal, std::string note) { return with(nodal, Sequence::not_converging, std::move(note)); };
   if (!are_refined(ratios)) return finest(coarse_safety_factor * spread, not_refined(ratios));
   const double along = result.correlation.value_or(0), quotient = f > 0 ? along * c / f : 0, order = order_of(quotient, ratios);
-  if (!scalars_converge) return finest(safety_factor * spread, "not converging: most other values do not; finest grid");
-  if (along < smallest_correlation && c < ratios.coarse * f)
-    return finest(safety_factor * spread, fmt::format("not converging: the grids' differences point apart (correlation {:.2f}); finest grid", along));
-  // They fall at first order or faster, in other patterns: no limit to step to, and what is left is at most that order's.
+  // Differences that fall at first order or faster: what is left is at most that order's, whichever way they point.
+  const bool fall = c >= ratios.coarse * f;
+  const Eigen::VectorXd left = safety_factor * (fall ? Eigen::VectorXd(by_last(1, ratios) * last) : spread);
+  if (doubt > 0)
+    return finest(left * std::max(1.0, doubt * size / std::sqrt(weights.dot(left.cwiseAbs2()) / weights.sum())),
+                  fmt::format("not converging: most other values do not ({:.2g} %); finest grid", 100 * doubt));
   if (along < smallest_correlation)
-    return with(safety_factor * by_last(1, ratios) * last, Sequence::converging,
-                fmt::format("the grids' differences point apart (correlation {:.2f}): finest grid, at first order", along));
+    return with(left, fall ? Sequence::converging : Sequence::not_converging,
+                fmt::format("{}the grids' differences point apart (correlation {:.2f}): finest grid{}", fall ? "" : "not converging: ", along,
+                            fall ? ", at first order" : ""));
   if (!is_fast_enough(quotient, order, ratios))
     return finest(safety_factor * spread.cwiseMax(by_last(std::max(order, lowest_order), ratios) * last), "not converging fast enough: finest grid");
   const double p = std::min(order, clamped_order);

@@ -62,12 +62,16 @@ ReferenceValue extrapolate_two(double f1, double f2);
 /// grids neither count nor change.
 void raise_to_usual(std::map<std::string, ReferenceValue>& limits);
 
+/// Median relative uncertainty of the values that matter, if most of them do not converge; otherwise 0.
+double doubt_of(const std::map<std::string, ReferenceValue>& limits);
+
 /// "force", "displacement", "stress", "volume_change", ... of a measure.
 std::string kind_of(const std::string& measure);
 
 /// The same for a displacement field sampled at the same points on three grids, in the weighted L2 norm: the order is that of
-/// the first difference's part along the second.  It is extrapolated only if `scalars_converge` and the two differences point
-/// the same way; otherwise the uncertainty is Fs times the largest of the three distances, node by node.
+/// the first difference's part along the second.  It is extrapolated only where the two point the same way and there is no
+/// `doubt` (below).  Otherwise the uncertainty is Fs times what first order leaves after the last difference, or, where the
+/// differences do not fall that fast, Fs times the largest of the three distances, node by node; never less than the doubt.
 struct ReferenceField {
   NodalVectors displacement;
   double uncertainty = 0;              ///< relative to the norm of the finest field
@@ -78,7 +82,7 @@ struct ReferenceField {
   std::optional<double> correlation;   ///< of u2 - u1 and u3 - u2, from -1 to 1; empty: one of them is round-off
 };
 ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights, const GridRatios& ratios = {},
-                           bool scalars_converge = true);
+                           double doubt = 0);
 
 /// Weighted L2 norm of a nodal field: sqrt(sum w |u|^2 / sum w).
 double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights);

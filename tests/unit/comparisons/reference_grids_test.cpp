@@ -137,13 +137,6 @@ TEST(ReferenceGrids, RatiosAreThoseOfTheNumbersOfCells) {
   near(ratios_of(grids_with({{4132, 0, 0}, {3719, 0, 0}, {3837, 0, 0}})), std::cbrt(3719 / 4132.0), std::cbrt(3837 / 3719.0));
 }
 
-TEST(ReferenceGrids, MostValuesThatMatterMustConverge) {
-  const ReferenceValue good{1, 0.1, 2, ""}, bad{1, 0.1, {}, "", Sequence::not_converging}, small{1, 0.1, {}, "", Sequence::not_converging, false};
-  EXPECT_TRUE(most_converge({{"force.a.x", good}, {"force.a.y", small}, {"force.b.y", small}}));
-  EXPECT_FALSE(most_converge({{"force.a.x", good}, {"force.a.y", bad}, {"force.b.y", bad}}));
-  EXPECT_TRUE(most_converge({}));
-}
-
 /// A cube between rough plates, St. Venant-Kirchhoff's law, which softens in compression.
 PreparedCase squeezed_cube(const std::string& elements, double shortening) {
   return prepare(parse_experiment(fmt::format(R"(

@@ -204,10 +204,21 @@ TEST(ReferenceField, IsExtrapolatedOnlyWhereItsDifferencesPointTheSameWay) {
 TEST(ReferenceField, DoesNotConvergeWhereTheScalarsDoNot) {
   NodalVectors limit;
   const auto fields = fields_of(1, limit);
-  const ReferenceField f = extrapolate(fields, Eigen::VectorXd::Ones(40), {}, false);
+  const ReferenceField f = extrapolate(fields, Eigen::VectorXd::Ones(40), {}, 1e-9);
   EXPECT_EQ(f.displacement, fields[2]);
   EXPECT_EQ(f.sequence, Sequence::not_converging);
-  EXPECT_GE(f.nodal_uncertainty.minCoeff(), 1.25);
+  EXPECT_NEAR(f.nodal_uncertainty.minCoeff(), 1.25 * 0.25, 1e-6);   // falls at first order
+  const ReferenceField slow = extrapolate(fields_of(1, limit, 0.4), Eigen::VectorXd::Ones(40), {}, 1e-9);
+  EXPECT_GE(slow.nodal_uncertainty.minCoeff(), 1.25 * 0.4);
+  const ReferenceField dubious = extrapolate(fields, Eigen::VectorXd::Ones(40), {}, 10);
+  EXPECT_NEAR(dubious.uncertainty, 10, 1e-6);
+}
+
+TEST(ReferenceField, IsInDoubtWhereMostValuesThatMatterDoNotConverge) {
+  const ReferenceValue good{1, 0.1, 2, ""}, bad{2, 0.1, {}, "", Sequence::not_converging}, small{1, 0.1, {}, "", Sequence::not_converging, false};
+  EXPECT_EQ(doubt_of({{"force.a.x", good}, {"force.a.y", small}, {"force.b.y", small}}), 0);
+  EXPECT_EQ(doubt_of({{"force.a.x", good}, {"force.a.y", bad}, {"force.b.y", bad}}), 0.05);
+  EXPECT_EQ(doubt_of({}), 0);
 }
 
 TEST(ReferenceField, GridsThatAreNotRefinedAreNotExtrapolated) {
