@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "meshes/gmsh/bodies.h"
@@ -58,48 +59,78 @@ namespace {
 constexpr double most_change = 0.01;  ///< of the volume by remeshing, of the finest mesh
 constexpr double slack = 1.5;         ///< of the coarser ones, whose loss is the square of their edges only on average
 
+/// The surface of a file, thinned out once for all meshes where it is much denser than they need.
+class FileSurface {
+ public:
+  explicit FileSurface(const Surface& surface) : full_(surface), volume_(volume(surface)) {}
+
+  /// For triangles of this edge or longer ones.  Should shorter ones be asked for, a half of it is prepared for: few rounds, whoever asks.
+  const Surface& for_edge(double edge) {
+    if (edge < edge_ && thin_.triangles.size() < full_.triangles.size()) {
+      edge_ = std::isinf(edge_) ? edge : std::min(edge, edge_ / 2);
+      thin_ = thinned(full_, edge_ / 2);
+      lost_ = std::abs(volume(thin_) / volume_ - 1);
+    }
+    return thin_;
+  }
+  double lost() const { return lost_; }  ///< share of the volume by thinning out
+  double change(const Surface& s) const { return volume(s) / volume_ - 1; }
+  std::size_t facets() const { return full_.triangles.size(); }
+  std::string note() const {
+    if (thin_.triangles.size() == facets()) return {};
+    return fmt::format("{} facets thinned out to {}; the volume changed by {:.2g} %", facets(), thin_.triangles.size(), 100 * change(thin_));
+  }
+
+ private:
+  const Surface& full_;
+  double volume_, edge_ = std::numeric_limits<double>::infinity(), lost_ = 0;
+  Surface thin_;
+};
+
 /// Fills the surface, with even triangles of the edge.  What remeshing cuts off falls as the edge squared: coarser meshes may lose
 /// more.  The triangles' edges are `shorter` times the tetrahedra's.
-MeshAt surface_at(const MeshRequest& r, const Surface& surface, double shorter = 1) {
-  return [&r, &surface, shorter](double edge, double times) {
+MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1) {
+  return [&r, &source, shorter](double edge, double times) {
     MeshRequest own = r;
     own.edge = edge;
     const double side = shorter * edge / r.scale;
+    const Surface& surface = source.for_edge(side);
     if (suits(surface, edge / r.scale)) return OneMesh{fill(own, surface), {}, edge};
     Surface even;
     try {
-      even = remesh(surface, side, times > 1 ? slack * most_change * times * times : most_change);
+      even = remesh(surface, side, (times > 1 ? slack * most_change * times * times : most_change) - source.lost());
     } catch (const std::runtime_error& e) {
       refuse(r.file, e.what());
     }
-    const std::string note =
-        fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %", surface.triangles.size(),
-                    even.triangles.size(), shorter * edge, 100 * (volume(even) / volume(surface) - 1));
+    const std::string note = fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %", source.facets(),
+                                         even.triangles.size(), shorter * edge, 100 * source.change(even));
     return OneMesh{fill(own, even), {note}, edge};
   };
 }
 
 /// One mesh alone: a body may be too thin or too round for its edge.
-MeshedBody filled_alone(const MeshRequest& r, const Surface& surface) {
+MeshedBody filled_alone(const MeshRequest& r, FileSurface& source) {
   std::string failure;
   for (const double shorter : {1.0, 0.7, 0.5}) try {
-      return mesh_alone(r, surface_at(r, surface, shorter)(r.edge, 1));
+      return mesh_alone(r, surface_at(r, source, shorter)(r.edge, 1));
     } catch (const InputError& e) {
       if (failure.empty()) failure = e.what();
     }
-  return mesh_alone(r, {fill(r, surface), {"the facets of the file are kept, as remeshing them failed: " + failure}, r.edge});
+  return mesh_alone(r, {fill(r, source.for_edge(r.edge / r.scale)), {"the facets of the file are kept, as remeshing them failed: " + failure}, r.edge});
 }
 
 }  // namespace
 
 MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
-  const auto [surface, mended] = check_surface(raw, request.file.string());
+  auto [surface, notes] = check_surface(raw, request.file.string());
   const double inside = volume(surface);
   MeshRequest r = request;
   if (r.edge == 0) r.edge = r.scale * edge_for(r.tetrahedra, inside);
   refuse_too_many(r, inside * std::pow(r.scale, 3));
-  MeshedBody body = r.coarser.empty() ? filled_alone(r, surface) : mesh_refined(r, surface_at(r, surface));
-  body.notes.insert(body.notes.begin(), mended.begin(), mended.end());
+  FileSurface source(surface);
+  MeshedBody body = r.coarser.empty() ? filled_alone(r, source) : mesh_refined(r, surface_at(r, source));
+  if (const std::string note = source.note(); !note.empty()) notes.push_back(note);
+  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
   return body;
 }
 

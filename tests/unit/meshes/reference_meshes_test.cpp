@@ -7,6 +7,7 @@
 
 #include "meshes/child.h"
 #include "meshes/mesher.h"
+#include "meshes/quality.h"
 #include "meshes/volume.h"
 #include "support/surfaces.h"
 
@@ -60,7 +61,9 @@ const ReferenceBody bodies[] = {
     {"globe", globe(1, 24, 48), 0},
     {"globe_of_few_facets", globe(1, 8, 12), 0},
     {"dense_scan", scan(5, 0.004, 3), 0.3},
+    {"denser_scan", scan(6, 0.005, 3), 0},
     {"noisy_sphere", noisy_sphere(1, 5, 0.01, 7), 0},
+    {"denser_noisy_sphere", noisy_sphere(1, 6, 0.01, 7), 0},
     {"ring", torus(2, 0.4, 120, 20), 0},
     {"cube_of_12_facets", box({1, 1, 1}, 1), 0.2},
     {"slender_beam", box({1, 0.05, 0.05}, 1), 0},
@@ -77,6 +80,19 @@ class ReferenceMeshesOfFiles : public testing::Test {
   }
   TemporaryFolder folder_;
 };
+
+TEST_F(ReferenceMeshesOfFiles, ADenseSurfaceIsThinnedOutOnceForAllMeshes) {
+  const auto thinnings = [&](const Surface& surface) {
+    const fs::path file = folder_.path / "body.stl";
+    write_stl_binary(file, surface);
+    const MeshedBody body = mesh_body({.file = file, .tetrahedra = 3000, .coarser = {2.25, 1.5}});
+    for (const Mesh* mesh : {&body.mesh, &body.coarser[0], &body.coarser[1]}) EXPECT_GT(quality_of(*mesh).worst, 0.02);
+    return std::count_if(body.notes.begin(), body.notes.end(), [](const std::string& note) { return note.find("thinned out to") != std::string::npos; });
+  };
+  EXPECT_EQ(thinnings(globe(1, 100, 200)), 1);
+  EXPECT_EQ(thinnings(noisy_sphere(1, 6, 0.005, 3)), 1);
+  EXPECT_EQ(thinnings(globe(1, 24, 48)), 0);
+}
 
 TEST_F(ReferenceMeshesOfFiles, ScriptsOfEveryKindAreRefined) {
   const auto meshed = [](const std::string& name, const Vec3& size, double edge) {

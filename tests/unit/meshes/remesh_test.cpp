@@ -69,6 +69,38 @@ TEST(Remesh, KeepsSharpEdgesAndCorners) {
         EXPECT_TRUE(std::any_of(fine.points.begin(), fine.points.end(), [&](const Vec3& p) { return p == Vec3(x, y, z); })) << x << y << z;
 }
 
+TEST(Remesh, NoiseIsNoLine) {
+  // Ten times more facets than the noise leaves room for would stay if its creases were kept.
+  const Surface s = thinned(noisy_sphere(1, 6, 0.01, 7), 0.06);
+  const double edge = 0.12, facets = area(s) / (std::sqrt(3.0) / 4 * edge * edge);
+  EXPECT_LT(double(remesh(s, edge).triangles.size()), 1.5 * facets);
+}
+
+TEST(Thinned, KeepsFlatFacesCreasesAndCorners) {
+  const Vec3 size(1, 2, 3);
+  const Surface thin = thinned(box(size, 40), 0.2);
+  EXPECT_LT(thin.triangles.size(), 1300u);
+  EXPECT_NEAR(volume(thin), 6, 1e-9);
+  EXPECT_NEAR(area(thin), 22, 1e-9);
+  for (const Vec3& p : thin.points) EXPECT_LT(std::min(p.cwiseAbs().minCoeff(), (p - size).cwiseAbs().minCoeff()), 1e-9);
+}
+
+TEST(Thinned, KeepsTheBody) {
+  const Surface bodies[] = {noisy_sphere(1, 6, 0.01, 7), scan(5, 0.005, 3), torus(2, 0.2, 300, 60), globe(1, 100, 200), trefoil(0.4, 300, 40)};
+  for (const Surface& s : bodies) {
+    const double edge = std::sqrt(area(s) / 1000);
+    const Surface thin = thinned(s, edge);
+    EXPECT_LT(2 * thin.triangles.size(), s.triangles.size());
+    EXPECT_NEAR(volume(thin) / volume(s), 1, 1e-3);
+    EXPECT_TRUE(check_surface(thin, "thin").notes.empty());
+  }
+}
+
+TEST(Thinned, LeavesASurfaceThatIsNotDense) {
+  const Surface s = globe(1, 24, 48);
+  EXPECT_EQ(thinned(s, 0.1).points.size(), s.points.size());
+}
+
 TEST(Remesh, AnEdgeTooLongOrTooShortIsAnError) {
   EXPECT_THROW(remesh(sphere(1, 3), 2), std::runtime_error);
   EXPECT_THROW(remesh(torus(2, 0.1, 200, 20), 0.5), std::runtime_error);
