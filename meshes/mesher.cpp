@@ -45,13 +45,16 @@ double facets_in(const fs::path& stl) {
   return bytes == 84 + 50.0 * count ? count : bytes / 250;
 }
 
-/// Checking facets against each other and meshing them anew takes minutes from a million on, and some kB each.
+/// Checking facets against each other and thinning them out takes minutes from a million on, and some kB each.
 void check_facets(const fs::path& stl) {
-  constexpr double many = 5e5, most = 5e6;
-  const double facets = facets_in(stl);
-  if (facets > most)
-    refuse(stl, fmt::format("about {:.2g} facets (allowed: up to {:.0g}; thin the surface out, no reference needs as many)", facets, most));
-  if (facets > many) fmt::print(stderr, "note: {}: about {:.2g} facets, which may take minutes and some GB (fewer would do)\n", stl.string(), facets);
+  constexpr double many = 5e5, seconds_each = 6e-5, bytes_each = 700;
+  const double facets = facets_in(stl), seconds = seconds_each * facets, limit = time_limit();
+  if (seconds > limit)
+    refuse(stl, fmt::format("about {:.2g} facets (allowed: up to {:.2g}, as they take some {:.2g} s and the time limit is {:g} s; thin the surface out, no "
+                            "reference needs as many, or set SPRINGPROOF_MESH_SECONDS)", facets, limit / seconds_each, seconds, limit));
+  if (facets > many)
+    fmt::print(stderr, "note: {}: about {:.2g} facets, which take some {:.2g} s and {:.2g} GB before they are meshed (fewer would do)\n", stl.string(), facets,
+               seconds, 1e-9 * bytes_each * facets);
 }
 
 void check(const MeshRequest& r) {

@@ -152,7 +152,7 @@ void collapse_to(SurfaceMesh& mesh, double facets) {
 Surface thinned(const Surface& surface, double edge) {
   constexpr double worth_it = 2, most_change = 1e-3;
   const double before = volume(surface);
-  for (;; edge /= 2) {
+  for (;; edge /= std::sqrt(2)) {
     const double facets = facets_of(surface, edge);
     if (worth_it * facets > double(surface.triangles.size())) return surface;
     SurfaceMesh mesh = to_cgal(surface);
