@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 
 packages=(
   g++ cmake ninja-build pkg-config
-  libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev libxxhash-dev libgtest-dev
+  libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev libxxhash-dev zlib1g-dev libgtest-dev
   libdeal.ii-dev libopenblas0-serial libgmsh-dev libcgal-dev libjs-chart.js libjs-three
 )
 
