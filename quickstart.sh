@@ -1,44 +1,72 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12), builds, and runs the main job:   ./quickstart.sh
 # or the tests:                                                          ./quickstart.sh test
-# Arguments of `./quickstart.sh` are passed on to `springproof compare`; without any it runs the experiments of
-# Golec et al. (2019) in the linear regime, and a rabbit.  Repeating either command only does what is still to be done.
+# Arguments of `./quickstart.sh` are passed on to `springproof compare`, those of `./quickstart.sh test` to ctest; without
+# any the first runs the experiments of Golec et al. (2019) in the linear regime, and a rabbit.  Repeating either command
+# only does what is still to be done.  Each step says in a few lines how far it is; all of what it prints is in build/log/.
 set -euo pipefail
 cd "$(dirname "$0")"
 
 packages=(
   g++ cmake ninja-build pkg-config
-  libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev libxxhash-dev libgtest-dev
+  libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev libxxhash-dev zlib1g-dev libgtest-dev
   libdeal.ii-dev libopenblas0-serial libgmsh-dev libcgal-dev libjs-chart.js libjs-three
 )
 
+# A line per tenth of the steps that ninja and ctest number; all of what a failing one prints; ctest's summary.
+progress='
+  function tenth(done, all) { if (int(10 * done / all) > last) { last = int(10 * done / all); printf "  %d of %d\n", done, all; fflush() } }
+  /^Test project/             { testing = 1 }
+  !testing && /^\[[0-9]+\/[0-9]+\]/ { failing = 0; split(substr($1, 2), n, /[\/\]]/); tenth(n[1], n[2]); next }
+  /^FAILED: /                 { failing = 1 }
+  /^ *[0-9]+\/[0-9]+ Test +#/ { failing = !/Passed|Skipped/; gsub(/\.\.\.\.+/, "..."); if (failing) print
+                                split($1, n, "/"); tenth(n[1], n[2]); next }
+  /^ *Start +[0-9]+:/         { failing = 0 }
+  /tests passed,/             { summary = 1 }
+  failing || summary          { print; fflush() }'
+
+# step NAME WHAT COMMAND ...: what is done, how far it is, and where all of its output is; the end of that where it fails.
+step() {
+  local log=build/log/$1.log what=$2 status=0 start=$SECONDS
+  shift 2
+  mkdir -p build/log
+  echo "$what (log: $log)"
+  "$@" 2>&1 | tee "$log" | awk "$progress" || status=$?
+  if [ $status -ne 0 ]; then
+    echo "quickstart.sh: this failed after $((SECONDS - start)) s: $*" >&2
+    grep -q 'tests passed,' "$log" || tail -n 25 "$log" >&2
+    echo "quickstart.sh: the whole log is $log" >&2
+    exit $status
+  fi
+  echo "  done in $((SECONDS - start)) s"
+}
+
 install_missing() {
-  local missing=() package
+  local missing=() package as_root=()
   for package in "${packages[@]}"; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed' || missing+=("$package")
   done
   [ ${#missing[@]} -eq 0 ] && return
-  echo "installing Debian packages: ${missing[*]}"
-  local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || { echo "quickstart.sh: not root and no sudo; install these packages first" >&2; exit 1; }
+    command -v sudo >/dev/null || { echo "quickstart.sh: not root and no sudo; install these packages first: ${missing[*]}" >&2; exit 1; }
     as_root=(sudo)
   fi
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
+  step lists "reading Debian's package lists" "${as_root[@]}" apt-get update
+  step install "installing ${missing[*]}" \
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
 }
 
-# build TARGET...
+# build TARGET ...
 build() {
-  [ -f build/release/build.ninja ] || cmake --preset release
-  cmake --build build/release --target "$@"
+  [ -f build/release/build.ninja ] || step configure "configuring" cmake --preset release
+  step build "building with $(nproc) processes" cmake --build build/release --target "$@"
 }
 
 install_missing
 if [ "${1:-}" = test ]; then
   shift
   build all
-  ctest --test-dir build/release --output-on-failure -j "$(nproc)" "$@"
+  step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" "$@"
 else
   build meshes/all msm/all fem_reference/all comparisons/all  # the programs, without the tests
   [ $# -gt 0 ] || set -- golec_2019 bodies/rabbit

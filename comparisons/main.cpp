@@ -73,7 +73,7 @@ int main(int argc, char** argv) try {
   std::vector<std::string> names;
   SuiteOptions options;
   CLI::App* compare_command = app.add_subcommand(
-      "compare", "Run cases with every model and the FEM reference; write results.csv, results.json, VTU files and report.html");
+      "compare", "Run cases with every model and the FEM reference; write results.csv, results.json and report.html");
   compare_command->add_option("CASE", names, "case files (*.toml), folders of them, or built-in names (springproof list)")->required();
   compare_command->add_option("--out", options.out, "folder for the results")->capture_default_str();
   compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")->check(CLI::NonNegativeNumber);
@@ -83,7 +83,7 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(1, 16));
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
   compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
-  compare_command->add_flag("!--no-vtu", options.vtu, "write no VTU files");
+  compare_command->add_flag("--vtu,!--no-vtu", options.vtu, "also write a VTU file of every run, for ParaView");
   compare_command->footer("Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, or nothing was compared, 2 the input is unusable, 130 interrupted.");
 
   CLI::App* list_command = app.add_subcommand("list", "Built-in cases, models and measures");

@@ -15,8 +15,6 @@
 namespace springproof {
 namespace {
 
-constexpr double solver_noise = 1e-7;   ///< of a value, relative to its scale
-
 /// All points at which the displacement is wanted: the nodes of every lattice, then the measured points.
 NodalVectors sample_points(const PreparedCase& prepared) {
   const NodalVectors measured = measured_points(prepared);

@@ -123,7 +123,7 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   if (fields.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const NodalVectors &u1 = fields[fields.size() - 3], &u2 = fields[fields.size() - 2], &u3 = fields.back();
   const NodalVectors coarse = u2 - u1, fine = u3 - u2;
-  const double size = weighted_norm(u3, weights), noise = 1e-8 * size;
+  const double size = weighted_norm(u3, weights), noise = solver_noise * size;
   const double c = weighted_norm(coarse, weights), f = weighted_norm(fine, weights);
   ReferenceField result;
   result.displacement = u3;

@@ -23,6 +23,7 @@ struct ReferenceValue {
   bool matters = true;   ///< false where it is less than a tenth of what the body's loads and displacements would allow
 };
 
+inline constexpr double solver_noise = 1e-7;   ///< of a value or field, relative to its scale
 inline constexpr double safety_factor = 1.25;   ///< Fs for three grids (Roache)
 inline constexpr double coarse_safety_factor = 3;   ///< Fs for two grids, and for three that are hardly refined
 inline constexpr double smallest_ratio = 1.2;   ///< of cell sizes, below which a sequence tells no order

@@ -12,7 +12,7 @@ struct SuiteOptions {
   std::filesystem::path out = "springproof-report";
   int jobs = 0;          ///< parts at once; 0 = one per processor core
   bool resume = false;   ///< take finished parts from `out`
-  bool vtu = true;       ///< write a VTU per run
+  bool vtu = false;      ///< write a VTU per run
   bool quiet = false;    ///< say nothing of what is under way
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
   int finer = 1;         ///< reference grids with so many times the cells along each direction

@@ -1,9 +1,12 @@
 #include "meshes/field.h"
 
+#include <zlib.h>
+
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <new>
 #include <stdexcept>
 
 #include "meshes/volume.h"
@@ -15,12 +18,12 @@ static_assert(std::endian::native == std::endian::little, "the VTU header says L
 
 constexpr int vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
-std::string base64(const std::vector<unsigned char>& bytes) {
+std::string base64(const unsigned char* bytes, std::size_t count) {
   static constexpr char alphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = bytes.size() - i;
+  text.reserve((count + 2) / 3 * 4);
+  for (std::size_t i = 0; i < count; i += 3) {
+    const std::size_t left = count - i;
     const std::uint32_t word =
         bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
     text += alphabet[word >> 18 & 63];
@@ -31,14 +34,18 @@ std::string base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-/// The byte count and the bytes, as VTK wants inline binary.
+/// As VTK's vtkZLibDataCompressor wants inline binary: number of blocks, size of a block, of a last and shorter one (none),
+/// of each compressed; then the blocks.  All bytes are one block.
 template <class T>
 std::string encoded(const T* data, std::size_t count) {
   const std::uint64_t size = count * sizeof(T);
-  std::vector<unsigned char> bytes(sizeof size + size);
-  std::memcpy(bytes.data(), &size, sizeof size);
-  if (size > 0) std::memcpy(bytes.data() + sizeof size, data, size);
-  return base64(bytes);
+  uLongf packed_size = compressBound(size);
+  std::vector<unsigned char> packed(packed_size);
+  if (size > 0 && compress2(packed.data(), &packed_size, reinterpret_cast<const Bytef*>(data), size, Z_BEST_SPEED) != Z_OK)
+    throw std::bad_alloc();
+  const std::uint64_t header[] = {size > 0 ? 1u : 0u, size, 0, packed_size};
+  const std::size_t header_size = sizeof header - (size > 0 ? 0 : sizeof *header);
+  return base64(reinterpret_cast<const unsigned char*>(header), header_size) + base64(packed.data(), size > 0 ? packed_size : 0);
 }
 
 template <class T>
@@ -106,7 +113,7 @@ void write_document(std::ostream& out, const Field& field,
       (cell_volumes(mesh, mesh.nodes + field.displacement) - rest).cwiseQuotient(rest);
   out << "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-         "header_type=\"UInt64\">\n"
+         "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
          "  <UnstructuredGrid>\n"
       << "    <Piece NumberOfPoints=\"" << mesh.nodes.rows() << "\" NumberOfCells=\"" << rest.size()
       << "\">\n"

@@ -26,7 +26,7 @@ struct Field {
   double volume_change_first_order = 0;    ///< integral of div u / V [1]
 };
 
-/// Writes a VTU (VTK XML, base64 binary): displacement, `extra` nodal vectors (e.g. difference to FEM) and the
+/// Writes a VTU (VTK XML, compressed binary): displacement, `extra` nodal vectors (e.g. difference to FEM) and the
 /// relative volume change of each cell.
 /// @throws std::runtime_error if the file cannot be written.
 void write_vtu(const std::filesystem::path& file, const Field& field,

@@ -35,7 +35,7 @@ void run_case(const fs::path& springproof, const std::string& name, Findings& fi
   fmt::print(stderr, "experiments: {} ...\n", name);
   const TemporaryFolder folder;
   const double start = seconds_of(Clock::wall);
-  const ChildEnd end = run_child({springproof, {"compare", name, "--jobs", "1", "--no-vtu", "--out", (folder.path / "report").string()}, {},
+  const ChildEnd end = run_child({springproof, {"compare", name, "--jobs", "1", "--out", (folder.path / "report").string()}, {},
                                   folder.path / "output", folder.path / "errors"});
   const double wall = seconds_of(Clock::wall) - start;
   throw_if_interrupted();

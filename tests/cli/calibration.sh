@@ -6,7 +6,7 @@ springproof=$1
 out=$2
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-"$springproof" compare calibration --jobs 1 --no-vtu --out "$out" >"$log" 2>&1
+"$springproof" compare calibration --jobs 1 --out "$out" >"$log" 2>&1
 status=$?
 cat "$log"
 [ $status -eq 0 ] || { echo "FAILED: exit status $status"; exit 1; }

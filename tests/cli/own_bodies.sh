@@ -54,8 +54,9 @@ TOML
 # runs NAME RUNS: the case NAME.toml runs and leaves RUNS runs, all with a result; the supports bear the load
 runs() {
   local out="$work/out-$1" start=$SECONDS
-  "$program" compare "$work/$1.toml" --jobs 1 --no-vtu --out "$out" >"$work/stdout" 2>"$work/stderr" || { fail "$1: status $?" "$work/stderr"; return; }
+  "$program" compare "$work/$1.toml" --jobs 1 --vtu --out "$out" >"$work/stdout" 2>"$work/stderr" || { fail "$1: status $?" "$work/stderr"; return; }
   [ -s "$out/report.html" ] && [ -s "$out/results.json" ] && [ -s "$out/results.csv" ] || fail "$1: no report"
+  ls "$out"/vtu/*/*.vtu >/dev/null || fail "$1: no VTU file"
   local ok
   ok=$(grep -c '"ok": true' "$out/results.json")
   [ "$ok" -eq "$2" ] || fail "$1: $ok runs with a result, not $2" "$work/stdout"
@@ -124,7 +125,7 @@ edge_m = 0.4" >"$work/$name.toml"
   [ "$name" = without_area ] && sed -i 's/-0\.5\]/0.2]/; s/, 0\.5\]/, 0.8]/' "$work/$name.toml"  # a cube from 0 to 1
   rm -rf "$work/out"
   start=$SECONDS
-  "$program" compare "$work/$name.toml" --jobs 1 --no-vtu --out "$work/out" >"$work/stdout" 2>"$work/stderr"
+  "$program" compare "$work/$name.toml" --jobs 1 --out "$work/out" >"$work/stdout" 2>"$work/stderr"
   status=$?
   [ $((SECONDS - start)) -le 10 ] || fail "$name took $((SECONDS - start)) s"
   if [ "$fate" = refused ]; then

@@ -39,7 +39,7 @@ models = ["hybmss", "msm_18"]
 measures = ["displacement_error", "volume_change"]
 TOML
 out="$work/out & out"   # a folder whose name needs care
-"$program" compare "$work/case one.toml" --out "$out" --no-vtu >"$work/log" 2>&1
+"$program" compare "$work/case one.toml" --out "$out" >"$work/log" 2>&1
 [ -s "$out/report.html" ] || fail "no report"
 expect 2 "apt-get install chromium" env PATH=/nowhere "$program" pictures "$out"
 command -v chromium >/dev/null || { echo "chromium is not installed"; exit 77; }

@@ -33,9 +33,9 @@ write_case seconds 32
 write_case minutes 96
 
 # Not a terminal, short phases: a line per part, nothing else; --quiet: nothing.
-"$program" compare "$work/short.toml" --no-vtu --out "$work/out" 2>"$work/log" >"$work/results" || fail "a short run failed"
+"$program" compare "$work/short.toml" --out "$work/out" 2>"$work/log" >"$work/results" || fail "a short run failed"
 [ "$(wc -l <"$work/log")" -eq 2 ] || fail "a short run should say one line per part"
-"$program" compare "$work/short.toml" --no-vtu --out "$work/out" --quiet 2>"$work/log" >"$work/results" || fail "a quiet run failed"
+"$program" compare "$work/short.toml" --out "$work/out" --quiet 2>"$work/log" >"$work/results" || fail "a quiet run failed"
 [ ! -s "$work/log" ] || fail "--quiet says something"
 
 # Not a terminal, a phase of more than ten seconds: one line.
@@ -51,13 +51,13 @@ done
 exec "$(dirname "$program")/springproof-fem" "\$@"
 SLOW
 chmod +x "$work/slow"
-SPRINGPROOF_FEM_PROGRAM="$work/slow" "$program" compare "$work/short.toml" --poisson-ratio 0.3 --no-vtu --out "$work/out" 2>"$work/log" >"$work/results" ||
+SPRINGPROOF_FEM_PROGRAM="$work/slow" "$program" compare "$work/short.toml" --poisson-ratio 0.3 --out "$work/out" 2>"$work/log" >"$work/results" ||
   fail "a slow run failed"
 [ "$(grep -c '^  \[1/1\] short  nu0.3: a phase, its detail (10 s so far' "$work/log")" -eq 1 ] || fail "a phase of 11 s should have one line"
 grep -q 'a phase' "$work/results" && fail "progress went to standard output"
 
 # More than a minute: an estimate before the start.
-"$program" compare "$work/minutes.toml" --no-vtu --out "$work/out" 2>"$work/log" >"$work/results" &
+"$program" compare "$work/minutes.toml" --out "$work/out" 2>"$work/log" >"$work/results" &
 pid=$!
 for _ in $(seq 300); do grep -q about "$work/log" && break; sleep 0.1; done
 kill -INT $pid
@@ -72,12 +72,12 @@ gone_at_the_end() {
   text=$(cat "$work/log")
   [[ "${text##*finite elements}" == *$'\r\e[K'* ]] || fail "$1"
 }
-script -qec "stty cols 200; '$program' compare '$work/seconds.toml' --jobs 1 --no-vtu --out '$work/out' >'$work/results'" "$work/log" >/dev/null || fail "a run on a terminal failed"
+script -qec "stty cols 200; '$program' compare '$work/seconds.toml' --jobs 1 --out '$work/out' >'$work/results'" "$work/log" >/dev/null || fail "a run on a terminal failed"
 grep -q 'finite elements 3 of 4, q2 on ' "$work/log" || fail "no live line of the finest grid"
 tr '\r' '\n' <"$work/log" | grep -q 'iteration [0-9]*, [0-9]* s' || fail "no iterations in the live line"
 grep -q 'finite elements [0-9] of' "$work/results" && fail "the live line went to standard output"
 gone_at_the_end "the live line is left behind"
-script -qec "stty cols 200; '$program' compare '$work/minutes.toml' --jobs 1 --no-vtu --out '$work/out' & sleep 4; kill -INT \$!; wait \$!" "$work/log" >/dev/null
+script -qec "stty cols 200; '$program' compare '$work/minutes.toml' --jobs 1 --out '$work/out' & sleep 4; kill -INT \$!; wait \$!" "$work/log" >/dev/null
 [ $? -eq 130 ] || fail "an interrupted run on a terminal should end with 130"
 gone_at_the_end "an interrupt leaves the live line behind"
 echo "long runs speak"

@@ -41,7 +41,7 @@ TOML
 expect() {
   local status=$1 name=$2 pattern=$3
   shift 3
-  env "$@" "$program" compare "$work/$name.toml" --jobs 1 --no-vtu --out "$work/out-$name" >"$work/stdout" 2>"$work/stderr"
+  env "$@" "$program" compare "$work/$name.toml" --jobs 1 --out "$work/out-$name" >"$work/stdout" 2>"$work/stderr"
   local found=$?
   [ $found -eq "$status" ] || fail "$name: status $found, not $status"
   grep -qE "$pattern" "$work/stdout" || fail "$name: does not say '$pattern'"

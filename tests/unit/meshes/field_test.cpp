@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cstdint>
 #include <cstring>
@@ -45,18 +46,22 @@ std::vector<unsigned char> decode_base64(const std::string& text) {
   return bytes;
 }
 
-/// The values of one DataArray, checked against the byte count before them.
+/// The values of one DataArray: number of blocks, their size, 0, and the size of the first, compressed; then the block.
 template <class T>
 std::vector<T> read_array(const std::string& document, const std::string& name) {
   const std::size_t tag = document.find("Name=\"" + name + "\"");
   if (tag == std::string::npos) throw std::runtime_error("no array " + name);
   const std::size_t begin = document.find('>', tag) + 1, end = document.find('<', begin);
-  const auto bytes = decode_base64(document.substr(begin, end - begin));
-  std::uint64_t size = 0;
-  std::memcpy(&size, bytes.data(), sizeof size);
-  if (bytes.size() != sizeof size + size) throw std::runtime_error("wrong byte count");
-  std::vector<T> values(size / sizeof(T));
-  std::memcpy(values.data(), bytes.data() + sizeof size, size);
+  const std::string text = document.substr(begin, end - begin);
+  constexpr std::size_t header_digits = 44;   // of 32 bytes
+  const auto head = decode_base64(text.substr(0, header_digits)), packed = decode_base64(text.substr(header_digits));
+  std::uint64_t header[4];
+  std::memcpy(header, head.data(), sizeof header);
+  if (header[0] != 1 || header[2] != 0 || header[3] != packed.size()) throw std::runtime_error("wrong header");
+  std::vector<T> values(header[1] / sizeof(T));
+  uLongf size = header[1];
+  if (uncompress(reinterpret_cast<Bytef*>(values.data()), &size, packed.data(), packed.size()) != Z_OK || size != header[1])
+    throw std::runtime_error("cannot be decompressed");
   return values;
 }
 
@@ -119,6 +124,15 @@ TEST_F(Vtu, EveryArrayReadsBack) {
   const auto changes = read_array<double>(document, "relative_volume_change");
   ASSERT_EQ(changes.size(), 7u);
   for (const double change : changes) EXPECT_NEAR(change, 1.1 * 0.95 * 1.2 - 1, test::round_off);
+}
+
+TEST_F(Vtu, IsCompressed) {
+  Field field;
+  field.mesh = std::make_shared<const Mesh>(block_mesh({1, 1, 1}, {20, 20, 20}));
+  field.displacement = 0.01 * field.mesh->nodes;
+  write_vtu(folder_ / "a.vtu", field);
+  const std::size_t plain = 9261 * 2 * 3 * sizeof(double) + 8000 * (9 * sizeof(std::int32_t) + sizeof(double) + 1);
+  EXPECT_LT(read(folder_ / "a.vtu").size(), plain / 2);
 }
 
 TEST_F(Vtu, NamesAreEscaped) {
