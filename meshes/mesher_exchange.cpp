@@ -34,6 +34,16 @@ bool within(const Patch& patch, Eigen::Index nodes) {
   });
 }
 
+/// Whether each of `cells` hexahedra, which touch one another, has its place in the grid.
+bool fits(const Grid& grid, std::size_t cells) {
+  const auto inside = [&](const std::array<int, 3>& at) {
+    return std::equal(at.begin(), at.end(), grid.cells.begin(), [](int i, int n) { return i >= 0 && i < n; });
+  };
+  return grid.cell_index.size() == cells && std::all_of(grid.cell_index.begin(), grid.cell_index.end(), inside) &&
+         std::all_of(grid.cells.begin(), grid.cells.end(), [&](int n) { return std::size_t(n) <= cells; }) &&
+         grid.origin.allFinite() && grid.spacing.allFinite() && grid.spacing.minCoeff() > 0;
+}
+
 /// The mesh itself.
 /// @throws std::runtime_error if its numbers lead outside of it.
 Mesh sound(Mesh mesh) {
@@ -42,7 +52,7 @@ Mesh sound(Mesh mesh) {
   const bool facets_fit = std::all_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch& p) { return within(p, nodes); });
   if (cells + mesh.tetrahedra.size() == 0 || !mesh.nodes.allFinite() || !within(mesh.hexahedra, nodes) || !within(mesh.tetrahedra, nodes) ||
       !facets_fit || (mesh.curved.rows() > 0 && static_cast<std::size_t>(mesh.curved.rows()) != 27 * cells) ||
-      (mesh.grid && mesh.grid->cell_index.size() != cells))
+      (mesh.grid && !fits(*mesh.grid, cells)))
     throw std::runtime_error("a mesh that does not hold together");
   return mesh;
 }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "fuzz/reader.h"
+#include "meshes/locate.h"
 #include "meshes/mesher_exchange.h"
 #include "meshes/outer_facets.h"
 
@@ -14,6 +15,7 @@ void walk(const springproof::Mesh& mesh) {
   outer_facets(mesh);
   separate_parts(mesh);
   detect_grid(mesh);
+  if (mesh.grid) locate(mesh, mesh.grid->origin);
   for (const Patch& p : mesh.patches) {
     nodal_areas(mesh, p);
     centroid(mesh, p);

@@ -285,6 +285,14 @@ TEST_F(Mesher, AnswersThatLeadOutsideTheMeshAreRefused) {
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra[1][7] = 12; }));
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra[0][0] = -1; }));
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.patches[0].facets[0][2] = 99; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.patches[0].facets[0][2] = -1; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.patches[0].facets[0] = {-1, 1, 2, -1}; }));
+  EXPECT_TRUE(accepted([](auto& b) { b.mesh.patches[0].facets[0][3] = -1; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.grid->cell_index[1][0] = 2; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.grid->cell_index[0][1] = -1; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.grid->cells = {2, 1, 1000000000}; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.grid->spacing[2] = 0; }));
+  EXPECT_FALSE(accepted([](auto& b) { b.mesh.grid->origin[2] = std::nan(""); }));
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.nodes(3, 1) = std::nan(""); }));
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra.clear(); }));
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.curved = NodalVectors::Zero(5, 3); }));
