@@ -115,6 +115,7 @@ void build_reference(PartRun& run) {
   }
 }
 
+/// Which lattice has the most cells.
 std::size_t finest_lattice(const PreparedCase& prepared) {
   const auto& meshes = prepared.meshes;
   const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
@@ -125,8 +126,8 @@ std::size_t finest_lattice(const PreparedCase& prepared) {
 void measure_deformation(PartRun& run) {
   const std::size_t finest = finest_lattice(run.prepared);
   if (!run.reference[finest]) return;
-  const DeformationSize size =
-      deformation_size(*run.prepared.meshes[finest], run.reference[finest]->field.displacement, run.experiment().model_kinematics());
+  const NodalVectors& u = run.reference[finest]->field.displacement;
+  const DeformationSize size = deformation_size(*run.prepared.meshes[finest], u, run.experiment().model_kinematics());
   run.part.deformations.push_back({run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi});
 }
 
