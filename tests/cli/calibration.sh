@@ -12,7 +12,7 @@ cat "$log"
 [ $status -eq 0 ] || { echo "FAILED: exit status $status"; exit 1; }
 awk '
   $1 == "all"                                  { quantities = $2; median = $(NF - 1) }
-  /^(hexahedra|tetrahedra|near-|finite|all) /  { share = $(NF - 2); sub("%", "", share)
+  /^(hexahedra|tetrahedra|near-incompressible|finite strain|all) /  { share = $(NF - 2); sub("%", "", share)
                                                  if (share + 0 < 95) { print "FAILED: fewer than 95 % inside: " $0; failed = 1 } }
   END {
     if (quantities < 200) { print "FAILED: " quantities + 0 " quantities, 200 wanted"; failed = 1 }
