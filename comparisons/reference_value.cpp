@@ -41,6 +41,11 @@ std::string not_refined(const GridRatios& r) {
   return fmt::format("not refined: ratio {:.2f}; finest grid, {:g} times the spread of the three", std::min(r.coarse, r.fine), coarse_safety_factor);
 }
 
+/// Weighted root mean square of a nodal scalar.
+double weighted_rms(const Eigen::VectorXd& v, const Eigen::VectorXd& weights) {
+  return std::sqrt(weights.dot(v.cwiseAbs2()) / weights.sum());
+}
+
 double weighted_product(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights) {
   return weights.dot(u.cwiseProduct(v).rowwise().sum()) / weights.sum();
 }
@@ -129,7 +134,7 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   result.displacement = u3;
   const auto with = [&](const Eigen::VectorXd& nodal, Sequence sequence, std::string note) {
     result.nodal_uncertainty = nodal.array() + noise;
-    result.uncertainty = size > 0 ? std::sqrt(weights.dot(result.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size : 0;
+    result.uncertainty = size > 0 ? weighted_rms(result.nodal_uncertainty, weights) / size : 0;
     result.sequence = sequence;
     result.note = std::move(note);
     return result;
@@ -142,10 +147,10 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   if (!are_refined(ratios)) return finest(coarse_safety_factor * spread, not_refined(ratios));
   const double along = result.correlation.value_or(0), quotient = f > 0 ? along * c / f : 0, order = order_of(quotient, ratios);
   // Differences that fall at first order or faster: what is left is at most that order's, whichever way they point.
-  const bool fall = c >= ratios.coarse * f;
+  const bool fall = f > 0 && c >= ratios.coarse * f;
   const Eigen::VectorXd left = safety_factor * (fall ? Eigen::VectorXd(by_last(1, ratios) * last) : spread);
   if (doubt > 0)
-    return finest(left * std::max(1.0, doubt * size / std::sqrt(weights.dot(left.cwiseAbs2()) / weights.sum())),
+    return finest(left * std::max(1.0, doubt * size / weighted_rms(left, weights)),
                   fmt::format("not converging: most other values do not ({:.2g} %); finest grid", 100 * doubt));
   if (along < smallest_correlation)
     return with(left, fall ? Sequence::converging : Sequence::not_converging,
