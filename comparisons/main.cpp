@@ -12,7 +12,7 @@
 #include "comparisons/material_command.h"
 #include "comparisons/pictures_command.h"
 #include "comparisons/suite.h"
-#include "fem_reference/reference.h"
+#include "comparisons/versions.h"
 #include "meshes/child.h"
 #include "msm/models.h"
 #include "problem/experiment.h"
@@ -65,10 +65,7 @@ int run_bench(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) try {
   CLI::App app{"Mass-spring models of elastic solids, proved against finite elements.", "springproof"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", [] {
-    const std::string fem = fem::version();
-    return fmt::format("springproof {}\n{}", SPRINGPROOF_VERSION, fem.empty() ? "without the FEM reference" : fem);
-  });
+  app.set_version_flag("--version", versions);
 
   std::vector<std::string> names;
   SuiteOptions options;

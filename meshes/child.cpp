@@ -234,6 +234,14 @@ fs::path program_on_path(const std::string& name) {
   return {};
 }
 
+std::string version_of(const fs::path& program) {
+  if (program.empty()) return {};
+  const TemporaryFolder folder;
+  const fs::path output = folder.path / "output";
+  const bool ok = run_child({program, {"--version"}, {}, output, folder.path / "errors"}).ok();
+  return ok ? trimmed(text_of_file(output)) : std::string();
+}
+
 std::string text_of_file(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text;

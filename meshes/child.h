@@ -78,6 +78,9 @@ std::filesystem::path find_program(const std::string& name, const char* variable
 /// The program of that name on PATH; empty: there is none.
 std::filesystem::path program_on_path(const std::string& name);
 
+/// What it answers to --version, without white space at the end; empty: it is not there, or does not know.
+std::string version_of(const std::filesystem::path& program);
+
 /// The whole file; empty if it cannot be read.
 std::string text_of_file(const std::filesystem::path& file);
 
