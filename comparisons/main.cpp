@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "comparisons/calculix_command.h"
+#include "comparisons/describe.h"
 #include "comparisons/homogenise_command.h"
 #include "comparisons/material_command.h"
 #include "comparisons/pictures_command.h"
@@ -58,6 +59,14 @@ int run_bench(const std::vector<std::string>& arguments) {
   const ChildEnd end = run_child({program, arguments, {}, {}, {}});
   if (end.kind == ChildEnd::killed) throw std::runtime_error("springproof-bench " + words_for(end));
   return end.status;
+}
+
+int describe(const CLI::App& app, const std::string& form) {
+  std::vector<std::string> cases, models;
+  for (const auto& file : built_in_cases()) cases.push_back(case_name(file));
+  for (const ModelRow& row : model_table()) models.push_back(row.name);
+  fmt::print("{}", form == "man" ? man_page(app, SPRINGPROOF_VERSION) : bash_completion(app, {{"CASE", cases}, {"--model", models}}));
+  return 0;
 }
 
 }  // namespace
@@ -112,6 +121,10 @@ int main(int argc, char** argv) try {
   bench_command->set_help_flag();
   bench_command->prefix_command();  // the program that it starts knows its options
 
+  std::string form;
+  CLI::App* describe_command = app.add_subcommand("describe", "The command line as a man page, or as completion for bash")->group("");
+  describe_command->add_option("FORM", form)->required()->check(CLI::IsMember({"man", "bash"}));
+
   for (CLI::App* command : {compare_command, export_command, cross_check_command})
     command->add_flag_callback("--no-scripts", [] { setenv("SPRINGPROOF_NO_SCRIPTS", "1", 1); },
                                "refuse .geo scripts other than the built-in ones: a script can run any command");
@@ -123,6 +136,7 @@ int main(int argc, char** argv) try {
   }
   if (*compare_command) return compare(find_cases(names), options);
   if (*list_command) return list();
+  if (*describe_command) return describe(app, form);
   if (*bench_command) return run_bench(bench_command->remaining());
   if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();
