@@ -16,3 +16,12 @@ foreach(form man bash)
 endforeach()
 install(FILES ${described}/man DESTINATION share/man/man1 RENAME springproof.1)
 install(FILES ${described}/bash DESTINATION share/bash-completion/completions RENAME springproof)
+
+# msm/ as a library: find_package(springproof), then springproof::msm.
+install(TARGETS problem meshes msm EXPORT springproof DESTINATION lib/springproof)
+foreach(module problem meshes msm)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/${module} DESTINATION include/springproof
+          FILES_MATCHING PATTERN "*.h" PATTERN gmsh EXCLUDE PATTERN geo EXCLUDE PATTERN parallel EXCLUDE)
+endforeach()
+install(EXPORT springproof NAMESPACE springproof:: FILE springproofTargets.cmake DESTINATION lib/cmake/springproof)
+install(FILES ${CMAKE_SOURCE_DIR}/msm/springproofConfig.cmake DESTINATION lib/cmake/springproof)

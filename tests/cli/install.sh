@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What cmake --install puts into a folder works there: programs with their data, man page, completion.   install.sh CMAKE BINARY-FOLDER
+# What cmake --install puts into a folder works there: programs with their data, man page, completion.   install.sh CMAKE BINARY-FOLDER SOURCE-FOLDER
 set -u
-cmake=$1 binary=$2
+cmake=$1 binary=$2 source=$3
 failures=0
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 prefix=$(mktemp -d)
@@ -30,4 +30,21 @@ for program in bin/springproof-*; do
 done
 grep -q '^\.TH SPRINGPROOF 1' share/man/man1/springproof.1 || fail "no man page"
 grep -q '^complete ' share/bash-completion/completions/springproof || fail "no completion"
-exit $failures
+
+# Another program finds the library, and nothing of it in the source tree.
+grep -rl "$source" lib/cmake >paths && fail "paths of the source tree in $(cat paths)"
+mkdir other && cp "$source/examples/embed_msm.cpp" other
+cat >other/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(other LANGUAGES C CXX)
+set(CMAKE_CXX_STANDARD 20)
+find_package(springproof REQUIRED)
+add_executable(embed_msm embed_msm.cpp)
+target_link_libraries(embed_msm PRIVATE springproof::msm)
+END
+if "$cmake" -S other -B other/build -DCMAKE_PREFIX_PATH="$prefix" >log 2>&1 && "$cmake" --build other/build >>log 2>&1; then
+  other/build/embed_msm | grep '^tip ' || fail "the program that embeds springproof::msm"
+else
+  cat log; fail "springproof::msm cannot be used"
+fi
+exit $((failures > 0))
