@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# --version names the program's version, and that of every library that the build files look for.   version.sh PROGRAM SOURCE-FOLDER
+# --version names the program's version, and that of every library that the build files look for; CITATION.cff and CHANGELOG.md
+# are of that version.   version.sh PROGRAM SOURCE-FOLDER
 set -u
 program=$1 source=$2
 failures=0
@@ -9,6 +10,15 @@ answer=$("$program" --version) || fail "status $?"
 echo "$answer"
 version=$(sed -nE 's/^project\(springproof VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")
 [ "$(head -n 1 <<<"$answer")" = "springproof $version" ] || fail "the first line is not springproof $version"
+
+grep -qx "version: $version" "$source/CITATION.cff" || fail "CITATION.cff is not of version $version"
+grep -qE "^## $version( |$)" "$source/CHANGELOG.md" || fail "CHANGELOG.md has no section $version"
+titles=$(sed -nE 's/^    title: "(.*)"$/\1/p' "$source/CITATION.cff")
+[ "$(wc -l <<<"$titles")" -eq 3 ] || fail "CITATION.cff does not cite the three papers, but $titles"
+papers=$(tr '\n' ' ' <"$source/docs/papers.md" | tr -s ' ')
+while read -r title; do
+  grep -qF "*$title*" <<<"$papers" || fail "docs/papers.md has no paper '$title'"
+done <<<"$titles"
 
 # As find_package, find_library and pkg_check_modules of the build files call them; what is none of the program, or has no number.
 no_library=' Threads GTest PkgConfig MPI MPI_C '
