@@ -16,8 +16,8 @@ is_there() {
   return 1
 }
 
-# Text outside of code blocks.
-text_of() { awk '/^```/ { inside = !inside; next } !inside' "$1"; }
+# Text outside of code blocks, but for files that the reader is to write.
+text_of() { awk '/^```/ { inside = !inside; next } !inside { gsub(/Save as `[^`]*`/, ""); print }' "$1"; }
 
 mapfile -t pages < <(find . -maxdepth 1 -name '*.md'; find docs -name '*.md')
 for page in "${pages[@]}"; do

@@ -15,6 +15,7 @@ plan() {
     "$springproof compare silicone-bar.toml "*) echo "run --poisson-ratio 0.25" ;;
     "$springproof compare liver.toml "*) echo "run --poisson-ratio 0.45" ;;
     ./quickstart.sh | "./quickstart.sh test") echo "check it installs, builds and runs everything" ;;
+    "ctest --test-dir build/release -"* | "cmake --build build/release --target "*) echo "check ctest would run itself" ;;
     "$springproof compare golec_2019/"* | "$springproof compare verification" | "$springproof compare calibration")
       echo "check minutes; the tests experiment.* run these cases" ;;
     "$springproof cross-check "*) echo "check it needs CalculiX; cli.cross_check runs it" ;;
@@ -91,15 +92,29 @@ printed() {
     END { exit !found }' "$output"
 }
 
-# Options are those of --help, cases those of `list`, and a script exists with its arguments.
+# A script of the source tree exists and knows its arguments.
+check_script() {
+  local script=$1 word
+  bash -n "$source/$script" || return 1
+  for word in "${@:2}"; do grep -qw -- "$word" "$source/$script" || { echo "no $word in $script"; return 1; }; done
+}
+
+# What ctest or cmake is to take (the last word: a test, a label, a target) is somewhere in the sources.
+check_name() {
+  local folders=()
+  for folder in tests examples comparisons msm; do folders+=("$source/$folder"); done
+  grep -rqwF --include='*_test.cpp' --include=CMakeLists.txt -- "${*: -1}" "${folders[@]}" || { echo "no ${*: -1}"; return 1; }
+}
+
+# Options are those of --help, cases those of `list`.
 check() {
   local words word help takes_value=0 cases
   read -ra words <<<"$1"
-  if [ "${words[0]}" != build/release/springproof ]; then
-    bash -n "$source/${words[0]}" || return 1
-    for word in "${words[@]:1}"; do grep -qw -- "$word" "$source/${words[0]}" || { echo "no $word in ${words[0]}"; return 1; }; done
-    return
-  fi
+  case ${words[0]} in
+    build/release/springproof) ;;
+    ctest | cmake) check_name "${words[@]}"; return ;;
+    *) check_script "${words[@]}"; return ;;
+  esac
   help=$(build/release/springproof "${words[1]}" --help) || { echo "no command ${words[1]}"; return 1; }
   cases=$(build/release/springproof list)
   for word in "${words[@]:2}"; do
