@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Draws the figures of README and docs anew, from results that it keeps in a folder and computes where there are none.
+# Draws the figures of README and docs anew, from results that it keeps in a folder and computes where there are none: empty the
+# folder after a change of the numbers.
 #   docs/figures.sh [FOLDER]           FOLDER (default build/figures): golec_2019, rabbit, cost; without any an hour on two cores
 #   docs/figures.sh points FILE...     the points of error-against-poisson-ratio, from the results.csv of its cases
 # Needs build/release/springproof and Chromium, no display.
@@ -27,9 +28,9 @@ points() {
     }' "$@" | LC_ALL=C sort
 }
 
-# results NAME ARGUMENT...: the folder of a run, computed unless it is there.
+# results NAME ARGUMENT...: the folder of a run; its parts are computed unless they are there, its page is that of today.
 results() {
-  [ -f "$folder/$1/results.json" ] || "$springproof" compare "${@:2}" --out "$folder/$1" --resume
+  "$springproof" compare "${@:2}" --out "$folder/$1" --resume
 }
 
 # draw NAME PICTURE TARGET: one picture of a run becomes a figure.

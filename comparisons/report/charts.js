@@ -167,13 +167,16 @@ function poissonChart(chosen, measure, resolution, even) {
   return {type: 'line', data: {datasets}, options};
 }
 
+/// "displacement error", "error of the volume change"
+const errorWords = measure => measureText(measure).endsWith('error') ? measureText(measure) : 'error of the ' + measureText(measure);
+
 const mostLines = 6;   // spring models drawn at first
 
 function poissonDrawing(chosen, measure, resolution, even) {
   const one = chosen.length === 1;
   return {
     name: `${one ? chosen[0].key : 'all'}-error-${measure}`,
-    caption: `${one ? chosen[0].name : `Largest of ${chosen.length} cases`}: error of the ${measureText(measure)} against Poisson’s ratio, ` +
+    caption: `${one ? chosen[0].name : `Largest of ${chosen.length} cases`}: ${errorWords(measure)} against Poisson’s ratio, ` +
       `${['finest', 'coarsest'].includes(resolution) ? resolution + ' cells' : resolution}`,
     notes: ['Below the shaded band a difference cannot be told from the uncertainty of the reference; such points are hollow.',
             ...(springCount(chosen) > mostLines ? ['Models struck out in the legend are hidden: click to show them.'] : []),
@@ -366,7 +369,7 @@ function convergenceDrawing(result, choice, measure, against) {
   const single = result.cells.length < 2 ? ['Only one resolution was run: no order can be observed.'] : [];
   return {
     name: `${result.key}-convergence-${measure}-${kind === 'nu' ? 'nu' + nuDigits(Number(which)) : which}`,
-    caption: `${result.name}: error of the ${measureText(measure)} against ${against === 'size' ? 'cell size' : 'time'}, ` +
+    caption: `${result.name}: ${errorWords(measure)} against ${against === 'size' ? 'cell size' : 'time'}, ` +
       (kind === 'nu' ? `ν = ${nuText(Number(which))}` : which),
     notes: [...single, 'The order is the slope of a least-squares line through all resolutions. ' +
       'Block cases have singular edges at clamped faces, where order 2 cannot be expected.'],
