@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "comparisons/page.h"
 #include "comparisons/report/assets.h"
-#include "comparisons/results.h"
+#include "comparisons/report/page.h"
+#include "comparisons/report/results.h"
 
 namespace springproof::bench {
 

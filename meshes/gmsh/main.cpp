@@ -1,4 +1,4 @@
-// springproof-mesh: reads a request, meshes the body, writes the answer (meshes/mesher_exchange.h).
+// springproof-mesh: reads a request, meshes the body, writes the answer (meshes/mesher/mesher_exchange.h).
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -6,9 +6,9 @@
 #include <fstream>
 #include <new>
 
-#include "meshes/child.h"
 #include "meshes/gmsh/bodies.h"
-#include "meshes/mesher_exchange.h"
+#include "meshes/mesher/mesher_exchange.h"
+#include "problem/system/child.h"
 
 namespace springproof {
 namespace {
@@ -29,7 +29,8 @@ std::string answer_to(const MeshRequest& request) try {
 } catch (const InputError& e) {
   return refusal_to_cbor(e.what());
 } catch (const std::bad_alloc&) {
-  return refusal_to_cbor(request.file.string() + ": too large a mesh for the memory of this machine (choose a longer edge)");
+  return refusal_to_cbor(request.file.string() +
+                         ": too large a mesh for the memory of this machine (choose a longer edge)");
 }
 
 int run(int argc, char** argv) try {
@@ -51,6 +52,4 @@ int run(int argc, char** argv) try {
 }  // namespace
 }  // namespace springproof
 
-int main(int argc, char** argv) {
-  return springproof::run(argc, argv);
-}
+int main(int argc, char** argv) { return springproof::run(argc, argv); }

@@ -1,8 +1,8 @@
 // Force law: angular springs at the corners of a planar triangular network (Kirkwood's model).
 #pragma once
 
-#include "msm/network.h"
-#include "msm/solve/block_matrix.h"
+#include "msm/algebra/block_matrix.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 
@@ -14,9 +14,9 @@ namespace springproof {
 struct AngularSprings {
   double beta = 0;  ///< stiffness of an angle [N m]
 
-  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]
-  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
-  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+  double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 };
 
 /// beta [N m] that gives a hexagonal lattice with springs k [N/m] of length a [m] the plane Poisson's ratio nu_2d:

@@ -21,9 +21,9 @@ struct MassSpringModel {
   bool small_displacements_only = false;  ///< holds for linear kinematics only
 };
 
-double energy(const MassSpringModel& model, const NodalVectors& x);              ///< elastic energy [J]; of a model that has one
-NodalVectors forces(const MassSpringModel& model, const NodalVectors& x);        ///< internal forces -dE/dx [N]
-Tangent tangent(const MassSpringModel& model, const NodalVectors& x);            ///< -df/dx [N/m]
+double energy(const MassSpringModel& model, const NodalVectors& x);  ///< elastic energy [J]; of a model that has one
+NodalVectors forces(const MassSpringModel& model, const NodalVectors& x);  ///< internal forces -dE/dx [N]
+Tangent tangent(const MassSpringModel& model, const NodalVectors& x);      ///< -df/dx [N/m]
 
 /// Refills what tangent() made at another state, keeping its pattern.
 void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent& K);

@@ -1,8 +1,8 @@
 // Force law: the volume energy of HybMSS, one term per cubic cell.
 #pragma once
 
-#include "msm/network.h"
-#include "msm/solve/block_matrix.h"
+#include "msm/algebra/block_matrix.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 
@@ -18,9 +18,9 @@ struct VolumeCorrection {
   double kappa = 0;  ///< lambda - G [Pa]
   VolumeEnergy form = VolumeEnergy::bounded;
 
-  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]; +inf if J <= 0 (bounded)
-  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
-  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if J <= 0 (bounded)
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 };
 
 /// Mean-edge volume V' = a . (b x c) of a cell and its gradient (rows: corners in mesh order) [m^3, m^2].

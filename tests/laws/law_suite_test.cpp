@@ -26,9 +26,8 @@ std::vector<Case> cases() {
       const Network network = build_model(p, mesh, material).network;
       const std::string name = suffix + "_A" + std::to_string(static_cast<int>(A));
       all.push_back({"Springs" + name, {network, {Springs{}}}, true});
-      all.push_back({"Hourglass" + name,
-                     {network, {HourglassCorrection{shear_modulus(material), nu, A, true}}},
-                     false});
+      all.push_back(
+          {"Hourglass" + name, {network, {HourglassCorrection{shear_modulus(material), nu, A, true}}}, false});
       for (auto form : {VolumeEnergy::paper, VolumeEnergy::bounded})
         all.push_back({(form == VolumeEnergy::paper ? "VolumePaper" : "VolumeBounded") + name,
                        {network, {VolumeCorrection{kappa(material), form}}},
@@ -39,9 +38,8 @@ std::vector<Case> cases() {
                      {network, {MomentumDispersion{q, Dispersion::share_weighted, spring_shares(network)}}},
                      true});
       all.push_back({"DispersionPublished" + name, {network, {MomentumDispersion{q, Dispersion::published}}}, true});
-      all.push_back({"DispersionTransposed" + name,
-                     {network, {MomentumDispersion{q, Dispersion::published_transposed}}},
-                     true});
+      all.push_back(
+          {"DispersionTransposed" + name, {network, {MomentumDispersion{q, Dispersion::published_transposed}}}, true});
     }
   }
   const Network sheet = test::bent_triangles();
@@ -140,8 +138,7 @@ TEST_P(LawSuite, TangentIsSymmetricIfThereIsAnEnergy) {
     EXPECT_GE(asymmetry, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()),
-                         [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()), [](const auto& i) { return i.param.name; });
 
 }  // namespace
 }  // namespace springproof
