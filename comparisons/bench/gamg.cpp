@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/tangent.h"
-#include "problem/system/cost.h"
+#include "problem/system/run_cost.h"
 
 #ifdef SPRINGPROOF_PETSC
 #include <petscksp.h>

@@ -16,6 +16,7 @@
 #include "comparisons/report/results.h"
 #include "msm/kernels/instruction_set.h"
 #include "problem/input_error.h"
+#include "problem/system/files.h"
 
 namespace {
 

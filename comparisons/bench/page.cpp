@@ -5,6 +5,7 @@
 #include "comparisons/report/assets.h"
 #include "comparisons/report/page.h"
 #include "comparisons/report/results.h"
+#include "problem/system/files.h"
 
 namespace springproof::bench {
 

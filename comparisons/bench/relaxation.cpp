@@ -5,7 +5,7 @@
 
 #include "comparisons/bench/bodies.h"
 #include "msm/dynamics/dynamics.h"
-#include "problem/system/cost.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof::bench {
 namespace {

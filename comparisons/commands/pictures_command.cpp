@@ -11,6 +11,7 @@
 #include "comparisons/report/results.h"
 #include "comparisons/run/status.h"
 #include "problem/case_file/experiment.h"
+#include "problem/system/files.h"
 
 namespace springproof {
 namespace {

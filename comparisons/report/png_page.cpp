@@ -8,32 +8,12 @@
 #include <stdexcept>
 
 #include "problem/system/child.h"
+#include "problem/system/encoding.h"
 
 namespace springproof {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string from_base64(const std::string& text) {
-  static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  static const std::array<int, 256> values = [] {
-    std::array<int, 256> v;
-    v.fill(-1);
-    for (std::size_t i = 0; i < digits.size(); ++i) v[static_cast<unsigned char>(digits[i])] = static_cast<int>(i);
-    return v;
-  }();
-  std::string out;
-  unsigned group = 0;
-  int bits = 0;
-  for (const unsigned char c : text) {
-    if (values[c] < 0) break;
-    group = (group << 6 | static_cast<unsigned>(values[c])) & 0xffffff;
-    if ((bits += 6) < 8) continue;
-    bits -= 8;
-    out += static_cast<char>(group >> bits & 0xff);
-  }
-  return out;
-}
 
 /// Every text between `open` and `close`.
 std::vector<std::string> all_between(const std::string& text, const std::string& open, const std::string& close) {

@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
 
 #include "problem/case_file/measures.h"
+#include "problem/system/encoding.h"
 
 namespace springproof {
 namespace {
@@ -276,19 +275,6 @@ Json json_of(const Experiment& e) {
 
 // ---- pictures
 
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < count ? bytes[i + j] : 0);
-    for (std::size_t j = 0; j < 4; ++j) out += j <= count ? digits[group >> (18 - 6 * j) & 63] : '=';
-  }
-  return out;
-}
-
 template <class T>
 void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
@@ -305,7 +291,7 @@ std::string base64_floats(const std::vector<float>& values) {
     std::memcpy(&bits, &value, sizeof bits);
     append_little_endian(bits, bytes);
   }
-  return base64(bytes);
+  return base64(bytes.data(), bytes.size());
 }
 
 /// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough to look at.
@@ -320,7 +306,7 @@ Json shorts_json(const std::vector<float>& values) {
     const long steps = std::isfinite(value) ? std::lround(value / scale) : not_finite;
     append_little_endian(static_cast<std::uint16_t>(steps), bytes);
   }
-  return {{"scale", scale}, {"base64", base64(bytes)}};
+  return {{"scale", scale}, {"base64", base64(bytes.data(), bytes.size())}};
 }
 
 /// Triangles (fourth number -1) repeat their last corner.
@@ -336,7 +322,7 @@ Json quads_json(const std::vector<int>& quads, std::size_t nodes) {
     else
       append_little_endian(static_cast<std::uint32_t>(node), bytes);
   }
-  return {{"type", small ? "uint16" : "uint32"}, {"base64", base64(bytes)}};
+  return {{"type", small ? "uint16" : "uint32"}, {"base64", base64(bytes.data(), bytes.size())}};
 }
 
 void check_sizes(const Picture& p) {
@@ -450,22 +436,6 @@ std::string to_csv(const std::vector<CaseResult>& results) {
                          csv_number(r.value), quoted(r.unit), csv_number(r.reference),
                          csv_number(r.reference_uncertainty), csv_number(r.error), r.samples, csv_number(r.spread));
   return out;
-}
-
-void write_file(const std::filesystem::path& file, std::string_view text) {
-  std::filesystem::path partial = file;
-  partial += ".part";
-  std::ofstream out(partial, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  std::error_code error;
-  if (out) {
-    std::filesystem::rename(partial, file, error);
-    if (!error) return;
-  }
-  const std::string why = error ? error.message() : std::strerror(errno);
-  std::filesystem::remove(partial, error);
-  throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), why));
 }
 
 }  // namespace springproof

@@ -190,8 +190,4 @@ nlohmann::json pictures_to_json(const CaseResult& result);
 /// known; quoted by RFC 4180.
 std::string to_csv(const std::vector<CaseResult>& results);
 
-/// Writes `text` whole or not at all (beside, then renamed).
-/// @throws std::runtime_error naming the file and the reason.
-void write_file(const std::filesystem::path& file, std::string_view text);
-
 }  // namespace springproof

@@ -13,8 +13,8 @@
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
 #include "problem/case_file/measures.h"
-#include "problem/system/cost.h"
 #include "problem/system/progress.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof {
 namespace {

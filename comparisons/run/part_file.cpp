@@ -7,6 +7,7 @@
 
 #include "comparisons/run/checksum.h"
 #include "problem/system/child.h"
+#include "problem/system/files.h"
 
 namespace nlohmann {
 

@@ -32,6 +32,7 @@
 #include "meshes/mesher/script_files.h"
 #include "problem/system/child.h"
 #include "problem/system/file_name.h"
+#include "problem/system/files.h"
 #include "problem/system/shortened.h"
 
 namespace springproof {

@@ -7,7 +7,7 @@
 
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
-#include "problem/system/cost.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof {
 namespace {

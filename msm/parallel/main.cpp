@@ -13,7 +13,7 @@
 #include "msm/parallel/slab_multigrid.h"
 #include "problem/case_file/experiment.h"
 #include "problem/input_error.h"
-#include "problem/system/cost.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof {
 namespace {

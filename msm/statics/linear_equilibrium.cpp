@@ -9,8 +9,8 @@
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/equilibrium.h"
 #include "msm/statics/tangent_solver.h"
-#include "problem/system/cost.h"
 #include "problem/system/progress.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof {
 namespace {

@@ -7,8 +7,8 @@
 #include "msm/statics/equilibrium.h"
 #include "msm/statics/mixed_newton.h"
 #include "msm/statics/tangent_solver.h"
-#include "problem/system/cost.h"
 #include "problem/system/progress.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof {
 namespace {

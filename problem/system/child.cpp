@@ -240,16 +240,4 @@ fs::path program_on_path(const std::string& name) {
   return {};
 }
 
-std::string text_of_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text;
-  for (char buffer[1 << 16]; in.read(buffer, sizeof buffer), in.gcount() > 0;) text.append(buffer, in.gcount());
-  return text;
-}
-
-std::string trimmed(std::string text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-  return text;
-}
-
 }  // namespace springproof

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "problem/input_error.h"
+#include "problem/system/files.h"
 
 namespace springproof {
 
@@ -77,11 +78,5 @@ std::filesystem::path find_program(const std::string& name, const char* variable
 
 /// The program of that name on PATH; empty: there is none.
 std::filesystem::path program_on_path(const std::string& name);
-
-/// The whole file; empty if it cannot be read.
-std::string text_of_file(const std::filesystem::path& file);
-
-/// Without white space at the end.
-std::string trimmed(std::string text);
 
 }  // namespace springproof

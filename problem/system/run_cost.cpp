@@ -1,7 +1,9 @@
 #include "problem/system/run_cost.h"
 
 #include <malloc.h>
+#include <sys/resource.h>
 
+#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -25,5 +27,17 @@ MemoryGrowth::MemoryGrowth() {
 }
 
 double MemoryGrowth::most_MiB() const { return std::max(0.0, status_MiB("VmHWM:") - before_MiB_); }
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double peak_memory_MiB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
 
 }  // namespace springproof

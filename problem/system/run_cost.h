@@ -5,6 +5,9 @@
 
 namespace springproof {
 
+double cpu_seconds();      ///< CPU time of the calling thread [s]
+double peak_memory_MiB();  ///< largest resident memory of this program so far
+
 /// CPU time of one run [s].
 struct RunTimes {
   double set_up = 0;  ///< from the mesh in memory to a discrete system with its loads: network or degrees of freedom,
