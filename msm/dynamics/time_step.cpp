@@ -33,8 +33,9 @@ void add_springs(const Network& network, const Eigen::VectorXd& mass, const std:
   }
 }
 
-/// The same for angular springs, by the norms of the blocks of their stiffness.
-void add_angular(const Network& network, const Eigen::VectorXd& mass, const AngularSprings& law, NodeBlocks& blocks) {
+/// The same for any law, by the norms of the blocks of its stiffness at rest.
+template <class Law>
+void add_norms(const Network& network, const Eigen::VectorXd& mass, const Law& law, NodeBlocks& blocks) {
   const auto coupled = coupled_nodes(network);
   BlockMatrix K(coupled);
   law.add_tangent(network, network.X, K);
@@ -53,9 +54,7 @@ Eigen::VectorXd checked_masses(const Network& network, double density) {
   return mass;
 }
 
-bool belongs_to_cells(const ForceLaw& law) {
-  return std::holds_alternative<VolumeCorrection>(law) || std::holds_alternative<HourglassCorrection>(law);
-}
+bool belongs_to_cells(const ForceLaw& law) { return traits(law).reach == Reach::cells; }
 
 double cell_frequency_squared(const MassSpringModel& model, double density) {
   const CellStiffness s = cell_stiffness(model);
@@ -73,13 +72,14 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged)
   for (const ForceLaw& law : model.laws) {
     if (const auto* dispersion = std::get_if<MomentumDispersion>(&law))
       add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
-    else if (const auto* angular = std::get_if<AngularSprings>(&law))
-      add_angular(network, mass, *angular, blocks);
-    else if (std::holds_alternative<Springs>(law) && !cells) {
+    else if (cells)
+      continue;  // part of the cell's stiffness
+    else if (std::holds_alternative<Springs>(law)) {
       std::vector<double> k;
       for (const Spring& s : network.springs) k.push_back(s.stiffness);
       add_springs(network, mass, k, blocks);
-    }
+    } else
+      std::visit([&](const auto& l) { add_norms(network, mass, l, blocks); }, law);
   }
   return 2 / std::sqrt(largest_eigenvalue(blocks) + (cells ? cell_frequency_squared(model, density) : 0));
 }

@@ -73,7 +73,7 @@ const Law* law_of(const MassSpringModel& model) {
 bool laws_fit(const MassSpringModel& model) {
   std::vector<std::size_t> kinds;
   for (const ForceLaw& law : model.laws) {
-    if (std::holds_alternative<AngularSprings>(law)) return false;
+    if (!traits(law).lattice_kernels) return false;
     if (std::find(kinds.begin(), kinds.end(), law.index()) != kinds.end()) return false;
     kinds.push_back(law.index());
   }

@@ -90,8 +90,9 @@ bool ListForces<Real>::covers(const MassSpringModel& model) {
   for (const ForceLaw& law : model.laws) {
     springs += std::holds_alternative<Springs>(law);
     dispersions += std::holds_alternative<MomentumDispersion>(law);
+    if (!traits(law).list_kernels) return false;
   }
-  return springs == 1 && dispersions <= 1 && springs + dispersions == static_cast<int>(model.laws.size());
+  return springs == 1 && dispersions <= 1;
 }
 
 template <class Real>

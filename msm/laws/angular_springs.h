@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -12,6 +13,8 @@ namespace springproof {
 /// An angle belongs to one triangle only: triangles superpose, a boundary needs no rule.
 /// No triangle may be flat (phi = 0 or pi: no direction for the force).
 struct AngularSprings {
+  static constexpr LawTraits traits = {"angular springs", Reach::springs};
+
   double beta = 0;  ///< stiffness of an angle [N m]
 
   double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]

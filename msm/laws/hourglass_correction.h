@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -11,6 +12,8 @@ namespace springproof {
 /// orthogonal to affine fields, so the patch test and the moduli are untouched.
 /// Valid for small displacements from rest only (no corotated frame): linear kinematics.
 struct HourglassCorrection {
+  static constexpr LawTraits traits = {"hourglass correction", Reach::cells, true};
+
   double shear_modulus = 0;  ///< G [Pa]
   double poisson_ratio = 0;
   double face_to_cube = 2;  ///< A of the springs it corrects

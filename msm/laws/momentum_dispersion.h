@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "msm/algebra/tangent.h"
+#include "msm/laws/law_traits.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -20,6 +21,8 @@ enum class Dispersion {
 };
 
 struct MomentumDispersion {
+  static constexpr LawTraits traits = {"momentum dispersion", Reach::second_neighbours, true, true};
+
   double q = 0;  ///< Q / 2, the fraction of the incoming force that a node disperses
   Dispersion form = Dispersion::symmetric;
   /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring;

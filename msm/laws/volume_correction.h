@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -15,6 +16,8 @@ enum class VolumeEnergy {
 /// Energy sum_c V psi(V'/V) with V' = a . (b x c), a, b, c the mean edge vectors of the cell;
 /// Golec et al. (2019), eqs. (5.13)-(5.16).  DEVIATION from eq. (5.16): factor 1/4, docs/papers.md.
 struct VolumeCorrection {
+  static constexpr LawTraits traits = {"volume correction", Reach::cells, true};
+
   double kappa = 0;  ///< lambda - G [Pa]
   VolumeEnergy form = VolumeEnergy::bounded;
 

@@ -1,5 +1,6 @@
 #include "msm/multigrid/cell_stiffness.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace springproof {
@@ -9,7 +10,7 @@ MassSpringModel one_cell(const MassSpringModel& model) {
   if (model.network.cells.empty()) throw std::invalid_argument("the network has no cells");
   MassSpringModel cell;
   for (const ForceLaw& law : model.laws)
-    if (!std::holds_alternative<MomentumDispersion>(law)) cell.laws.push_back(law);  // it is no cell's business
+    if (traits(law).reach != Reach::second_neighbours) cell.laws.push_back(law);
   cell.network.cell_edge = model.network.cell_edge;
   cell.network.springs = model.network.cell_springs;
   cell.network.X.resize(8, 3);
@@ -32,7 +33,9 @@ CellMatrix dense(const Tangent& K) {
 }  // namespace
 
 bool consists_of_cells(const MassSpringModel& model) {
-  return model.network.grid && !model.network.cells.empty() && !dispersion_of(model);
+  const auto in_cells = [](const ForceLaw& law) { return traits(law).reach != Reach::second_neighbours; };
+  return model.network.grid && !model.network.cells.empty() &&
+         std::all_of(model.laws.begin(), model.laws.end(), in_cells);
 }
 
 CellStiffness in_units(CellStiffness cell, double G, double edge) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "msm/laws/dispersion_weights.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
+#include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
 
 namespace springproof {
@@ -21,16 +21,6 @@ Network periodic_lattice(const ModelParameters& p, double spacing, int nodes) {
   return network;
 }
 
-MomentumDispersion dispersion(const ModelParameters& p, const Network& network, const BulkCalibration& c) {
-  MomentumDispersion law{c.q, p.dispersion, {}};
-  if (p.dispersion == Dispersion::symmetric && p.exact_volumes.value_or(false)) {
-    DispersionWeights exact = volume_weights(network, NodalVectors::Zero(network.nodes(), 3), c.spring_shear_modulus);
-    law.weight = std::move(exact.weight);
-    law.group = std::move(exact.group);
-  }
-  return law;
-}
-
 }  // namespace
 
 MassSpringModel periodic_random_model(const ModelParameters& p, const BulkCalibration& c, double spacing, int nodes) {
@@ -40,7 +30,8 @@ MassSpringModel periodic_random_model(const ModelParameters& p, const BulkCalibr
   MassSpringModel model{periodic_random_network(spacing * std::cbrt(nodes) * Vec3::Ones(), random), {Springs{}}};
   if (random.surface_nodes) correct_surface(model.network);
   calibrate(c.spring_shear_modulus, model.network);
-  if (p.has(Extension::momentum_dispersion)) model.laws.push_back(dispersion(p, model.network, c));
+  if (p.has(Extension::momentum_dispersion))
+    model.laws.push_back(dispersion_law(p, model.network, c, NodalVectors::Zero(model.network.nodes(), 3)));
   return model;
 }
 
@@ -53,13 +44,9 @@ MassSpringModel periodic_model(const ModelParameters& parameters, const Isotropi
   if (p.has(Extension::momentum_dispersion) && p.dispersion == Dispersion::symmetric)
     p.exact_volumes = exact_volumes(p, material);
   if (p.row.topology == Topology::random) return periodic_random_model(p, bulk, spacing, nodes);
-  MassSpringModel model{periodic_lattice(p, spacing, nodes), {Springs{}}};
+  MassSpringModel model{periodic_lattice(p, spacing, nodes), {}};
   calibrate(bulk.spring_shear_modulus, model.network);
-  if (p.has(Extension::volume_correction)) model.laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
-  if (p.has(Extension::momentum_dispersion)) model.laws.push_back(dispersion(p, model.network, bulk));
-  if (p.row.bending_correction)
-    model.laws.push_back(
-        HourglassCorrection{shear_modulus(material), material.poisson_ratio, p.face_to_cube, p.row.torsion_correction});
+  model.laws = laws_of(p, model.network, material, bulk, NodalVectors::Zero(model.network.nodes(), 3));
   return model;
 } catch (const std::invalid_argument& e) {
   throw InputError(fmt::format("{}: {}", parameters.row.name, e.what()));

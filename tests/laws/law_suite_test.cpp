@@ -1,6 +1,8 @@
 // One suite over the list of laws: what any force law must obey.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "msm/laws/laws.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
@@ -47,6 +49,13 @@ std::vector<Case> cases() {
     all.push_back({"Angular" + std::string(beta < 0 ? "Negative" : "Positive"), {sheet, {AngularSprings{beta}}}, true});
   all.push_back({"SpringsOfASheet", {sheet, {Springs{}}}, true});
   return all;
+}
+
+TEST(LawSuiteCases, HaveEveryLawOfTheList) {
+  std::set<std::size_t> tested;
+  for (const Case& c : cases())
+    for (const ForceLaw& law : c.model.laws) tested.insert(law.index());
+  EXPECT_EQ(tested.size(), std::variant_size_v<ForceLaw>);
 }
 
 class LawSuite : public testing::TestWithParam<Case> {
