@@ -15,6 +15,7 @@
 #include "fem_reference/reference.h"
 #include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
+#include "problem/case_file/measures.h"
 #include "problem/system/child.h"
 #include "problem/system/shortened.h"
 
@@ -30,23 +31,7 @@ int list() {
   fmt::print("\nModels ([compare] models = [...]):\n");
   for (const ModelRow& row : model_table()) fmt::print("  {:<38} {}\n", row.name, row.what);
   fmt::print("\nMeasures ([compare] measures = [...]):\n");
-  for (const char* line :
-       {"displacement_error          relative L2 difference to FEM over the nodes",
-        "displacement_error_max      largest difference over the largest displacement",
-        "section_distance            mean distance to FEM on the plane [section] [m]",
-        "section_axis_distance       the same per coordinate in the plane, (|dx| + |dy|)/2 [m]",
-        "volume_change               (V' - V)/V of the displaced body",
-        "volume_change_magnitude     its absolute value, the papers' e",
-        "volume_change_first_order   integral of div u over V",
-        "reaction_error              largest relative error of force or torque on a moved support",
-        "mean_displacement           mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]",
-        "reaction                    force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m]",
-        "probe                       displacement.PROBE.x|y|z|magnitude [m]",
-        "stress                      stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only",
-        "moduli                      E and nu of a block stretched along x, as the Kot papers measure them",
-        "network                     nodes, springs, springs per node, spring lengths [m]",
-        "line                        strain and stress along [line] against Kelvin's solution"})
-    fmt::print("  {}\n", line);
+  for (const Measure& measure : measure_table()) fmt::print("  {:<28}{}\n", measure.name, measure.what);
   return 0;
 }
 

@@ -37,8 +37,6 @@ double size_of(const std::map<std::string, ReferenceValue>& truth, const std::st
   return value && value->norm() > uncertainty->norm() ? value->norm() : 0;
 }
 
-std::string head(const std::string& measure) { return measure.substr(0, measure.find('.')); }
-
 std::vector<int> nodes_on(const Section& section, const Mesh& mesh) {
   const Vec3 normal = section.normal.normalized();
   const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
@@ -100,36 +98,6 @@ std::map<std::string, double> values_of(const std::map<std::string, ReferenceVal
   std::map<std::string, double> values;
   for (const auto& [measure, limit] : limits) values[measure] = limit.value + off * limit.uncertainty;
   return values;
-}
-
-std::string unit_of(const std::string& measure) {
-  const std::string kind = head(measure);
-  if (kind == "force") return "N";
-  if (kind == "torque") return "N m";
-  if (kind == "displacement" || kind == "mean_displacement" || kind.starts_with("section_")) return "m";
-  if (kind == "stress") return "Pa";
-  if (measure.starts_with("moduli.") && measure.ends_with("youngs_modulus")) return "Pa";
-  if (measure == "moduli.youngs_modulus_local") return "Pa";
-  if (measure == "network.mean_length" || measure == "network.length_deviation") return "m";
-  return "1";
-}
-
-bool is_distance(const std::string& measure) {
-  return measure == "displacement_error" || measure == "displacement_error_max" || measure == "reaction_error" ||
-         measure.starts_with("section_");
-}
-
-bool is_deviation(const std::string& measure) { return head(measure) == "line" && !measure.ends_with(".order"); }
-
-bool wanted(const std::string& measure, const std::vector<std::string>& measures) {
-  const std::string kind = head(measure);
-  const std::string group =
-      kind == "force" || kind == "torque" ? "reaction"
-      : kind == "displacement"            ? "probe"
-      : kind == "stress" || kind == "network" || kind == "moduli" || kind == "line" || kind == "mean_displacement"
-          ? kind
-          : measure;
-  return std::find(measures.begin(), measures.end(), group) != measures.end();
 }
 
 double displacement_error(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights) {

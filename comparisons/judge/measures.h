@@ -9,6 +9,7 @@
 #include "comparisons/judge/reference_value.h"
 #include "meshes/field.h"
 #include "problem/case_file/experiment.h"
+#include "problem/case_file/measures.h"
 
 namespace springproof {
 
@@ -34,18 +35,6 @@ std::optional<double> reaction_difference(const std::map<std::string, double>& a
 
 /// value + off * uncertainty of each measure.
 std::map<std::string, double> values_of(const std::map<std::string, ReferenceValue>& limits, double off = 0);
-
-/// "m", "Pa", "N", "N m" or "1".
-std::string unit_of(const std::string& measure);
-
-/// True if the measure is a distance from the reference, whose best value is 0.
-bool is_distance(const std::string& measure);
-
-/// True if the measure is a deviation from a solution in closed form: line.strain.xx and the like.
-bool is_deviation(const std::string& measure);
-
-/// Names that [compare] measures stand for in this case ("reaction" is many).
-bool wanted(const std::string& measure, const std::vector<std::string>& measures);
 
 /// |u - v| in weighted L2, divided by |v| [1].
 double displacement_error(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights);

@@ -9,40 +9,29 @@
 #include "comparisons/report/headline.h"
 #include "comparisons/report/page.h"
 #include "comparisons/report/results.h"
+#include "problem/case_file/measures.h"
+#include "problem/system/encoding.h"
+#include "problem/system/files.h"
 
 namespace springproof {
 namespace {
 
 using Json = nlohmann::json;
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
+/// Titles and meanings of the measures.
+Json measures_json() {
+  Json all;
+  for (const Measure& m : measure_table())
+    if (!m.title.empty()) all[m.name] = {{"title", m.title}, {"meaning", m.meaning}};
+  return all;
 }
 
-/// The results with each case's rows as one table {"columns", "values"}: half the size.
+/// The results with each case's rows as one table {"columns", "values"}: half the size; and what the measures are.
 Json packed(Json results) {
   static const std::vector<std::string> columns = {
       "kinematics", "model",     "poisson_ratio",         "cells", "measure", "value",
       "unit",       "reference", "reference_uncertainty", "error", "samples", "spread"};
+  results["measures"] = measures_json();
   if (!results.contains("cases")) return results;
   for (Json& result : results.at("cases")) {
     Json values = Json::array();
@@ -59,7 +48,8 @@ Json packed(Json results) {
 std::string list_html(const std::vector<std::string>& lines) {
   constexpr std::size_t most = 20;
   std::string out = "<ul>\n";
-  for (std::size_t i = 0; i < std::min(most, lines.size()); ++i) out += fmt::format("<li>{}</li>\n", escaped(lines[i]));
+  for (std::size_t i = 0; i < std::min(most, lines.size()); ++i)
+    out += fmt::format("<li>{}</li>\n", xml_escaped(lines[i]));
   if (lines.size() > most) out += fmt::format("<li>and {} more, on the case pages</li>\n", lines.size() - most);
   return out + "</ul>\n";
 }
@@ -74,9 +64,9 @@ std::string model_list_html(const Headline& head, bool large_deformation) {
   std::string items;
   for (const ModelVerdict& verdict : head.models)
     if (verdict.large_deformation == large_deformation)
-      items +=
-          fmt::format("<li data-model=\"{0}\"><b>{0}</b>{1} {2}</li>\n", escaped(verdict.model),
-                      verdict.finite_elements ? " (finite elements, for comparison)" : "", escaped(verdict.sentence));
+      items += fmt::format("<li data-model=\"{0}\"><b>{0}</b>{1} {2}</li>\n", xml_escaped(verdict.model),
+                           verdict.finite_elements ? " (finite elements, for comparison)" : "",
+                           xml_escaped(verdict.sentence));
   return items.empty() ? "" : "<ul class=\"verdicts\">\n" + items + "</ul>\n";
 }
 
@@ -84,10 +74,10 @@ std::string verdicts_html(const Headline& head) {
   const std::string linear = model_list_html(head, false), large = model_list_html(head, true);
   std::string out;
   const std::string doubt =
-      head.doubt.empty() ? "" : fmt::format("<span class=\"amber\">{}</span> ", escaped(head.doubt));
-  if (const std::string first = doubt + escaped(head.answer); !first.empty())
+      head.doubt.empty() ? "" : fmt::format("<span class=\"amber\">{}</span> ", xml_escaped(head.doubt));
+  if (const std::string first = doubt + xml_escaped(head.answer); !first.empty())
     out += fmt::format("<p class=\"answer\">{}</p>\n", first);
-  for (const std::string& line : head.warnings) out += fmt::format("<p class=\"amber\">{}</p>\n", escaped(line));
+  for (const std::string& line : head.warnings) out += fmt::format("<p class=\"amber\">{}</p>\n", xml_escaped(line));
   if (!linear.empty()) out += fmt::format("<h2>{}</h2>\n{}", linear_title, linear);
   if (!large.empty())
     out += fmt::format("<details{}><summary>{}</summary>\n{}</details>\n", linear.empty() ? " open" : "", large_title,
@@ -102,7 +92,7 @@ std::string count_html(const char* verdict, int count, const char* words) {
 std::string headline_html(const Json& results) {
   const Headline head = headline(results);
   std::string out = verdicts_html(head);
-  out += fmt::format("<p class=\"counts\" title=\"{}\">Expectations: ", escaped(expectations_sentence(head)));
+  out += fmt::format("<p class=\"counts\" title=\"{}\">Expectations: ", xml_escaped(expectations_sentence(head)));
   const std::string chips = count_html("pass", head.held, "hold") + count_html("fail", head.failed, "fail") +
                             count_html("coarse", head.reference_too_coarse, "reference too coarse") +
                             count_html("none", head.no_reference, "no reference") +

@@ -3,28 +3,53 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace springproof {
 
 struct Experiment;
 
-/// Names allowed in [compare] measures: displacement_error, displacement_error_max, section_distance,
-/// section_axis_distance, volume_change, volume_change_magnitude (its absolute value, the papers' e),
-/// volume_change_first_order, reaction, reaction_error (largest relative error of the force or torque on a moved
-/// support; always measured where a support is moved), mean_displacement (of the patches), probe, stress (finite
-/// elements only), displacement_error_order (observed, between the two finest grids; where the exact solution is
-/// known), network (what the spring network is made of), moduli (of a block stretched along x, as the papers measure
-/// them), line (strain and stress along a line, against Kelvin's solution).
+/// What a number of a measure is.
+enum class MeasureKind {
+  value,      ///< of one solution, as good as its difference from the reference's
+  distance,   ///< from the reference: the best is 0
+  deviation,  ///< from a solution in closed form: the best is 0
+};
+
+/// A measure.  A new one is a new row of measure_table() and the function that computes it (comparisons/judge/).
+struct Measure {
+  std::string name;  ///< as [compare] measures writes it
+  MeasureKind kind;
+  std::vector<std::pair<std::string, std::string>> units;  ///< of rows of this name, or that begin with it and a dot
+  std::string what;                                        ///< for `springproof list`
+  std::string title, meaning;                              ///< for the report; empty: the name, nothing
+  /// Names of its rows in results.csv, [[expect]] and [[published]], where they differ from its own name.
+  std::vector<std::string> (*rows)(const Experiment&) = nullptr;
+};
+
+const std::vector<Measure>& measure_table();
+
+/// The measure that gives a row of this name, e.g. `reaction` gives force.x_min.z; nullptr: none.
+const Measure* measure_of(const std::string& row);
+
+/// "m", "Pa", "N", "N m" or "1".
+std::string unit_of(const std::string& row);
+
+/// True if the row is a distance from the reference, whose best value is 0.
+bool is_distance(const std::string& row);
+
+/// True if the row is a deviation from a solution in closed form: line.strain.xx and the like, but no order.
+bool is_deviation(const std::string& row);
+
+/// Whether a row belongs to one of these measures.
+bool wanted(const std::string& row, const std::vector<std::string>& measures);
+
+/// Names allowed in [compare] measures.
 std::vector<std::string> measure_names();
 
-/// Names of the rows that a measure gives for an experiment, as [[expect]] and [[published]] write them. Most
-/// give one row of their own name; `reaction` gives force.<patch>.x|y|z|magnitude and
-/// torque.<patch>.x|y|z|magnitude for each patch with prescribed displacement; `probe` gives
-/// `mean_displacement` mean_displacement.<patch>.x|y|z|magnitude for each patch of the body, which only its mesh knows
-/// (here those that loads and [[patch]] name); `probe` gives displacement.<name>.x|y|z|magnitude for each probe,
-/// `stress` stress.<name>.xx|yy|zz|xy|yz|xz; `line` line.strain|stress.xx|yy|zz|xy|yz|xz|all, and .order with several
-/// resolutions.
+/// Names of the rows that a measure gives for an experiment.  Those of `mean_displacement` are for each patch of the
+/// body, which only its mesh knows; here those that loads and [[patch]] name.
 std::vector<std::string> rows_of_measure(const std::string& measure, const Experiment& experiment);
 
 /// Relative displacement [m] along x that the loads prescribe between x_min and x_max; empty: they do not.

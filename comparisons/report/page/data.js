@@ -152,33 +152,16 @@ const cellsText = cells => isTetrahedra(cells || []) ? `${cells[0]} tets` : (cel
 const cellsWords = cells => cellsText(cells) + (isTetrahedra(cells || []) ? '' : ' cells');
 const bySize = (a, b) => cellCount(a) - cellCount(b);
 
-const measureNames = {
-  displacement_error: 'displacement error',
-  displacement_error_max: 'largest displacement error',
-  reaction_error: 'reaction error of moved supports',
-  displacement_error_order: 'observed order of the displacement error',
-  volume_change: 'volume change',
-  volume_change_magnitude: 'size of the volume change',
-  volume_change_first_order: 'volume change, first order',
-  section_distance: 'mean distance on the section',
-  section_axis_distance: 'mean distance per coordinate on the section',
-};
-
-const measureMeanings = {
-  displacement_error: '|u − u_fem| in the L2 norm over the body, divided by |u_fem|',
-  displacement_error_max: 'largest |u − u_fem| over the nodes, divided by the largest |u_fem|',
-  reaction_error: '|F − F_fem| / |F_fem| or |T − T_fem| / |T_fem|, the largest over the supports that are moved; those that vanish are left out',
-  volume_change: '(V′ − V) / V of the deformed cells, exact; errors in percentage points',
-  volume_change_magnitude: '|V′ − V| / V, as the paper prints it; errors in percentage points',
-  volume_change_first_order: 'integral of div u over V; errors in percentage points',
-  section_distance: 'mean |u − u_fem| over the nodes of the section',
+/// Titles and meanings of measures (problem/case_file/measures.cpp).
+const measureTable = results.measures || {};
+const lineMeanings = {
   'line.strain.all': 'mean |ε − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
   'line.stress.all': 'mean |σ − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
-  section_axis_distance: 'mean |u − u_fem| per coordinate in the section, (|Δx| + |Δy|)/2',
 };
+const measureMeaning = measure => lineMeanings[measure] || (measureTable[measure] || {}).meaning;
 
 function measureText(measure) {
-  if (measureNames[measure]) return measureNames[measure];
+  if ((measureTable[measure] || {}).title) return measureTable[measure].title;
   const [what, where, component] = measure.split('.');
   if (what === 'line') return component === 'order' ? `observed order of the ${where} deviation` :
     `${where} deviation${component === 'all' ? '' : ', ' + component}`;

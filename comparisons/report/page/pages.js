@@ -233,7 +233,7 @@ function resultTable(result, measure) {
   const scale = result.scales.get(measure).unit;
   const small = isDistance(measure) || !rows.some(row => isNumber(row.error)) ? '' : `below each value its error${scale.startsWith('%') ? ' in ' + scale : ''}`;
   return [el('h5', {}, withUnit(measureText(measure), write.unit),
-             el('small', {}, [measureMeanings[measure], small].filter(Boolean).join('; '))),
+             el('small', {}, [measureMeaning(measure), small].filter(Boolean).join('; '))),
     table('results', ['model', 'cells', ...result.nus.map(nu => right(`ν = ${nuText(nu)}`))],
           [referenceLine(result, measure, write), ...lines])];
 }

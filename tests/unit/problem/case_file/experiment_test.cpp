@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <cmath>
 #include <numbers>
 
@@ -214,6 +216,39 @@ TEST(Experiment, AComputedPoissonRatioIsFoundByItsPrintedValue) {
       "\"T\"\n";
   const Experiment e = parse(text);
   EXPECT_EQ(e.published[0].poisson_ratio, e.materials[0].poisson_ratio);
+}
+
+TEST(MeasureTable, EveryRowFindsItsMeasureAndUnit) {
+  const std::pair<const char*, const char*> rows[] = {{"displacement_error", "1"},
+                                                      {"section_axis_distance", "m"},
+                                                      {"force.z_max.x", "N"},
+                                                      {"torque.z_max.magnitude", "N m"},
+                                                      {"displacement.tip.z", "m"},
+                                                      {"mean_displacement.skin.x", "m"},
+                                                      {"stress.tip.xx", "Pa"},
+                                                      {"moduli.poisson_ratio", "1"},
+                                                      {"moduli.youngs_modulus", "Pa"},
+                                                      {"moduli.youngs_modulus_local", "Pa"},
+                                                      {"moduli.affine_youngs_modulus", "Pa"},
+                                                      {"network.nodes", "1"},
+                                                      {"network.mean_length", "m"},
+                                                      {"line.stress.all", "1"}};
+  for (const auto& [row, unit] : rows) {
+    EXPECT_TRUE(measure_of(row)) << row;
+    EXPECT_EQ(unit_of(row), unit) << row;
+  }
+  EXPECT_FALSE(measure_of("forces"));
+  EXPECT_TRUE(wanted("torque.feet.x", {"probe", "reaction"}));
+  EXPECT_FALSE(wanted("displacement_error_max", {"displacement_error"}));
+  EXPECT_TRUE(is_distance("reaction_error") && is_deviation("line.strain.xx") && !is_deviation("line.strain.order"));
+}
+
+TEST(MeasureTable, NamesDifferAndEachIsExplained) {
+  std::set<std::string> names;
+  for (const Measure& m : measure_table()) {
+    EXPECT_TRUE(names.insert(m.name).second) << m.name;
+    EXPECT_FALSE(m.what.empty() || m.units.empty()) << m.name;
+  }
 }
 
 TEST(Measures, RowsOfEachMeasure) {
