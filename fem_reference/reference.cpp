@@ -102,13 +102,6 @@ void interrupt() { interrupt_children(); }
 
 bool available() { return !program().empty(); }
 
-std::string version() {
-  const fs::path file = program();
-  if (file.empty()) return {};
-  const TemporaryFolder folder;
-  const fs::path output = folder.path / "output";
-  const bool ok = run_child({file, {"--version"}, {}, output, folder.path / "errors"}).ok();
-  return ok ? trimmed(text_of_file(output)) : std::string();
-}
+std::string version() { return version_of(program()); }
 
 }  // namespace springproof::fem

@@ -8,9 +8,11 @@
 #include <filesystem>
 
 #include "comparisons/commands/calculix_command.h"
+#include "comparisons/commands/describe.h"
 #include "comparisons/commands/homogenise_command.h"
 #include "comparisons/commands/material_command.h"
 #include "comparisons/commands/pictures_command.h"
+#include "comparisons/commands/versions.h"
 #include "comparisons/run/suite.h"
 #include "fem_reference/reference.h"
 #include "msm/parameters/model_table.h"
@@ -47,15 +49,21 @@ int run_bench(const std::vector<std::string>& arguments) {
   return end.status;
 }
 
+int describe(const CLI::App& app, const std::string& form) {
+  std::vector<std::string> cases, models;
+  for (const auto& file : built_in_cases()) cases.push_back(case_name(file));
+  for (const ModelRow& row : model_table()) models.push_back(row.name);
+  fmt::print("{}", form == "man" ? man_page(app, SPRINGPROOF_VERSION)
+                                 : bash_completion(app, {{"CASE", cases}, {"--model", models}}));
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   CLI::App app{"Mass-spring models of elastic solids, proved against finite elements.", "springproof"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", [] {
-    const std::string fem = fem::version();
-    return fmt::format("springproof {}\n{}", SPRINGPROOF_VERSION, fem.empty() ? "without the FEM reference" : fem);
-  });
+  app.set_version_flag("--version", versions);
 
   std::vector<std::string> names;
   SuiteOptions options;
@@ -115,6 +123,11 @@ int main(int argc, char** argv) try {
   bench_command->set_help_flag();
   bench_command->prefix_command();  // the program that it starts knows its options
 
+  std::string form;
+  CLI::App* describe_command =
+      app.add_subcommand("describe", "The command line as a man page, or as completion for bash")->group("");
+  describe_command->add_option("FORM", form)->required()->check(CLI::IsMember({"man", "bash"}));
+
   for (CLI::App* command : {compare_command, export_command, cross_check_command})
     command->add_flag_callback(
         "--no-scripts", [] { setenv("SPRINGPROOF_NO_SCRIPTS", "1", 1); },
@@ -127,6 +140,7 @@ int main(int argc, char** argv) try {
   }
   if (*compare_command) return compare(find_cases(names), options);
   if (*list_command) return list();
+  if (*describe_command) return describe(app, form);
   if (*bench_command) return run_bench(bench_command->remaining());
   if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();

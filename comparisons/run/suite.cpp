@@ -340,21 +340,21 @@ void check_names(const std::vector<fs::path>& cases) {
                                      cases[j].string(), cases[i].string()));
 }
 
+fs::path experiments_folder() { return data_folder("experiments", SPRINGPROOF_EXPERIMENTS_DIR); }
+
 }  // namespace
 
 std::string case_name(const fs::path& file) {
-  const fs::path relative = fs::proximate(fs::absolute(file), SPRINGPROOF_EXPERIMENTS_DIR);
+  const fs::path relative = fs::proximate(fs::absolute(file), experiments_folder());
   return *relative.begin() == ".." ? file.stem().string() : (relative.parent_path() / relative.stem()).string();
 }
 
-std::vector<fs::path> built_in_cases() {
-  return toml_files<fs::recursive_directory_iterator>(SPRINGPROOF_EXPERIMENTS_DIR);
-}
+std::vector<fs::path> built_in_cases() { return toml_files<fs::recursive_directory_iterator>(experiments_folder()); }
 
 std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
   std::vector<fs::path> cases;
   for (const std::string& name : names) {
-    const fs::path built_in = fs::path(SPRINGPROOF_EXPERIMENTS_DIR) / name;
+    const fs::path built_in = experiments_folder() / name;
     std::vector<fs::path> found;
     std::string why;
     for (const fs::path& path : {fs::path(name), built_in, fs::path(built_in.string() + ".toml")}) {

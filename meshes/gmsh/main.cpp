@@ -1,5 +1,6 @@
 // springproof-mesh: reads a request, meshes the body, writes the answer (meshes/mesher/mesher_exchange.h).
 #include <fmt/format.h>
+#include <gmsh.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <new>
 
 #include "meshes/gmsh/bodies.h"
+#include "meshes/gmsh/session.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "problem/system/child.h"
 
@@ -33,7 +35,18 @@ std::string answer_to(const MeshRequest& request) try {
                          ": too large a mesh for the memory of this machine (choose a longer edge)");
 }
 
+std::string library_versions() {
+  const GmshSession session({});
+  std::string gmsh;
+  gmsh::option::getString("General.Version", gmsh);
+  return fmt::format("gmsh {}, CGAL {}", gmsh, SPRINGPROOF_CGAL_VERSION);
+}
+
 int run(int argc, char** argv) try {
+  if (argc == 2 && argv[1] == std::string("--version")) {
+    fmt::print("{}\n", library_versions());
+    return 0;
+  }
   if (argc != 3) {
     fmt::print(stderr, "usage: springproof-mesh REQUEST.cbor ANSWER.cbor   (run by springproof and springproof-fem)\n");
     return 2;

@@ -110,7 +110,7 @@ void refuse_own_script(const Body& body, const fs::path& file, const fs::path& b
 }  // namespace
 
 fs::path find_geo(const Body& body, const fs::path& case_file) {
-  const fs::path built_in = SPRINGPROOF_GEO_DIR;
+  const fs::path built_in = data_folder("geo", SPRINGPROOF_GEO_DIR);
   for (const fs::path& candidate : {case_file.parent_path() / body.geo, built_in / body.geo}) {
     std::error_code ignored;
     if (body.geo.empty() || !fs::is_regular_file(candidate, ignored)) continue;

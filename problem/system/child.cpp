@@ -108,6 +108,12 @@ bool wait_for(pid_t pid, const Child& child) {
   return true;
 }
 
+/// The folder that the running executable lies in.
+fs::path own_folder() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path();
+}
+
 }  // namespace
 
 namespace {
@@ -224,9 +230,14 @@ std::string words_for(const ChildEnd& end, double time_limit) {
 
 fs::path find_program(const std::string& name, const char* variable) {
   if (const char* given = std::getenv(variable); given && access(given, X_OK) == 0) return given;
-  std::error_code ignored;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / name;
+  const fs::path beside = own_folder() / name;
   return access(beside.c_str(), X_OK) == 0 ? beside : fs::path();
+}
+
+fs::path data_folder(const std::string& name, const fs::path& source) {
+  const fs::path installed = own_folder().parent_path() / "share/springproof" / name;
+  std::error_code ignored;
+  return fs::is_directory(installed, ignored) ? installed : source;
 }
 
 fs::path program_on_path(const std::string& name) {
@@ -238,6 +249,14 @@ fs::path program_on_path(const std::string& name) {
     if (fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0) return fs::absolute(file);
   }
   return {};
+}
+
+std::string version_of(const fs::path& program) {
+  if (program.empty()) return {};
+  const TemporaryFolder folder;
+  const fs::path output = folder.path / "output";
+  const bool ok = run_child({program, {"--version"}, {}, output, folder.path / "errors"}).ok();
+  return ok ? trimmed(text_of_file(output)) : std::string();
 }
 
 }  // namespace springproof

@@ -76,7 +76,14 @@ std::string words_for(const ChildEnd& end, double time_limit = 0);
 /// The program named by the environment variable, else `name` beside the running executable; empty: there is none.
 std::filesystem::path find_program(const std::string& name, const char* variable);
 
+/// The folder of data of an installed program, ../share/springproof/NAME seen from it; else `source`, that of the
+/// source tree.
+std::filesystem::path data_folder(const std::string& name, const std::filesystem::path& source);
+
 /// The program of that name on PATH; empty: there is none.
 std::filesystem::path program_on_path(const std::string& name);
+
+/// What it answers to --version, without white space at the end; empty: it is not there, or does not know.
+std::string version_of(const std::filesystem::path& program);
 
 }  // namespace springproof

@@ -51,4 +51,12 @@ for name in displacement-nu0.25 displacement-nu0.4 volume_change-nu0.25 volume_c
   [ -s "$file" ] || fail "$file is not there"
   [ "$(head -c 4 "$file" | tail -c 3)" = PNG ] || fail "$file is no PNG"
 done
-echo "4 pictures"
+
+# Of several cases that have a reference also the figure of them all.
+sed -e 's/^elements = \[\]$/cells = [8, 8, 8]/' "$work/case one.toml" >"$work/one.toml"
+sed -e 's/-0.1\]/0.1]/' "$work/one.toml" >"$work/two.toml"
+"$program" compare "$work/one.toml" "$work/two.toml" --out "$work/both" >"$work/log" 2>&1
+grep -q 'no reference' "$work/log" && { echo "4 pictures; springproof-fem is not built"; exit 0; }
+expect 0 "1 pictures in" "$program" pictures "$work/both" --only error-against-poisson-ratio
+[ -s "$work/both/png/error-against-poisson-ratio.png" ] || fail "the figure of both cases is not there"
+echo "5 pictures"

@@ -182,6 +182,15 @@ function poissonDrawing(chosen, measure, resolution, even) {
   };
 }
 
+/// Displacement above volume change, the largest errors over all linear cases, of the curves shown at first; none: [].
+function overviewDrawings() {
+  const chosen = chosenCases(linearCases), measures = ['displacement_error', 'volume_change'];
+  const known = measureChoices(chosen).map(([measure]) => measure);
+  if (chosen.length < 2 || !measures.every(measure => known.includes(measure))) return [];
+  const sheet = () => stacked(measures.map(measure => chartPaper(firstShown(poissonDrawing(chosen, measure, 'finest', true)))));
+  return [{name: 'error-against-poisson-ratio', sheet}];
+}
+
 function poissonSection(section) {
   const plot = figure(), volumePlot = figure();
   const empty = notice('No error of this case is known.');
@@ -215,7 +224,8 @@ function poissonSection(section) {
   update();
   charts.push(draw);
   return {show(id) { caseChoice.value = id; update(); },
-          drawings: result => measureChoices([result]).filter(([m]) => !result.minor.has(m)).map(([m]) => allShown(poissonDrawing([result], m, 'finest', true)))};
+          drawings: result => [...result === cases[0] ? overviewDrawings() : [],
+            ...measureChoices([result]).filter(([m]) => !result.minor.has(m)).map(([m]) => allShown(poissonDrawing([result], m, 'finest', true)))]};
 }
 
 // ---- convergence

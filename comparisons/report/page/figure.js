@@ -93,6 +93,25 @@ const allShown = drawing => ({...drawing, notes: drawing.notes.filter(note => !n
   return configuration;
 }});
 
+/// The drawing without the curves that are hidden at first.
+const firstShown = drawing => ({...drawing, notes: drawing.notes.filter(note => !note.includes('struck out')), make() {
+  const configuration = drawing.make();
+  configuration.data.datasets = configuration.data.datasets.filter(dataset => !dataset.hidden);
+  return configuration;
+}});
+
+/// Sheets one above the other.
+function stacked(sheets) {
+  const size = sheet => [sheet.width / paperScale, sheet.height / paperScale];
+  const {canvas, ctx} = newCanvas(Math.max(...sheets.map(sheet => size(sheet)[0])), sheets.reduce((sum, sheet) => sum + size(sheet)[1], 0));
+  let top = 0;
+  for (const sheet of sheets) {
+    ctx.drawImage(sheet, 0, top, ...size(sheet));
+    top += size(sheet)[1];
+  }
+  return canvas;
+}
+
 function chartPaper({caption, notes, paperNotes = notes, make}, height = 480) {
   return onPaper(() => {
     const canvas = el('canvas', {width: paperWidth, height});

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# What docs/contributing.md says to add is all that it takes.   contributing.sh BINARY-FOLDER SOURCE-FOLDER COMPILER INCLUDE-FOLDERS
+set -u
+binary=$1 source=$2 compiler=$3
+IFS=';' read -ra includes <<<"$4"
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+page=$source/docs/contributing.md
+
+# A body and a case: files of the page, beside the built-in ones of a program that lies as an installed one does.
+mkdir -p bin build share/springproof
+cp -r "$source/meshes/geo" "$source/comparisons/experiments" share/springproof
+cp "$binary"/springproof "$binary"/springproof-mesh "$binary"/springproof-fem bin || fail "programs are missing"
+ln -s ../bin build/release
+awk '
+  match($0, /Save as `[a-z_\/.]+`/) { name = substr($0, RSTART + 9, RLENGTH - 10) }
+  /^```/ { if (inside) name = ""; inside = !inside; next }
+  inside && name != "" {
+    file = name
+    sub(/^meshes\/geo/, "share/springproof/geo", file); sub(/^comparisons\/experiments/, "share/springproof/experiments", file)
+    print > file
+  }' "$page"
+bin/springproof list | grep -q '^  bodies/wedge ' || fail "the new case is not listed"
+command=$(awk '/^```sh$/ { getline; print; exit }' "$page")
+[ -n "$command" ] || fail "no command in $page"
+bash -c "$command" >log 2>&1 || fail "$command: status $?: $(cat log)"
+grep -q '^1 of 1 expectations hold' log || fail "the case is not judged: $(cat log)"
+
+# A model: the row of the page in the table, and the same by an option of hybmss.
+row=$(awk '/^```cpp$/ { getline; print; exit }' "$page")
+awk -v row="$row" '{ print } /^const std::vector<ModelRow> table = \{/ { print row }' "$source/msm/parameters/model_table.cpp" >model_table.cpp
+flags=(-std=c++20 -O0 -I"$binary/arrows/msm" -I"$binary/arrows/meshes" -I"$binary/arrows/problem" "${includes[@]/#/-isystem}")
+libraries=(-L"$binary/msm" -lmsm -L"$binary/meshes" -lmeshes -L"$binary/problem" -lproblem -ltomlplusplus -lfmt -lz)
+sed -e 's/int main()/int main(int count, char**)/' \
+    -e 's/resolve({.*});/resolve(count > 1 ? ModelChoice{"hybmss_1", {}, "", {}} : ModelChoice{"hybmss", {{"face_to_cube", 1.0}}, "", {}});/' \
+    "$source/examples/embed_msm.cpp" >bar.cpp
+if "$compiler" "${flags[@]}" bar.cpp model_table.cpp "${libraries[@]}" -o bar; then
+  added=$(./bar added)
+  chosen=$(./bar)
+  [ -n "$added" ] || fail "the new model prints nothing"
+  [ "$added" = "$chosen" ] || fail "the new model gives '$added', hybmss with A = 1 '$chosen'"
+else
+  fail "msm/models.cpp does not compile with the new row"
+fi
+exit $((failures > 0))

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# What cmake --install puts into a folder works there: programs with their data, man page, completion.   install.sh CMAKE BINARY-FOLDER SOURCE-FOLDER
+set -u
+cmake=$1 binary=$2 source=$3
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+prefix=$(mktemp -d)
+trap 'rm -rf "$prefix"' EXIT
+cd "$prefix" || exit 1
+
+"$cmake" --install "$binary" --prefix "$prefix" >log 2>&1 || { cat log; fail "cmake --install"; exit 1; }
+springproof=$prefix/bin/springproof
+
+# Its own data and not those of the source tree: a case and a body that only it has.
+cp share/springproof/experiments/golec_2019/compression.toml share/springproof/experiments/only_here.toml
+cp share/springproof/geo/block.geo share/springproof/geo/only_here.geo
+sed -i 's/^geo = .*/geo = "only_here.geo"/' share/springproof/experiments/only_here.toml
+"$springproof" list >listed || fail "springproof list"
+grep -q '^  only_here ' listed || fail "an installed case is not listed"
+grep -q '^  golec_2019/compression ' listed || fail "an installed case has not its name"
+"$springproof" export only_here --to calculix --out deck.inp >log 2>&1 || fail "no deck of an installed case: $(cat log)"
+[ -s deck.inp ] || fail "the deck is empty"
+
+"$springproof" --version >version || fail "springproof --version"
+for program in bin/springproof-*; do
+  case $program in
+    */springproof-mesh) grep -q '^springproof-mesh: gmsh [0-9]' version || fail "springproof-mesh is not found" ;;
+    */springproof-fem) grep -q '^springproof-fem: deal.II [0-9]' version || fail "springproof-fem is not found" ;;
+  esac
+done
+grep -q '^\.TH SPRINGPROOF 1' share/man/man1/springproof.1 || fail "no man page"
+grep -q '^complete ' share/bash-completion/completions/springproof || fail "no completion"
+
+# Another program finds the library, and nothing of it in the source tree.
+grep -rl "$source" lib/cmake >paths && fail "paths of the source tree in $(cat paths)"
+mkdir other && cp "$source/examples/embed_msm.cpp" other
+cat >other/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(other LANGUAGES C CXX)
+set(CMAKE_CXX_STANDARD 20)
+find_package(springproof REQUIRED)
+add_executable(embed_msm embed_msm.cpp)
+target_link_libraries(embed_msm PRIVATE springproof::msm)
+END
+if "$cmake" -S other -B other/build -DCMAKE_PREFIX_PATH="$prefix" >log 2>&1 && "$cmake" --build other/build >>log 2>&1; then
+  other/build/embed_msm | grep '^tip ' || fail "the program that embeds springproof::msm"
+else
+  cat log; fail "springproof::msm cannot be used"
+fi
+exit $((failures > 0))

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Every file and heading that a page refers to is there: targets of links, and `paths` that begin with a folder of the source tree.
+#   pages.sh SOURCE-FOLDER
+set -u
+cd "$1" || exit 1
+failures=0 found=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+
+# The anchors of a page's headings, as web pages of it have them: lower case, no punctuation, blanks as dashes.
+anchors() { sed -nE 's/^#+ //p' "$1" | tr '[:upper:]' '[:lower:]' | sed -E "s/[^[:alnum:] _-]//g; s/ /-/g"; }
+
+# A path, which may have a * in it, or stand for a header and its source.
+is_there() {
+  local file
+  for file in $1 $1.*; do [ ! -e "$file" ] || return 0; done
+  return 1
+}
+
+# Text outside of code blocks, but for files that the reader is to write.
+text_of() { awk '/^```/ { inside = !inside; next } !inside { gsub(/Save as `[^`]*`/, ""); print }' "$1"; }
+
+mapfile -t pages < <(find . -maxdepth 1 -name '*.md'; find docs -name '*.md')
+for page in "${pages[@]}"; do
+  while read -r target; do
+    found=$((found + 1))
+    file=${target%%#*} anchor=
+    [[ $target != *"#"* ]] || anchor=${target#*#}
+    path=$(dirname "$page")/$file
+    [ -n "$file" ] || path=$page
+    if [ ! -e "$path" ]; then
+      fail "$page links to $target"
+    elif [ -n "$anchor" ] && [[ $path == *.md ]] && ! anchors "$path" | grep -qxF "$anchor"; then
+      fail "$page links to $target: no such heading"
+    fi
+  done < <(text_of "$page" | grep -oE '\]\([^)]+\)' | sed -E 's/^\]\(//; s/\)$//' | grep -vE '^[a-z]+:')
+  while read -r path; do
+    found=$((found + 1))
+    is_there "$path" || fail "$page names $path"
+  done < <(text_of "$page" | grep -oE '`(problem|meshes|msm|fem_reference|comparisons|tests|docs|examples)/[A-Za-z0-9_./*-]*`' | tr -d '`' | sort -u)
+done
+[ $found -ge 50 ] || fail "only $found links and paths found"
+echo "$found links and paths"
+exit $((failures > 0))
