@@ -43,6 +43,6 @@ if "$compiler" "${flags[@]}" bar.cpp model_table.cpp "${libraries[@]}" -o bar; t
   [ -n "$added" ] || fail "the new model prints nothing"
   [ "$added" = "$chosen" ] || fail "the new model gives '$added', hybmss with A = 1 '$chosen'"
 else
-  fail "msm/models.cpp does not compile with the new row"
+  fail "msm/parameters/model_table.cpp does not compile with the new row"
 fi
 exit $((failures > 0))
