@@ -1,12 +1,13 @@
 # The program springproof-bench, which `springproof bench` starts.  It links PETSc, where there is one, for a baseline: hence a program of
 # its own, so that springproof does not wait for those libraries.
-add_library(bench STATIC bench/rows.cpp bench/timer.cpp bench/interrupt.cpp bench/in_child.cpp bench/machine.cpp
-                                 bench/bodies.cpp bench/motion.cpp bench/lammps.cpp bench/dynamics.cpp bench/gamg.cpp bench/relaxation.cpp
-                                 bench/statics.cpp bench/fem.cpp bench/experiments.cpp bench/table.cpp bench/page.cpp)
-target_link_libraries(bench PUBLIC report msm fem_reference meshes PRIVATE fmt::fmt-header-only nlohmann_json::nlohmann_json Threads::Threads springproof_warnings)
+springproof_sources(bench_sources bench)
+list(REMOVE_ITEM bench_sources bench/main.cpp)
+add_library(bench STATIC ${bench_sources})
+springproof_uses_headers(bench headers_with_json)
+target_link_libraries(bench PUBLIC report msm fem_reference meshes PRIVATE fmt::fmt nlohmann_json::nlohmann_json Threads::Threads springproof_warnings)
 
 add_executable(springproof-bench bench/main.cpp)
-target_link_libraries(springproof-bench PRIVATE bench CLI11::CLI11 fmt::fmt-header-only nlohmann_json::nlohmann_json springproof_warnings)
+target_link_libraries(springproof-bench PRIVATE bench CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json springproof_warnings)
 add_dependencies(springproof-bench springproof-mesh)
 target_compile_definitions(springproof-bench PRIVATE SPRINGPROOF_VERSION="${PROJECT_VERSION}")
 
@@ -29,12 +30,14 @@ if(TARGET msm_avx2)
   target_compile_definitions(bench PUBLIC SPRINGPROOF_X86_BENCH_KERNELS)
 endif()
 
+# Not the imported targets: their compiler options (Debian's _FORTIFY_SOURCE) are those of another program's build.
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
-  pkg_check_modules(PETSC QUIET IMPORTED_TARGET PETSc)
-  pkg_check_modules(MPI_C QUIET IMPORTED_TARGET mpi-c)
+  pkg_check_modules(PETSC QUIET PETSc)
+  pkg_check_modules(MPI_C QUIET mpi-c)
 endif()
 if(PETSC_FOUND AND MPI_C_FOUND)
   target_compile_definitions(bench PRIVATE SPRINGPROOF_PETSC)
-  target_link_libraries(bench PRIVATE PkgConfig::PETSC PkgConfig::MPI_C)
+  target_include_directories(bench SYSTEM PRIVATE ${PETSC_INCLUDE_DIRS} ${MPI_C_INCLUDE_DIRS})
+  target_link_libraries(bench PRIVATE ${PETSC_LINK_LIBRARIES} ${MPI_C_LINK_LIBRARIES})
 endif()

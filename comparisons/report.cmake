@@ -24,26 +24,26 @@ set(report_dir ${CMAKE_CURRENT_LIST_DIR})
 set(report_generated ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cpp)
 # name=file; a name that comes again goes on where it stopped.
 set(report_assets
-    template_html=${report_dir}/report/template.html
-    style_css=${report_dir}/report/style.css
-    report_js=${report_dir}/report/data.js
-    report_js=${report_dir}/report/figure.js
-    report_js=${report_dir}/report/charts.js
-    report_js=${report_dir}/report/line.js
-    report_js=${report_dir}/report/cost.js
-    report_js=${report_dir}/report/splits.js
-    report_js=${report_dir}/report/colours.js
-    report_js=${report_dir}/report/pictures.js
-    report_js=${report_dir}/report/viewer.js
-    report_js=${report_dir}/report/shapes.js
-    report_js=${report_dir}/report/pages.js
-    report_js=${report_dir}/report/verification.js
-    report_js=${report_dir}/report/fem_column.js
-    report_js=${report_dir}/report/report.js
+    template_html=${report_dir}/report/page/template.html
+    style_css=${report_dir}/report/page/style.css
+    report_js=${report_dir}/report/page/data.js
+    report_js=${report_dir}/report/page/figure.js
+    report_js=${report_dir}/report/page/charts.js
+    report_js=${report_dir}/report/page/line.js
+    report_js=${report_dir}/report/page/cost.js
+    report_js=${report_dir}/report/page/splits.js
+    report_js=${report_dir}/report/page/colours.js
+    report_js=${report_dir}/report/page/pictures.js
+    report_js=${report_dir}/report/page/viewer.js
+    report_js=${report_dir}/report/page/shapes.js
+    report_js=${report_dir}/report/page/pages.js
+    report_js=${report_dir}/report/page/verification.js
+    report_js=${report_dir}/report/page/fem_column.js
+    report_js=${report_dir}/report/page/report.js
     bench_html=${report_dir}/bench/page/bench.html
-    bench_js=${report_dir}/report/data.js
-    bench_js=${report_dir}/report/figure.js
-    bench_js=${report_dir}/report/charts.js
+    bench_js=${report_dir}/report/page/data.js
+    bench_js=${report_dir}/report/page/figure.js
+    bench_js=${report_dir}/report/page/charts.js
     bench_js=${report_dir}/bench/page/bench.js
     chart_js=${SPRINGPROOF_CHART_JS}
     three_js=${SPRINGPROOF_THREE_JS}
@@ -56,10 +56,12 @@ add_custom_command(
   COMMENT "Embedding the report's page and its libraries"
   VERBATIM)
 
-add_library(report STATIC ${report_dir}/report.cpp ${report_dir}/page.cpp ${report_dir}/headline.cpp ${report_dir}/headline_cases.cpp ${report_dir}/headline_words.cpp ${report_dir}/terminal.cpp ${report_dir}/results.cpp ${report_generated})
+springproof_sources(report_sources report)
+add_library(report STATIC ${report_sources} ${report_generated})
+springproof_uses_headers(report headers_with_json)
 set(report_view ${CMAKE_BINARY_DIR}/arrows/comparisons)
 file(MAKE_DIRECTORY ${report_view})
 file(CREATE_LINK ${CMAKE_SOURCE_DIR}/comparisons ${report_view}/comparisons SYMBOLIC)
 target_include_directories(report PUBLIC ${report_view})
 target_link_libraries(report PUBLIC problem meshes nlohmann_json::nlohmann_json
-                             PRIVATE springproof_warnings fmt::fmt-header-only)
+                             PRIVATE springproof_warnings fmt::fmt)

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "msm/models.h"
-#include "msm/solve/equilibrium.h"
+#include "msm/statics/equilibrium.h"
 
 using namespace springproof;
 
@@ -19,8 +19,8 @@ int main() {
   const Equilibrium state = solve_linear(model, conditions);
   if (!state.ok) return std::fprintf(stderr, "%s\n", state.message.c_str()), 1;
 
-  const Field field = to_field(state, std::make_shared<Mesh>(mesh), nodes_of_mesh(mesh), model.network, loads, conditions,
-                               Kinematics::linear);
+  const Field field = to_field(state, std::make_shared<Mesh>(mesh), nodes_of_mesh(mesh), model.network, loads,
+                               conditions, Kinematics::linear);
   double tip = 0;  // mean over the nodes of the end
   const std::vector<int> end = nodes_of(patch(mesh, "x_max"));
   for (int node : end) tip += field.displacement(node, 2) / static_cast<double>(end.size());

@@ -37,9 +37,7 @@ struct DofSets {
   dealii::IndexSet owned, relevant;
 };
 
-DofVector zero(const DofSets& dofs, MPI_Comm comm) {
-  return DofVector(dofs.owned, dofs.relevant, comm);
-}
+DofVector zero(const DofSets& dofs, MPI_Comm comm) { return DofVector(dofs.owned, dofs.relevant, comm); }
 
 std::unique_ptr<SparseMatrix> empty_matrix(const dealii::DoFHandler<3>& rows, const dealii::DoFHandler<3>& columns,
                                            MPI_Comm comm) {
@@ -103,7 +101,8 @@ struct AssembledOperator::Spaces {
       cell->get_dof_indices(dofs);
       for (std::size_t i = 0; i < dofs.size(); ++i) u_indices[place[i]] = PetscInt(dofs[i]);
       if (mixed()) {
-        const dealii::DoFHandler<3>::active_cell_iterator same(&p.get_triangulation(), cell->level(), cell->index(), &p);
+        const dealii::DoFHandler<3>::active_cell_iterator same(&p.get_triangulation(), cell->level(), cell->index(),
+                                                               &p);
         same->get_dof_indices(pressure_dofs);
         std::copy(pressure_dofs.begin(), pressure_dofs.end(), p_indices.begin());
       }
@@ -138,9 +137,7 @@ struct AssembledOperator::Spaces {
     for (std::size_t k = 0; k < p_indices.size(); ++k) f.p(p_indices[k]) += c.p[k];
   }
 
-  MixedVector vector() const {
-    return {zero(u_dofs, comm), mixed() ? zero(*p_dofs, comm) : DofVector()};
-  }
+  MixedVector vector() const { return {zero(u_dofs, comm), mixed() ? zero(*p_dofs, comm) : DofVector()}; }
 
   // Of the body at rest (nullptr) or deformed.
   void assemble_stiffness(const DofVector* deformed_by, SparseMatrix& matrix) {
@@ -312,8 +309,9 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
   DofVector at_corners;
   if (deformed_by) at_corners = coarse_->restricted(*spaces_, *deformed_by);
   coarse_->spaces.assemble_stiffness(deformed_by ? &at_corners : nullptr, *coarse_->matrix);
-  multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping,
-                                           LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler}, system_.most_factored);
+  multigrid_ = std::make_unique<Multigrid>(
+      *smoothed_, mapping, LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler},
+      system_.most_factored);
 }
 
 void AssembledOperator::assemble_mass() {
@@ -330,9 +328,7 @@ void AssembledOperator::assemble_mass() {
   for (double& m : inverse_mass_) m = 1 / m;
 }
 
-MixedVector AssembledOperator::vector() const {
-  return spaces_->vector();
-}
+MixedVector AssembledOperator::vector() const { return spaces_->vector(); }
 
 double AssembledOperator::linearise(MixedVector& f, const MixedVector& x) {
   state_ = x;
@@ -406,8 +402,8 @@ void AssembledOperator::precondition(MixedVector& z, const MixedVector& r) const
   if (spaces_->mixed()) precondition_pressure(z.p, r.p);
 }
 
-// The inverse mass: Chebyshev's iteration for eigenvalues of the matrix over its diagonal from 1/2 to 5/2, which those of
-// linear tetrahedra are (Wathen 1987).  Four steps leave 4 %; pressures of a cell of its own need one.
+// The inverse mass: Chebyshev's iteration for eigenvalues of the matrix over its diagonal from 1/2 to 5/2, which those
+// of linear tetrahedra are (Wathen 1987).  Four steps leave 4 %; pressures of a cell of its own need one.
 void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) const {
   if (!spaces_->mixed()) return;
   constexpr double middle = 1.5, half_width = 1;

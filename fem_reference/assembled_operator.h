@@ -8,9 +8,9 @@
 #ifndef SPRINGPROOF_SOLVER_NAMESPACE
 #define SPRINGPROOF_SOLVER_NAMESPACE assembled
 #endif
-#include "fem_reference/multigrid.h"
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/mixed_vector.h"
+#include "fem_reference/multigrid.h"
 
 namespace springproof::fem::assembled {
 
@@ -46,14 +46,14 @@ class AssembledOperator {
   std::optional<Law> law_;
   std::unique_ptr<Spaces> spaces_;
   std::unique_ptr<Matrices> matrices_;
-  MixedVector state_;                    ///< that was linearised at
+  MixedVector state_;                       ///< that was linearised at
   std::unique_ptr<SparseMatrix> smoothed_;  ///< the stiffness that the multigrid is of
   std::unique_ptr<CoarseSpaces> coarse_;    ///< of quadratic elements: the linear ones
   std::unique_ptr<Multigrid> multigrid_;
-  std::unique_ptr<SparseMatrix> mass_;      ///< of the pressures
-  DofVector inverse_mass_;                  ///< its diagonal, inverted
-  mutable int cycles_ = 0;               ///< since prepare()
-  int cycles_when_new_ = 0;              ///< in the first solve after the set-up
+  std::unique_ptr<SparseMatrix> mass_;  ///< of the pressures
+  DofVector inverse_mass_;              ///< its diagonal, inverted
+  mutable int cycles_ = 0;              ///< since prepare()
+  int cycles_when_new_ = 0;             ///< in the first solve after the set-up
 };
 
 }  // namespace springproof::fem::assembled

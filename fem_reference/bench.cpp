@@ -39,7 +39,8 @@ GridProblem compressed_cube(const BenchRow& row) {
   problem.method = row.method;
   problem.law = row.finite ? "hencky" : "linear";
   problem.material = {1e4, row.poisson_ratio, 1000};
-  problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"z_max", {0.0, 0.0, -0.25}}};
+  problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}},
+                   PrescribedDisplacement{"z_max", {0.0, 0.0, -0.25}}};
   problem.points = NodalVectors(0, 3);
   problem.tolerance = 1e-8;
   return problem;
@@ -55,8 +56,12 @@ void measure(BenchRow& row) {
     nlohmann::json answer;
     try {
       const Solution s = solve_grid(compressed_cube(row));
-      answer = {{"ok", s.ok},           {"unknowns", s.degrees_of_freedom}, {"iterations", s.iterations},
-                {"seconds", s.seconds}, {"memory_MiB", s.memory_MiB},       {"form", s.form},
+      answer = {{"ok", s.ok},
+                {"unknowns", s.degrees_of_freedom},
+                {"iterations", s.iterations},
+                {"seconds", s.seconds},
+                {"memory_MiB", s.memory_MiB},
+                {"form", s.form},
                 {"force", s.reactions.empty() ? 0.0 : s.reactions[0].force[2]}};
     } catch (const std::exception& e) {
       answer = {{"ok", false}, {"form", e.what()}};
@@ -124,7 +129,8 @@ void bench(const BenchOptions& options) {
 
   nlohmann::json ratios, targets = nlohmann::json::object();
   const auto ratio = [&](const std::string& what, double value, const std::string& sense = {}, double limit = 0) {
-    fmt::print("{:<62} {:>7.2f}   {}\n", what, value, sense.empty() ? "" : fmt::format("{} {:g}", sense == "at_most" ? "at most" : "at least", limit));
+    fmt::print("{:<62} {:>7.2f}   {}\n", what, value,
+               sense.empty() ? "" : fmt::format("{} {:g}", sense == "at_most" ? "at most" : "at least", limit));
     ratios[what] = value;
     if (!sense.empty()) targets[what] = {{sense, limit}};
   };

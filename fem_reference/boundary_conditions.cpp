@@ -8,17 +8,15 @@
 
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
+#include "problem/case_file/experiment.h"
 #include "problem/exact_field.h"
-#include "problem/experiment.h"
 
 namespace springproof::fem {
 namespace {
 
 using dealii::types::boundary_id;
 
-Vec3 vec(const dealii::Point<3>& X) {
-  return {X[0], X[1], X[2]};
-}
+Vec3 vec(const dealii::Point<3>& X) { return {X[0], X[1], X[2]}; }
 
 bool on_patch(const Body3& body, const std::string& patch, boundary_id id) {
   return body.patches.at(patch).count(id) > 0;
@@ -41,18 +39,13 @@ bool lives_on_face(const dealii::FiniteElement<3>& fe, unsigned int i, unsigned 
   return std::abs(away[face]) < 1e-10;
 }
 
-bool is_known(const dealii::DoFHandler<3>::active_cell_iterator& cell) {
-  return !cell->is_artificial();
-}
-bool is_known(const dealii::DoFHandler<3>::level_cell_iterator& cell) {
-  return !cell->is_artificial_on_level();
-}
+bool is_known(const dealii::DoFHandler<3>::active_cell_iterator& cell) { return !cell->is_artificial(); }
+bool is_known(const dealii::DoFHandler<3>::level_cell_iterator& cell) { return !cell->is_artificial_on_level(); }
 
 // Calls visit(cell, load, i, component, X) for every prescribed shape function i of a cell, active or of a
 // level.
 template <typename Cells, typename Visit>
-void for_each_prescribed(const Cells& cells, const Body3& body, const std::vector<Load>& loads,
-                         const Visit& visit) {
+void for_each_prescribed(const Cells& cells, const Body3& body, const std::vector<Load>& loads, const Visit& visit) {
   const auto by_id = prescribing_loads(body, loads);
   for (const auto& cell : cells) {
     if (!is_known(cell)) continue;
@@ -66,8 +59,7 @@ void for_each_prescribed(const Cells& cells, const Body3& body, const std::vecto
         const int component = fe.system_to_component_index(i).first;
         const Vec3 X = vec(body.mapping->transform_unit_to_real_cell(cell, fe.unit_support_point(i)));
         for (const int l : found->second)
-          if (prescribed_displacement(loads[l], X, Kinematics::linear)[component])
-            visit(cell, l, i, component, X);
+          if (prescribed_displacement(loads[l], X, Kinematics::linear)[component]) visit(cell, l, i, component, X);
       }
     }
   }
@@ -91,10 +83,9 @@ template <typename Visit>
 void for_each_face(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
                    const Visit& visit) {
   const auto& fe = dof_handler.get_fe();
-  dealii::FEFaceValues<3> values(
-      *body.mapping, fe, face_quadrature(body, fe.degree + 1),
-      dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points |
-          dealii::update_normal_vectors);
+  dealii::FEFaceValues<3> values(*body.mapping, fe, face_quadrature(body, fe.degree + 1),
+                                 dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points |
+                                     dealii::update_normal_vectors);
   for (const auto& cell : dof_handler.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
     for (const unsigned int f : cell->face_indices())
@@ -110,8 +101,7 @@ struct PatchGeometry {
   Vec3 centroid = Vec3::Zero();
 };
 
-PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
-                             const std::string& patch) {
+PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch) {
   PatchGeometry geometry;
   for_each_face(dof_handler, body, patch, [&](const auto&, const auto& values) {
     for (const unsigned int q : values.quadrature_point_indices()) {
@@ -130,9 +120,8 @@ PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Bod
 template <typename Visit>
 void for_each_cell(const dealii::DoFHandler<3>& dof_handler, const Body3& body, unsigned int quadrature_points,
                    const Visit& visit) {
-  dealii::FEValues<3> values(
-      *body.mapping, dof_handler.get_fe(), cell_quadrature(body, quadrature_points),
-      dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
+  dealii::FEValues<3> values(*body.mapping, dof_handler.get_fe(), cell_quadrature(body, quadrature_points),
+                             dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
   for (const auto& cell : dof_handler.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
     values.reinit(cell);
@@ -144,13 +133,15 @@ void for_each_cell(const dealii::DoFHandler<3>& dof_handler, const Body3& body, 
 template <typename Region, typename Force>
 void add_force(const Region& region, const Force& force, DofVector& load) {
   region([&](const auto& cell, const auto& values) {
-    add_integral(values, cell, [&](unsigned int q) { return force(values, q); }, load);
+    add_integral(
+        values, cell, [&](unsigned int q) { return force(values, q); }, load);
   });
 }
 
 // Besides `force`, which is added elsewhere, the rigid field that together with it has the wrench.
 template <typename Region, typename Force>
-void complete(const Region& region, const Force& force, const std::optional<Wrench>& wrench, MPI_Comm comm, DofVector& load) {
+void complete(const Region& region, const Force& force, const std::optional<Wrench>& wrench, MPI_Comm comm,
+              DofVector& load) {
   if (!wrench) return;
   RegionMoments moments;
   Wrench own{Vec3::Zero(), Vec3::Zero(), wrench->about};
@@ -169,7 +160,8 @@ void complete(const Region& region, const Force& force, const std::optional<Wren
   sum_over_processes(own.moment, comm);
   const Wrench missing{wrench->force - own.force, wrench->moment - own.moment, wrench->about};
   const RigidField field = rigid_field(moments, missing);
-  add_force(region, [&](const auto& values, unsigned int q) { return field.at(vec(values.quadrature_point(q))); }, load);
+  add_force(
+      region, [&](const auto& values, unsigned int q) { return field.at(vec(values.quadrature_point(q))); }, load);
 }
 
 void add_point_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const PointForce& point,
@@ -212,10 +204,11 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
     const auto [at, is_new] = by_dof.try_emplace(p.dof, p);
     Prescribed& first = at->second;
     if (std::abs(value(p) - value(first)) > 1e-9 * size)
-      throw InputError(fmt::format("patches \"{}\" and \"{}\" prescribe different {}-displacements, {:.6g} m "
-                                   "and {:.6g} m, at ({:.6g}, {:.6g}, {:.6g})",
-                                   *patch_of(loads[first.load]), *patch_of(loads[l]), "xyz"[component], value(first),
-                                   value(p), X[0], X[1], X[2]));
+      throw InputError(
+          fmt::format("patches \"{}\" and \"{}\" prescribe different {}-displacements, {:.6g} m "
+                      "and {:.6g} m, at ({:.6g}, {:.6g}, {:.6g})",
+                      *patch_of(loads[first.load]), *patch_of(loads[l]), "xyz"[component], value(first), value(p), X[0],
+                      X[1], X[2]));
     first.load = std::min(first.load, l);
   };
   together([&] { for_each_prescribed(dof_handler.active_cell_iterators(), body, loads, add); });
@@ -224,8 +217,8 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
   return all;
 }
 
-std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& dof_handler,
-                                                   const Body3& body, const std::vector<Load>& loads) {
+std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
+                                                   const std::vector<Load>& loads) {
   std::vector<dealii::IndexSet> sets;
   std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
   for (unsigned int level = 0; level < dof_handler.get_triangulation().n_global_levels(); ++level) {
@@ -277,9 +270,8 @@ void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm) {
                                turns ? "turn about" : "move along", along[0], along[1], along[2], help));
 }
 
-DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
-                      const std::vector<Load>& loads, const IsotropicMaterial& material,
-                      const std::function<Vec3(const Vec3&)>& body_force) {
+DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::vector<Load>& loads,
+                      const IsotropicMaterial& material, const std::function<Vec3(const Vec3&)>& body_force) {
   DofVector load = zero_vector(dof_handler);
   const unsigned int points = dof_handler.get_fe().degree + 1;
   const MPI_Comm comm = dof_handler.get_communicator();
@@ -294,14 +286,17 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
     complete(region, force, wrench, comm, load);
   };
   const auto add_field = [&](const std::function<Vec3(const Vec3&)>& f) {
-    add_force(over_body(std::min(points + 2, 4u)),
-              [&](const auto& values, unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
+    add_force(
+        over_body(std::min(points + 2, 4u)),
+        [&](const auto& values, unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
   };
   for (const Load& l : loads) {
     if (const auto* traction = std::get_if<Traction>(&l))
-      add(over_patch(traction->on), [&](const auto&, unsigned int) { return traction->traction; }, traction->wrench);
+      add(
+          over_patch(traction->on), [&](const auto&, unsigned int) { return traction->traction; }, traction->wrench);
     if (const auto* pressure = std::get_if<Pressure>(&l))
-      add(over_patch(pressure->on),
+      add(
+          over_patch(pressure->on),
           [&](const auto& values, unsigned int q) -> Vec3 {
             const dealii::Tensor<1, 3> n = values.normal_vector(q);
             return -pressure->pressure * Vec3(n[0], n[1], n[2]);
@@ -309,11 +304,13 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
           pressure->wrench);
     if (const auto* total = std::get_if<PatchForce>(&l)) {
       const Vec3 traction = total->force / patch_geometry(dof_handler, body, total->on).area;
-      add(over_patch(total->on), [&](const auto&, unsigned int) { return traction; }, total->wrench);
+      add(
+          over_patch(total->on), [&](const auto&, unsigned int) { return traction; }, total->wrench);
     }
     if (const auto* gravity = std::get_if<Gravity>(&l)) {
       const Vec3 weight = material.density * gravity->acceleration;
-      add(over_body(points), [&](const auto&, unsigned int) { return weight; }, gravity->wrench);
+      add(
+          over_body(points), [&](const auto&, unsigned int) { return weight; }, gravity->wrench);
     }
     if (const auto* field = std::get_if<FieldBodyForce>(&l))
       add_field([&](const Vec3& X) { return exact_body_force(field->field, X, material); });
@@ -325,9 +322,8 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
 }
 
 std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
-                                     const std::vector<Load>& loads,
-                                     const std::vector<Prescribed>& prescribed, const DofVector& imbalance,
-                                     const DofVector* arm) {
+                                     const std::vector<Load>& loads, const std::vector<Prescribed>& prescribed,
+                                     const DofVector& imbalance, const DofVector* arm) {
   std::vector<PatchReaction> all;
   std::vector<Vec3> centroids;
   std::vector<int> reaction_of_load(loads.size(), -1);

@@ -9,7 +9,7 @@
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/triangulate.h"
 #include "meshes/field.h"
-#include "problem/constraints.h"
+#include "problem/loads.h"
 #include "problem/material.h"
 
 namespace springproof::fem {
@@ -31,24 +31,22 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
                                    const std::vector<Load>& loads);
 
 /// The same on every multigrid level.
-std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& dof_handler,
-                                                   const Body3& body, const std::vector<Load>& loads);
+std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
+                                                   const std::vector<Load>& loads);
 
 /// `prescribed` is what this process owns, as for reactions().
 /// @throws InputError with the motion that is left if the body can move or turn as a whole.
 void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm);
 
 /// Traction, patch forces, gravity, point forces and a body force [N] on every degree of freedom.
-DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
-                      const std::vector<Load>& loads, const IsotropicMaterial& material,
-                      const std::function<Vec3(const Vec3&)>& body_force);
+DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::vector<Load>& loads,
+                      const IsotropicMaterial& material, const std::function<Vec3(const Vec3&)>& body_force);
 
 /// One per patch with prescribed displacement, in the order of the loads; `imbalance` is internal force -
 /// load [N]. Lever arms are about the patch's rest centroid, to the rest positions plus `arm` (the
 /// displacement, or nothing).
 std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
-                                     const std::vector<Load>& loads,
-                                     const std::vector<Prescribed>& prescribed, const DofVector& imbalance,
-                                     const DofVector* arm);
+                                     const std::vector<Load>& loads, const std::vector<Prescribed>& prescribed,
+                                     const DofVector& imbalance, const DofVector* arm);
 
 }  // namespace springproof::fem

@@ -11,11 +11,11 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // Response at one point: stress S = S_shear + p Q, dilatation g, and their slopes.
 struct PointResponse {
-  Matrix3d F;      // identity at small strain
-  Vector6 S, Q;    // xx yy zz xy yz xz
-  Vector6 G;       // dg / dE, for strains with engineering shears
-  Matrix6 D;       // dS / dE at fixed p
-  double g = 0;    // dilatation
+  Matrix3d F;    // identity at small strain
+  Vector6 S, Q;  // xx yy zz xy yz xz
+  Vector6 G;     // dg / dE, for strains with engineering shears
+  Matrix6 D;     // dS / dE at fixed p
+  double g = 0;  // dilatation
 };
 
 Matrix3 to_array(const Matrix3d& F) {
@@ -31,9 +31,7 @@ Matrix3d tensor(const Vector6& s) {
   return t;
 }
 
-Vector6 from_voigt(const Voigt& v) {
-  return Eigen::Map<const Vector6>(v.data());
-}
+Vector6 from_voigt(const Voigt& v) { return Eigen::Map<const Vector6>(v.data()); }
 
 double dilatation_at(const CellLaw& law, const Matrix3d& h) {
   return law.law ? dilatation(*law.law, to_array(Matrix3d::Identity() + h)) : h.trace();
@@ -167,13 +165,13 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
       tangent->uu += QB.transpose() * (shape.weights.cwiseProduct(state.slope).asDiagonal() * GB);
       break;
     case Form::mean_dilatation:
-      tangent->uu += QB.transpose() * (weights * state.slope) *
-                     (shape.weights.transpose() * GB / shape.weights.sum());
+      tangent->uu += QB.transpose() * (weights * state.slope) * (shape.weights.transpose() * GB / shape.weights.sum());
       break;
     case Form::mixed:
       tangent->up = QB.transpose() * (weights * shape.pressures);
       tangent->pu = shape.pressures.transpose() * (weights * GB);
-      tangent->pp = -shape.pressures.transpose() * (shape.weights.cwiseProduct(state.slope).asDiagonal() * shape.pressures);
+      tangent->pp =
+          -shape.pressures.transpose() * (shape.weights.cwiseProduct(state.slope).asDiagonal() * shape.pressures);
       break;
   }
   return r;

@@ -25,8 +25,19 @@ class LinearElements {
     interpolate_to(fine);
     // What multigrid works on: of the mixed form the shear alone.
     const bool mixed = fine.form == Form::mixed;
-    system_.emplace(ElasticSystem{*body_, handler_, held_, {}, 1, mixed ? Form::pointwise : fine.form, fine.mu, mixed ? 0 : fine.lambda,
-                                  fine.tolerance, false, false, most_factored_rows, {}});
+    system_.emplace(ElasticSystem{*body_,
+                                  handler_,
+                                  held_,
+                                  {},
+                                  1,
+                                  mixed ? Form::pointwise : fine.form,
+                                  fine.mu,
+                                  mixed ? 0 : fine.lambda,
+                                  fine.tolerance,
+                                  false,
+                                  false,
+                                  most_factored_rows,
+                                  {}});
     operator_.emplace(*system_, std::nullopt);
     r_ = z_ = operator_->vector();
   }
@@ -52,7 +63,8 @@ class LinearElements {
     std::vector<char> held(handler_.n_dofs(), 0);
     std::vector<global_dof_index> own(linear.n_dofs_per_cell()), on_level(fe.n_dofs_per_cell());
     for (const auto& cell : handler_.active_cell_iterators()) {
-      const dealii::DoFHandler<3>::level_cell_iterator same(&fine.body.triangulation, 0, cell->index(), &fine.dof_handler);
+      const dealii::DoFHandler<3>::level_cell_iterator same(&fine.body.triangulation, 0, cell->index(),
+                                                            &fine.dof_handler);
       cell->get_dof_indices(own);
       same->get_mg_dof_indices(on_level);
       // Corners are the first degrees of freedom of a cell in every element.
@@ -62,7 +74,8 @@ class LinearElements {
         if (!row.empty()) continue;
         for (unsigned int j = 0; j < own.size(); ++j)
           if (linear.system_to_component_index(j).first == fe.system_to_component_index(i).first)
-            if (const double w = linear.shape_value(j, fe.unit_support_point(i)); std::abs(w) > 1e-12) row.emplace_back(own[j], float(w));
+            if (const double w = linear.shape_value(j, fe.unit_support_point(i)); std::abs(w) > 1e-12)
+              row.emplace_back(own[j], float(w));
       }
     }
     for (std::size_t j = 0; j < held.size(); ++j)
@@ -90,7 +103,8 @@ class LinearElements {
 
 }  // namespace
 
-void put_linear_elements_below(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place, ElasticSystem& system) {
+void put_linear_elements_below(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place,
+                               ElasticSystem& system) {
   start_mpi();
   const auto below = std::make_shared<LinearElements>(coarse, place, system);
   system.below = [below](LevelVector& x, const LevelVector& b) { below->cycle(x, b); };

@@ -112,7 +112,7 @@ ElasticAnswer small_strain(const ElasticSystem& system, const DofVector& load, D
 
 template <int degree>
 FiniteAnswer finite_strain(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                          DofVector& displacement) {
+                           DofVector& displacement) {
   const Stiffness<degree, double> base(*system.body.mapping, system.dof_handler, active_cells, system.constrained,
                                        {system.mu, 0, false});
   TangentOperator<degree> K(base, system, problem.law);
@@ -122,8 +122,8 @@ FiniteAnswer finite_strain(const ElasticSystem& system, const FiniteProblem& pro
 }  // namespace
 
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
-  ElasticAnswer answer = system.degree == 1 ? small_strain<1>(system, load, displacement)
-                                            : small_strain<2>(system, load, displacement);
+  ElasticAnswer answer =
+      system.degree == 1 ? small_strain<1>(system, load, displacement) : small_strain<2>(system, load, displacement);
   answer.method = system.form == Form::mixed ? "MINRES, matrix-free multigrid" : "CG, matrix-free multigrid";
   return answer;
 }

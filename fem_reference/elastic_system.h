@@ -19,7 +19,7 @@ namespace springproof::fem {
 
 using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
-using LevelVector = dealii::LinearAlgebra::distributed::Vector<float>;   ///< on a level of the matrix-free multigrid
+using LevelVector = dealii::LinearAlgebra::distributed::Vector<float>;  ///< on a level of the matrix-free multigrid
 
 /// Zero on every degree of freedom, with room for those of other processes on the cells of this one and around them.
 inline DofVector zero_vector(const dealii::DoFHandler<3>& dof_handler) {
@@ -39,15 +39,15 @@ void sum_over_processes(Matrix& m, MPI_Comm comm) {
 /// zero in the cells of other processes.
 using CellPressures = std::vector<std::array<double, 4>>;
 
-/// Factors of 3-D bodies grow with the power 4/3 of the unknowns, their cost with 2; at so many they cost as much as solving
-/// by GAMG a few times, on cubes.  Thin and ragged bodies, where GAMG is at its worst, have the smallest.
+/// Factors of 3-D bodies grow with the power 4/3 of the unknowns, their cost with 2; at so many they cost as much as
+/// solving by GAMG a few times, on cubes.  Thin and ragged bodies, where GAMG is at its worst, have the smallest.
 constexpr int most_factored_rows = 40000;
 
 struct ElasticSystem {
   const Body3& body;
-  const dealii::DoFHandler<3>& dof_handler;         ///< with level degrees of freedom, if solved without a matrix
-  std::vector<unsigned int> constrained;            ///< degrees of freedom with prescribed value, on the cells of this process
-                                                    ///  and around them
+  const dealii::DoFHandler<3>& dof_handler;  ///< with level degrees of freedom, if solved without a matrix
+  std::vector<unsigned int> constrained;     ///< degrees of freedom with prescribed value, on the cells of this process
+                                             ///  and around them
   std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level; empty: solved with a matrix
   int degree;
   Form form;
@@ -56,8 +56,9 @@ struct ElasticSystem {
   bool wide_vectors;  ///< where the processor has them
   bool plain_gamg;    ///< with matrices: no level of linear elements
   int most_factored;  ///< with matrices: rows up to which that of linear elements is factored
-  std::function<void(LevelVector& x, const LevelVector& r)> below = {};  ///< a correction of the coarsest level by something coarser;
-                                                                        ///  empty: nothing is
+  std::function<void(LevelVector& x, const LevelVector& r)> below =
+      {};  ///< a correction of the coarsest level by something coarser;
+           ///  empty: nothing is
 };
 
 struct ElasticAnswer {

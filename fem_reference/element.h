@@ -22,8 +22,8 @@ enum class Form {
          ///< cell, continuous linear functions (P2)
 };
 
-/// Where the solid is nearly incompressible the pressure becomes an unknown, so that neither the accuracy nor the solver
-/// depends on Poisson's ratio.  P1 has no stable pressure: it stays as it is, and locks.
+/// Where the solid is nearly incompressible the pressure becomes an unknown, so that neither the accuracy nor the
+/// solver depends on Poisson's ratio.  P1 has no stable pressure: it stays as it is, and locks.
 Form form_for(const Element& element, double poisson_ratio, bool small_strain);
 
 /// "Q2 displacement", "P2-P1 mixed", "Q1 B-bar", ...

@@ -9,25 +9,23 @@ namespace {
 
 using nlohmann::json;
 
-json rows(const NodalVectors& v) {
-  return std::vector<double>(v.data(), v.data() + v.size());
-}
+json rows(const NodalVectors& v) { return std::vector<double>(v.data(), v.data() + v.size()); }
 
 NodalVectors to_rows(const json& j) {
   const auto flat = j.get<std::vector<double>>();
   return Eigen::Map<const NodalVectors>(flat.data(), flat.size() / 3, 3);
 }
 
-json vec(const Vec3& v) {
-  return {v[0], v[1], v[2]};
-}
+json vec(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-Vec3 to_vec(const json& j) {
-  return Vec3(j.at(0), j.at(1), j.at(2));
-}
+Vec3 to_vec(const json& j) { return Vec3(j.at(0), j.at(1), j.at(2)); }
 
 json grid(const Discretisation& g) {
-  return {{"cells", g.cells}, {"element", g.element}, {"grading", g.grading}, {"mesh", g.mesh}, {"refinements", g.refinements}};
+  return {{"cells", g.cells},
+          {"element", g.element},
+          {"grading", g.grading},
+          {"mesh", g.mesh},
+          {"refinements", g.refinements}};
 }
 
 Discretisation to_grid(const json& j) {

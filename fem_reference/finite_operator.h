@@ -41,8 +41,7 @@ class FiniteOperator {
   /// smallest det F at quadrature points; f and the tangent are of no use unless it is positive.
   double linearise(MixedVector& f, const MixedVector& x) {
     double smallest = std::numeric_limits<double>::infinity();
-    loop(f, x,
-         [&](Cell& u, unsigned int batch, const Coefficients& p) { return evaluate(u, batch, p, smallest); });
+    loop(f, x, [&](Cell& u, unsigned int batch, const Coefficients& p) { return evaluate(u, batch, p, smallest); });
     return dealii::Utilities::MPI::min(smallest, base_.cells().get_dof_handler().get_communicator());
   }
 
@@ -73,8 +72,7 @@ class FiniteOperator {
   void loop(MixedVector& y, const MixedVector& x, const AtCell& at_cell) const {
     const std::function<void(const typename Base::Cells&, Vector<double>&, const Vector<double>&,
                              const typename Base::Range&)>
-        add = [&](const auto& cells, Vector<double>& force, const Vector<double>& displacement,
-                  const auto& range) {
+        add = [&](const auto& cells, Vector<double>& force, const Vector<double>& displacement, const auto& range) {
           Cell u(cells);
           for (unsigned int batch = range.first; batch < range.second; ++batch) {
             u.reinit(batch);
@@ -137,8 +135,7 @@ class FiniteOperator {
           excess[lane] = g[q][lane] - other.value;
         else
           at[lane] = other.value;
-        set_lane(lane, F[q], respond(law_, mu_, at[lane], lane_of(F[q], lane)), other.slope, entry(batch, q),
-                 S);
+        set_lane(lane, F[q], respond(law_, mu_, at[lane], lane_of(F[q], lane)), other.slope, entry(batch, q), S);
       }
       if (form_ == Form::mixed) test(u, q, excess, r);
       u.submit_gradient(F[q] * S, q);

@@ -46,8 +46,8 @@ KrylovOutcome conjugate_gradients(const Multiply& multiply, const Precondition& 
 /// For symmetric matrices.  Adds to x, which starts at zero, until the residual has shrunk by `reduction`.
 /// `precondition(z, r)` is symmetric and positive definite.  Elman, Silvester, Wathen (2014), algorithm 4.1.
 template <typename Vector, typename Multiply, typename Precondition>
-KrylovOutcome minres(const Multiply& multiply, const Precondition& precondition, const Vector& b,
-                     double reduction, int max_iterations, Vector& x) {
+KrylovOutcome minres(const Multiply& multiply, const Precondition& precondition, const Vector& b, double reduction,
+                     int max_iterations, Vector& x) {
   KrylovOutcome outcome;
   Vector v = b, v_old = b, z = b, z_next = b, w = x, w_old = x, Az = b;
   precondition(z, v);
@@ -89,8 +89,8 @@ KrylovOutcome minres(const Multiply& multiply, const Precondition& precondition,
 
 /// For any matrix, without restart: keeps two vectors per iteration.  Else as minres.
 template <typename Vector, typename Multiply, typename Precondition>
-KrylovOutcome gmres(const Multiply& multiply, const Precondition& precondition, const Vector& b,
-                    double reduction, int max_iterations, Vector& x) {
+KrylovOutcome gmres(const Multiply& multiply, const Precondition& precondition, const Vector& b, double reduction,
+                    int max_iterations, Vector& x) {
   KrylovOutcome outcome;
   std::vector<Vector> v = {b}, z = {b};  // v_i . z_j = delta_ij, z = P^-1 v
   precondition(z[0], v[0]);

@@ -7,12 +7,11 @@
 namespace springproof::fem {
 namespace {
 
-const std::array<std::pair<const char*, Law>, 5> names = {
-    {{"hencky", Law::hencky},
-     {"log_cauchy", Law::log_cauchy},
-     {"neo_hooke", Law::neo_hooke},
-     {"neo_hooke_isochoric", Law::neo_hooke_isochoric},
-     {"st_venant_kirchhoff", Law::st_venant_kirchhoff}}};
+const std::array<std::pair<const char*, Law>, 5> names = {{{"hencky", Law::hencky},
+                                                           {"log_cauchy", Law::log_cauchy},
+                                                           {"neo_hooke", Law::neo_hooke},
+                                                           {"neo_hooke_isochoric", Law::neo_hooke_isochoric},
+                                                           {"st_venant_kirchhoff", Law::st_venant_kirchhoff}}};
 
 Eigen::Matrix3d right_cauchy_green(const Matrix3& F) {
   Eigen::Matrix3d C;
@@ -47,8 +46,7 @@ Principal isochoric(double mu, double p, double J, const Eigen::Vector3d& c) {
   const Eigen::Vector3d tau = (scaled * (c.array() - third) + (rest * (J - 1) + p) * J).matrix();
   Principal r = from_kirchhoff(tau, Eigen::Vector3d::Constant(scaled), (rest * (2 * J - 1) + p) * J, J, c);
   const Eigen::Vector3d inverse = c.cwiseInverse(), ones = Eigen::Vector3d::Ones();
-  r.d += scaled / 3 *
-         (third * inverse * inverse.transpose() - inverse * ones.transpose() - ones * inverse.transpose());
+  r.d += scaled / 3 * (third * inverse * inverse.transpose() - inverse * ones.transpose() - ones * inverse.transpose());
   return r;
 }
 
@@ -85,18 +83,14 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 Vector6 symmetric_product(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   Vector6 v;
-  v << a[0] * b[0], a[1] * b[1], a[2] * b[2], (a[0] * b[1] + a[1] * b[0]) / 2,
-      (a[1] * b[2] + a[2] * b[1]) / 2, (a[0] * b[2] + a[2] * b[0]) / 2;
+  v << a[0] * b[0], a[1] * b[1], a[2] * b[2], (a[0] * b[1] + a[1] * b[0]) / 2, (a[1] * b[2] + a[2] * b[1]) / 2,
+      (a[0] * b[2] + a[2] * b[0]) / 2;
   return v;
 }
 
-bool is_linear_in_dilatation(Law law) {
-  return law == Law::st_venant_kirchhoff || law == Law::neo_hooke_isochoric;
-}
+bool is_linear_in_dilatation(Law law) { return law == Law::st_venant_kirchhoff || law == Law::neo_hooke_isochoric; }
 
-Voigt to_voigt(const Vector6& v) {
-  return {v[0], v[1], v[2], v[3], v[4], v[5]};
-}
+Voigt to_voigt(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
 
 }  // namespace
 
@@ -113,8 +107,7 @@ std::string law_names() {
 }
 
 double determinant(const Matrix3& F) {
-  return F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) -
-         F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
+  return F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
          F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
 }
 

@@ -6,7 +6,7 @@
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/krylov.h"
 #include "fem_reference/mixed_vector.h"
-#include "problem/progress.h"
+#include "problem/system/progress.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 

@@ -11,8 +11,8 @@
 #include "fem_reference/plain_words.h"
 #include "fem_reference/processes.h"
 #include "fem_reference/solve_grid.h"
-#include "meshes/mesher.h"
-#include "problem/progress.h"
+#include "meshes/mesher/mesher.h"
+#include "problem/system/progress.h"
 
 namespace springproof::fem {
 namespace {
@@ -48,8 +48,8 @@ void mesh_into(GridProblem& problem, const Request& request, const Discretisatio
   problem.refinements = halve(coarse);
   problem.coarse = mesh_geo(geo, body.size, coarse);
   if (problem.coarse.grid) {
-    problem.place = graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(),
-                           grid.grading);
+    problem.place =
+        graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(), grid.grading);
     return;
   }
   problem.refinements = 0;
@@ -94,7 +94,8 @@ bool is_hopeless(const Discretisation& grid, const std::vector<Solution>& before
 std::vector<Solution> solve_all(const Request& request, Method method = Method::automatic) {
   std::vector<Solution> solutions;
   for (const Discretisation& grid : request.grids) {
-    progress::phase(fmt::format("finite elements {} of {}, {}", solutions.size() + 1, request.grids.size(), words_for(grid)));
+    progress::phase(
+        fmt::format("finite elements {} of {}, {}", solutions.size() + 1, request.grids.size(), words_for(grid)));
     try {
       if (is_hopeless(grid, solutions)) throw std::runtime_error("not tried, as the coarser grid has no result");
       solutions.push_back(solve_one(request, grid, method));
@@ -141,8 +142,9 @@ void print(const Request& request, const Solution& s, int digits) {
     fmt::print("  {:<21} {} m\n", request.experiment.probes[p].name, vector(s.displacement.row(p)));
   for (Eigen::Index p = 0; p < s.stress.rows(); ++p) {
     const auto stress = s.stress.row(p);
-    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", request.experiment.probes[p].name, number(stress[0]),
-               number(stress[1]), number(stress[2]), number(stress[3]), number(stress[4]), number(stress[5]));
+    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", request.experiment.probes[p].name,
+               number(stress[0]), number(stress[1]), number(stress[2]), number(stress[3]), number(stress[4]),
+               number(stress[5]));
   }
 }
 
@@ -161,8 +163,10 @@ bool solve_case(const Options& options) {
   request.experiment = read_experiment(options.case_file);
   request.tolerance = options.tolerance;
   if (request.experiment.body.is_voxels())
-    throw InputError(fmt::format("{}: body.voxels: this program alone solves bodies with cells along their axes; bodies of voxels and the "
-                                 "tetrahedra fitted to them come from `springproof compare`", options.case_file));
+    throw InputError(fmt::format(
+        "{}: body.voxels: this program alone solves bodies with cells along their axes; bodies of voxels and the "
+        "tetrahedra fitted to them come from `springproof compare`",
+        options.case_file));
   Discretisation grid = options.grid;
   grid.cells = request.experiment.body.cells.front();
   if (!options.cells.empty()) std::copy_n(options.cells.begin(), 3, grid.cells.begin());
@@ -212,14 +216,11 @@ int run(int argc, char** argv) {
   Options options;
   app.add_option("case", options.case_file, "experiment, a .toml file");
   app.add_option("--poisson-ratio", options.poisson_ratio, "solve for this one instead of those in the file");
-  app.add_option("--cells", options.cells, "hexahedra along each side")
-      ->expected(3)
-      ->check(CLI::PositiveNumber);
+  app.add_option("--cells", options.cells, "hexahedra along each side")->expected(3)->check(CLI::PositiveNumber);
   app.add_option("--element", options.grid.element, "q1, q2 (hexahedra), p1, p2 (tetrahedra)")
       ->check(CLI::IsMember({"q1", "q2", "p1", "p2"}))
       ->capture_default_str();
-  app.add_option("--grading", options.grid.grading,
-                 "1 = uniform, more draws cells towards the faces of the block")
+  app.add_option("--grading", options.grid.grading, "1 = uniform, more draws cells towards the faces of the block")
       ->check(CLI::Range(1.0, 4.0))
       ->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "relative residual")
@@ -249,8 +250,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", [] { return library_versions(); });
   try {
     app.parse(argc, argv);
-    if (!benchmark && (options.request.empty() == options.case_file.empty() ||
-                       options.request.empty() != options.answer.empty()))
+    if (!benchmark &&
+        (options.request.empty() == options.case_file.empty() || options.request.empty() != options.answer.empty()))
       throw CLI::RequiredError("a case, or --request with --answer,");
   } catch (const CLI::ParseError& e) {
     const int status = process_rank() == 0 ? app.exit(e) : e.get_exit_code();
@@ -279,6 +280,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace springproof::fem
 
-int main(int argc, char** argv) {
-  return springproof::fem::run(argc, argv);
-}
+int main(int argc, char** argv) { return springproof::fem::run(argc, argv); }

@@ -90,8 +90,7 @@ class MixedOperator {
   using Cell = typename Shear::Cell;
   using Lane = Lanes<double>;
 
-  MixedOperator(const Shear& shear, double lambda)
-      : shear_(shear), pressure_(shear.cells()), lambda_(lambda) {}
+  MixedOperator(const Shear& shear, double lambda) : shear_(shear), pressure_(shear.cells()), lambda_(lambda) {}
 
   MixedVector vector() const {
     MixedVector x;
@@ -109,8 +108,7 @@ class MixedOperator {
   void apply(MixedVector& y, const MixedVector& x) const {
     const std::function<void(const typename Shear::Cells&, Vector<double>&, const Vector<double>&,
                              const typename Shear::Range&)>
-        add = [&](const auto& cells, Vector<double>& force, const Vector<double>& displacement,
-                  const auto& range) {
+        add = [&](const auto& cells, Vector<double>& force, const Vector<double>& displacement, const auto& range) {
           Cell u(cells);
           for (unsigned int batch = range.first; batch < range.second; ++batch) {
             u.reinit(batch);
@@ -130,8 +128,8 @@ class MixedOperator {
   }
 
  private:
-  typename PressureSpace<degree>::Coefficients submit(
-      Cell& u, const typename PressureSpace<degree>::Coefficients& p) const {
+  typename PressureSpace<degree>::Coefficients submit(Cell& u,
+                                                      const typename PressureSpace<degree>::Coefficients& p) const {
     const Lane mu = shear_.coefficients().mu, compliance = 1 / lambda_;
     typename PressureSpace<degree>::Coefficients r{};
     for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {

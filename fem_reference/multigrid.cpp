@@ -50,9 +50,7 @@ void set_rigid_motions(Mat matrix, const dealii::Mapping<3>& mapping, const deal
   check(VecDestroy(&coordinates));
 }
 
-MPI_Comm communicator(Mat matrix) {
-  return PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
-}
+MPI_Comm communicator(Mat matrix) { return PetscObjectComm(reinterpret_cast<PetscObject>(matrix)); }
 
 void use_factors(PC preconditioner, Mat matrix) {
   check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
@@ -100,13 +98,9 @@ SparseMatrix::SparseMatrix(const dealii::IndexSet& rows, const dealii::IndexSet&
   check(MatMPIAIJSetPreallocationCSR(matrix_, starts.data(), indices.data(), nullptr));
 }
 
-SparseMatrix::~SparseMatrix() {
-  MatDestroy(&matrix_);
-}
+SparseMatrix::~SparseMatrix() { MatDestroy(&matrix_); }
 
-void SparseMatrix::clear() {
-  check(MatZeroEntries(matrix_));
-}
+void SparseMatrix::clear() { check(MatZeroEntries(matrix_)); }
 
 void SparseMatrix::add(const std::vector<PetscInt>& rows, const std::vector<PetscInt>& columns, const double* values) {
   check(MatSetValues(matrix_, PetscInt(rows.size()), rows.data(), PetscInt(columns.size()), columns.data(), values,
@@ -124,17 +118,15 @@ void SparseMatrix::finish() {
   check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
 }
 
-void SparseMatrix::multiply(DofVector& y, const DofVector& x) const {
-  check(MatMult(matrix_, Wrapped(x), Wrapped(y)));
-}
+void SparseMatrix::multiply(DofVector& y, const DofVector& x) const { check(MatMult(matrix_, Wrapped(x), Wrapped(y))); }
 
 void SparseMatrix::multiply_transposed_and_add(DofVector& y, const DofVector& x) const {
   const Wrapped to(y);
   check(MatMultTransposeAdd(matrix_, Wrapped(x), to, to));
 }
 
-Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler,
-                     int most_factored) {
+Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping,
+                     const dealii::DoFHandler<3>& dof_handler, int most_factored) {
   check(PCCreate(communicator(matrix.petsc()), &preconditioner_));
   check(PCSetOperators(preconditioner_, matrix.petsc(), matrix.petsc()));
   name_ = use_one_of(preconditioner_, most_factored, matrix.petsc(), mapping, dof_handler);
@@ -172,9 +164,7 @@ Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mappi
   check(PCSetUp(preconditioner_));
 }
 
-Multigrid::~Multigrid() {
-  PCDestroy(&preconditioner_);
-}
+Multigrid::~Multigrid() { PCDestroy(&preconditioner_); }
 
 void Multigrid::vmult(DofVector& y, const DofVector& x) const {
   check(PCApply(preconditioner_, Wrapped(x), Wrapped(y)));

@@ -29,7 +29,7 @@ class SparseMatrix {
   void insert(const std::vector<PetscInt>& rows, const std::vector<PetscInt>& columns, const double* values);
   void finish();  ///< after the last add() or insert()
 
-  void multiply(DofVector& y, const DofVector& x) const;                ///< y = A x
+  void multiply(DofVector& y, const DofVector& x) const;                     ///< y = A x
   void multiply_transposed_and_add(DofVector& y, const DofVector& x) const;  ///< y += A^T x
 
   Mat petsc() const { return matrix_; }
@@ -45,14 +45,17 @@ struct LinearLevel {
   const dealii::DoFHandler<3>& dof_handler;
 };
 
-/// One V-cycle: GAMG, smoothed aggregation that knows the rigid motions, or factors of a small matrix; of quadratic elements
-/// after a level of linear ones, which makes the set-up several times cheaper.  Symmetric, positive definite if the matrices are.
+/// One V-cycle: GAMG, smoothed aggregation that knows the rigid motions, or factors of a small matrix; of quadratic
+/// elements after a level of linear ones, which makes the set-up several times cheaper.  Symmetric, positive definite
+/// if the matrices are.
 class Multigrid {
  public:
-  /// Rows as the degrees of freedom of the handler, three per node; the matrices must outlive the preconditioner.  Linear
-  /// elements are factored up to so many rows.
-  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler, int most_factored);
-  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear, int most_factored);
+  /// Rows as the degrees of freedom of the handler, three per node; the matrices must outlive the preconditioner.
+  /// Linear elements are factored up to so many rows.
+  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler,
+            int most_factored);
+  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear,
+            int most_factored);
   ~Multigrid();
   Multigrid(const Multigrid&) = delete;
   Multigrid& operator=(const Multigrid&) = delete;

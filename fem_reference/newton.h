@@ -7,7 +7,7 @@
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/krylov.h"
 #include "fem_reference/mixed_vector.h"
-#include "problem/progress.h"
+#include "problem/system/progress.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
@@ -108,8 +108,9 @@ class Newton {
     const auto multiply = [&](MixedVector& y, const MixedVector& v) {
       ++products;
       progress::detail([&] {
-        return fmt::format("{} unknowns, {:.3g} % of the load reached, load step {}, Newton step {}, iteration {}", load_.size(),
-                           100 * answer.load_reached, answer.load_steps + 1, answer.newton_iterations + 1, products);
+        return fmt::format("{} unknowns, {:.3g} % of the load reached, load step {}, Newton step {}, iteration {}",
+                           load_.size(), 100 * answer.load_reached, answer.load_steps + 1, answer.newton_iterations + 1,
+                           products);
       });
       K_.vmult(y, v);
     };

@@ -18,7 +18,8 @@ std::string one_line(const std::string& text) {
   std::istringstream words(text);
   std::string line;
   for (std::string word; words >> word;)
-    if (!std::all_of(word.begin(), word.end(), [](char c) { return c == '-'; }) || word == "-") line += (line.empty() ? "" : " ") + word;
+    if (!std::all_of(word.begin(), word.end(), [](char c) { return c == '-'; }) || word == "-")
+      line += (line.empty() ? "" : " ") + word;
   return line;
 }
 
@@ -28,7 +29,9 @@ std::string plain_words(const std::string& message) {
   if (message.find("An error occurred in line <") == std::string::npos) return one_line(message);
   const std::string said = one_line(between(message, "Additional information:", "\n\n"));
   const std::string condition = one_line(between(message, "The violated condition was:", "\n"));
-  return "deal.II: " + (!said.empty() ? said : !condition.empty() ? "a condition does not hold: " + condition : "an error without words");
+  return "deal.II: " + (!said.empty()        ? said
+                        : !condition.empty() ? "a condition does not hold: " + condition
+                                             : "an error without words");
 }
 
 }  // namespace springproof::fem

@@ -1,9 +1,9 @@
 #include "fem_reference/processes.h"
 
-#include <boost/serialization/utility.hpp>
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector_memory.h>
+#include <boost/serialization/utility.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof::fem {
 
@@ -22,9 +22,7 @@ int process_count() {
   return 1;
 }
 
-int process_rank() {
-  return process_count() > 1 ? int(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD)) : 0;
-}
+int process_rank() { return process_count() > 1 ? int(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD)) : 0; }
 
 void start_mpi() {
   int started = 0;

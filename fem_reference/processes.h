@@ -1,4 +1,5 @@
-// The processes of a run under mpirun.  One process alone starts no MPI until PETSc needs it.  No deal.II in this header.
+// The processes of a run under mpirun.  One process alone starts no MPI until PETSc needs it.  No deal.II in this
+// header.
 #pragma once
 
 #include <functional>
@@ -14,7 +15,8 @@ int process_rank();
 /// Starts MPI and PETSc, once, if the program has not; ends them with the program.
 void start_mpi();
 
-/// Runs f, which must not communicate.  Where it throws on any process, every process throws what the first of them threw.
+/// Runs f, which must not communicate.  Where it throws on any process, every process throws what the first of them
+/// threw.
 /// @throws InputError, std::runtime_error
 void together(const std::function<void()>& f);
 

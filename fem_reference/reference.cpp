@@ -9,8 +9,8 @@
 
 #include "fem_reference/exchange.h"
 #include "fem_reference/plain_words.h"
-#include "meshes/child.h"
-#include "problem/progress.h"
+#include "problem/system/child.h"
+#include "problem/system/progress.h"
 
 namespace springproof::fem {
 namespace {
@@ -19,9 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr int exit_status_input_error = 2;
 
-fs::path program() {
-  return find_program("springproof-fem", "SPRINGPROOF_FEM_PROGRAM");
-}
+fs::path program() { return find_program("springproof-fem", "SPRINGPROOF_FEM_PROGRAM"); }
 
 fs::path program_or_throw() {
   const fs::path file = program();
@@ -43,7 +41,8 @@ bool answers(const std::vector<Solution>& solutions, const Request& request) {
     if (!first) first = &s;
     const auto same_patch = [](const PatchReaction& a, const PatchReaction& b) { return a.patch == b.patch; };
     if (s.displacement.rows() != request.points.rows() || s.stress.rows() != request.stress_points.rows() ||
-        !std::equal(s.reactions.begin(), s.reactions.end(), first->reactions.begin(), first->reactions.end(), same_patch))
+        !std::equal(s.reactions.begin(), s.reactions.end(), first->reactions.begin(), first->reactions.end(),
+                    same_patch))
       return false;
   }
   return true;
@@ -57,8 +56,9 @@ std::vector<Solution> read_answer(const fs::path& answer, const Request& request
   } catch (const std::exception&) {
     why = fs::exists(answer) ? "cannot be read" : "is missing";
   }
-  throw std::runtime_error(fmt::format("{}: the answer of springproof-fem ({}) {} (build springproof and springproof-fem together)",
-                                       request.experiment.file.string(), program().string(), why));
+  throw std::runtime_error(
+      fmt::format("{}: the answer of springproof-fem ({}) {} (build springproof and springproof-fem together)",
+                  request.experiment.file.string(), program().string(), why));
 }
 
 }  // namespace
@@ -75,13 +75,18 @@ std::vector<Solution> solve(const Request& request) {
   }
   progress::phase("finite elements");
   const progress::Relay relay(progress);
-  const ChildEnd end = run_child({file, {"--request", question.string(), "--answer", answer.string(), "--progress", progress.string()},
-                                  {}, folder.path / "output", errors});
+  const ChildEnd end =
+      run_child({file,
+                 {"--request", question.string(), "--answer", answer.string(), "--progress", progress.string()},
+                 {},
+                 folder.path / "output",
+                 errors});
   if (!end.ok()) folder.require_room();
   const std::string last_words = plain_words(text_of_file(errors));
   if (end.kind == ChildEnd::exited && end.status == exit_status_input_error) throw InputError(last_words);
-  if (!end.ok()) throw std::runtime_error(fmt::format("{}: springproof-fem {}{}{}", request.experiment.file.string(), words_for(end),
-                                                    last_words.empty() ? "" : ": ", last_words));
+  if (!end.ok())
+    throw std::runtime_error(fmt::format("{}: springproof-fem {}{}{}", request.experiment.file.string(), words_for(end),
+                                         last_words.empty() ? "" : ": ", last_words));
   std::vector<Solution> solutions = read_answer(answer, request);
   for (Solution& s : solutions) s.message = plain_words(s.message);
   return solutions;
@@ -93,16 +98,10 @@ int run_program(const std::vector<std::string>& arguments) {
   return end.status;
 }
 
-void interrupt() {
-  interrupt_children();
-}
+void interrupt() { interrupt_children(); }
 
-bool available() {
-  return !program().empty();
-}
+bool available() { return !program().empty(); }
 
-std::string version() {
-  return version_of(program());
-}
+std::string version() { return version_of(program()); }
 
 }  // namespace springproof::fem

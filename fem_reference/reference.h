@@ -9,18 +9,18 @@
 #include <vector>
 
 #include "meshes/field.h"
-#include "problem/experiment.h"
-#include "problem/run_cost.h"
+#include "problem/case_file/experiment.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof::fem {
 
 /// One discretisation of the body.
 struct Discretisation {
   Cells cells;                 ///< nx, ny, nz of the .geo: cells along each side of a block
-  std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra): problem/experiment.h
-  double grading = 1.0;  ///< draws the cells of a block towards its faces (fem::graded), exponent; 1 = uniform
-  int mesh = -1;         ///< number in Request::meshes that takes the place of the .geo; -1: none
-  int refinements = 0;   ///< of that mesh's hexahedra: each is cut into 8 this many times
+  std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra): problem/case_file/experiment.h
+  double grading = 1.0;        ///< draws the cells of a block towards its faces (fem::graded), exponent; 1 = uniform
+  int mesh = -1;               ///< number in Request::meshes that takes the place of the .geo; -1: none
+  int refinements = 0;         ///< of that mesh's hexahedra: each is cut into 8 this many times
 };
 
 /// xx yy zz xy yz xz [Pa], one row per point.
@@ -30,10 +30,10 @@ struct Request {
   Experiment experiment;       ///< geometry, loads, kinematics or law
   IsotropicMaterial material;  ///< the one to solve for
   std::vector<Discretisation> grids;
-  NodalVectors points;      ///< rest positions at which the displacement is wanted, n x 3 [m]; of a given mesh also
-                            ///< outside, where the displacement of the nearest place is continued linearly
-  NodalVectors stress_points = NodalVectors(0, 3);  ///< rest positions at which the stress is wanted, m x 3 [m]
-  double tolerance = 1e-9;                          ///< relative residual of the linear solves
+  NodalVectors points;  ///< rest positions at which the displacement is wanted, n x 3 [m]; of a given mesh also
+                        ///< outside, where the displacement of the nearest place is continued linearly
+  NodalVectors stress_points = NodalVectors(0, 3);       ///< rest positions at which the stress is wanted, m x 3 [m]
+  double tolerance = 1e-9;                               ///< relative residual of the linear solves
   std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the experiment's .geo
 };
 
@@ -41,22 +41,23 @@ struct Request {
 struct Solution {
   Discretisation grid;
   bool ok = false;
-  std::string message;  ///< why not, with the load reached
-  std::string form;     ///< "Q2 displacement, CG, matrix-free multigrid", "P2-P1 mixed, MINRES, AMG", ...
-  std::string law;      ///< "linear", "hencky", ...
+  std::string message;        ///< why not, with the load reached
+  std::string form;           ///< "Q2 displacement, CG, matrix-free multigrid", "P2-P1 mixed, MINRES, AMG", ...
+  std::string law;            ///< "linear", "hencky", ...
   NodalVectors displacement;  ///< at Request::points [m]
   Stresses stress;            ///< Cauchy stress at Request::stress_points
   std::vector<PatchReaction> reactions;
   double volume_change = 0;              ///< exact, by the element's own quadrature [1]
   double volume_change_first_order = 0;  ///< integral of div u / V [1]
   double min_jacobian = 1;               ///< min det F at quadrature points
-  long degrees_of_freedom = 0;  ///< of the displacement, held ones too
-  long unknowns = 0;            ///< of them free
-  int iterations = 0;     ///< of the linear solver, all steps together
-  double residual = 0;    ///< relative, of the final state
-  double seconds = 0;     ///< CPU time of this grid, of all processes
-  RunTimes times;         ///< of it, what the displacement took; the rest went into measuring
-  double memory_MiB = 0;  ///< peak resident set so far, of the largest process; of an experiment with `cost` what the grid added
+  long degrees_of_freedom = 0;           ///< of the displacement, held ones too
+  long unknowns = 0;                     ///< of them free
+  int iterations = 0;                    ///< of the linear solver, all steps together
+  double residual = 0;                   ///< relative, of the final state
+  double seconds = 0;                    ///< CPU time of this grid, of all processes
+  RunTimes times;                        ///< of it, what the displacement took; the rest went into measuring
+  double memory_MiB =
+      0;  ///< peak resident set so far, of the largest process; of an experiment with `cost` what the grid added
 };
 
 /// Solves on every grid, in order.  A grid that fails has ok = false; it does not throw.

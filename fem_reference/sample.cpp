@@ -12,8 +12,8 @@
 #include <set>
 
 #include "fem_reference/processes.h"
-#include "meshes/tetrahedron_locator.h"
-#include "problem/experiment.h"
+#include "meshes/locate/tetrahedron_locator.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof::fem {
 namespace {
@@ -56,10 +56,9 @@ Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii
 
 }  // namespace
 
-std::vector<dealii::types::global_dof_index> dofs_at(const Location& place,
-                                                     const dealii::DoFHandler<3>& dof_handler) {
-  const dealii::DoFHandler<3>::active_cell_iterator cell(
-      &dof_handler.get_triangulation(), place.cell->level(), place.cell->index(), &dof_handler);
+std::vector<dealii::types::global_dof_index> dofs_at(const Location& place, const dealii::DoFHandler<3>& dof_handler) {
+  const dealii::DoFHandler<3>::active_cell_iterator cell(&dof_handler.get_triangulation(), place.cell->level(),
+                                                         place.cell->index(), &dof_handler);
   std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
   cell->get_dof_indices(dofs);
   return dofs;
@@ -128,7 +127,8 @@ std::vector<Location> locate_in_tetrahedra(const Body3& body, const NodalVectors
   for (std::size_t v = 0; v < vertices.size(); ++v) X.row(v) << vertices[v][0], vertices[v][1], vertices[v][2];
   std::vector<Tetrahedron> cells;
   for (const auto& cell : body.triangulation.active_cell_iterators())
-    cells.push_back({int(cell->vertex_index(0)), int(cell->vertex_index(1)), int(cell->vertex_index(2)), int(cell->vertex_index(3))});
+    cells.push_back({int(cell->vertex_index(0)), int(cell->vertex_index(1)), int(cell->vertex_index(2)),
+                     int(cell->vertex_index(3))});
   const TetrahedronLocator locator(X, cells);
   const double extent = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
   std::vector<Location> places;
@@ -326,8 +326,7 @@ VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof
       const dealii::Tensor<2, 3> h = gradients[q];
       const double trace_h = dealii::trace(h);
       // det(I + h) - 1 by its invariants, without cancellation
-      const double det_minus_1 =
-          trace_h + (trace_h * trace_h - dealii::trace(h * h)) / 2 + dealii::determinant(h);
+      const double det_minus_1 = trace_h + (trace_h * trace_h - dealii::trace(h * h)) / 2 + dealii::determinant(h);
       volume += values.JxW(q);
       measure.change += values.JxW(q) * det_minus_1;
       measure.change_first_order += values.JxW(q) * trace_h;

@@ -21,8 +21,7 @@ struct Location {
 };
 
 /// The degrees of freedom of the cell at a place.
-std::vector<dealii::types::global_dof_index> dofs_at(const Location& place,
-                                                     const dealii::DoFHandler<3>& dof_handler);
+std::vector<dealii::types::global_dof_index> dofs_at(const Location& place, const dealii::DoFHandler<3>& dof_handler);
 
 /// @throws InputError naming the first point that is further outside the body than half the cell next to it.
 std::vector<Location> locate(const Body3& body, const NodalVectors& points);

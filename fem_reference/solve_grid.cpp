@@ -13,7 +13,7 @@
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
 #include "fem_reference/triangulate.h"
-#include "problem/progress.h"
+#include "problem/system/progress.h"
 
 namespace springproof::fem {
 
@@ -36,9 +36,7 @@ FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, co
 }  // namespace assembled
 
 #ifdef SPRINGPROOF_HAVE_AVX2
-static bool processor_has_avx2() {
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-}
+static bool processor_has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 #endif
 
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
@@ -60,9 +58,7 @@ FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& prob
 
 namespace {
 
-double cpu_seconds() {
-  return double(std::clock()) / CLOCKS_PER_SEC;
-}
+double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 double peak_memory_MiB() {
   rusage usage{};
@@ -77,7 +73,8 @@ constexpr unsigned int smallest_grid_to_go_below = 300;
 
 // Linear elements below are there for small strain and one process.
 bool goes_below(const GridProblem& problem, const Body3& body) {
-  return body.triangulation.n_cells(0) > smallest_grid_to_go_below && problem.coarse.grid && problem.law == "linear" && process_count() == 1;
+  return body.triangulation.n_cells(0) > smallest_grid_to_go_below && problem.coarse.grid && problem.law == "linear" &&
+         process_count() == 1;
 }
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
@@ -94,20 +91,20 @@ struct Discrete {
   Discrete(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler)
       : held(prescribed(dof_handler, body, problem.loads)),
         load(load_vector(dof_handler, body, problem.loads, problem.material, problem.body_force)),
-        system{body,
-               dof_handler,
-               {},
-               {},
-               problem.degree,
-               form_for({body.has_tetrahedra(), problem.degree}, problem.material.poisson_ratio,
-                        problem.law == "linear"),
-               shear_modulus(problem.material),
-               lame_lambda(problem.material),
-               problem.tolerance,
-               problem.wide_vectors,
-               problem.method == Method::assembled_gamg,
-               problem.method == Method::automatic ? most_factored_rows : 0,
-               {}} {
+        system{
+            body,
+            dof_handler,
+            {},
+            {},
+            problem.degree,
+            form_for({body.has_tetrahedra(), problem.degree}, problem.material.poisson_ratio, problem.law == "linear"),
+            shear_modulus(problem.material),
+            lame_lambda(problem.material),
+            problem.tolerance,
+            problem.wide_vectors,
+            problem.method == Method::assembled_gamg,
+            problem.method == Method::automatic ? most_factored_rows : 0,
+            {}} {
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
     const dealii::IndexSet& owned = dof_handler.locally_owned_dofs();
     held.erase(std::remove_if(held.begin(), held.end(), [&](const auto& p) { return !owned.is_element(p.dof); }),
@@ -130,14 +127,12 @@ void prescribe(const GridProblem& problem, const Discrete& discrete, Kinematics 
     u[p.dof] = *prescribed_displacement(problem.loads[p.load], p.X, kinematics, factor)[p.component];
 }
 
-ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete, DofVector& u,
-                           Solution& solution) {
+ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete, DofVector& u, Solution& solution) {
   prescribe(problem, discrete, Kinematics::linear, 1, u);
   const ElasticAnswer answer = solve_elastic(discrete.system, discrete.load, u);
   solution.form = fmt::format("{}, {}", element_name(discrete.system), answer.method);
   if (!answer.converged)
-    solution.message =
-        fmt::format("the linear solver stopped at a relative residual of {:.2e}", answer.residual);
+    solution.message = fmt::format("the linear solver stopped at a relative residual of {:.2e}", answer.residual);
   return answer;
 }
 
@@ -146,27 +141,22 @@ ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete,
 double first_load_step(const GridProblem& problem) {
   double step = problem.material.poisson_ratio > 0.45 ? 0.25 : 1;
   for (const Load& load : problem.loads)
-    if (const auto* turn = std::get_if<PrescribedRotation>(&load))
-      step = std::min(step, 0.35 / std::abs(turn->angle));
+    if (const auto* turn = std::get_if<PrescribedRotation>(&load)) step = std::min(step, 0.35 / std::abs(turn->angle));
   return step;
 }
 
-ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discrete, DofVector& u,
-                              Solution& solution) {
+ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discrete, DofVector& u, Solution& solution) {
   const std::optional<Law> law = law_named(problem.law);
-  if (!law)
-    throw InputError(fmt::format("unknown law \"{}\"; there are: linear, {}", problem.law, law_names()));
-  FiniteProblem finite{*law, [&](double factor, DofVector& to) {
-                         prescribe(problem, discrete, Kinematics::finite, factor, to);
-                       }};
+  if (!law) throw InputError(fmt::format("unknown law \"{}\"; there are: linear, {}", problem.law, law_names()));
+  FiniteProblem finite{
+      *law, [&](double factor, DofVector& to) { prescribe(problem, discrete, Kinematics::finite, factor, to); }};
   finite.first_step = first_load_step(problem);
   const FiniteAnswer answer = solve_finite(discrete.system, finite, discrete.load, u);
-  solution.form = fmt::format("{}, {}: {} load steps, {} Newton steps", element_name(discrete.system),
-                              answer.method, answer.load_steps, answer.newton_iterations);
+  solution.form = fmt::format("{}, {}: {} load steps, {} Newton steps", element_name(discrete.system), answer.method,
+                              answer.load_steps, answer.newton_iterations);
   if (!answer.converged)
-    solution.message =
-        fmt::format("no equilibrium found beyond {:.4g} % of the load (smallest det F there {:.3g})",
-                    100 * answer.load_reached, answer.min_jacobian);
+    solution.message = fmt::format("no equilibrium found beyond {:.4g} % of the load (smallest det F there {:.3g})",
+                                   100 * answer.load_reached, answer.min_jacobian);
   return answer;
 }
 
@@ -193,8 +183,7 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
   solution.residual = answer.residual;
   DofVector imbalance = answer.internal_force;
   imbalance.add(-answer.load_reached, discrete.load);
-  solution.reactions =
-      reactions(dof_handler, body, problem.loads, discrete.held, imbalance, linear ? nullptr : &u);
+  solution.reactions = reactions(dof_handler, body, problem.loads, discrete.held, imbalance, linear ? nullptr : &u);
   solution.displacement = displacement_at(places, dof_handler, u);
   solution.stress = stress_at(problem.stress_points, discrete.system, law_named(problem.law), answer, u);
   const VolumeMeasure volume = measure_volume(body, dof_handler, u);
@@ -231,8 +220,7 @@ Solution solve_grid(const GridProblem& problem) {
 
 std::function<Vec3(const Vec3&)> graded(const Vec3& low, const Vec3& high, double exponent) {
   if (exponent == 1.0) return {};
-  const double reach =
-      (high - low).minCoeff() / 2;  // the same on every axis, or a slender body's cells go flat
+  const double reach = (high - low).minCoeff() / 2;  // the same on every axis, or a slender body's cells go flat
   return [=](const Vec3& X) {
     Vec3 x = X;
     for (int c = 0; c < 3; ++c) {

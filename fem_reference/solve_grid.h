@@ -9,8 +9,8 @@
 namespace springproof::fem {
 
 enum class Method {
-  automatic,    ///< without a matrix where the cells have a hierarchy, else assembled
-  assembled,    ///< matrices; for quadratic elements a level of linear ones above algebraic multigrid
+  automatic,      ///< without a matrix where the cells have a hierarchy, else assembled
+  assembled,      ///< matrices; for quadratic elements a level of linear ones above algebraic multigrid
   assembled_gamg  ///< matrices, algebraic multigrid alone: the usual way, and the baseline of the benchmarks
 };
 
@@ -22,10 +22,10 @@ struct GridProblem {
   std::string law = "linear";
   IsotropicMaterial material;
   std::vector<Load> loads;
-  std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none
-  NodalVectors points;       ///< rest positions at which the displacement is wanted, n x 3 [m]
+  std::function<Vec3(const Vec3&)> body_force;      ///< [N/m^3], besides gravity; empty: none
+  NodalVectors points;                              ///< rest positions at which the displacement is wanted, n x 3 [m]
   NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress
-  double tolerance = 1e-9;   ///< relative residual
+  double tolerance = 1e-9;                          ///< relative residual
   Method method = Method::automatic;
   bool wide_vectors = true;  ///< use the wide vectors of the processor, where it has them
   bool own_memory = false;   ///< Solution::memory_MiB is what this grid adds

@@ -16,8 +16,7 @@
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
 template <typename Number>
-constexpr std::size_t lane_count = SPRINGPROOF_VECTOR_BITS > 0 ? SPRINGPROOF_VECTOR_BITS / 8 / sizeof(Number)
-                                                               : 1;
+constexpr std::size_t lane_count = SPRINGPROOF_VECTOR_BITS > 0 ? SPRINGPROOF_VECTOR_BITS / 8 / sizeof(Number) : 1;
 template <typename Number>
 using Lanes = dealii::VectorizedArray<Number, lane_count<Number>>;
 
@@ -53,7 +52,8 @@ class Stiffness : public dealii::Subscriptor {
     cells_.reinit(mapping, dof_handler, unconstrained, dealii::QGauss<1>(degree + 1), data);
     const bool active = level == dealii::numbers::invalid_unsigned_int;
     rows_ = active ? dof_handler.n_dofs() : dof_handler.n_dofs(level);
-    const dealii::IndexSet& owned = active ? dof_handler.locally_owned_dofs() : dof_handler.locally_owned_mg_dofs(level);
+    const dealii::IndexSet& owned =
+        active ? dof_handler.locally_owned_dofs() : dof_handler.locally_owned_mg_dofs(level);
     for (const unsigned int i : constrained)
       if (owned.is_element(i)) constrained_.push_back(owned.index_within_set(i));
     saved_.resize(constrained_.size());
@@ -62,9 +62,7 @@ class Stiffness : public dealii::Subscriptor {
   const Cells& cells() const { return cells_; }
   const Coefficients<Number>& coefficients() const { return coefficients_; }
   unsigned int m() const { return rows_; }
-  Number el(unsigned int, unsigned int) const {
-    return Number(1);
-  }  // asked for by PreconditionChebyshev's interface
+  Number el(unsigned int, unsigned int) const { return Number(1); }  // asked for by PreconditionChebyshev's interface
 
   Vector<Number> vector() const {
     Vector<Number> v;
@@ -173,8 +171,7 @@ class Stiffness : public dealii::Subscriptor {
     }
     for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
       const auto h = gradient(u, q);
-      const Lanes<Number> pressure =
-          lambda * (coefficients_.mean_dilatation ? mean : h[0][0] + h[1][1] + h[2][2]);
+      const Lanes<Number> pressure = lambda * (coefficients_.mean_dilatation ? mean : h[0][0] + h[1][1] + h[2][2]);
       dealii::Tensor<2, 3, Lanes<Number>> stress;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) stress[i][j] = mu * (h[i][j] + h[j][i]);
@@ -219,8 +216,7 @@ class Stiffness : public dealii::Subscriptor {
   }
 
   Cells cells_;
-  dealii::AlignedVector<dealii::Tensor<2, 3, Lanes<Number>>>
-      to_rest_;  // inverse deformation gradient, or empty
+  dealii::AlignedVector<dealii::Tensor<2, 3, Lanes<Number>>> to_rest_;  // inverse deformation gradient, or empty
   std::vector<unsigned int> constrained_;  // among the degrees of freedom that this process owns
   Coefficients<Number> coefficients_;
   mutable std::vector<Number> saved_;

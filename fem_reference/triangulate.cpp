@@ -15,7 +15,7 @@
 
 #include "fem_reference/processes.h"
 #include "meshes/volume.h"
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof::fem {
 namespace {
@@ -40,8 +40,7 @@ void mark_patches(const Mesh& mesh, Body3& body) {
     Corners corners = {-1, -1, -1, -1};
     for (const unsigned int v : face->vertex_indices()) corners[v] = int(face->vertex_index(v));
     const auto found = patches_of_facet.find(sorted(corners));
-    const std::set<std::string> names =
-        found == patches_of_facet.end() ? std::set<std::string>{} : found->second;
+    const std::set<std::string> names = found == patches_of_facet.end() ? std::set<std::string>{} : found->second;
     const auto id = ids.emplace(names, ids.size()).first->second;
     face->set_boundary_id(id);
     for (const std::string& name : names) body.patches[name].insert(id);
@@ -123,8 +122,7 @@ void refine(Body3& body, int refinements, const std::function<Vec3(const Vec3&)>
 
 }  // namespace
 
-std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements,
-                                   const std::function<Vec3(const Vec3&)>& place) {
+std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements, const std::function<Vec3(const Vec3&)>& place) {
   if (coarse.hexahedra.empty() == coarse.tetrahedra.empty())
     throw InputError(fmt::format("a mesh of {} hexahedra and {} tetrahedra (allowed: one kind, at least one cell)",
                                  coarse.hexahedra.size(), coarse.tetrahedra.size()));

@@ -22,8 +22,7 @@ struct Body3 {
   std::unique_ptr<dealii::Triangulation<3>> owned;
   dealii::Triangulation<3>& triangulation;      ///< of several processes: each has its part and the cells around it
   std::unique_ptr<dealii::Mapping<3>> mapping;  ///< straight edges, or those of Mesh::curved
-  std::map<std::string, std::set<dealii::types::boundary_id>>
-      patches;  ///< a facet may belong to several patches
+  std::map<std::string, std::set<dealii::types::boundary_id>> patches;  ///< a facet may belong to several patches
 
   bool has_tetrahedra() const { return triangulation.get_reference_cells().front().is_simplex(); }
 };
@@ -32,8 +31,7 @@ struct Body3 {
 /// given.  Curved meshes and tetrahedra are not refined; of those every process holds the whole mesh, and a part of the
 /// degrees of freedom.  Every process must be given the same mesh.
 /// @throws InputError if the mesh has inverted cells, no cells, or both kinds.
-std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements,
-                                   const std::function<Vec3(const Vec3&)>& place);
+std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements, const std::function<Vec3(const Vec3&)>& place);
 
 /// Three components of Lagrange elements of degree 1 or 2.
 std::unique_ptr<dealii::FESystem<3>> displacement_element(const Body3& body, int degree);

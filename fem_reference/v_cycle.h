@@ -16,7 +16,8 @@
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
-// The inverse of a small level, found column by column; none if the level is too large, shared by processes, or hardly positive.
+// The inverse of a small level, found column by column; none if the level is too large, shared by processes, or hardly
+// positive.
 template <typename Level>
 class DenseInverse {
  public:
@@ -73,7 +74,8 @@ class VCycle {
     for (unsigned int l = 0; l < n_levels; ++l) {
       std::vector<unsigned int> constrained;
       for (const auto i : system.level_constrained[l]) constrained.push_back(i);
-      levels_.push_back(std::make_unique<Level>(*system.body.mapping, dof_handler_, l, std::move(constrained), coefficients));
+      levels_.push_back(
+          std::make_unique<Level>(*system.body.mapping, dof_handler_, l, std::move(constrained), coefficients));
       smoothers_.push_back(std::make_unique<Smoother>());
       prepare(l);
       x_[l] = b_[l] = t_[l] = levels_.back()->vector();
@@ -107,8 +109,7 @@ class VCycle {
     data.degree = solves ? dealii::numbers::invalid_unsigned_int : 5;
     data.smoothing_range = solves ? 1e-2 : 15;
     data.eig_cg_n_iterations = solves ? levels_[0]->m() : 12;
-    data.preconditioner =
-        std::make_shared<dealii::DiagonalMatrix<Vector<float>>>(levels_[level]->inverse_diagonal());
+    data.preconditioner = std::make_shared<dealii::DiagonalMatrix<Vector<float>>>(levels_[level]->inverse_diagonal());
     return data;
   }
 

@@ -5,11 +5,13 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 
 #include "meshes/volume.h"
+#include "problem/system/encoding.h"
+#include "problem/system/files.h"
 
 namespace springproof {
 namespace {
@@ -18,41 +20,26 @@ static_assert(std::endian::native == std::endian::little, "the VTU header says L
 
 constexpr int vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
-std::string base64(const unsigned char* bytes, std::size_t count) {
-  static constexpr char alphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((count + 2) / 3 * 4);
-  for (std::size_t i = 0; i < count; i += 3) {
-    const std::size_t left = count - i;
-    const std::uint32_t word =
-        bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
-    text += alphabet[word >> 18 & 63];
-    text += alphabet[word >> 12 & 63];
-    text += left > 1 ? alphabet[word >> 6 & 63] : '=';
-    text += left > 2 ? alphabet[word & 63] : '=';
-  }
-  return text;
-}
-
-/// As VTK's vtkZLibDataCompressor wants inline binary: number of blocks, size of a block, of a last and shorter one (none),
-/// of each compressed; then the blocks.  All bytes are one block.
+/// As VTK's vtkZLibDataCompressor wants inline binary: number of blocks, size of a block, of a last and shorter one
+/// (none), of each compressed; then the blocks.  All bytes are one block.
 template <class T>
 std::string encoded(const T* data, std::size_t count) {
   const std::uint64_t size = count * sizeof(T);
   uLongf packed_size = compressBound(size);
   std::vector<unsigned char> packed(packed_size);
-  if (size > 0 && compress2(packed.data(), &packed_size, reinterpret_cast<const Bytef*>(data), size, Z_BEST_SPEED) != Z_OK)
+  if (size > 0 &&
+      compress2(packed.data(), &packed_size, reinterpret_cast<const Bytef*>(data), size, Z_BEST_SPEED) != Z_OK)
     throw std::bad_alloc();
   const std::uint64_t header[] = {size > 0 ? 1u : 0u, size, 0, packed_size};
   const std::size_t header_size = sizeof header - (size > 0 ? 0 : sizeof *header);
-  return base64(reinterpret_cast<const unsigned char*>(header), header_size) + base64(packed.data(), size > 0 ? packed_size : 0);
+  return base64(header, header_size) + base64(packed.data(), size > 0 ? packed_size : 0);
 }
 
 template <class T>
 void write_array(std::ostream& out, const std::string& name, const char* type, int components, const T* data,
                  std::size_t count) {
-  out << "        <DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
-      << components << "\" format=\"binary\">" << encoded(data, count) << "</DataArray>\n";
+  out << "        <DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << components
+      << "\" format=\"binary\">" << encoded(data, count) << "</DataArray>\n";
 }
 
 void write_vectors(std::ostream& out, const std::string& name, const NodalVectors& values) {
@@ -60,32 +47,8 @@ void write_vectors(std::ostream& out, const std::string& name, const NodalVector
 }
 
 template <class T>
-void write_integers(std::ostream& out, const std::string& name, const char* type,
-                    const std::vector<T>& values) {
+void write_integers(std::ostream& out, const std::string& name, const char* type, const std::vector<T>& values) {
   write_array(out, name, type, 1, values.data(), values.size());
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 void write_cells(std::ostream& out, const Mesh& mesh) {
@@ -109,20 +72,17 @@ void write_document(std::ostream& out, const Field& field,
                     const std::vector<std::pair<std::string, NodalVectors>>& extra) {
   const Mesh& mesh = *field.mesh;
   const Eigen::VectorXd rest = cell_volumes(mesh, mesh.nodes);
-  const Eigen::VectorXd change =
-      (cell_volumes(mesh, mesh.nodes + field.displacement) - rest).cwiseQuotient(rest);
+  const Eigen::VectorXd change = (cell_volumes(mesh, mesh.nodes + field.displacement) - rest).cwiseQuotient(rest);
   out << "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
          "  <UnstructuredGrid>\n"
-      << "    <Piece NumberOfPoints=\"" << mesh.nodes.rows() << "\" NumberOfCells=\"" << rest.size()
-      << "\">\n"
+      << "    <Piece NumberOfPoints=\"" << mesh.nodes.rows() << "\" NumberOfCells=\"" << rest.size() << "\">\n"
       << "      <PointData Vectors=\"displacement\">\n";
   write_vectors(out, "displacement", field.displacement);
-  for (const auto& [name, values] : extra) write_vectors(out, escaped(name), values);
+  for (const auto& [name, values] : extra) write_vectors(out, xml_escaped(name), values);
   out << "      </PointData>\n      <CellData Scalars=\"relative_volume_change\">\n";
-  write_array(out, "relative_volume_change", "Float64", 1, change.data(),
-              static_cast<std::size_t>(change.size()));
+  write_array(out, "relative_volume_change", "Float64", 1, change.data(), static_cast<std::size_t>(change.size()));
   out << "      </CellData>\n      <Points>\n";
   write_vectors(out, "position", mesh.nodes);
   out << "      </Points>\n";
@@ -139,18 +99,9 @@ void write_vtu(const std::filesystem::path& file, const Field& field,
   for (const auto& [name, values] : extra)
     if (values.rows() != nodes) throw std::invalid_argument("write_vtu: '" + name + "': one vector per node");
 
-  std::filesystem::path partial = file;
-  partial += ".part";
-  std::ofstream out(partial, std::ios::binary);
+  std::ostringstream out;
   write_document(out, field, extra);
-  out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(partial, file, error);
-  if (!out || error) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    throw std::runtime_error("cannot write '" + file.string() + "'" + (error ? ": " + error.message() : ""));
-  }
+  write_file(file, out.view());
 }
 
 }  // namespace springproof

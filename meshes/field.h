@@ -20,10 +20,10 @@ struct PatchReaction {
 
 struct Field {
   std::shared_ptr<const Mesh> mesh;
-  NodalVectors displacement;               ///< n x 3 [m]
-  std::vector<PatchReaction> reactions;    ///< one per patch with prescribed displacement
-  double volume_change = 0;                ///< (V' - V)/V of the solver's own interpolation, exact [1]
-  double volume_change_first_order = 0;    ///< integral of div u / V [1]
+  NodalVectors displacement;             ///< n x 3 [m]
+  std::vector<PatchReaction> reactions;  ///< one per patch with prescribed displacement
+  double volume_change = 0;              ///< (V' - V)/V of the solver's own interpolation, exact [1]
+  double volume_change_first_order = 0;  ///< integral of div u / V [1]
 };
 
 /// Writes a VTU (VTK XML, compressed binary): displacement, `extra` nodal vectors (e.g. difference to FEM) and the

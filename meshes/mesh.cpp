@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -13,14 +13,11 @@
 namespace springproof {
 namespace {
 
-Vec3 node(const Mesh& mesh, int n) {
-  return mesh.nodes.row(n).transpose();
-}
+Vec3 node(const Mesh& mesh, int n) { return mesh.nodes.row(n).transpose(); }
 
 /// Adds the integrals of the four bilinear shape functions over a quadrilateral, by 2 x 2 Gauss points.
 void add_quadrilateral(const Mesh& mesh, const std::array<int, 4>& facet, Eigen::VectorXd& areas) {
-  const Vec3 a = node(mesh, facet[0]), b = node(mesh, facet[1]), c = node(mesh, facet[2]),
-             d = node(mesh, facet[3]);
+  const Vec3 a = node(mesh, facet[0]), b = node(mesh, facet[1]), c = node(mesh, facet[2]), d = node(mesh, facet[3]);
   const double low = 0.5 - std::sqrt(3.0) / 6;
   for (const double s : {low, 1 - low})
     for (const double t : {low, 1 - low}) {
@@ -93,9 +90,7 @@ bool all_different(std::vector<std::int64_t> keys) {
 
 /// One cell per lattice box, one mesh node per lattice point: what a grid promises to structured kernels.
 bool is_one_to_one(const Grid& grid, const Mesh& mesh) {
-  auto key = [&](int i, int j, int k) {
-    return (std::int64_t{k} * (grid.cells[1] + 1) + j) * (grid.cells[0] + 1) + i;
-  };
+  auto key = [&](int i, int j, int k) { return (std::int64_t{k} * (grid.cells[1] + 1) + j) * (grid.cells[0] + 1) + i; };
   std::vector<std::int64_t> cells, points;
   std::vector<bool> seen(mesh.nodes.rows(), false);
   for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
@@ -119,8 +114,7 @@ const Patch& patch(const Mesh& mesh, const std::string& name) {
     if (p.name == name) return p;
     known += (known.empty() ? "" : ", ") + p.name;
   }
-  throw std::invalid_argument("no patch '" + name + "' (the body has: " + (known.empty() ? "none" : known) +
-                              ")");
+  throw std::invalid_argument("no patch '" + name + "' (the body has: " + (known.empty() ? "none" : known) + ")");
 }
 
 std::vector<int> nodes_of(const Patch& patch) {
@@ -201,8 +195,7 @@ std::optional<Grid> detect_grid(const Mesh& mesh) {
 }
 
 Mesh block_mesh(const Vec3& size, const std::array<int, 3>& cells) {
-  if (!(size.minCoeff() > 0) || !size.allFinite())
-    throw std::invalid_argument("block_mesh: size must be positive");
+  if (!(size.minCoeff() > 0) || !size.allFinite()) throw std::invalid_argument("block_mesh: size must be positive");
   if (*std::min_element(cells.begin(), cells.end()) < 1)
     throw std::invalid_argument("block_mesh: at least one cell along each side");
   const auto [nx, ny, nz] = cells;
@@ -211,12 +204,10 @@ Mesh block_mesh(const Vec3& size, const std::array<int, 3>& cells) {
   Eigen::Index n = 0;
   for (int k = 0; k <= nz; ++k)
     for (int j = 0; j <= ny; ++j)
-      for (int i = 0; i <= nx; ++i)
-        mesh.nodes.row(n++) << size.x() * i / nx, size.y() * j / ny, size.z() * k / nz;
+      for (int i = 0; i <= nx; ++i) mesh.nodes.row(n++) << size.x() * i / nx, size.y() * j / ny, size.z() * k / nz;
 
   Grid grid{cells, Vec3::Zero(), size.cwiseQuotient(Vec3(nx, ny, nz)), {}};
-  for (const char* name : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"})
-    mesh.patches.push_back({name, {}});
+  for (const char* name : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}) mesh.patches.push_back({name, {}});
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -227,8 +218,7 @@ Mesh block_mesh(const Vec3& size, const std::array<int, 3>& cells) {
         }
         mesh.hexahedra.push_back(hexahedron);
         grid.cell_index.push_back({i, j, k});
-        const std::array<bool, 6> on_surface = {i == 0,      i == nx - 1, j == 0,
-                                                j == ny - 1, k == 0,      k == nz - 1};
+        const std::array<bool, 6> on_surface = {i == 0, i == nx - 1, j == 0, j == ny - 1, k == 0, k == nz - 1};
         for (int f = 0; f < 6; ++f)
           if (on_surface[f]) mesh.patches[f].facets.push_back(face_of(hexahedron, f));
       }

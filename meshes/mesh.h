@@ -36,20 +36,20 @@ struct Patch {
 
 /// A cubic lattice that a mesh was cut from: cell (i,j,k) spans origin + edge * [i,i+1]x[j,j+1]x[k,k+1].
 struct Grid {
-  std::array<int, 3> cells;                   ///< nx, ny, nz
-  Vec3 origin = Vec3::Zero();                 ///< [m]
-  Vec3 spacing = Vec3::Zero();                ///< edge lengths [m]; equal for a cubic lattice
+  std::array<int, 3> cells;                    ///< nx, ny, nz
+  Vec3 origin = Vec3::Zero();                  ///< [m]
+  Vec3 spacing = Vec3::Zero();                 ///< edge lengths [m]; equal for a cubic lattice
   std::vector<std::array<int, 3>> cell_index;  ///< (i,j,k) of each hexahedron of the mesh
 };
 
 struct Mesh {
-  NodalVectors nodes;                    ///< rest positions [m], n x 3
+  NodalVectors nodes;  ///< rest positions [m], n x 3
   std::vector<Hexahedron> hexahedra;
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Patch> patches;
-  std::optional<Grid> grid;              ///< set when every cell is a box of one lattice
-  NodalVectors curved;                   ///< second-order hexahedra: 27 points of each cell [m], x fastest in the frame of
-                                         ///< its corners; empty: edges are straight
+  std::optional<Grid> grid;  ///< set when every cell is a box of one lattice
+  NodalVectors curved;       ///< second-order hexahedra: 27 points of each cell [m], x fastest in the frame of
+                             ///< its corners; empty: edges are straight
 };
 
 /// @throws std::invalid_argument naming the patches there are, if there is none of that name.

@@ -38,7 +38,8 @@ template <std::size_t n>
 std::vector<std::array<int, n>> to_tuples(const json& j) {
   const auto& binary = j.get_binary();
   std::vector<std::array<int, n>> values(binary.size() / sizeof(std::array<int, n>));
-  if (sizeof(std::array<int, n>) * values.size() != binary.size()) throw std::runtime_error("a mesh with a cut-off list of numbers");
+  if (sizeof(std::array<int, n>) * values.size() != binary.size())
+    throw std::runtime_error("a mesh with a cut-off list of numbers");
   copy(binary, values.data());
   return values;
 }

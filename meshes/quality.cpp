@@ -29,7 +29,8 @@ Shape shape_of(const std::array<Vec3, 4>& x) {
   const double circumscribed =
       (a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b)).norm() /
       (2 * six_volumes);
-  return {3 * inscribed / circumscribed, std::acos(std::clamp(largest_cosine, -1.0, 1.0)) * 180 / std::numbers::pi, edges};
+  return {3 * inscribed / circumscribed, std::acos(std::clamp(largest_cosine, -1.0, 1.0)) * 180 / std::numbers::pi,
+          edges};
 }
 
 }  // namespace
@@ -51,9 +52,10 @@ TetrahedraQuality quality_of(const Mesh& mesh) {
 }
 
 std::string words_for(const Mesh& mesh, const TetrahedraQuality& q) {
-  return fmt::format("{} tetrahedra, mean edge {:.3g} m; worst shape 3 r/R = {:.2g} near ({:.3g}, {:.3g}, {:.3g}) m, "
-                     "smallest angle between faces {:.2g} degrees",
-                     mesh.tetrahedra.size(), q.mean_edge, q.worst, q.at.x(), q.at.y(), q.at.z(), q.smallest_angle);
+  return fmt::format(
+      "{} tetrahedra, mean edge {:.3g} m; worst shape 3 r/R = {:.2g} near ({:.3g}, {:.3g}, {:.3g}) m, "
+      "smallest angle between faces {:.2g} degrees",
+      mesh.tetrahedra.size(), q.mean_edge, q.worst, q.at.x(), q.at.y(), q.at.z(), q.smallest_angle);
 }
 
 }  // namespace springproof

@@ -25,8 +25,7 @@ Corners<8> volume_gradient(const Corners<8>& x) {
   Corners<8> gradient = Corners<8>::Zero();
   for (const auto& face : hexahedron_faces)
     for (int i = 0; i < 4; ++i) {
-      const Vec3 next = y.row(face[(i + 1) % 4]), across = y.row(face[(i + 2) % 4]),
-                 last = y.row(face[(i + 3) % 4]);
+      const Vec3 next = y.row(face[(i + 1) % 4]), across = y.row(face[(i + 2) % 4]), last = y.row(face[(i + 3) % 4]);
       gradient.row(face[i]) += (next.cross(across) + across.cross(last) + next.cross(last)) / 12;
     }
   return gradient;
@@ -59,9 +58,7 @@ std::array<double, 8> corner_determinants(const Corners<8>& x) {
   return determinants;
 }
 
-std::array<double, 1> corner_determinants(const Corners<4>& x) {
-  return {6 * tetrahedron_volume(x)};
-}
+std::array<double, 1> corner_determinants(const Corners<4>& x) { return {6 * tetrahedron_volume(x)}; }
 
 /// Calls f(cell) for every hexahedron, then every tetrahedron.
 template <class Function>
@@ -89,9 +86,7 @@ Eigen::VectorXd cell_volumes(const Mesh& mesh, const NodalVectors& x) {
   return volumes;
 }
 
-double volume(const Mesh& mesh, const NodalVectors& x) {
-  return cell_volumes(mesh, x).sum();
-}
+double volume(const Mesh& mesh, const NodalVectors& x) { return cell_volumes(mesh, x).sum(); }
 
 // V' - V as the integral of u . dV/dx along X + t u: quadratic in t, so Simpson's rule is exact, and a small
 // displacement keeps its digits, which subtracting the volumes would lose.
@@ -111,8 +106,7 @@ double volume_change(const Mesh& mesh, const NodalVectors& displacement) {
 double volume_change_first_order(const Mesh& mesh, const NodalVectors& displacement) {
   double change = 0;
   for_each_cell(mesh, [&](const auto& cell) {
-    change +=
-        volume_gradient(corners_of(cell, mesh.nodes)).cwiseProduct(corners_of(cell, displacement)).sum();
+    change += volume_gradient(corners_of(cell, mesh.nodes)).cwiseProduct(corners_of(cell, displacement)).sum();
   });
   return change / volume(mesh, mesh.nodes);
 }

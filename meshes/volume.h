@@ -27,7 +27,8 @@ double volume_change_first_order(const Mesh& mesh, const NodalVectors& displacem
 /// det(dx/dxi) [m^3] at each corner of a hexahedron, xi in the unit cube; all positive: the cell is not inverted.
 std::array<double, 8> corner_jacobians(const Hexahedron& cell, const NodalVectors& x);
 
-/// Smallest corner Jacobian determinant over all cells at node positions `x`, divided by its rest value; <= 0: inverted.
+/// Smallest corner Jacobian determinant over all cells at node positions `x`, divided by its rest value; <= 0:
+/// inverted.
 double min_relative_jacobian(const Mesh& mesh, const NodalVectors& x);
 
 }  // namespace springproof

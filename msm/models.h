@@ -1,80 +1,10 @@
-// THE table of models: name -> topology + pattern + laws.  A new model is a new row.
+// A model of the table in the body that it stands for.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "msm/embedding.h"
-#include "msm/laws/laws.h"
-#include "msm/topology/random_network.h"
-#include "problem/experiment.h"
+#include "msm/embedding/embedding.h"
+#include "msm/parameters/model_table.h"
 
 namespace springproof {
-
-/// Where the nodes are and which of them are joined.
-enum class Topology {
-  cells,      ///< cubic lattice by superposition of cells: nodes are the corners of the mesh's cubes
-  centres,    ///< cubic lattice with a node in the middle of each cube
-  random,     ///< random sequential addition, one node per cube of the mesh on average
-  hexagonal,  ///< triangles in the plane z = const, for plane strain
-};
-
-/// What gives the springs, whose own Poisson's ratio is 1/4, another one.
-enum class Extension { none, volume_correction, momentum_dispersion, angular_springs };
-
-/// Which modulus the springs reproduce when their own Poisson's ratio (1/4) is not the material's.
-enum class Calibration {
-  shear_modulus,   ///< G = E / (2 (1 + nu)): what an extension needs
-  youngs_modulus,  ///< E, as if nu were 1/4 (G = 2 E / 5): how a classic mass-spring model is set up
-};
-
-struct ModelRow {
-  std::string name;
-  std::string what;            ///< one line for --help and the report
-  Topology topology;
-  double face_to_cube;         ///< default A = k_f / k_c, of cubic lattices
-  bool any_face_to_cube;       ///< A may be chosen
-  Extension extension;
-  bool bending_correction;
-  bool torsion_correction;
-  Calibration calibration;
-};
-
-const std::vector<ModelRow>& model_table();
-
-/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4; empty: it takes any.
-std::optional<double> own_poisson_ratio(const ModelRow& row);
-
-/// Whether the model holds under finite kinematics; hourglass corrections are those of small displacements.
-inline bool holds_at_large_displacement(const ModelRow& row) { return !row.bending_correction; }
-
-/// A model choice with every option settled.
-struct ModelParameters {
-  ModelRow row;
-  double face_to_cube = 2;
-  bool paper_e_form = false;                          ///< springs from E by Golec et al. (2019), (5.12) right, as in its tables
-  VolumeEnergy volume_energy = VolumeEnergy::bounded;
-  Dispersion dispersion = Dispersion::symmetric;
-  std::optional<bool> exact_volumes;                  ///< dispersion weights: exact nodal volumes (msm/dispersion_weights.h) or w = k L;
-                                                      ///< empty: exact where q >= 0
-  bool homogenised = true;                            ///< random networks: calibrated as measured in bulk; false: by eq. (20)
-  RandomParameters random{};                          ///< of random networks; its spacing follows from the mesh
-  std::optional<double> node_density;                 ///< of random networks [1/m^3]; empty: one node per cube
-  std::optional<double> grip;                         ///< depth in node spacings to which supports hold nodes that are not the mesh's
-  bool hold_rigid_motions = false;                    ///< those that the loads leave free, instead of refusing
-  int seeds = 1;                                      ///< random networks to take the mean of: random.seed and those after it
-
-  bool has(Extension extension) const { return row.extension == extension; }
-};
-
-/// Whether symmetric dispersion takes exact nodal volumes.  k L is proved stable for every q > -1/2 on every network; exact
-/// volumes are energies too, but a negative one (q < 0) can outweigh the springs at disordered nodes and where
-/// surface nodes lack springs.  q has the sign of nu - springs_poisson_ratio(), whatever the weights.
-bool exact_volumes(const ModelParameters& parameters, const IsotropicMaterial& material);
-
-/// @throws InputError (with the place in the case file) for an unknown model or option, the nearest name suggested.
-ModelParameters resolve(const ModelChoice& choice);
 
 /// A model in the body that it stands for.
 struct EmbeddedModel {
@@ -83,7 +13,8 @@ struct EmbeddedModel {
 };
 
 /// The model of a body.  Disordered networks fill `region`, where there is one that the mesh's cells only roughly fill.
-/// @throws InputError if the mesh does not suit it; std::runtime_error if the network cannot have the material's moduli.
+/// @throws InputError if the mesh does not suit it; std::runtime_error if the network cannot have the material's
+/// moduli.
 EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region = nullptr);
 
@@ -91,8 +22,5 @@ EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh
 inline MassSpringModel build_model(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material) {
   return build_embedded(p, mesh, material).model;
 }
-
-/// Shear modulus [Pa] that the springs of this model are calibrated to.
-double spring_shear_modulus(const ModelParameters& parameters, const IsotropicMaterial& material);
 
 }  // namespace springproof

@@ -107,9 +107,7 @@ std::vector<std::string> exact_field_names() {
   return names;
 }
 
-Vec3 exact_displacement(const std::string& field, const Vec3& X) {
-  return value(find(field).displacement, X);
-}
+Vec3 exact_displacement(const std::string& field, const Vec3& X) { return value(find(field).displacement, X); }
 
 Vec3 exact_body_force(const std::string& field, const Vec3& X, const IsotropicMaterial& material) {
   const double G = shear_modulus(material), lambda = lame_lambda(material);

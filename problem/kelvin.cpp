@@ -33,16 +33,19 @@ Vec3 kelvin_displacement(const KelvinSolution& solution, const Vec3& X) {
 
 Eigen::Matrix3d kelvin_strain(const KelvinSolution& solution, const Vec3& X) {
   const auto [n, R] = arm_of(solution, X);
-  const double E = solution.material.youngs_modulus, nu = solution.material.poisson_ratio, along = solution.force.dot(n);
+  const double E = solution.material.youngs_modulus, nu = solution.material.poisson_ratio,
+               along = solution.force.dot(n);
   return -(1 + nu) / (8 * pi * E * (1 - nu) * R * R) *
-         (3 * along * n * n.transpose() - along * Eigen::Matrix3d::Identity() + (1 - 2 * nu) * symmetric(solution.force, n));
+         (3 * along * n * n.transpose() - along * Eigen::Matrix3d::Identity() +
+          (1 - 2 * nu) * symmetric(solution.force, n));
 }
 
 Eigen::Matrix3d kelvin_stress(const KelvinSolution& solution, const Vec3& X) {
   const auto [n, R] = arm_of(solution, X);
   const double nu = solution.material.poisson_ratio, along = solution.force.dot(n);
   return -1 / (8 * pi * (1 - nu) * R * R) *
-         (3 * along * n * n.transpose() + (1 - 2 * nu) * (symmetric(solution.force, n) - along * Eigen::Matrix3d::Identity()));
+         (3 * along * n * n.transpose() +
+          (1 - 2 * nu) * (symmetric(solution.force, n) - along * Eigen::Matrix3d::Identity()));
 }
 
 }  // namespace springproof

@@ -21,8 +21,8 @@ Vec3 kelvin_displacement(const KelvinSolution& solution, const Vec3& X);
 /// Kot et al. (2014), eq. (23) [1].
 Eigen::Matrix3d kelvin_strain(const KelvinSolution& solution, const Vec3& X);
 
-/// sigma = -(3 (F.r) r r^T / R^3 + (1 - 2 nu) (F r^T + r F^T - (F.r) I) / R) / (8 pi (1 - nu) R^2) [Pa], tension positive.
-/// Kot et al. (2014), eq. (24), DEVIATION: the minus, docs/papers.md #19.
+/// sigma = -(3 (F.r) r r^T / R^3 + (1 - 2 nu) (F r^T + r F^T - (F.r) I) / R) / (8 pi (1 - nu) R^2) [Pa], tension
+/// positive. Kot et al. (2014), eq. (24), DEVIATION: the minus, docs/papers.md #19.
 Eigen::Matrix3d kelvin_stress(const KelvinSolution& solution, const Vec3& X);
 
 }  // namespace springproof

@@ -75,13 +75,9 @@ IsotropicMaterial solve_for_E_nu(const Moduli& given, double density) {
 
 }  // namespace
 
-double shear_modulus(const IsotropicMaterial& m) {
-  return m.youngs_modulus / (2 * (1 + m.poisson_ratio));
-}
+double shear_modulus(const IsotropicMaterial& m) { return m.youngs_modulus / (2 * (1 + m.poisson_ratio)); }
 
-double bulk_modulus(const IsotropicMaterial& m) {
-  return m.youngs_modulus / (3 * (1 - 2 * m.poisson_ratio));
-}
+double bulk_modulus(const IsotropicMaterial& m) { return m.youngs_modulus / (3 * (1 - 2 * m.poisson_ratio)); }
 
 double lame_lambda(const IsotropicMaterial& m) {
   const double nu = m.poisson_ratio;
@@ -102,8 +98,7 @@ double p_wave_modulus(const IsotropicMaterial& m) {
 IsotropicMaterial material_from(const Moduli& given, double density) {
   const auto names = checked_names(given);
   if (names.size() != 2) {
-    refuse(fmt::format("{} elastic moduli given{}{}", names.size(), names.empty() ? "" : ": ",
-                       fmt::join(names, ", ")),
+    refuse(fmt::format("{} elastic moduli given{}{}", names.size(), names.empty() ? "" : ": ", fmt::join(names, ", ")),
            "exactly two of youngs_modulus, poisson_ratio, shear_modulus, bulk_modulus, lame_lambda");
   }
   const IsotropicMaterial m = solve_for_E_nu(given, density);

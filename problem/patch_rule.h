@@ -9,8 +9,9 @@
 
 namespace springproof {
 
-/// Selects the part of the outer surface where every condition that is given holds; at least one is.  Its border runs through
-/// facets (meshes/rule_region.h), but for `facing`, which takes whole ones by their normals.  Borders belong to what is selected.
+/// Selects the part of the outer surface where every condition that is given holds; at least one is.  Its border runs
+/// through facets (meshes/patches/rule_region.h), but for `facing`, which takes whole ones by their normals.  Borders
+/// belong to what is selected.
 struct PatchRule {
   struct Box {
     Vec3 low, high;  ///< [m]
@@ -22,8 +23,8 @@ struct PatchRule {
     Vec3 direction;         ///< length 1
     double within_deg = 0;  ///< largest angle to the outward normal [degrees]
   };
-  /// What lies within `radius` of the point of the surface that is nearest to `point`, as far as it hangs together with that
-  /// point.
+  /// What lies within `radius` of the point of the surface that is nearest to `point`, as far as it hangs together with
+  /// that point.
   struct Near {
     Vec3 point;         ///< [m]
     double radius = 0;  ///< [m]

@@ -9,10 +9,13 @@ namespace springproof::bench {
 inline BenchKernels kernels_of(InstructionSet set) {
   switch (set) {
 #ifdef SPRINGPROOF_X86_BENCH_KERNELS
-    case InstructionSet::avx2: return avx2::bench_kernels();
-    case InstructionSet::avx512: return avx512::bench_kernels();
+    case InstructionSet::avx2:
+      return avx2::bench_kernels();
+    case InstructionSet::avx512:
+      return avx512::bench_kernels();
 #endif
-    default: return portable::bench_kernels();
+    default:
+      return portable::bench_kernels();
   }
 }
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "msm/calibrate.h"
 #include "msm/models.h"
+#include "msm/parameters/calibrate.h"
 #include "msm/topology/random_network.h"
 
 namespace springproof::bench {

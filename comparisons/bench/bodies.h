@@ -4,9 +4,9 @@
 #include <array>
 #include <string>
 
-#include "msm/boundary.h"
+#include "msm/embedding/boundary.h"
 #include "msm/laws/laws.h"
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof::bench {
 
@@ -22,7 +22,8 @@ MassSpringModel random_springs(int nodes);
 /// The rest positions, each moved by a hundredth of an edge at most: smooth and the same every time.
 NodalVectors moved(const Network& network);
 
-/// The nodes at the bottom (z <= depth above the lowest) clamped, an oblique body force on all, small enough for linear behaviour.
+/// The nodes at the bottom (z <= depth above the lowest) clamped, an oblique body force on all, small enough for linear
+/// behaviour.
 BoundaryConditions clamped_bottom(const Network& network, double depth = 1e-6 * edge);
 
 /// "30^3", "4 x 4 x 24".

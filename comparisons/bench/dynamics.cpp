@@ -28,14 +28,25 @@ struct Context {
   double target(double avx512, double avx2) const { return wide ? avx512 : avx2; }
 };
 
-void progress(const std::string& what, const std::string& size) { fmt::print(stderr, "dynamics: {}, {} ...\n", what, size); }
+void progress(const std::string& what, const std::string& size) {
+  fmt::print(stderr, "dynamics: {}, {} ...\n", what, size);
+}
 
 double ns_per_spring(const Motion& motion, double seconds) { return 1e9 * seconds / double(motion.springs); }
 
-BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const Motion& motion, double seconds,
-              const std::string& baseline, double baseline_seconds, Target target) {
+BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const Motion& motion,
+                   double seconds, const std::string& baseline, double baseline_seconds, Target target) {
   const double to_ns = 1e9 / double(motion.springs);
-  return {subject, what, size, per_spring, to_ns * seconds, baseline, to_ns * baseline_seconds, target, usage_of(motion, seconds, c.machine), motion.how};
+  return {subject,
+          what,
+          size,
+          per_spring,
+          to_ns * seconds,
+          baseline,
+          to_ns * baseline_seconds,
+          target,
+          usage_of(motion, seconds, c.machine),
+          motion.how};
 }
 
 /// Largest difference of LAMMPS' forces from ours, over the largest force.
@@ -45,14 +56,16 @@ double force_difference(const Lammps& lammps, const Network& network) {
 }
 
 /// The springs of a model against LAMMPS and the plain loop, side by side; LAMMPS before and after.
-void against_peers(const Context& c, const std::string& name, const std::string& size, const MassSpringModel& model, Target lammps_target, Target plain_target) {
+void against_peers(const Context& c, const std::string& name, const std::string& size, const MassSpringModel& model,
+                   Target lammps_target, Target plain_target) {
   progress(name, size);
   const auto ours = fastest_motion(model);
   const Motion plain = plain_motion(model.network);
   std::optional<Lammps> lammps;
   double lammps_seconds = 0;
   const double length = c.options.quick ? 0.1 : 0.5;
-  const int runs = c.options.quick || model.network.springs.size() > 500000 ? 1 : 3;  // large ones take LAMMPS long to read
+  const int runs =
+      c.options.quick || model.network.springs.size() > 500000 ? 1 : 3;  // large ones take LAMMPS long to read
   if (Lammps::available()) {
     lammps.emplace(model.network);
     if (const double off = force_difference(*lammps, model.network); !(off < 1e-9))
@@ -62,9 +75,11 @@ void against_peers(const Context& c, const std::string& name, const std::string&
   const std::vector<double> seconds = least_seconds({ours->advance, plain.advance}, c.timer);
   if (lammps) {
     lammps_seconds = std::min(lammps_seconds, lammps->seconds_per_step(length, runs));
-    c.findings.rows.push_back(speed_row(c, name + " over LAMMPS", size, *ours, seconds[0], "LAMMPS", lammps_seconds, lammps_target));
+    c.findings.rows.push_back(
+        speed_row(c, name + " over LAMMPS", size, *ours, seconds[0], "LAMMPS", lammps_seconds, lammps_target));
   }
-  c.findings.rows.push_back(speed_row(c, name + " over the plain loop", size, *ours, seconds[0], "plain loop", seconds[1], plain_target));
+  c.findings.rows.push_back(
+      speed_row(c, name + " over the plain loop", size, *ours, seconds[0], "plain loop", seconds[1], plain_target));
   c.findings.points.push_back(point_of(*ours, seconds[0], c.machine, name, size));
   c.findings.points.push_back(point_of(plain, seconds[1], c.machine, "plain loop, " + name, size));
 }
@@ -89,19 +104,22 @@ void random_networks(const Context& c) {
     int nodes;
     Target lammps, plain;
   };
-  std::vector<Case> cases = {{20000, at_least(c.target(2.5, 2)), at_least(c.target(1.7, 1.4))}, {100000, {}, {}}, {300000, at_least(1.8), at_least(1.3)}};
+  std::vector<Case> cases = {{20000, at_least(c.target(2.5, 2)), at_least(c.target(1.7, 1.4))},
+                             {100000, {}, {}},
+                             {300000, at_least(1.8), at_least(1.3)}};
   if (c.options.quick) cases = {{1000, {}, {}}};
-  for (const Case& k : cases) against_peers(c, "random network", fmt::format("{} nodes", k.nodes), random_springs(k.nodes), k.lammps, k.plain);
+  for (const Case& k : cases)
+    against_peers(c, "random network", fmt::format("{} nodes", k.nodes), random_springs(k.nodes), k.lammps, k.plain);
 }
 
 /// One model's step over another's.
-void overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model, const std::string& baseline,
-              const MassSpringModel& other, Target target) {
+void overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
+              const std::string& baseline, const MassSpringModel& other, Target target) {
   progress(name + " over " + baseline, size);
   const auto ours = fastest_motion(model), base = fastest_motion(other);
   const std::vector<double> seconds = least_seconds({ours->advance, base->advance}, c.timer);
-  c.findings.rows.push_back({subject, name + " over " + baseline, size, "us per step", 1e6 * seconds[0], baseline, 1e6 * seconds[1], target,
-                             usage_of(*ours, seconds[0], c.machine), ours->how});
+  c.findings.rows.push_back({subject, name + " over " + baseline, size, "us per step", 1e6 * seconds[0], baseline,
+                             1e6 * seconds[1], target, usage_of(*ours, seconds[0], c.machine), ours->how});
   const RooflinePoint point = point_of(*ours, seconds[0], c.machine, name, size);
   const auto same = [&](const RooflinePoint& p) { return p.name == point.name && p.size == point.size; };
   if (std::none_of(c.findings.points.begin(), c.findings.points.end(), same)) c.findings.points.push_back(point);
@@ -115,7 +133,8 @@ void overheads(const Context& c) {
     overhead(c, size, "HybMSS", hybmss, "HybMSS-CF", block("hybmss_cf", 0.25), at_most(1.35));
     overhead(c, size, "HybMSS", hybmss, "HybMSS-FD", block("hybmss_fd", 0.3), at_most(1.5));
     overhead(c, size, "HybMSS, hourglass correction", block("hybmss_bt", 0.3), "HybMSS", hybmss, at_most(1.35));
-    overhead(c, size, "eMSM as published", lattice("emsm", {n, n, n}, 0.3, {{"dispersion", "published"}}), "MSM of 18 springs", msm, at_most(1.65));
+    overhead(c, size, "eMSM as published", lattice("emsm", {n, n, n}, 0.3, {{"dispersion", "published"}}),
+             "MSM of 18 springs", msm, at_most(1.65));
     overhead(c, size, "eMSM, exact nodal volumes", block("emsm", 0.3), "MSM of 18 springs", msm, at_most(1.65));
   }
 }
@@ -127,11 +146,13 @@ void single_precision(const Context& c, int n) {
   if (!fp32) return c.findings.remarks.push_back("no kernel in single precision");
   progress("HybMSS-CF in single precision", size);
   const std::vector<double> seconds = least_seconds({fp32->advance, fp64->advance}, c.timer);
-  c.findings.rows.push_back(speed_row(c, "FP32 over FP64, HybMSS-CF", size, *fp32, seconds[0], "FP64", seconds[1], at_least(2)));
+  c.findings.rows.push_back(
+      speed_row(c, "FP32 over FP64, HybMSS-CF", size, *fp32, seconds[0], "FP64", seconds[1], at_least(2)));
   c.findings.points.push_back(point_of(*fp32, seconds[0], c.machine, "HybMSS-CF FP32", size));
 }
 
-void several_threads(const Context& c, const std::string& name, const std::string& size, const MassSpringModel& model, double limit) {
+void several_threads(const Context& c, const std::string& name, const std::string& size, const MassSpringModel& model,
+                     double limit) {
   const int number = c.options.threads;
   TimerOptions wall = c.timer;
   wall.clock = Clock::wall;
@@ -142,15 +163,28 @@ void several_threads(const Context& c, const std::string& name, const std::strin
   const std::vector<double> seconds = least_seconds({several->advance, one->advance}, wall);
   const double alone = least_seconds({one->advance}, c.timer)[0];
   if (seconds[1] > 1.25 * alone)  // it never had a processor for itself, so two threads never had two
-    return c.findings.remarks.push_back(fmt::format("{} threads, {}, {}: not measured, the machine is busy (one thread takes {:.1f} times its CPU time)", number, name, size, seconds[1] / alone));
+    return c.findings.remarks.push_back(fmt::format(
+        "{} threads, {}, {}: not measured, the machine is busy (one thread takes {:.1f} times its CPU time)", number,
+        name, size, seconds[1] / alone));
   const Target target = number == 2 ? at_least(limit) : Target{};
-  c.findings.rows.push_back({subject, fmt::format("{} threads over one, {}", number, name), size, "us per step, wall", 1e6 * seconds[0], "one thread", 1e6 * seconds[1],
-                             target, {}, several->how});
+  c.findings.rows.push_back({subject,
+                             fmt::format("{} threads over one, {}", number, name),
+                             size,
+                             "us per step, wall",
+                             1e6 * seconds[0],
+                             "one thread",
+                             1e6 * seconds[1],
+                             target,
+                             {},
+                             several->how});
 }
 
 void threads(const Context& c) {
   for (const int n : c.options.quick ? std::vector{10} : std::vector{10, 20, 30, 63})
-    several_threads(c, "HybMSS-CF", fmt::format("{}^3", n), lattice("hybmss_cf", {n, n, n}, 0.25), n <= 10 ? 1.3 : n <= 20 ? 1.8 : 1.9);
+    several_threads(c, "HybMSS-CF", fmt::format("{}^3", n), lattice("hybmss_cf", {n, n, n}, 0.25),
+                    n <= 10   ? 1.3
+                    : n <= 20 ? 1.8
+                              : 1.9);
   for (const int nodes : c.options.quick ? std::vector{1000} : std::vector{30000, 300000})
     several_threads(c, "random network", fmt::format("{} nodes", nodes), random_springs(nodes), 1.8);
 }
@@ -160,21 +194,32 @@ void growth(const Context& c, int small, int large) {
   const std::string size = fmt::format("{}^3 over {}^3", large, small);
   progress("growth of the cost per spring", size);
   const auto work = [&] {
-    const MassSpringModel a = lattice("hybmss_cf", {large, large, large}, 0.25), b = lattice("hybmss_cf", {small, small, small}, 0.25);
+    const MassSpringModel a = lattice("hybmss_cf", {large, large, large}, 0.25),
+                          b = lattice("hybmss_cf", {small, small, small}, 0.25);
     const auto first = fastest_motion(a), second = fastest_motion(b);
     const std::vector<double> seconds = least_seconds({first->advance, second->advance}, c.timer);
     return nlohmann::json{{"large", ns_per_spring(*first, seconds[0])}, {"small", ns_per_spring(*second, seconds[1])}};
   };
   const nlohmann::json a = in_child(work);
-  c.findings.rows.push_back({subject, "growth with size, HybMSS-CF", size, per_spring, a.at("large"), fmt::format("{}^3", small), a.at("small"), at_most(1.4)});
+  c.findings.rows.push_back({subject, "growth with size, HybMSS-CF", size, per_spring, a.at("large"),
+                             fmt::format("{}^3", small), a.at("small"), at_most(1.4)});
 }
 
 void memory(const Context& c, int n) {
   const MassSpringModel model = lattice("hybmss_cf", {n, n, n}, 0.25);
   const auto ours = fastest_motion(model);
   const Motion plain = plain_motion(model.network);
-  c.findings.rows.push_back({subject, "memory of HybMSS-CF", fmt::format("{}^3", n), "bytes per node", ours->work.kept / double(ours->nodes), "", 0, at_most(80), {},
-                             fmt::format("{}; the plain loop keeps {:.0f}", ours->how, plain.work.kept / double(plain.nodes))});
+  c.findings.rows.push_back(
+      {subject,
+       "memory of HybMSS-CF",
+       fmt::format("{}^3", n),
+       "bytes per node",
+       ours->work.kept / double(ours->nodes),
+       "",
+       0,
+       at_most(80),
+       {},
+       fmt::format("{}; the plain loop keeps {:.0f}", ours->how, plain.work.kept / double(plain.nodes))});
 }
 
 /// The paper's main experiment, whose seconds it prints.
@@ -183,11 +228,21 @@ void headline(const Context& c) {
     const char *name, *model;
     double nu, published;
   };
-  for (const Case& k : {Case{"paper's 10,000 steps, no correction", "hybmss_cf", 0.25, 2.44}, Case{"paper's 10,000 steps, volume correction", "hybmss", 0.3, 5.58}}) {
+  for (const Case& k : {Case{"paper's 10,000 steps, no correction", "hybmss_cf", 0.25, 2.44},
+                        Case{"paper's 10,000 steps, volume correction", "hybmss", 0.3, 5.58}}) {
     const MassSpringModel model = lattice(k.model, {10, 10, 10}, k.nu);
     const auto ours = fastest_motion(model);
     const double seconds = least_seconds({ours->advance}, c.timer)[0];
-    c.findings.rows.push_back({subject, k.name, "10^3", "s", steps_of_the_paper * seconds, "Golec et al. (2019), their machine", k.published, {}, {}, ours->how});
+    c.findings.rows.push_back({subject,
+                               k.name,
+                               "10^3",
+                               "s",
+                               steps_of_the_paper * seconds,
+                               "Golec et al. (2019), their machine",
+                               k.published,
+                               {},
+                               {},
+                               ours->how});
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/timer.h"
-#include "meshes/child.h"
+#include "problem/system/child.h"
 
 namespace springproof::bench {
 namespace {
@@ -35,8 +35,11 @@ void run_case(const fs::path& springproof, const std::string& name, Findings& fi
   fmt::print(stderr, "experiments: {} ...\n", name);
   const TemporaryFolder folder;
   const double start = seconds_of(Clock::wall);
-  const ChildEnd end = run_child({springproof, {"compare", name, "--jobs", "1", "--out", (folder.path / "report").string()}, {},
-                                  folder.path / "output", folder.path / "errors"});
+  const ChildEnd end = run_child({springproof,
+                                  {"compare", name, "--jobs", "1", "--out", (folder.path / "report").string()},
+                                  {},
+                                  folder.path / "output",
+                                  folder.path / "errors"});
   const double wall = seconds_of(Clock::wall) - start;
   throw_if_interrupted();
   const std::string text = text_of_file(folder.path / "report" / "results.json");
@@ -48,9 +51,12 @@ void run_case(const fs::path& springproof, const std::string& name, Findings& fi
     return;
   }
   const Solvers solvers = solver_times(Json::parse(text));
-  row.note = fmt::format("{} runs, one at a time{}", solvers.runs, end.status == 0 ? "" : "; an expectation does not hold");
+  row.note =
+      fmt::format("{} runs, one at a time{}", solvers.runs, end.status == 0 ? "" : "; an expectation does not hold");
   findings.rows.push_back(row);
-  const auto add = [&](const char* stage, double seconds) { findings.rows.push_back({subject, name, stage, "CPU s", seconds}); };
+  const auto add = [&](const char* stage, double seconds) {
+    findings.rows.push_back({subject, name, stage, "CPU s", seconds});
+  };
   add("all", end.seconds);
   add("springs", solvers.springs);
   add("finite elements", solvers.finite_elements);
@@ -61,8 +67,12 @@ void run_case(const fs::path& springproof, const std::string& name, Findings& fi
 
 void bench_experiments(const BenchOptions& options, Findings& findings) {
   const fs::path springproof = find_program("springproof", "SPRINGPROOF_PROGRAM");
-  if (springproof.empty()) return findings.remarks.push_back("springproof is neither beside this program nor named by SPRINGPROOF_PROGRAM: no experiments");
-  std::vector<std::string> names = {"golec_2019/compression", "golec_2019/tension", "golec_2019/shear", "golec_2019/bending", "golec_2019/torsion", "kot_2014/fig_13", "kot_2015/fig_7", "bodies/rabbit"};
+  if (springproof.empty())
+    return findings.remarks.push_back(
+        "springproof is neither beside this program nor named by SPRINGPROOF_PROGRAM: no experiments");
+  std::vector<std::string> names = {"golec_2019/compression", "golec_2019/tension", "golec_2019/shear",
+                                    "golec_2019/bending",     "golec_2019/torsion", "kot_2014/fig_13",
+                                    "kot_2015/fig_7",         "bodies/rabbit"};
   if (options.quick) names = {"kot_2014/fig_13"};
   for (const std::string& name : names) run_case(springproof, name, findings);
 }

@@ -6,7 +6,7 @@
 
 #include "comparisons/bench/interrupt.h"
 #include "fem_reference/reference.h"
-#include "meshes/child.h"
+#include "problem/system/child.h"
 
 namespace springproof::bench {
 namespace {
@@ -23,8 +23,9 @@ Target target_of(const Json& figures, const std::string& what) {
 BenchRow run_row(const Json& run) {
   BenchRow row{"fem", run.at("name"), fmt::format("{}^3", run.at("cells").get<int>()), "CPU s", run.at("cpu_seconds")};
   row.ok = run.at("ok");
-  row.note = fmt::format("{}, nu = {:g}, {} unknowns, {} iterations, {:.0f} MiB", run.at("form").get<std::string>(), run.at("poisson_ratio").get<double>(),
-                         run.at("unknowns").get<long>(), run.at("iterations").get<int>(), run.at("memory_MiB").get<double>());
+  row.note = fmt::format("{}, nu = {:g}, {} unknowns, {} iterations, {:.0f} MiB", run.at("form").get<std::string>(),
+                         run.at("poisson_ratio").get<double>(), run.at("unknowns").get<long>(),
+                         run.at("iterations").get<int>(), run.at("memory_MiB").get<double>());
   return row;
 }
 
@@ -32,7 +33,9 @@ BenchRow run_row(const Json& run) {
 
 Json bench_fem(const BenchOptions& options, Findings& findings) {
   if (!fem::available()) {
-    findings.remarks.push_back("springproof-fem is neither beside this program nor named by SPRINGPROOF_FEM_PROGRAM: no rows of the reference");
+    findings.remarks.push_back(
+        "springproof-fem is neither beside this program nor named by SPRINGPROOF_FEM_PROGRAM: no rows of the "
+        "reference");
     return nullptr;
   }
   const TemporaryFolder folder;

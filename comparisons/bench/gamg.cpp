@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "msm/solve/cost.h"
-#include "msm/solve/tangent.h"
+#include "msm/algebra/tangent.h"
+#include "problem/system/run_cost.h"
 
 #ifdef SPRINGPROOF_PETSC
 #include <petscksp.h>
@@ -47,7 +47,8 @@ Mat assemble(const MassSpringModel& model, const std::vector<int>& number, int f
   for (int n = 0; n < model.network.nodes(); ++n)
     for (const int m : coupled[n]) {
       const PetscInt row = number[n], column = number[m];
-      if (row >= 0 && column >= 0) require(MatSetValuesBlocked(A, 1, &row, 1, &column, K.local.at(n, m).data(), INSERT_VALUES));
+      if (row >= 0 && column >= 0)
+        require(MatSetValuesBlocked(A, 1, &row, 1, &column, K.local.at(n, m).data(), INSERT_VALUES));
     }
   require(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
   require(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
@@ -82,7 +83,8 @@ double difference(Vec u, const NodalVectors& other, const std::vector<int>& numb
 
 bool has_gamg() { return true; }
 
-GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance, const NodalVectors& other) {
+GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
+                      const NodalVectors& other) {
   require(PetscInitializeNoArguments());
   int free;
   const std::vector<int> number = free_nodes(conditions, model.network.nodes(), free);

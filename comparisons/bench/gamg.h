@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "msm/boundary.h"
+#include "msm/embedding/boundary.h"
 #include "msm/laws/laws.h"
 
 namespace springproof::bench {
@@ -20,9 +20,10 @@ struct GamgResult {
 bool has_gamg();
 
 /// Solves the linearised model for the nodes that are not clamped: MATAIJ, block size 3, rigid-body modes as near null
-/// space, |r| / |f| <= tolerance; PETSc's options apply (PETSC_OPTIONS).  Nodes are clamped in all components or in none,
-/// prescribed displacements are zero.  `other`: what to compare with, n x 3.  Starts PETSc, so once per process.
+/// space, |r| / |f| <= tolerance; PETSc's options apply (PETSC_OPTIONS).  Nodes are clamped in all components or in
+/// none, prescribed displacements are zero.  `other`: what to compare with, n x 3.  Starts PETSc, so once per process.
 /// @throws std::runtime_error if PETSc fails or is not there.
-GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance, const NodalVectors& other);
+GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
+                      const NodalVectors& other);
 
 }  // namespace springproof::bench

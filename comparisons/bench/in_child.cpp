@@ -78,8 +78,9 @@ Json in_child(const std::function<Json()>& work) {
   throw_if_interrupted();
   const Json reply = Json::parse(text, nullptr, false);
   if (reply.is_discarded())
-    throw std::runtime_error(WIFSIGNALED(status) ? fmt::format("was killed by signal {} (out of memory?)", WTERMSIG(status))
-                                                 : std::string("ended early"));
+    throw std::runtime_error(WIFSIGNALED(status)
+                                 ? fmt::format("was killed by signal {} (out of memory?)", WTERMSIG(status))
+                                 : std::string("ended early"));
   if (reply.contains("error")) throw std::runtime_error(reply.at("error").get<std::string>());
   return reply.at("value");
 }

@@ -7,7 +7,8 @@
 namespace springproof::bench {
 
 /// Runs `work` in a fork of this process and returns what it returned.
-/// @throws std::runtime_error with the message of what the work threw, or with how it ended (memory, signal); Interrupted.
+/// @throws std::runtime_error with the message of what the work threw, or with how it ended (memory, signal);
+/// Interrupted.
 nlohmann::json in_child(const std::function<nlohmann::json()>& work);
 
 /// Ends the one under way; may be called in a signal handler.

@@ -4,7 +4,7 @@
 #include <csignal>
 
 #include "comparisons/bench/in_child.h"
-#include "meshes/child.h"
+#include "problem/system/child.h"
 
 namespace springproof::bench {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "comparisons/bench/bodies.h"
 #include "comparisons/bench/interrupt.h"
-#include "msm/solve/time_step.h"
+#include "msm/dynamics/time_step.h"
 
 namespace springproof::bench {
 namespace {
@@ -61,16 +61,20 @@ void write_data(const Network& network, const fs::path& file) {
   Types<std::pair<double, double>> bond_types;
   std::string atoms, bonds;
   for (Eigen::Index n = 0; n < x.rows(); ++n)
-    fmt::format_to(std::back_inserter(atoms), "{} 1 {} {:.17g} {:.17g} {:.17g}\n", n + 1, node_types.of(mass[n]), x(n, 0), x(n, 1), x(n, 2));
+    fmt::format_to(std::back_inserter(atoms), "{} 1 {} {:.17g} {:.17g} {:.17g}\n", n + 1, node_types.of(mass[n]),
+                   x(n, 0), x(n, 1), x(n, 2));
   long number = 0;
   for (const Spring& s : network.springs)
-    fmt::format_to(std::back_inserter(bonds), "{} {} {} {}\n", ++number, bond_types.of({s.stiffness, s.rest_length}), s.i + 1, s.j + 1);
-  std::string head = fmt::format("springs\n\n{} atoms\n{} atom types\n{} bonds\n{} bond types\n\n", x.rows(), node_types.values().size(),
-                                 network.springs.size(), bond_types.values().size());
+    fmt::format_to(std::back_inserter(bonds), "{} {} {} {}\n", ++number, bond_types.of({s.stiffness, s.rest_length}),
+                   s.i + 1, s.j + 1);
+  std::string head = fmt::format("springs\n\n{} atoms\n{} atom types\n{} bonds\n{} bond types\n\n", x.rows(),
+                                 node_types.values().size(), network.springs.size(), bond_types.values().size());
   for (int c = 0; c < 3; ++c)
-    head += fmt::format("{0:.17g} {1:.17g} {2}lo {2}hi\n", x.col(c).minCoeff() - edge, x.col(c).maxCoeff() + edge, "xyz"[c]);
+    head += fmt::format("{0:.17g} {1:.17g} {2}lo {2}hi\n", x.col(c).minCoeff() - edge, x.col(c).maxCoeff() + edge,
+                        "xyz"[c]);
   head += "\nMasses\n\n";
-  for (std::size_t i = 0; i < node_types.values().size(); ++i) head += fmt::format("{} {:.17g}\n", i + 1, node_types.values()[i]);
+  for (std::size_t i = 0; i < node_types.values().size(); ++i)
+    head += fmt::format("{} {:.17g}\n", i + 1, node_types.values()[i]);
   head += "\nBond Coeffs\n\n";  // energy K (r - r0)^2: K is half of the spring constant
   for (std::size_t i = 0; i < bond_types.values().size(); ++i)
     head += fmt::format("{} {:.17g} {:.17g}\n", i + 1, bond_types.values()[i].first / 2, bond_types.values()[i].second);
@@ -97,7 +101,9 @@ std::string Lammps::version() {
 }
 
 Lammps::Lammps(const Network& network)
-    : cutoff_(1.5 * longest_spring(network)), time_step_(0.25 * safe_time_step({network, {Springs{}}}, density)), nodes_(network.nodes()),
+    : cutoff_(1.5 * longest_spring(network)),
+      time_step_(0.25 * safe_time_step({network, {Springs{}}}, density)),
+      nodes_(network.nodes()),
       springs_(long(network.springs.size())) {
   write_data(network, folder_.path / "data");
 }
@@ -106,7 +112,8 @@ double Lammps::seconds_of(const std::string& commands) const {
   std::ofstream(folder_.path / "input") << fmt::format(
       "units lj\natom_style bond\natom_modify sort 0 0.0\nboundary f f f\nnewton on\nspecial_bonds lj/coul 1 1 1\n"
       "bond_style harmonic\nneighbor {0:.6g} bin\ncomm_modify cutoff {0:.6g}\nread_data data\n"
-      "neigh_modify every 1000000000 delay 1000000000 check no\ntimestep {1:.10g}\nfix 1 all nve\nthermo 1000000000\n{2}",
+      "neigh_modify every 1000000000 delay 1000000000 check no\ntimestep {1:.10g}\nfix 1 all nve\nthermo "
+      "1000000000\n{2}",
       cutoff_, time_step_, commands);
   const fs::path log = folder_.path / "output";
   fs::remove(log);
@@ -125,7 +132,8 @@ double Lammps::seconds_per_step(double seconds_of_steps, int runs) const {
     if (r > 0) short_run = std::min(short_run, seconds_of(few));
     long_run = std::min(long_run, seconds_of(many));
   }
-  if (!(long_run > short_run)) throw std::runtime_error(fmt::format("lmp takes no longer for {} steps than for one", 1 + steps));
+  if (!(long_run > short_run))
+    throw std::runtime_error(fmt::format("lmp takes no longer for {} steps than for one", 1 + steps));
   return (long_run - short_run) / double(steps);
 }
 

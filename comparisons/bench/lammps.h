@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "meshes/child.h"
-#include "msm/network.h"
+#include "msm/topology/network.h"
+#include "problem/system/child.h"
 
 namespace springproof::bench {
 
@@ -18,8 +18,8 @@ class Lammps {
   /// different masses all get the mean one, since LAMMPS has masses per type.
   explicit Lammps(const Network& network);
 
-  /// CPU time of one step [s]: what its process takes for many steps more than for one, over their number; of each the least of
-  /// some runs.  The steps take about so many seconds, or as long as reading the data, whichever is longer.
+  /// CPU time of one step [s]: what its process takes for many steps more than for one, over their number; of each the
+  /// least of some runs.  The steps take about so many seconds, or as long as reading the data, whichever is longer.
   /// @throws std::runtime_error if it fails, with its last words.
   double seconds_per_step(double seconds_of_steps, int runs) const;
 

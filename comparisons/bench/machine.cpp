@@ -38,14 +38,16 @@ std::vector<MemoryLevel> caches() {
   for (int i = 0; i < 8; ++i) {
     const std::string at = "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(i) + "/";
     const std::string type = first_word(at + "type");
-    if (type == "Data" || type == "Unified") levels.push_back({"L" + first_word(at + "level"), size_of(first_word(at + "size"))});
+    if (type == "Data" || type == "Unified")
+      levels.push_back({"L" + first_word(at + "level"), size_of(first_word(at + "size"))});
   }
   if (levels.empty()) levels = {{"L1", 32768}, {"L2", 524288}, {"L3", 16777216}};  // where the system does not say
   return levels;
 }
 
 struct Array {
-  explicit Array(long n) : data(static_cast<double*>(::operator new[](std::size_t(n) * 8, std::align_val_t(4096)))), size(n) {
+  explicit Array(long n)
+      : data(static_cast<double*>(::operator new[](std::size_t(n) * 8, std::align_val_t(4096)))), size(n) {
     std::fill(data, data + n, 1.0);
   }
   ~Array() { ::operator delete[](data, std::align_val_t(4096)); }
@@ -59,10 +61,10 @@ Arithmetic measure_arithmetic(InstructionSet set, const TimerOptions& options) {
   const BenchKernels k = kernels_of(set);
   double sink64 = 1;
   float sink32 = 1;
-  const std::vector<double> seconds = least_seconds({[&](long n) { k.fma64(1000 * n, &sink64); },
-                                                     [&](long n) { k.fma32(1000 * n, &sink32); },
-                                                     [&](long n) { k.root64(100 * n, &sink64); },
-                                                     [&](long n) { k.root32(100 * n, &sink32); }}, options);
+  const std::vector<double> seconds =
+      least_seconds({[&](long n) { k.fma64(1000 * n, &sink64); }, [&](long n) { k.fma32(1000 * n, &sink32); },
+                     [&](long n) { k.root64(100 * n, &sink64); }, [&](long n) { k.root32(100 * n, &sink32); }},
+                    options);
   const double flops = 2.0 * fma_per_round * 1000, roots = 1e-9 * roots_per_round * 100;
   return {name_of(set), 1e-9 * flops * k.lanes64 / seconds[0], 1e-9 * flops * k.lanes32 / seconds[1],
           seconds[2] / (roots * k.lanes64), seconds[3] / (roots * k.lanes32)};
@@ -71,7 +73,10 @@ Arithmetic measure_arithmetic(InstructionSet set, const TimerOptions& options) {
 double read_GB_s(const BenchKernels& k, double bytes, const TimerOptions& options) {
   const Array a(std::max(1L, long(bytes / 8 / 64)) * 64);
   volatile double sink = 0;
-  const double seconds = least_seconds({[&](long n) { for (long i = 0; i < n; ++i) sink = sink + k.read(a.data, a.size); }}, options)[0];
+  const double seconds = least_seconds({[&](long n) {
+                                         for (long i = 0; i < n; ++i) sink = sink + k.read(a.data, a.size);
+                                       }},
+                                       options)[0];
   return 8e-9 * double(a.size) / seconds;
 }
 
@@ -89,11 +94,15 @@ double triad_GB_s(const BenchKernels& k, double last_cache, int threads, TimerOp
   const Array a(n * threads), b(n * threads), c(n * threads);
   options.clock = threads > 1 ? Clock::wall : Clock::thread;
   const double seconds = least_seconds({[&](long steps) {
-    const auto work = [&](int t) { for (long i = 0; i < steps; ++i) k.triad(a.data + t * n, b.data + t * n, c.data + t * n, 0.5, n); };
-    std::vector<std::jthread> others;
-    for (int t = 1; t < threads; ++t) others.emplace_back(work, t);
-    work(0);
-  }}, options)[0];
+                                         const auto work = [&](int t) {
+                                           for (long i = 0; i < steps; ++i)
+                                             k.triad(a.data + t * n, b.data + t * n, c.data + t * n, 0.5, n);
+                                         };
+                                         std::vector<std::jthread> others;
+                                         for (int t = 1; t < threads; ++t) others.emplace_back(work, t);
+                                         work(0);
+                                       }},
+                                       options)[0];
   return 32e-9 * double(n * threads) / seconds;
 }
 
@@ -111,7 +120,8 @@ Machine this_machine() {
 
 void measure_limits(bool quick, Machine& machine) {
   const TimerOptions options{2e-3, quick ? 0.03 : 0.2, Clock::thread};
-  for (const InstructionSet set : usable_instruction_sets()) machine.arithmetic.push_back(measure_arithmetic(set, options));
+  for (const InstructionSet set : usable_instruction_sets())
+    machine.arithmetic.push_back(measure_arithmetic(set, options));
   const BenchKernels widest = kernels_of(usable_instruction_sets().back());
   double inner = 0;
   for (MemoryLevel& level : machine.memory) {
@@ -120,7 +130,8 @@ void measure_limits(bool quick, Machine& machine) {
   }
   TimerOptions longer = options;
   longer.budget = quick ? 0.2 : 1;
-  machine.memory.push_back({"DRAM", 0, triad_GB_s(widest, inner, 1, longer), triad_GB_s(widest, inner, machine.cores, longer)});
+  machine.memory.push_back(
+      {"DRAM", 0, triad_GB_s(widest, inner, 1, longer), triad_GB_s(widest, inner, machine.cores, longer)});
 }
 
 nlohmann::json to_json(const Machine& machine) {
@@ -128,8 +139,11 @@ nlohmann::json to_json(const Machine& machine) {
   for (const MemoryLevel& l : machine.memory)
     memory.push_back({{"name", l.name}, {"bytes", l.bytes}, {"GB_per_s", l.GB_s}, {"GB_per_s_all_cores", l.all_cores}});
   for (const Arithmetic& a : machine.arithmetic)
-    arithmetic.push_back({{"instruction_set", a.instruction_set}, {"gflops_fp64", a.gflops64}, {"gflops_fp32", a.gflops32},
-                          {"root_and_division_ns_fp64", a.root64}, {"root_and_division_ns_fp32", a.root32}});
+    arithmetic.push_back({{"instruction_set", a.instruction_set},
+                          {"gflops_fp64", a.gflops64},
+                          {"gflops_fp32", a.gflops32},
+                          {"root_and_division_ns_fp64", a.root64},
+                          {"root_and_division_ns_fp32", a.root32}});
   return {{"processor", machine.processor}, {"cores", machine.cores}, {"memory", memory}, {"arithmetic", arithmetic}};
 }
 

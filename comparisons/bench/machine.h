@@ -9,17 +9,17 @@ namespace springproof::bench {
 
 /// A level of the memory as one core sees it.
 struct MemoryLevel {
-  std::string name;         ///< "L1", "L2", "L3", "DRAM"
-  double bytes = 0;         ///< its size; of DRAM 0
-  double GB_s = 0;          ///< read by one core; of DRAM the triad's, the line that a store reads first counted (32 bytes)
-  double all_cores = 0;     ///< [GB/s] of DRAM, all cores at once; else 0
+  std::string name;  ///< "L1", "L2", "L3", "DRAM"
+  double bytes = 0;  ///< its size; of DRAM 0
+  double GB_s = 0;   ///< read by one core; of DRAM the triad's, the line that a store reads first counted (32 bytes)
+  double all_cores = 0;  ///< [GB/s] of DRAM, all cores at once; else 0
 };
 
 /// What one core does with one instruction set.
 struct Arithmetic {
-  std::string instruction_set;       ///< "portable", "avx2", "avx512"
-  double gflops64 = 0, gflops32 = 0; ///< multiply-adds, two each
-  double root64 = 0, root32 = 0;     ///< a square root and a division of one number [ns]
+  std::string instruction_set;        ///< "portable", "avx2", "avx512"
+  double gflops64 = 0, gflops32 = 0;  ///< multiply-adds, two each
+  double root64 = 0, root32 = 0;      ///< a square root and a division of one number [ns]
 };
 
 struct Machine {

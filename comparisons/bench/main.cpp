@@ -13,9 +13,10 @@
 #include "comparisons/bench/page.h"
 #include "comparisons/bench/statics.h"
 #include "comparisons/bench/table.h"
-#include "comparisons/results.h"
+#include "comparisons/report/results.h"
 #include "msm/kernels/instruction_set.h"
 #include "problem/input_error.h"
+#include "problem/system/files.h"
 
 namespace {
 
@@ -24,20 +25,32 @@ using namespace springproof::bench;
 using Json = nlohmann::json;
 
 void add_options(CLI::App& app, BenchOptions& options) {
-  app.add_option("WHAT", options.what, "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and damped dynamics), "
-                                       "fem (the finite element reference), experiments (built-in cases), all")
+  app.add_option("WHAT", options.what,
+                 "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
+                 "damped dynamics), "
+                 "fem (the finite element reference), experiments (built-in cases), all")
       ->required()
       ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "all"}));
   app.add_option("--json", options.json, "write the figures to this file too");
   app.add_option("--out", options.out, "folder for bench.html, with the roofline, and bench.json");
   app.add_flag("--quick", options.quick, "small sizes: a look at the table in half a minute, no measurement");
-  app.add_option("--threads", options.threads, "of the rows that compare several threads with one")->check(CLI::Range(2, 256))->capture_default_str();
-  const auto pass_on = [&options](const char* option, const std::string& value) { options.fem_arguments.insert(options.fem_arguments.end(), {option, value}); };
-  app.add_option_function<int>("--cells", [pass_on](int n) { pass_on("--bench-cells", std::to_string(n)); }, "fem: cells along the side of the cube, a multiple of 8 (default 24)")
+  app.add_option("--threads", options.threads, "of the rows that compare several threads with one")
+      ->check(CLI::Range(2, 256))
+      ->capture_default_str();
+  const auto pass_on = [&options](const char* option, const std::string& value) {
+    options.fem_arguments.insert(options.fem_arguments.end(), {option, value});
+  };
+  app.add_option_function<int>(
+         "--cells", [pass_on](int n) { pass_on("--bench-cells", std::to_string(n)); },
+         "fem: cells along the side of the cube, a multiple of 8 (default 24)")
       ->check(CLI::Range(8, 96));
-  app.add_flag_callback("--no-baseline", [&options] { options.fem_arguments.push_back("--no-baseline"); }, "fem: leave the assembled baseline out (some 3 GB at 24 cells)");
-  app.footer("Missed targets are printed as MISSED; they do not change the exit status.\n"
-             "Exit status: 0 every row has a result, 1 one has not, 2 the input is unusable, 130 interrupted (what is measured is written).");
+  app.add_flag_callback(
+      "--no-baseline", [&options] { options.fem_arguments.push_back("--no-baseline"); },
+      "fem: leave the assembled baseline out (some 3 GB at 24 cells)");
+  app.footer(
+      "Missed targets are printed as MISSED; they do not change the exit status.\n"
+      "Exit status: 0 every row has a result, 1 one has not, 2 the input is unusable, 130 interrupted (what is "
+      "measured is written).");
 }
 
 bool wants(const BenchOptions& options, const char* what) { return options.what == what || options.what == "all"; }
@@ -74,9 +87,11 @@ int run(const BenchOptions& options) {
     if (!interrupted()) throw;
     findings.remarks.push_back("interrupted: the rows are those measured before");
   }
-  if (options.quick) findings.remarks.push_back("quick: small sizes and few samples; the targets are those of the full ones");
+  if (options.quick)
+    findings.remarks.push_back("quick: small sizes and few samples; the targets are those of the full ones");
   Json document = to_json(findings);
-  document["program"] = {{"version", SPRINGPROOF_VERSION}, {"instruction_set", name_of(instruction_set())}, {"quick", options.quick}};
+  document["program"] = {
+      {"version", SPRINGPROOF_VERSION}, {"instruction_set", name_of(instruction_set())}, {"quick", options.quick}};
   document["machine"] = to_json(machine);
   if (!fem.is_null()) document["fem"] = fem;
   fmt::print("{}", table_text(machine, findings));
@@ -88,7 +103,8 @@ int run(const BenchOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"What things cost on this machine: each row beside its baseline, measured in the same run.", "springproof bench"};
+  CLI::App app{"What things cost on this machine: each row beside its baseline, measured in the same run.",
+               "springproof bench"};
   BenchOptions options;
   add_options(app, options);
   try {

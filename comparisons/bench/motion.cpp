@@ -7,9 +7,9 @@
 
 #include "comparisons/bench/bench_kernel_choice.h"
 #include "comparisons/bench/bodies.h"
-#include "msm/kernels/lattice_motion.h"
-#include "msm/kernels/list_motion.h"
-#include "msm/solve/time_step.h"
+#include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/list_motion.h"
+#include "msm/dynamics/time_step.h"
 
 namespace springproof::bench {
 namespace {
@@ -18,7 +18,10 @@ namespace {
 class Stepper {
  public:
   explicit Stepper(const MassSpringModel& model)
-      : model_(model), dt_(0.5 * safe_time_step(model, density)), x_(moved(model.network)), v_(NodalVectors::Zero(x_.rows(), 3)),
+      : model_(model),
+        dt_(0.5 * safe_time_step(model, density)),
+        x_(moved(model.network)),
+        v_(NodalVectors::Zero(x_.rows(), 3)),
         dt_over_mass_(dt_ * masses(model.network, density).cwiseInverse()) {}
 
   void advance(long steps) {
@@ -62,7 +65,8 @@ Motion new_motion(const std::string& how, const MassSpringModel& model, Precisio
 }
 
 Motion lattice_motion(const MassSpringModel& model, const MotionOptions& options) {
-  const auto kernel = std::make_shared<LatticeMotion>(model, density, LatticeMotionOptions{options.precision, options.threads});
+  const auto kernel =
+      std::make_shared<LatticeMotion>(model, density, LatticeMotionOptions{options.precision, options.threads});
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
   Motion motion = new_motion(kernel->description(), model, options.precision);
@@ -78,10 +82,13 @@ template <class Real>
 Motion list_motion(const MassSpringModel& model, const MotionOptions& options) {
   const double dt = 0.5 * safe_time_step(model, density);
   const Eigen::VectorXd mass = masses(model.network, density);
-  const auto kernel = std::make_shared<ListMotion<Real>>(model, mass.cwiseInverse(), ListMotionOptions{.time_step = dt, .threads = options.threads});
+  const auto kernel = std::make_shared<ListMotion<Real>>(
+      model, mass.cwiseInverse(), ListMotionOptions{.time_step = dt, .threads = options.threads});
   kernel->load(clamped_bottom(model.network, 0.5 * edge));
   const int threads = kernel->threads();
-  Motion motion = new_motion(fmt::format("list kernel, {}{}", name_of(instruction_set()), threads == 1 ? "" : fmt::format(", {} threads", threads)), model, options.precision);
+  Motion motion = new_motion(fmt::format("list kernel, {}{}", name_of(instruction_set()),
+                                         threads == 1 ? "" : fmt::format(", {} threads", threads)),
+                             model, options.precision);
   const double m = double(motion.springs), n = double(motion.nodes), real = sizeof(Real);
   const bool disperses = dispersion_of(model) != nullptr;
   motion.work.streamed = disperses ? (10 * real + 10) * m + 49 * real * n : (2 * real + 5) * m + 20 * real * n;
@@ -105,7 +112,8 @@ Motion forces_motion(const MassSpringModel& model) {
 std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
   if (LatticeMotion::suits(model)) return lattice_motion(model, options);
   if (ListForces<double>::covers(model))
-    return options.precision == Precision::float64 ? list_motion<double>(model, options) : list_motion<float>(model, options);
+    return options.precision == Precision::float64 ? list_motion<double>(model, options)
+                                                   : list_motion<float>(model, options);
   if (options.threads > 1 || options.precision != Precision::float64) return {};
   return forces_motion(model);
 }
@@ -125,7 +133,8 @@ Motion plain_motion(const Network& network) {
   const auto step = kernels_of(instruction_set()).plain_step;
   motion.advance = [state, step, dt](long steps) {
     for (; steps > 0; --steps)
-      step(state->nodes.data(), long(state->nodes.size()), state->springs.data(), long(state->springs.size()), state->dt_over_mass.data(), dt);
+      step(state->nodes.data(), long(state->nodes.size()), state->springs.data(), long(state->springs.size()),
+           state->dt_over_mass.data(), dt);
   };
   return motion;
 }
@@ -147,8 +156,10 @@ Usage usage_of(const Motion& motion, double seconds, const Machine& machine) {
           arithmetic_limit(motion, machine.widest()) / seconds};
 }
 
-RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name, const std::string& size) {
-  return {name, size, machine.level_for(motion.work.kept).name, motion.work.flops / motion.work.streamed, 1e-9 * motion.work.flops / seconds};
+RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,
+                       const std::string& size) {
+  return {name, size, machine.level_for(motion.work.kept).name, motion.work.flops / motion.work.streamed,
+          1e-9 * motion.work.flops / seconds};
 }
 
 }  // namespace springproof::bench

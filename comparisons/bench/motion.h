@@ -8,7 +8,7 @@
 #include "comparisons/bench/machine.h"
 #include "comparisons/bench/rows.h"
 #include "comparisons/bench/timer.h"
-#include "msm/kernels/lattice_motion.h"
+#include "msm/dynamics/lattice_motion.h"
 #include "msm/laws/laws.h"
 
 namespace springproof::bench {
@@ -23,7 +23,7 @@ struct Work {
 
 /// Explicit steps of a network: forces and semi-implicit Euler.
 struct Motion {
-  std::string how;      ///< "forces(), AVX2", "plain loop"
+  std::string how;  ///< "forces(), AVX2", "plain loop"
   Advance advance;
   long nodes = 0, springs = 0;
   Work work = {};
@@ -39,13 +39,14 @@ struct MotionOptions {
 /// The model must outlive it.
 std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options = {});
 
-/// The baseline that anybody writes in an hour: one array of nodes {x, v, f}, one of springs of 24 bytes, a loop over each,
-/// compiled for this processor.
+/// The baseline that anybody writes in an hour: one array of nodes {x, v, f}, one of springs of 24 bytes, a loop over
+/// each, compiled for this processor.
 Motion plain_motion(const Network& network);
 
 /// How well a motion that takes so many seconds per step uses one core.
 Usage usage_of(const Motion& motion, double seconds, const Machine& machine);
-RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name, const std::string& size);
+RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,
+                       const std::string& size);
 
 /// Operations of one step of the model, whoever computes it.
 Work operations(const MassSpringModel& model);

@@ -2,9 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "comparisons/page.h"
 #include "comparisons/report/assets.h"
-#include "comparisons/results.h"
+#include "comparisons/report/page.h"
+#include "comparisons/report/results.h"
+#include "problem/system/files.h"
 
 namespace springproof::bench {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "comparisons/bench/bodies.h"
-#include "msm/solve/cost.h"
-#include "msm/solve/dynamics.h"
+#include "msm/dynamics/dynamics.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof::bench {
 namespace {
@@ -33,7 +33,8 @@ Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditi
   options.rest_tolerance = tolerance;
   options.duration = 200 * factor / options.damping * std::max(1.0, factor);
   const double start = cpu_seconds();
-  const DynamicsResult motion = run_dynamics(model, density, [&](double) { return conditions; }, options);
+  const DynamicsResult motion = run_dynamics(
+      model, density, [&](double) { return conditions; }, options);
   result.seconds = cpu_seconds() - start;
   result.steps = motion.steps;
   result.at_rest = motion.state.ok;

@@ -1,20 +1,22 @@
 // The baseline of the static solver that every mass-spring program has: dynamics, damped until it rests.
 #pragma once
 
-#include "msm/solve/equilibrium.h"
+#include "msm/statics/equilibrium.h"
 
 namespace springproof::bench {
 
 struct Relaxation {
   bool at_rest = false;
   long steps = 0;
-  double seconds = 0;          ///< CPU time of the steps; finding the damping is not counted
-  double damping = 0;          ///< [1/s]
+  double seconds = 0;  ///< CPU time of the steps; finding the damping is not counted
+  double damping = 0;  ///< [1/s]
   std::string message;
 };
 
-/// run_dynamics() from rest with the largest safe step and the best mass-proportional damping, 2 sqrt(lmin), lmin the smallest
-/// squared frequency [1/s^2] of the linearised model, until the unbalanced force falls below the tolerance.  `factor`: times that damping.
-Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance, double factor = 1);
+/// run_dynamics() from rest with the largest safe step and the best mass-proportional damping, 2 sqrt(lmin), lmin the
+/// smallest squared frequency [1/s^2] of the linearised model, until the unbalanced force falls below the tolerance.
+/// `factor`: times that damping.
+Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
+                 double factor = 1);
 
 }  // namespace springproof::bench

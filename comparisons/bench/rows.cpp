@@ -11,8 +11,13 @@ namespace springproof::bench {
 namespace {
 
 nlohmann::json to_json(const BenchRow& row) {
-  nlohmann::json j = {{"subject", row.subject}, {"what", row.what}, {"size", row.size},   {"unit", row.unit},
-                      {"ok", row.ok},           {"note", row.note}, {"outcome", to_string(outcome(row))}};
+  nlohmann::json j = {{"subject", row.subject},
+                      {"what", row.what},
+                      {"size", row.size},
+                      {"unit", row.unit},
+                      {"ok", row.ok},
+                      {"note", row.note},
+                      {"outcome", to_string(outcome(row))}};
   if (row.ok) j["value"] = row.value;
   if (row.ok && !row.baseline.empty()) j["baseline"] = {{"name", row.baseline}, {"value", row.baseline_value}};
   if (row.ok) j["judged"] = row.judged();
@@ -26,7 +31,11 @@ nlohmann::json to_json(const BenchRow& row) {
 }
 
 nlohmann::json to_json(const RooflinePoint& p) {
-  return {{"name", p.name}, {"size", p.size}, {"level", p.level}, {"flops_per_byte", p.flops_per_byte}, {"gflops", p.gflops}};
+  return {{"name", p.name},
+          {"size", p.size},
+          {"level", p.level},
+          {"flops_per_byte", p.flops_per_byte},
+          {"gflops", p.gflops}};
 }
 
 template <class T>
@@ -44,18 +53,25 @@ double BenchRow::judged() const {
 Outcome outcome(const BenchRow& row) {
   if (!row.ok || !std::isfinite(row.judged())) return Outcome::no_result;
   switch (row.target.sense) {
-    case Sense::at_least: return row.judged() >= row.target.limit ? Outcome::met : Outcome::missed;
-    case Sense::at_most: return row.judged() <= row.target.limit ? Outcome::met : Outcome::missed;
-    default: return Outcome::information;
+    case Sense::at_least:
+      return row.judged() >= row.target.limit ? Outcome::met : Outcome::missed;
+    case Sense::at_most:
+      return row.judged() <= row.target.limit ? Outcome::met : Outcome::missed;
+    default:
+      return Outcome::information;
   }
 }
 
 std::string to_string(Outcome outcome) {
   switch (outcome) {
-    case Outcome::met: return "met";
-    case Outcome::missed: return "missed";
-    case Outcome::no_result: return "no result";
-    default: return "";
+    case Outcome::met:
+      return "met";
+    case Outcome::missed:
+      return "missed";
+    case Outcome::no_result:
+      return "no result";
+    default:
+      return "";
   }
 }
 
@@ -71,7 +87,8 @@ void Findings::add(Findings more) {
 }
 
 bool complete(const Findings& findings) {
-  return std::none_of(findings.rows.begin(), findings.rows.end(), [](const BenchRow& row) { return outcome(row) == Outcome::no_result; });
+  return std::none_of(findings.rows.begin(), findings.rows.end(),
+                      [](const BenchRow& row) { return outcome(row) == Outcome::no_result; });
 }
 
 nlohmann::json to_json(const Findings& findings) {

@@ -26,17 +26,17 @@ struct Usage {
 };
 
 struct BenchRow {
-  std::string subject;         ///< "dynamics"
-  std::string what;            ///< "HybMSS-CF over LAMMPS"
-  std::string size;            ///< "30^3"
-  std::string unit;            ///< of the value and the baseline's value
+  std::string subject;  ///< "dynamics"
+  std::string what;     ///< "HybMSS-CF over LAMMPS"
+  std::string size;     ///< "30^3"
+  std::string unit;     ///< of the value and the baseline's value
   double value = 0;
-  std::string baseline = {};       ///< what it is held against; empty: nothing, and the value itself is judged
+  std::string baseline = {};  ///< what it is held against; empty: nothing, and the value itself is judged
   double baseline_value = 0;
   Target target = {};
   std::optional<Usage> usage = {};
-  std::string note = {};       ///< what computed it; why there is no result
-  bool ok = true;              ///< false: no result
+  std::string note = {};  ///< what computed it; why there is no result
+  bool ok = true;         ///< false: no result
 
   /// Baseline over value, or, where it should be small, value over baseline; without a baseline the value.
   double judged() const;
@@ -51,9 +51,9 @@ std::string to_string(const Target& target);
 
 /// One kernel in the roofline.
 struct RooflinePoint {
-  std::string name;          ///< "HybMSS-CF"
-  std::string size;          ///< "30^3"
-  std::string level;         ///< of the memory that holds its data: "L1", "L2", "L3", "DRAM"
+  std::string name;   ///< "HybMSS-CF"
+  std::string size;   ///< "30^3"
+  std::string level;  ///< of the memory that holds its data: "L1", "L2", "L3", "DRAM"
   double flops_per_byte = 0;
   double gflops = 0;
 };

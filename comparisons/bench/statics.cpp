@@ -11,11 +11,11 @@
 #include "comparisons/bench/in_child.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/relaxation.h"
-#include "meshes/mesher.h"
+#include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
-#include "meshes/voxelise.h"
+#include "meshes/voxels/voxelise.h"
 #include "msm/models.h"
-#include "msm/solve/equilibrium.h"
+#include "msm/statics/equilibrium.h"
 
 namespace springproof::bench {
 namespace {
@@ -52,9 +52,11 @@ Problem rabbit(int voxels) {
   request.tetrahedra = std::min(20000, 2 * voxels);
   const Mesh body = mesh_body(request).mesh;
   const Mesh mesh = voxelise(voxel_grid(body, std::cbrt(volume(body, body.nodes) / voxels)), body).mesh;
-  const std::vector<Load> loads = {PrescribedDisplacement{"feet", {0.0, 0.0, 0.0}}, PatchForce{"head", Vec3(-0.1, 0, 0)}};
+  const std::vector<Load> loads = {PrescribedDisplacement{"feet", {0.0, 0.0, 0.0}},
+                                   PatchForce{"head", Vec3(-0.1, 0, 0)}};
   const ModelChoice choice{"hybmss", {}, "hybmss", {}};
-  return {build_model(resolve(choice), mesh, {youngs_modulus, 0.25, density}), transfer(loads, mesh, density, Kinematics::linear)};
+  return {build_model(resolve(choice), mesh, {youngs_modulus, 0.25, density}),
+          transfer(loads, mesh, density, Kinematics::linear)};
 }
 
 /// The time of a short one is the least of three.
@@ -67,10 +69,15 @@ Equilibrium solve(const Problem& p, LinearSolver solver = LinearSolver::automati
 }
 
 Json answer(const Equilibrium& e) {
-  return {{"iterations", e.iterations}, {"seconds", e.seconds}, {"memory_MiB", e.memory_MiB}, {"unknowns", e.unknowns}, {"solver", e.solver}};
+  return {{"iterations", e.iterations},
+          {"seconds", e.seconds},
+          {"memory_MiB", e.memory_MiB},
+          {"unknowns", e.unknowns},
+          {"solver", e.solver}};
 }
 
-/// Measures in a process of its own and adds what `rows` makes of the answer; a failure becomes the first row without a result.
+/// Measures in a process of its own and adds what `rows` makes of the answer; a failure becomes the first row without a
+/// result.
 template <class Work, class Rows>
 void measure(Findings& findings, const BenchRow& first, const Work& work, const Rows& rows) {
   fmt::print(stderr, "statics: {}, {} ...\n", first.what, first.size);
@@ -95,20 +102,25 @@ double iteration_limit(double nu) { return nu <= 0.4 ? 13 : nu <= 0.499 ? 16 : 2
 
 void blocks(const BenchOptions& options, Findings& findings) {
   const std::vector<int> sizes = options.quick ? std::vector{12} : std::vector{20, 40, 63};
-  const std::vector<double> ratios = options.quick ? std::vector{0.25, 0.499} : std::vector{0.0, 0.25, 0.4, 0.45, 0.49, 0.499, 0.4999};
+  const std::vector<double> ratios =
+      options.quick ? std::vector{0.25, 0.499} : std::vector{0.0, 0.25, 0.4, 0.45, 0.49, 0.499, 0.4999};
   for (const int n : sizes) {
     double quarter = 0;
     for (const double nu : ratios) {
       BenchRow row = iterations_row(fmt::format("block, nu = {:g}", nu), fmt::format("{}^3", n), iteration_limit(nu));
-      measure(findings, row, [&] { return answer(solve(cube(n, nu))); }, [&](const Json& a) {
-        row.value = a.at("iterations");
-        const double seconds = a.at("seconds");
-        row.note = fmt::format("{}, {:.3g} CPU s, {:.3g} us per unknown", a.at("solver").get<std::string>(), seconds, 1e6 * seconds / a.at("unknowns").get<double>());
-        findings.rows.push_back(row);
-        if (nu == 0.25) quarter = seconds;
-        if (nu == 0.499 && quarter > 0)
-          findings.rows.push_back({subject, "nu = 0.499 over nu = 0.25", row.size, "CPU s", seconds, "nu = 0.25", quarter, at_most(4)});
-      });
+      measure(
+          findings, row, [&] { return answer(solve(cube(n, nu))); },
+          [&](const Json& a) {
+            row.value = a.at("iterations");
+            const double seconds = a.at("seconds");
+            row.note = fmt::format("{}, {:.3g} CPU s, {:.3g} us per unknown", a.at("solver").get<std::string>(),
+                                   seconds, 1e6 * seconds / a.at("unknowns").get<double>());
+            findings.rows.push_back(row);
+            if (nu == 0.25) quarter = seconds;
+            if (nu == 0.499 && quarter > 0)
+              findings.rows.push_back(
+                  {subject, "nu = 0.499 over nu = 0.25", row.size, "CPU s", seconds, "nu = 0.25", quarter, at_most(4)});
+          });
     }
   }
 }
@@ -116,7 +128,8 @@ void blocks(const BenchOptions& options, Findings& findings) {
 /// Momentum dispersion: few iterations, and what the pressures as unknowns gain near nu = 1/2.
 void dispersion_blocks(int n, double gain, Findings& findings) {
   for (const double nu : {0.25, 0.499}) {
-    const BenchRow row = iterations_row(fmt::format("emsm block, nu = {:g}", nu), fmt::format("{}^3", n), iteration_limit(nu));
+    const BenchRow row =
+        iterations_row(fmt::format("emsm block, nu = {:g}", nu), fmt::format("{}^3", n), iteration_limit(nu));
     const auto work = [&] {
       const Problem p = cube(n, nu, "emsm");
       return Json{{"chosen", answer(solve(p))}, {"displacements", answer(solve(p, LinearSolver::multigrid))}};
@@ -128,7 +141,15 @@ void dispersion_blocks(int n, double gain, Findings& findings) {
       found.note = fmt::format("{}, {:.3g} CPU s", a.at("chosen").at("solver").get<std::string>(), chosen);
       findings.rows.push_back(found);
       if (nu == 0.25) return;
-      findings.rows.push_back({subject, row.what + ", over displacements alone", row.size, "CPU s", chosen, "CG + network multigrid", displacements, at_least(gain), {},
+      findings.rows.push_back({subject,
+                               row.what + ", over displacements alone",
+                               row.size,
+                               "CPU s",
+                               chosen,
+                               "CG + network multigrid",
+                               displacements,
+                               at_least(gain),
+                               {},
                                fmt::format("{} iterations", a.at("displacements").at("iterations").get<int>())});
     });
   }
@@ -137,38 +158,56 @@ void dispersion_blocks(int n, double gain, Findings& findings) {
 void rabbits(const BenchOptions& options, Findings& findings) {
   for (const int voxels : options.quick ? std::vector{1500} : std::vector{5000, 50000, 500000}) {
     BenchRow row = iterations_row("rabbit with thin ears, nu = 0.25", fmt::format("{} voxels", voxels), 40);
-    measure(findings, row, [&] { return answer(solve(rabbit(voxels))); }, [&](const Json& a) {
-      row.value = a.at("iterations");
-      row.note = fmt::format("{}, {:.3g} CPU s", a.at("solver").get<std::string>(), a.at("seconds").get<double>());
-      findings.rows.push_back(row);
-    });
+    measure(
+        findings, row, [&] { return answer(solve(rabbit(voxels))); },
+        [&](const Json& a) {
+          row.value = a.at("iterations");
+          row.note = fmt::format("{}, {:.3g} CPU s", a.at("solver").get<std::string>(), a.at("seconds").get<double>());
+          findings.rows.push_back(row);
+        });
   }
 }
 
 /// Ours and GAMG on the same problem in the same process.
 template <class Make>
-void against_gamg(const std::string& what, const std::string& size, double limit, const Make& make, Findings& findings) {
+void against_gamg(const std::string& what, const std::string& size, double limit, const Make& make,
+                  Findings& findings) {
   if (!has_gamg()) return;
   BenchRow row{subject, what, size, "CPU s", 0, "PETSc CG + GAMG", 0, at_least(limit)};
   const auto work = [&] {
     const Problem p = make();
     const Equilibrium ours = solve(p);
     const GamgResult gamg = solve_gamg(p.model, p.conditions, tolerance, ours.displacement);
-    if (!gamg.converged) throw std::runtime_error(fmt::format("GAMG did not converge in {} iterations", gamg.iterations));
-    return Json{{"ours", answer(ours)}, {"setup", gamg.setup_seconds}, {"solve", gamg.solve_seconds}, {"iterations", gamg.iterations}, {"difference", gamg.difference}};
+    if (!gamg.converged)
+      throw std::runtime_error(fmt::format("GAMG did not converge in {} iterations", gamg.iterations));
+    return Json{{"ours", answer(ours)},
+                {"setup", gamg.setup_seconds},
+                {"solve", gamg.solve_seconds},
+                {"iterations", gamg.iterations},
+                {"difference", gamg.difference}};
   };
   measure(findings, row, work, [&](const Json& a) {
     row.value = a.at("ours").at("seconds");
     row.baseline_value = a.at("setup").get<double>() + a.at("solve").get<double>();
-    row.note = fmt::format("{}, {} iterations, everything counted; GAMG {} iterations, {:.3g} s set-up, {:.3g} s solving, its assembly not counted; displacements differ by {:.1e}",
-                           a.at("ours").at("solver").get<std::string>(), a.at("ours").at("iterations").get<int>(), a.at("iterations").get<int>(),
-                           a.at("setup").get<double>(), a.at("solve").get<double>(), a.at("difference").get<double>());
+    row.note = fmt::format(
+        "{}, {} iterations, everything counted; GAMG {} iterations, {:.3g} s set-up, {:.3g} s solving, its assembly "
+        "not counted; displacements differ by {:.1e}",
+        a.at("ours").at("solver").get<std::string>(), a.at("ours").at("iterations").get<int>(),
+        a.at("iterations").get<int>(), a.at("setup").get<double>(), a.at("solve").get<double>(),
+        a.at("difference").get<double>());
     findings.rows.push_back(row);
   });
 }
 
 void against_dynamics(int n, Findings& findings) {
-  BenchRow row{subject, "block, nu = 0.25, over damped dynamics", fmt::format("{}^3", n), "CPU s", 0, "optimally damped dynamics", 0, at_least(15)};
+  BenchRow row{subject,
+               "block, nu = 0.25, over damped dynamics",
+               fmt::format("{}^3", n),
+               "CPU s",
+               0,
+               "optimally damped dynamics",
+               0,
+               at_least(15)};
   const auto work = [&] {
     const Problem p = cube(n, 0.25);
     const Equilibrium ours = solve(p);
@@ -186,12 +225,16 @@ void against_dynamics(int n, Findings& findings) {
 
 void large(int n, Findings& findings) {
   BenchRow row{subject, "large block, nu = 0.25", fmt::format("{}^3", n), "CPU s", 0, "", 0, at_most(10)};
-  measure(findings, row, [&] { return answer(solve(cube(n, 0.25))); }, [&](const Json& a) {
-    row.value = a.at("seconds");
-    row.note = fmt::format("{}, {} iterations, {} unknowns", a.at("solver").get<std::string>(), a.at("iterations").get<int>(), a.at("unknowns").get<long>());
-    findings.rows.push_back(row);
-    findings.rows.push_back({subject, row.what, row.size, "GiB, peak of the process with its model", a.at("memory_MiB").get<double>() / 1024, "", 0, at_most(2)});
-  });
+  measure(
+      findings, row, [&] { return answer(solve(cube(n, 0.25))); },
+      [&](const Json& a) {
+        row.value = a.at("seconds");
+        row.note = fmt::format("{}, {} iterations, {} unknowns", a.at("solver").get<std::string>(),
+                               a.at("iterations").get<int>(), a.at("unknowns").get<long>());
+        findings.rows.push_back(row);
+        findings.rows.push_back({subject, row.what, row.size, "GiB, peak of the process with its model",
+                                 a.at("memory_MiB").get<double>() / 1024, "", 0, at_most(2)});
+      });
 }
 
 }  // namespace
@@ -200,12 +243,14 @@ void bench_statics(const BenchOptions& options, Findings& findings) {
   const bool quick = options.quick;
   const int n = quick ? 10 : 40, nodes = quick ? 2000 : 100000;
   if (!has_gamg()) findings.remarks.push_back("PETSc was not there when this was built: no rows against CG + GAMG");
-  against_gamg("block, nu = 0.25, over GAMG", fmt::format("{}^3", n), 50, [&] { return cube(n, 0.25); }, findings);
+  against_gamg(
+      "block, nu = 0.25, over GAMG", fmt::format("{}^3", n), 50, [&] { return cube(n, 0.25); }, findings);
   against_dynamics(n, findings);
   blocks(options, findings);
   dispersion_blocks(quick ? 10 : 20, quick ? 3 : 8, findings);
   rabbits(options, findings);
-  against_gamg("random network over GAMG", fmt::format("{} nodes", nodes), 5, [&] { return network(nodes); }, findings);
+  against_gamg(
+      "random network over GAMG", fmt::format("{} nodes", nodes), 5, [&] { return network(nodes); }, findings);
   large(quick ? 16 : 100, findings);
 }
 

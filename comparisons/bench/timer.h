@@ -20,8 +20,9 @@ struct TimerOptions {
   Clock clock = Clock::thread;
 };
 
-/// Seconds per step of each piece of work: the least over many short samples, taken in turn, so that a ratio of two is of
-/// runs side by side and what others do to the caches and the clock rate falls out.  A step longer than a sample is one.
+/// Seconds per step of each piece of work: the least over many short samples, taken in turn, so that a ratio of two is
+/// of runs side by side and what others do to the caches and the clock rate falls out.  A step longer than a sample is
+/// one.
 std::vector<double> least_seconds(const std::vector<Advance>& work, const TimerOptions& options = {});
 
 }  // namespace springproof::bench

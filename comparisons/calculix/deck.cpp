@@ -9,8 +9,8 @@
 #include <numbers>
 #include <set>
 
+#include "problem/case_file/measures.h"
 #include "problem/exact_field.h"
-#include "problem/measures.h"
 
 namespace springproof::calculix {
 namespace {
@@ -38,8 +38,7 @@ void write_neo_hooke(const IsotropicMaterial& m, std::ostream& out) {
 constexpr Counterpart counterparts[] = {
     {"linear", false, "small displacements, Hooke's law", write_elastic},
     {"neo_hooke_isochoric", true, "W = C10 (J^(-2/3) tr C - 3) + (J - 1)^2 / D1", write_neo_hooke},
-    {"st_venant_kirchhoff", true, "S = 2 mu E + lambda tr E I (*ELASTIC with NLGEOM in CalculiX)",
-     write_elastic}};
+    {"st_venant_kirchhoff", true, "S = 2 mu E + lambda tr E I (*ELASTIC with NLGEOM in CalculiX)", write_elastic}};
 
 const Counterpart& counterpart(const Experiment& experiment) {
   for (const Counterpart& c : counterparts)
@@ -50,8 +49,7 @@ const Counterpart& counterpart(const Experiment& experiment) {
 }
 
 const QuadraticPatch& patch_of(const QuadraticMesh& mesh, const std::string& name) {
-  const auto at =
-      std::find_if(mesh.patches.begin(), mesh.patches.end(), [&](const auto& p) { return p.name == name; });
+  const auto at = std::find_if(mesh.patches.begin(), mesh.patches.end(), [&](const auto& p) { return p.name == name; });
   if (at != mesh.patches.end()) return *at;
   std::vector<std::string> names;
   for (const QuadraticPatch& p : mesh.patches) names.push_back(p.name);
@@ -64,8 +62,7 @@ std::vector<HeldComponent> held_components(const Experiment& experiment, const Q
     const Load& load = experiment.loads[l];
     if (!prescribes_displacement(load)) continue;
     for (const int node : patch_of(mesh, *patch_of(load)).nodes) {
-      const PrescribedValue u =
-          prescribed_displacement(load, mesh.nodes.row(node), experiment.model_kinematics());
+      const PrescribedValue u = prescribed_displacement(load, mesh.nodes.row(node), experiment.model_kinematics());
       for (int c = 0; c < 3; ++c)
         if (u[c]) owner.try_emplace({node, c}, int(l));
     }
@@ -85,15 +82,13 @@ NodalVectors concentrated(const Experiment& experiment, const IsotropicMaterial&
     if (const auto* p = std::get_if<Pressure>(&load))
       forces += p->pressure * nodal_area_vectors(mesh, patch_of(mesh, p->on));
     if (const auto* b = std::get_if<FieldBodyForce>(&load))
-      forces +=
-          nodal_body_forces(mesh, [&](const Vec3& X) { return exact_body_force(b->field, X, material); });
+      forces += nodal_body_forces(mesh, [&](const Vec3& X) { return exact_body_force(b->field, X, material); });
     if (const auto* f = std::get_if<PatchForce>(&load)) {
       const Eigen::VectorXd areas = nodal_areas(mesh, patch_of(mesh, f->on));
       forces += areas / areas.sum() * f->force.transpose();
     }
     if (const auto* p = std::get_if<PointForce>(&load))
-      for (const auto& [node, weight] : weights_at(mesh, linear, p->at))
-        forces.row(node) += weight * p->force;
+      for (const auto& [node, weight] : weights_at(mesh, linear, p->at)) forces.row(node) += weight * p->force;
   }
   return forces;
 }
@@ -103,8 +98,7 @@ int steps_for(const Experiment& experiment) {
   if (experiment.model_kinematics() == Kinematics::linear) return steps;
   for (const Load& load : experiment.loads)
     if (const auto* turn = std::get_if<PrescribedRotation>(&load))
-      steps =
-          std::max(steps, static_cast<int>(std::ceil(std::abs(turn->angle) / largest_turn_per_step - 1e-9)));
+      steps = std::max(steps, static_cast<int>(std::ceil(std::abs(turn->angle) / largest_turn_per_step - 1e-9)));
   return steps;
 }
 
@@ -119,8 +113,8 @@ void check_labels(const Experiment& experiment, const QuadraticMesh& mesh) {
   std::set<std::string> seen = {"ALL_NODES", "HELD_NODES"};
   const auto check = [&](const std::string& name, const std::string& set) {
     if (!seen.insert(set).second || set.size() > 70)
-      throw InputError(fmt::format("{}: '{}' cannot name a set of the deck: {} is taken or too long",
-                                   experiment.name, name, set));
+      throw InputError(
+          fmt::format("{}: '{}' cannot name a set of the deck: {} is taken or too long", experiment.name, name, set));
   };
   for (const QuadraticPatch& p : mesh.patches) check(p.name, label(p.name));
   for (const Probe& p : experiment.probes) check(p.name, "PROBE_" + label(p.name));
@@ -159,8 +153,7 @@ void write_mesh(const Deck& deck, std::ostream& out) {
   const QuadraticMesh& mesh = deck.mesh;
   fmt::print(out, "**\n** Corner nodes first, then the middles of the edges [m]\n*NODE, NSET=ALL_NODES\n");
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n)
-    fmt::print(out, "{}, {:.12g}, {:.12g}, {:.12g}\n", n + 1, mesh.nodes(n, 0), mesh.nodes(n, 1),
-               mesh.nodes(n, 2));
+    fmt::print(out, "{}, {:.12g}, {:.12g}, {:.12g}\n", n + 1, mesh.nodes(n, 0), mesh.nodes(n, 1), mesh.nodes(n, 2));
   std::size_t before = 0;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const std::vector<int>& element = mesh.elements[e];
@@ -199,8 +192,8 @@ std::vector<int> node_at(const Deck& deck, const Vec3& point) {
 void write_probe_sets(const Deck& deck, std::ostream& out) {
   for (const Probe& p : deck.experiment.probes) {
     const std::vector<int> node = node_at(deck, p.at);
-    fmt::print(out, "**\n** Probe {} at ({:.6g}, {:.6g}, {:.6g}) m{}\n", one_line(p.name), p.at.x(), p.at.y(),
-               p.at.z(), node.empty() ? ": no node there" : "");
+    fmt::print(out, "**\n** Probe {} at ({:.6g}, {:.6g}, {:.6g}) m{}\n", one_line(p.name), p.at.x(), p.at.y(), p.at.z(),
+               node.empty() ? ": no node there" : "");
     if (!node.empty()) fmt::print(out, "*NSET, NSET=PROBE_{}\n{}\n", label(p.name), node.front() + 1);
   }
 }
@@ -215,8 +208,8 @@ void write_supports(const Deck& deck, double factor, std::ostream& out) {
   fmt::print(out, "** Prescribed displacements: node, component, component, value [m]\n*BOUNDARY\n");
   const Kinematics kinematics = deck.experiment.model_kinematics();
   for (const HeldComponent& h : deck.held) {
-    const PrescribedValue u = prescribed_displacement(deck.experiment.loads[h.load],
-                                                      deck.mesh.nodes.row(h.node), kinematics, factor);
+    const PrescribedValue u =
+        prescribed_displacement(deck.experiment.loads[h.load], deck.mesh.nodes.row(h.node), kinematics, factor);
     fmt::print(out, "{}, {}, {}, {:.12g}\n", h.node + 1, h.component + 1, h.component + 1, *u[h.component]);
   }
 }
@@ -226,26 +219,20 @@ void write_loads(const Deck& deck, double factor, std::ostream& out) {
     fmt::print(out, "** Distributed and point forces as nodal forces: node, component, force [N]\n*CLOAD\n");
   for (Eigen::Index n = 0; n < deck.forces.rows(); ++n)
     for (int c = 0; c < 3; ++c)
-      if (deck.forces(n, c) != 0)
-        fmt::print(out, "{}, {}, {:.12g}\n", n + 1, c + 1, factor * deck.forces(n, c));
+      if (deck.forces(n, c) != 0) fmt::print(out, "{}, {}, {:.12g}\n", n + 1, c + 1, factor * deck.forces(n, c));
   if (const double size = deck.gravity.norm(); size > 0)
-    fmt::print(
-        out, "** Gravity: size [m/s^2], direction\n*DLOAD\nBODY, GRAV, {:.12g}, {:.12g}, {:.12g}, {:.12g}\n",
-        factor * size, deck.gravity.x() / size, deck.gravity.y() / size, deck.gravity.z() / size);
+    fmt::print(out, "** Gravity: size [m/s^2], direction\n*DLOAD\nBODY, GRAV, {:.12g}, {:.12g}, {:.12g}, {:.12g}\n",
+               factor * size, deck.gravity.x() / size, deck.gravity.y() / size, deck.gravity.z() / size);
 }
 
 void write_requests(const Deck& deck, std::ostream& out) {
   fmt::print(out, "** For cgx\n*NODE FILE, FREQUENCY=9999\nU, RF\n*EL FILE, FREQUENCY=9999\nS, E\n");
-  fmt::print(
-      out, "** Seven digits, into the .dat file.  RF is the support force plus the loads on those nodes.\n");
+  fmt::print(out, "** Seven digits, into the .dat file.  RF is the support force plus the loads on those nodes.\n");
   for (const std::string& name : supported_patches(deck.experiment))
     fmt::print(out, "*NODE PRINT, NSET={}, TOTALS=ONLY, FREQUENCY=9999\nRF\n", label(name));
   for (const Probe& p : deck.experiment.probes)
-    if (!node_at(deck, p.at).empty())
-      fmt::print(out, "*NODE PRINT, NSET=PROBE_{}, FREQUENCY=9999\nU\n", label(p.name));
-  fmt::print(
-      out,
-      "*NODE PRINT, NSET=HELD_NODES, FREQUENCY=9999\nRF\n*NODE PRINT, NSET=ALL_NODES, FREQUENCY=9999\nU\n");
+    if (!node_at(deck, p.at).empty()) fmt::print(out, "*NODE PRINT, NSET=PROBE_{}, FREQUENCY=9999\nU\n", label(p.name));
+  fmt::print(out, "*NODE PRINT, NSET=HELD_NODES, FREQUENCY=9999\nRF\n*NODE PRINT, NSET=ALL_NODES, FREQUENCY=9999\nU\n");
 }
 
 void write_step(const Deck& deck, int step, std::ostream& out) {
@@ -270,9 +257,7 @@ std::string kinematics_with_counterpart() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-void require_counterpart(const Experiment& experiment) {
-  counterpart(experiment);
-}
+void require_counterpart(const Experiment& experiment) { counterpart(experiment); }
 
 Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh) {
   require_counterpart(experiment);

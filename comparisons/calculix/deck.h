@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "comparisons/calculix/quadratic_mesh.h"
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof::calculix {
 

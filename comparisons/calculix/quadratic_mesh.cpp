@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "meshes/locate.h"
-#include "problem/experiment.h"
+#include "meshes/locate/locate.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof::calculix {
 namespace {
@@ -18,14 +18,12 @@ using Corners4 = std::array<int, 4>;
 // Edges in the order of their middle nodes.
 constexpr std::array<std::array<int, 2>, 12> hexahedron_edges = {
     {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
-constexpr std::array<std::array<int, 2>, 6> tetrahedron_edges = {
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+constexpr std::array<std::array<int, 2>, 6> tetrahedron_edges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 // S1 ... S6 and S1 ... S4.
 constexpr std::array<Corners4, 6> hexahedron_sides = {
     {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}}};
-constexpr std::array<Corners4, 4> tetrahedron_sides = {
-    {{0, 1, 2, -1}, {0, 3, 1, -1}, {1, 3, 2, -1}, {2, 3, 0, -1}}};
+constexpr std::array<Corners4, 4> tetrahedron_sides = {{{0, 1, 2, -1}, {0, 3, 1, -1}, {1, 3, 2, -1}, {2, 3, 0, -1}}};
 
 const std::array<Vec3, 4> tetrahedron_corners = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
 
@@ -39,10 +37,10 @@ Basis hexahedron_basis(const Vec3& xi) {
   b.gradient.resize(20, 3);
   for (int n = 0; n < 20; ++n) {
     const bool corner = n < 8;
-    const Vec3 at = corner ? hexahedron_corner(n)
-                           : Vec3((hexahedron_corner(hexahedron_edges[n - 8][0]) +
-                                   hexahedron_corner(hexahedron_edges[n - 8][1])) /
-                                  2);
+    const Vec3 at =
+        corner
+            ? hexahedron_corner(n)
+            : Vec3((hexahedron_corner(hexahedron_edges[n - 8][0]) + hexahedron_corner(hexahedron_edges[n - 8][1])) / 2);
     Vec3 f, df;  // the factor of each direction
     for (int d = 0; d < 3; ++d) {
       f[d] = at[d] == 0 ? 1 - xi[d] * xi[d] : (1 + at[d] * xi[d]) / 2;
@@ -93,14 +91,12 @@ std::vector<QuadraturePoint> volume_points(std::size_t nodes) {
         if (nodes == 20)
           points.push_back({Vec3(2 * u - 1, 2 * v - 1, 2 * w - 1), 8 * a * b * c});
         else
-          points.push_back(
-              {Vec3(u, v * (1 - u), w * (1 - u) * (1 - v)), a * b * c * (1 - u) * (1 - u) * (1 - v)});
+          points.push_back({Vec3(u, v * (1 - u), w * (1 - u) * (1 - v)), a * b * c * (1 - u) * (1 - u) * (1 - v)});
       }
   return points;
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 3> gathered(const std::vector<int>& element,
-                                                  const NodalVectors& field) {
+Eigen::Matrix<double, Eigen::Dynamic, 3> gathered(const std::vector<int>& element, const NodalVectors& field) {
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows(element.size(), 3);
   for (std::size_t i = 0; i < element.size(); ++i) rows.row(i) = field.row(element[i]);
   return rows;
@@ -113,9 +109,7 @@ void for_each_point(const QuadraticMesh& mesh, const Side& side, const Visit& vi
   const auto X = gathered(element, mesh.nodes);
   const bool brick = element.size() == 20;
   const Corners4& corners = brick ? hexahedron_sides[side.face - 1] : tetrahedron_sides[side.face - 1];
-  const auto corner = [&](int i) {
-    return brick ? hexahedron_corner(corners[i]) : tetrahedron_corners[corners[i]];
-  };
+  const auto corner = [&](int i) { return brick ? hexahedron_corner(corners[i]) : tetrahedron_corners[corners[i]]; };
   const Vec3 origin = corner(0), along = corner(1) - origin, across = corner(brick ? 3 : 2) - origin;
   for (const auto& [u, a] : gauss)
     for (const auto& [v, b] : gauss) {
@@ -196,9 +190,7 @@ void add_nodes_of(const QuadraticMesh& mesh, const Side& side, std::vector<int>&
   const std::vector<int>& element = mesh.elements[side.element];
   const bool brick = element.size() == 20;
   const Corners4& corners = brick ? hexahedron_sides[side.face - 1] : tetrahedron_sides[side.face - 1];
-  const auto on_side = [&](int corner) {
-    return std::find(corners.begin(), corners.end(), corner) != corners.end();
-  };
+  const auto on_side = [&](int corner) { return std::find(corners.begin(), corners.end(), corner) != corners.end(); };
   const auto visit = [&](const auto& edges, std::size_t first_middle) {
     for (std::size_t i = 0; i < first_middle; ++i)
       if (on_side(int(i))) nodes.push_back(element[i]);
@@ -210,15 +202,12 @@ void add_nodes_of(const QuadraticMesh& mesh, const Side& side, std::vector<int>&
 
 }  // namespace
 
-Basis basis(std::size_t nodes, const Vec3& xi) {
-  return nodes == 20 ? hexahedron_basis(xi) : tetrahedron_basis(xi);
-}
+Basis basis(std::size_t nodes, const Vec3& xi) { return nodes == 20 ? hexahedron_basis(xi) : tetrahedron_basis(xi); }
 
 QuadraticMesh quadratic(const Mesh& mesh) {
   QuadraticMesh out;
   MiddleNodes middles(mesh.nodes);
-  for (const Hexahedron& cell : mesh.hexahedra)
-    out.elements.push_back(with_middles(cell, hexahedron_edges, middles));
+  for (const Hexahedron& cell : mesh.hexahedra) out.elements.push_back(with_middles(cell, hexahedron_edges, middles));
   for (const Tetrahedron& cell : mesh.tetrahedra)
     out.elements.push_back(with_middles(cell, tetrahedron_edges, middles));
   out.nodes = middles.all_nodes();
@@ -249,19 +238,16 @@ NodalVectors nodal_area_vectors(const QuadraticMesh& mesh, const QuadraticPatch&
   NodalVectors areas = NodalVectors::Zero(mesh.nodes.rows(), 3);
   for (const Side& side : patch.sides)
     for_each_point(mesh, side, [&](const auto& element, const Basis& at, const Vec3& area) {
-      for (std::size_t i = 0; i < element.size(); ++i)
-        areas.row(element[i]) += at.value[i] * area.transpose();
+      for (std::size_t i = 0; i < element.size(); ++i) areas.row(element[i]) += at.value[i] * area.transpose();
     });
   return areas;
 }
 
-NodalVectors nodal_body_forces(const QuadraticMesh& mesh,
-                               const std::function<Vec3(const Vec3&)>& body_force) {
+NodalVectors nodal_body_forces(const QuadraticMesh& mesh, const std::function<Vec3(const Vec3&)>& body_force) {
   NodalVectors forces = NodalVectors::Zero(mesh.nodes.rows(), 3);
   for_each_point(mesh, [&](const auto& element, const Basis& at, const Vec3& X, double volume) {
     const Vec3 force = volume * body_force(X);
-    for (std::size_t i = 0; i < element.size(); ++i)
-      forces.row(element[i]) += at.value[i] * force.transpose();
+    for (std::size_t i = 0; i < element.size(); ++i) forces.row(element[i]) += at.value[i] * force.transpose();
   });
   return forces;
 }
@@ -274,12 +260,11 @@ Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh) {
   return volumes;
 }
 
-std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear,
-                                               const Vec3& point) {
+std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point) {
   const std::optional<Location> place = locate(linear, point);
   if (!place)
-    throw InputError(fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies in no hexahedron of the body",
-                                 point.x(), point.y(), point.z()));
+    throw InputError(fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies in no hexahedron of the body", point.x(),
+                                 point.y(), point.z()));
   // Trilinear shape functions hold the reference coordinates: the sum over the corners of one face.
   Vec3 xi = -Vec3::Ones();
   for (int corner = 0; corner < 8; ++corner)

@@ -52,8 +52,7 @@ NodalVectors nodal_body_forces(const QuadraticMesh& mesh, const std::function<Ve
 /// What each node counts for at a rest position inside a hexahedron: node and shape function.
 /// `linear` is the mesh that `mesh` was made of.
 /// @throws InputError naming the point if it lies in no hexahedron.
-std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear,
-                                               const Vec3& point);
+std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point);
 
 struct VolumeChange {
   double exact = 0;        ///< (V' - V) / V, by the elements' own interpolation [1]

@@ -10,7 +10,7 @@
 #include <memory>
 #include <sstream>
 
-#include "meshes/child.h"
+#include "problem/system/child.h"
 
 namespace springproof::calculix {
 namespace {
@@ -40,8 +40,7 @@ double number(std::string text) {
   if (sign != std::string::npos && text[sign - 1] != 'E') text.insert(sign, 1, 'E');
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || text.empty())
-    throw std::runtime_error(fmt::format("ccx printed '{}' for a number", text));
+  if (*end != '\0' || text.empty()) throw std::runtime_error(fmt::format("ccx printed '{}' for a number", text));
   return value;
 }
 
@@ -56,8 +55,8 @@ void fill_solution(const Deck& deck, const Printed& printed, Solution& solution)
   field.displacement = printed.displacement.topRows(deck.linear.nodes.rows());
   for (const HeldComponent& h : deck.held) {
     const std::string& name = *patch_of(e.loads[h.load]);
-    auto at = std::find_if(field.reactions.begin(), field.reactions.end(),
-                           [&](const auto& r) { return r.patch == name; });
+    auto at =
+        std::find_if(field.reactions.begin(), field.reactions.end(), [&](const auto& r) { return r.patch == name; });
     if (at == field.reactions.end()) at = field.reactions.insert(at, {name, Vec3::Zero(), Vec3::Zero()});
     const Vec3 force = support(h.node, h.component) * Vec3::Unit(h.component);
     const Vec3 arm = arms.row(h.node).transpose() - centroid(deck.linear, patch(deck.linear, name));
@@ -114,8 +113,7 @@ Printed read_dat(std::istream& in, Eigen::Index nodes) {
     if (node < 0 || node >= nodes) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
     for (int c = 0; c < 3; ++c) (*into)(node, c) = number(word[1 + c]);
   }
-  if (!printed.displacement.allFinite())
-    throw std::runtime_error("ccx printed no displacement for some nodes");
+  if (!printed.displacement.allFinite()) throw std::runtime_error("ccx printed no displacement for some nodes");
   return printed;
 }
 
@@ -151,8 +149,6 @@ Solution solve(const Deck& deck, double time_limit) {
   return solution;
 }
 
-void interrupt() {
-  interrupt_children();
-}
+void interrupt() { interrupt_children(); }
 
 }  // namespace springproof::calculix

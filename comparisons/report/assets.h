@@ -5,10 +5,10 @@
 
 namespace springproof::report_assets {
 
-extern const std::string_view template_html;      ///< with @name@ where the rest goes
+extern const std::string_view template_html;  ///< with @name@ where the rest goes
 extern const std::string_view style_css;
 extern const std::string_view report_js;
-extern const std::string_view bench_html;         ///< the same of the page of a bench
+extern const std::string_view bench_html;  ///< the same of the page of a bench
 extern const std::string_view bench_js;
 extern const std::string_view chart_js;           ///< Chart.js 3.9, MIT licence
 extern const std::string_view three_js;           ///< three.js r111, MIT licence

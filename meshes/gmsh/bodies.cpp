@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "meshes/gmsh/file_kind.h"
-#include "meshes/quality.h"
 #include "meshes/gmsh/read_mesh.h"
-#include "meshes/refined_meshes.h"
-#include "meshes/mesher_exchange.h"
+#include "meshes/mesher/mesher_exchange.h"
+#include "meshes/mesher/refined_meshes.h"
+#include "meshes/quality.h"
 
 namespace springproof {
 namespace {
@@ -26,8 +26,10 @@ const ElementBlock& only_block(const fs::path& file, const std::vector<ElementBl
                                const char* wanted) {
   for (const ElementBlock& b : blocks)
     if (b.type != type)
-      refuse(file, fmt::format("the mesh has {} elements of type '{}' where {} are wanted (hexahedra need transfinite or "
-                               "extruded volumes with Recombine, tetrahedra no Recombine)", b.count(), b.name, wanted));
+      refuse(file,
+             fmt::format("the mesh has {} elements of type '{}' where {} are wanted (hexahedra need transfinite or "
+                         "extruded volumes with Recombine, tetrahedra no Recombine)",
+                         b.count(), b.name, wanted));
   if (blocks.empty()) refuse(file, fmt::format("gmsh made no {} (is there a volume?)", wanted));
   return blocks[0];
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "meshes/gmsh/session.h"
-#include "meshes/mesher.h"
-#include "meshes/surface.h"
+#include "meshes/mesher/mesher.h"
+#include "meshes/surface/surface.h"
 
 namespace springproof {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "meshes/gmsh/session.h"
-#include "meshes/mesher_exchange.h"
+#include "meshes/mesher/mesher_exchange.h"
 
 namespace springproof {
 namespace {
@@ -39,7 +39,8 @@ std::string first_bytes(const std::filesystem::path& file, std::size_t count) {
 
 void require_kind(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
-  const auto* kind = std::find_if(std::begin(beginnings), std::end(beginnings), [&](const Beginning& b) { return b.extension == extension; });
+  const auto* kind = std::find_if(std::begin(beginnings), std::end(beginnings),
+                                  [&](const Beginning& b) { return b.extension == extension; });
   if (kind == std::end(beginnings)) return;
   if (first_bytes(file, kind->within + kind->mark.size()).find(kind->mark) == std::string::npos)
     refuse(file, fmt::format("is not what its ending says (allowed: {}; a script for gmsh ends in .geo)", kind->words));

@@ -1,4 +1,4 @@
-// springproof-mesh: reads a request, meshes the body, writes the answer (meshes/mesher_exchange.h).
+// springproof-mesh: reads a request, meshes the body, writes the answer (meshes/mesher/mesher_exchange.h).
 #include <fmt/format.h>
 #include <gmsh.h>
 #include <sys/resource.h>
@@ -7,10 +7,10 @@
 #include <fstream>
 #include <new>
 
-#include "meshes/child.h"
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/session.h"
-#include "meshes/mesher_exchange.h"
+#include "meshes/mesher/mesher_exchange.h"
+#include "problem/system/child.h"
 
 namespace springproof {
 namespace {
@@ -31,7 +31,8 @@ std::string answer_to(const MeshRequest& request) try {
 } catch (const InputError& e) {
   return refusal_to_cbor(e.what());
 } catch (const std::bad_alloc&) {
-  return refusal_to_cbor(request.file.string() + ": too large a mesh for the memory of this machine (choose a longer edge)");
+  return refusal_to_cbor(request.file.string() +
+                         ": too large a mesh for the memory of this machine (choose a longer edge)");
 }
 
 std::string library_versions() {
@@ -64,6 +65,4 @@ int run(int argc, char** argv) try {
 }  // namespace
 }  // namespace springproof
 
-int main(int argc, char** argv) {
-  return springproof::run(argc, argv);
-}
+int main(int argc, char** argv) { return springproof::run(argc, argv); }

@@ -7,10 +7,10 @@
 #include <optional>
 #include <set>
 
-#include "meshes/child.h"
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/read_mesh.h"
-#include "meshes/transfer_patches.h"
+#include "meshes/patches/transfer_patches.h"
+#include "problem/system/child.h"
 
 namespace springproof {
 namespace {
@@ -51,11 +51,12 @@ MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blo
   const std::size_t corners = blocks[0].corners;
   for (const ElementBlock& b : blocks)
     if (b.corners != corners || (corners != 4 && corners != 8))
-      refuse(r.file, fmt::format("mixed or unknown cells: {} (allowed: only tetrahedra or only hexahedra)", counts(blocks)));
+      refuse(r.file,
+             fmt::format("mixed or unknown cells: {} (allowed: only tetrahedra or only hexahedra)", counts(blocks)));
   MeshedBody body;
   if (std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.order > 1; }))
-    body.notes.push_back(fmt::format("the cells of higher order ({}) are taken by their corners, with straight edges",
-                                     counts(blocks)));
+    body.notes.push_back(
+        fmt::format("the cells of higher order ({}) are taken by their corners, with straight edges", counts(blocks)));
   body.mesh = read_mesh(r.file, corners_of(blocks));
   return body;
 }
@@ -90,7 +91,8 @@ MeshedBody filled_anew(const MeshRequest& r, const MeshedBody& own) {
 /// The triangles of the model.
 Surface surface_of(const MeshRequest& r) {
   const auto blocks = elements(2, entities(2));
-  if (blocks.empty()) refuse(r.file, "no cells and no surface in it (allowed: tetrahedra, hexahedra, or a closed surface of triangles)");
+  if (blocks.empty())
+    refuse(r.file, "no cells and no surface in it (allowed: tetrahedra, hexahedra, or a closed surface of triangles)");
   std::vector<std::size_t> tags;
   std::vector<double> coordinates, parametric;
   gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
@@ -101,7 +103,8 @@ Surface surface_of(const MeshRequest& r) {
     surface.points.emplace_back(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
   }
   for (const ElementBlock& b : blocks) {
-    if (b.corners != 3) refuse(r.file, fmt::format("no cells, and a surface of {} (allowed: triangles)", counts(blocks)));
+    if (b.corners != 3)
+      refuse(r.file, fmt::format("no cells, and a surface of {} (allowed: triangles)", counts(blocks)));
     for (std::size_t i = 0; i < b.node_tags.size(); i += b.nodes)
       surface.triangles.push_back(
           {number.at(b.node_tags[i]), number.at(b.node_tags[i + 1]), number.at(b.node_tags[i + 2])});
@@ -129,7 +132,9 @@ MeshedBody mesh_msh(const MeshRequest& r) {
       surface = surface_of(r);
     }
     if (!own && r.edge == 0 && r.tetrahedra == 0)
-      refuse(r.file, "edge: the file holds a surface and no cells; the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
+      refuse(r.file,
+             "edge: the file holds a surface and no cells; the length of the tetrahedra's edges is needed (allowed: > "
+             "0 [m])");
     if (!own && !physical_surfaces().empty()) notes = {"the physical surfaces of a file without cells are not kept"};
   }
   if (own) return filled_anew(r, *own);

@@ -53,12 +53,14 @@ Mesh read_cells(const ElementBlock& cells, Nodes& nodes) {
     if (cells.corners == 4)
       mesh.tetrahedra.push_back({corner(0), corner(1), corner(2), corner(3)});
     else
-      mesh.hexahedra.push_back({corner(0), corner(1), corner(2), corner(3), corner(4), corner(5), corner(6), corner(7)});
+      mesh.hexahedra.push_back(
+          {corner(0), corner(1), corner(2), corner(3), corner(4), corner(5), corner(6), corner(7)});
   }
   if (cells.nodes == 27) {
     mesh.curved.resize(static_cast<Eigen::Index>(cells.node_tags.size()), 3);
     for (std::size_t i = 0; i < cells.node_tags.size(); ++i)
-      mesh.curved.row(static_cast<Eigen::Index>(i / 27 * 27 + place_of_27[i % 27])) = nodes.position.at(cells.node_tags[i]);
+      mesh.curved.row(static_cast<Eigen::Index>(i / 27 * 27 + place_of_27[i % 27])) =
+          nodes.position.at(cells.node_tags[i]);
   }
   return mesh;
 }
@@ -91,8 +93,7 @@ std::vector<Hexahedron> boxes_lowest_corner_first(const Mesh& mesh) {
     for (const int n : cell)
       for (int corner = 0; corner < 8; ++corner) {
         bool here = true;
-        for (int c = 0; c < 3; ++c)
-          here &= (mesh.nodes(n, c) > middle[c]) == (hexahedron_corners[corner][c] == 1);
+        for (int c = 0; c < 3; ++c) here &= (mesh.nodes(n, c) > middle[c]) == (hexahedron_corners[corner][c] == 1);
         if (here) sorted[corner] = n;
       }
     if (std::find(sorted.begin(), sorted.end(), -1) == sorted.end()) cell = sorted;
@@ -138,8 +139,7 @@ void use_grid(Mesh& mesh, std::vector<int>& new_number) {
   });
   for (std::size_t n = 0; n < old_number.size(); ++n) {
     new_number[old_number[n]] = static_cast<int>(n);
-    for (int c = 0; c < 3; ++c)
-      mesh.nodes(n, c) = grid->origin[c] + grid->spacing[c] * lattice_point[old_number[n]][c];
+    for (int c = 0; c < 3; ++c) mesh.nodes(n, c) = grid->origin[c] + grid->spacing[c] * lattice_point[old_number[n]][c];
   }
   for (Hexahedron& cell : mesh.hexahedra)
     for (int& n : cell) n = new_number[n];
@@ -162,10 +162,12 @@ FacetPatches wanted_facets(const fs::path& file, const Nodes& nodes, std::vector
         std::array<int, 4> facet = {-1, -1, -1, -1};
         for (std::size_t c = 0; c < std::min<std::size_t>(block.corners, 4); ++c) {
           facet[c] = nodes.number.at(block.node_tags[i + c]);
-          if (facet[c] < 0) refuse(file, fmt::format("physical surface '{}' is not on the surface of the body", surface.name));
+          if (facet[c] < 0)
+            refuse(file, fmt::format("physical surface '{}' is not on the surface of the body", surface.name));
         }
         std::vector<int>& names = wanted[sorted(facet)];
-        if (names.empty() || names.back() != static_cast<int>(patches.size())) names.push_back(static_cast<int>(patches.size()));
+        if (names.empty() || names.back() != static_cast<int>(patches.size()))
+          names.push_back(static_cast<int>(patches.size()));
       }
     patches.push_back({surface.name, {}});
   }
@@ -193,7 +195,8 @@ std::vector<Patch> read_patches(const fs::path& file, const Mesh& mesh, const No
   for (const Hexahedron& cell : mesh.hexahedra)
     for (int f = 0; f < 6; ++f) visit(face_of(cell, f));
   for (const auto& [a, b, c, d] : mesh.tetrahedra)
-    for (const std::array<int, 4>& facet : {std::array{a, c, b, -1}, {a, b, d, -1}, {b, c, d, -1}, {a, d, c, -1}}) visit(facet);
+    for (const std::array<int, 4>& facet : {std::array{a, c, b, -1}, {a, b, d, -1}, {b, c, d, -1}, {a, d, c, -1}})
+      visit(facet);
   for (const auto& [facet, names] : wanted)
     if (const auto it = times_seen.find(facet); it == times_seen.end() || it->second != 1)
       refuse(file, fmt::format("physical surface '{}' is not on the surface of the body", patches[names[0]].name));
@@ -207,8 +210,10 @@ Mesh read_mesh(const fs::path& file, const ElementBlock& cells) {
   Mesh mesh = read_cells(cells, nodes);
   refuse_inverted_cells(file, mesh);
   if (const int parts = separate_parts(mesh); parts > 1)
-    refuse(file, fmt::format("the mesh has {} parts that share no node (allowed: one body; join them with BooleanUnion or "
-                             "BooleanFragments, or Coherence)", parts));
+    refuse(file,
+           fmt::format("the mesh has {} parts that share no node (allowed: one body; join them with BooleanUnion or "
+                       "BooleanFragments, or Coherence)",
+                       parts));
   std::vector<int> new_number(mesh.nodes.rows());
   std::iota(new_number.begin(), new_number.end(), 0);
   use_grid(mesh, new_number);

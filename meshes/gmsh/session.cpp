@@ -6,11 +6,9 @@
 #include <algorithm>
 
 #ifdef __SANITIZE_ADDRESS__
-// gmsh 4.8 leaks a few hundred bytes per extruded mesh, OpenCASCADE (libTK...) in STEP files and B-splines; what we leak is still
-// reported.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libgmsh\nleak:libTK";
-}
+// gmsh 4.8 leaks a few hundred bytes per extruded mesh, OpenCASCADE (libTK...) in STEP files and B-splines; what we
+// leak is still reported.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libgmsh\nleak:libTK"; }
 #endif
 
 namespace springproof {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof {
 
@@ -26,8 +26,8 @@ class GmshSession {
 
 /// Elements of one type.
 struct ElementBlock {
-  int type;                            ///< gmsh's number
-  std::string name;                    ///< gmsh's, "Tetrahedron 10"
+  int type;          ///< gmsh's number
+  std::string name;  ///< gmsh's, "Tetrahedron 10"
   int order;
   std::size_t nodes, corners;          ///< of one element; corners come first
   std::vector<std::size_t> node_tags;  ///< one element after the other

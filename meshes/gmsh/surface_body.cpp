@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "meshes/gmsh/bodies.h"
-#include "meshes/refined_meshes.h"
-#include "meshes/stl.h"
-#include "meshes/surface_check.h"
+#include "meshes/mesher/refined_meshes.h"
+#include "meshes/surface/stl.h"
+#include "meshes/surface/surface_check.h"
 
 namespace springproof {
 namespace {
@@ -64,7 +64,8 @@ class FileSurface {
  public:
   explicit FileSurface(const Surface& surface) : full_(surface), volume_(volume(surface)) {}
 
-  /// For triangles of this edge or longer ones.  Should shorter ones be asked for, a half of it is prepared for: few rounds, whoever asks.
+  /// For triangles of this edge or longer ones.  Should shorter ones be asked for, a half of it is prepared for: few
+  /// rounds, whoever asks.
   const Surface& for_edge(double edge) {
     if (edge < edge_ && thin_.triangles.size() < full_.triangles.size()) {
       edge_ = std::isinf(edge_) ? edge : std::min(edge, edge_ / 2);
@@ -78,7 +79,8 @@ class FileSurface {
   std::size_t facets() const { return full_.triangles.size(); }
   std::string note() const {
     if (thin_.triangles.size() == facets()) return {};
-    return fmt::format("{} facets thinned out to {}; the volume changed by {:.2g} %", facets(), thin_.triangles.size(), 100 * change(thin_));
+    return fmt::format("{} facets thinned out to {}; the volume changed by {:.2g} %", facets(), thin_.triangles.size(),
+                       100 * change(thin_));
   }
 
  private:
@@ -87,8 +89,8 @@ class FileSurface {
   Surface thin_;
 };
 
-/// Fills the surface, with even triangles of the edge.  What remeshing cuts off falls as the edge squared: coarser meshes may lose
-/// more.  The triangles' edges are `shorter` times the tetrahedra's.
+/// Fills the surface, with even triangles of the edge.  What remeshing cuts off falls as the edge squared: coarser
+/// meshes may lose more.  The triangles' edges are `shorter` times the tetrahedra's.
 MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1) {
   return [&r, &source, shorter](double edge, double times) {
     MeshRequest own = r;
@@ -102,8 +104,9 @@ MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1)
     } catch (const std::runtime_error& e) {
       refuse(r.file, e.what());
     }
-    const std::string note = fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %", source.facets(),
-                                         even.triangles.size(), shorter * edge, 100 * source.change(even));
+    const std::string note =
+        fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %", source.facets(),
+                    even.triangles.size(), shorter * edge, 100 * source.change(even));
     return OneMesh{fill(own, even), {note}, edge};
   };
 }
@@ -116,7 +119,9 @@ MeshedBody filled_alone(const MeshRequest& r, FileSurface& source) {
     } catch (const InputError& e) {
       if (failure.empty()) failure = e.what();
     }
-  return mesh_alone(r, {fill(r, source.for_edge(r.edge / r.scale)), {"the facets of the file are kept, as remeshing them failed: " + failure}, r.edge});
+  return mesh_alone(r, {fill(r, source.for_edge(r.edge / r.scale)),
+                        {"the facets of the file are kept, as remeshing them failed: " + failure},
+                        r.edge});
 }
 
 }  // namespace
@@ -134,8 +139,6 @@ MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   return body;
 }
 
-MeshedBody mesh_stl(const MeshRequest& r) {
-  return fill_surface(r, read_stl(r.file));
-}
+MeshedBody mesh_stl(const MeshRequest& r) { return fill_surface(r, read_stl(r.file)); }
 
 }  // namespace springproof

@@ -8,10 +8,13 @@ template <>
 const CellKernels<float>& cell_kernels<float>(InstructionSet set) {
   switch (set) {
 #ifdef SPRINGPROOF_X86_KERNELS
-    case InstructionSet::avx2: return avx2::cell_kernels_float;
-    case InstructionSet::avx512: return avx512::cell_kernels_float;
+    case InstructionSet::avx2:
+      return avx2::cell_kernels_float;
+    case InstructionSet::avx512:
+      return avx512::cell_kernels_float;
 #endif
-    default: return portable::cell_kernels_float;
+    default:
+      return portable::cell_kernels_float;
   }
 }
 
@@ -19,10 +22,13 @@ template <>
 const CellKernels<double>& cell_kernels<double>(InstructionSet set) {
   switch (set) {
 #ifdef SPRINGPROOF_X86_KERNELS
-    case InstructionSet::avx2: return avx2::cell_kernels_double;
-    case InstructionSet::avx512: return avx512::cell_kernels_double;
+    case InstructionSet::avx2:
+      return avx2::cell_kernels_double;
+    case InstructionSet::avx512:
+      return avx512::cell_kernels_double;
 #endif
-    default: return portable::cell_kernels_double;
+    default:
+      return portable::cell_kernels_double;
   }
 }
 

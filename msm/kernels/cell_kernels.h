@@ -20,14 +20,15 @@ struct CellRow {
 
 /// A run of parallel springs, from a row of points to a row of points.
 struct SpringRun {
-  long i = 0, j = 0;    ///< points of its first spring; those of the next are the next ones
-  long spring = 0;      ///< number of its first spring
-  int length = 0;       ///< at most longest_cell_row
+  long i = 0, j = 0;  ///< points of its first spring; those of the next are the next ones
+  long spring = 0;    ///< number of its first spring
+  int length = 0;     ///< at most longest_cell_row
   int direction = 0;
 };
 
-/// A cell's stiffness in the sign patterns of its corners.  A cell with three mirror planes couples component a of pattern
-/// t xor e_a (e_a: the sign changes along a) with no other than the two of the same class t: eight symmetric 3x3 blocks.
+/// A cell's stiffness in the sign patterns of its corners.  A cell with three mirror planes couples component a of
+/// pattern t xor e_a (e_a: the sign changes along a) with no other than the two of the same class t: eight symmetric
+/// 3x3 blocks.
 template <class Real>
 struct CellBlocks {
   Real m[8][6] = {};  ///< per class: xx, xy, xz, yy, yz, zz
@@ -45,20 +46,24 @@ struct PlanePair {
 /// One instruction set's kernels.  The points of a row are neighbours in memory, and so are its cells.
 template <class Real>
 struct CellKernels {
-  /// y += fill (K u + gradient^T p), divergence = fill gradient u.  `fill`, `p`, `divergence` may be null: 1, 0, not wanted.
+  /// y += fill (K u + gradient^T p), divergence = fill gradient u.  `fill`, `p`, `divergence` may be null: 1, 0, not
+  /// wanted.
   void (*cells)(const CellBlocks<Real>& K, const CellRow* rows, long count, const Real* const* u, const Real* fill,
                 const Real* p, Real* divergence, const PlanePair<Real>& y);
   /// divergence = fill gradient u.
   void (*divergence)(Real gradient, const CellRow* rows, long count, const PlanePair<Real>& u, const Real* fill,
                      Real* divergence);
   /// y += fill gradient^T p.
-  void (*gradient)(Real gradient, const CellRow* rows, long count, const Real* p, const Real* fill, const PlanePair<Real>& y);
+  void (*gradient)(Real gradient, const CellRow* rows, long count, const Real* p, const Real* fill,
+                   const PlanePair<Real>& y);
 
   // Weights w of either end of each spring; `directions`: three components each; u, y: three arrays.
   /// J += w e of the ends' points, e = direction . (u_j - u_i).
-  void (*inflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* const* u, Real* J);
+  void (*inflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j,
+                 const Real* const* u, Real* J);
   /// y += the transpose of that, of p.
-  void (*outflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* p, Real* const* y);
+  void (*outflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j,
+                  const Real* p, Real* const* y);
 
   // Along n values.
   /// r -= y; z = a z + b d r; x += z.

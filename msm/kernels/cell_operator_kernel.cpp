@@ -57,15 +57,16 @@ struct Patterns {
 /// The two classes of sign patterns that have `across` (1: y, 2: z) in their first component.
 /// with_pressure, with_divergence: of class 0 alone.
 template <class Real, int across, bool with_pressure, bool with_divergence>
-inline void couple(const CellBlocks<Real>& K, int n, const Real* fill, const Real* p, Real* divergence, Patterns<Real>& s) {
+inline void couple(const CellBlocks<Real>& K, int n, const Real* fill, const Real* p, Real* divergence,
+                   Patterns<Real>& s) {
   Real *bx = s.b[0][across], *by = s.b[1][across ^ 1], *bz = s.b[2][across ^ 2];
   Real *rx = s.right[0][across] + 1, *ry = s.right[1][across ^ 1] + 1, *rz = s.right[2][across ^ 2] + 1;
   const Real *even = K.m[2 * across], *odd = K.m[2 * across + 1];
   const Lanes<Real> e0 = even[0], e1 = even[1], e2 = even[2], e3 = even[3], e4 = even[4], e5 = even[5];
   const Lanes<Real> o0 = odd[0], o1 = odd[1], o2 = odd[2], o3 = odd[3], o4 = odd[4], o5 = odd[5];
   for (int i = 0; i < n; i += lanes<Real>) {
-    const Lanes<Real> xl = load(bx + i), xr = load(bx + i + 1), yl = load(by + i), yr = load(by + i + 1), zl = load(bz + i),
-                      zr = load(bz + i + 1);
+    const Lanes<Real> xl = load(bx + i), xr = load(bx + i + 1), yl = load(by + i), yr = load(by + i + 1),
+                      zl = load(bz + i), zr = load(bz + i + 1);
     const Lanes<Real> xd = xr - xl, ys = yl + yr, zs = zl + zr;
     Lanes<Real> fxd = e0 * xd + e1 * ys + e2 * zs, fys = e1 * xd + e3 * ys + e4 * zs, fzs = e2 * xd + e4 * ys + e5 * zs;
     const Lanes<Real> xs = xl + xr, yd = yr - yl, zd = zr - zl;
@@ -76,10 +77,14 @@ inline void couple(const CellBlocks<Real>& K, int n, const Real* fill, const Rea
       fys += g;
       fzs += g;
     }
-    if (fill || i + lanes<Real> > n) {
+    if (fill || i + lanes < Real >> n) {
       const Lanes<Real> w = fill_at(fill, i, n);
-      fxd *= w; fys *= w; fzs *= w;
-      fxs *= w; fyd *= w; fzd *= w;
+      fxd *= w;
+      fys *= w;
+      fzs *= w;
+      fxs *= w;
+      fyd *= w;
+      fzd *= w;
       if constexpr (with_divergence) store<Real>(K.gradient * w * (xd + ys + zs), divergence + i);
     } else if constexpr (with_divergence) {
       store<Real>(K.gradient * (xd + ys + zs), divergence + i);
@@ -109,8 +114,10 @@ void clear_ends(int n, Patterns<Real>& s) {
 template <class Real>
 void add_across(const Patterns<Real>& s, int a, int points, Real* y00, Real* y10, Real* y01, Real* y11) {
   for (int i = 0; i < points; i += lanes<Real>) {
-    const Lanes<Real> w0 = load(s.b[a][0] + i) + load(s.right[a][0] + i), wy = load(s.b[a][1] + i) + load(s.right[a][1] + i);
-    const Lanes<Real> wz = load(s.b[a][2] + i) + load(s.right[a][2] + i), wyz = load(s.b[a][3] + i) + load(s.right[a][3] + i);
+    const Lanes<Real> w0 = load(s.b[a][0] + i) + load(s.right[a][0] + i),
+                      wy = load(s.b[a][1] + i) + load(s.right[a][1] + i);
+    const Lanes<Real> wz = load(s.b[a][2] + i) + load(s.right[a][2] + i),
+                      wyz = load(s.b[a][3] + i) + load(s.right[a][3] + i);
     const Lanes<Real> low_sum = w0 - wz, low_difference = wy - wyz, high_sum = w0 + wz, high_difference = wy + wyz;
     add<Real>(low_sum - low_difference, y00 + i);
     add<Real>(low_sum + low_difference, y10 + i);
@@ -142,8 +149,8 @@ void cells_of(const CellBlocks<Real>& K, const CellRow* rows, long count, const 
 }
 
 template <class Real>
-void cells(const CellBlocks<Real>& K, const CellRow* rows, long count, const Real* const* u, const Real* fill, const Real* p,
-           Real* divergence, const PlanePair<Real>& y) {
+void cells(const CellBlocks<Real>& K, const CellRow* rows, long count, const Real* const* u, const Real* fill,
+           const Real* p, Real* divergence, const PlanePair<Real>& y) {
   if (p)
     cells_of<Real, true, true>(K, rows, count, u, fill, p, divergence, y);
   else if (divergence)
@@ -153,17 +160,21 @@ void cells(const CellBlocks<Real>& K, const CellRow* rows, long count, const Rea
 }
 
 template <class Real>
-void divergence_of(Real gradient, const CellRow* rows, long count, const PlanePair<Real>& u, const Real* fill, Real* divergence) {
+void divergence_of(Real gradient, const CellRow* rows, long count, const PlanePair<Real>& u, const Real* fill,
+                   Real* divergence) {
   alignas(64) Real along[scratch], across[scratch];  // of a point's four rows: u_x, and what u_y and u_z add
   for (const CellRow* row = rows; row != rows + count; ++row) {
     const long p00 = row->point[0] - u.low_begin, p10 = row->point[1] - u.low_begin;
     const long p01 = row->point[2] - u.high_begin, p11 = row->point[3] - u.high_begin;
     const int n = row->length, end = whole_vectors<Real>(n);
     for (int i = 0; i <= end; i += lanes<Real>) {
-      store<Real>((load(u.low[0] + p00 + i) + load(u.low[0] + p10 + i)) + (load(u.high[0] + p01 + i) + load(u.high[0] + p11 + i)),
+      store<Real>((load(u.low[0] + p00 + i) + load(u.low[0] + p10 + i)) +
+                      (load(u.high[0] + p01 + i) + load(u.high[0] + p11 + i)),
                   along + i);
-      store<Real>((load(u.low[1] + p10 + i) - load(u.low[1] + p00 + i)) + (load(u.high[1] + p11 + i) - load(u.high[1] + p01 + i)) +
-                      (load(u.high[2] + p01 + i) + load(u.high[2] + p11 + i)) - (load(u.low[2] + p00 + i) + load(u.low[2] + p10 + i)),
+      store<Real>((load(u.low[1] + p10 + i) - load(u.low[1] + p00 + i)) +
+                      (load(u.high[1] + p11 + i) - load(u.high[1] + p01 + i)) +
+                      (load(u.high[2] + p01 + i) + load(u.high[2] + p11 + i)) -
+                      (load(u.low[2] + p00 + i) + load(u.low[2] + p10 + i)),
                   across + i);
     }
     const Real* w = fill ? fill + row->cell : nullptr;
@@ -175,13 +186,15 @@ void divergence_of(Real gradient, const CellRow* rows, long count, const PlanePa
 }
 
 template <class Real>
-void gradient_of(Real gradient, const CellRow* rows, long count, const Real* p, const Real* fill, const PlanePair<Real>& y) {
+void gradient_of(Real gradient, const CellRow* rows, long count, const Real* p, const Real* fill,
+                 const PlanePair<Real>& y) {
   alignas(64) Real t[scratch + margin];  // pressures, one cell to the right and zeros around
   for (const CellRow* row = rows; row != rows + count; ++row) {
     const int n = row->length, end = whole_vectors<Real>(n);
     const Real* w = fill ? fill + row->cell : nullptr;
     t[0] = 0;
-    for (int i = 0; i < n; i += lanes<Real>) store<Real>(gradient * fill_at(w, i, n) * load(p + row->cell + i), t + 1 + i);
+    for (int i = 0; i < n; i += lanes<Real>)
+      store<Real>(gradient * fill_at(w, i, n) * load(p + row->cell + i), t + 1 + i);
     store<Real>(Lanes<Real>(Real(0)), t + 1 + end);
     const long p00 = row->point[0] - y.low_begin, p10 = row->point[1] - y.low_begin;
     const long p01 = row->point[2] - y.high_begin, p11 = row->point[3] - y.high_begin;
@@ -218,7 +231,8 @@ inline void add_multiple(int n, Real c, const Real* __restrict a, Real* __restri
 }
 
 template <class Real>
-void inflow(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* const* u, Real* J) {
+void inflow(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j,
+            const Real* const* u, Real* J) {
   alignas(64) Real e[longest_cell_row];
   for (const SpringRun* run = runs; run != runs + count; ++run) {
     const int n = run->length;
@@ -236,7 +250,8 @@ void inflow(const SpringRun* runs, long count, const Real* directions, const Rea
 }
 
 template <class Real>
-void outflow(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* p, Real* const* y) {
+void outflow(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j, const Real* p,
+             Real* const* y) {
   alignas(64) Real t[longest_cell_row];
   for (const SpringRun* run = runs; run != runs + count; ++run) {
     const int n = run->length;
@@ -252,8 +267,8 @@ void outflow(const SpringRun* runs, long count, const Real* directions, const Re
 }
 
 template <class Real>
-void chebyshev(long n, const Real* __restrict y, const Real* __restrict d, Real a, Real b, Real* __restrict r, Real* __restrict z,
-               Real* __restrict x) {
+void chebyshev(long n, const Real* __restrict y, const Real* __restrict d, Real a, Real b, Real* __restrict r,
+               Real* __restrict z, Real* __restrict x) {
   for (long i = 0; i < n; ++i) {
     const Real residual = r[i] - y[i];
     const Real step = a * z[i] + b * d[i] * residual;
@@ -302,7 +317,8 @@ void restrict_row(int fine_points, bool odd, Real weight, const Real* __restrict
 }
 
 template <class Real>
-void prolongate_row(int fine_points, bool odd, Real weight, const Real* const* coarse, int count, Real* __restrict fine) {
+void prolongate_row(int fine_points, bool odd, Real weight, const Real* const* coarse, int count,
+                    Real* __restrict fine) {
   Real sum[longest_cell_row + 4];
   const int coarse_points = (fine_points + odd) / 2 + 1;
   for (int c = 0; c < coarse_points; ++c) sum[c] = weight * coarse[0][c];
@@ -323,8 +339,9 @@ void prolongate_row(int fine_points, bool odd, Real weight, const Real* const* c
 }
 
 template <class Real>
-constexpr CellKernels<Real> all = {cells<Real>, divergence_of<Real>, gradient_of<Real>, inflow<Real>, outflow<Real>, chebyshev<Real>,
-                                   schur_step<Real>, restrict_row<Real>, prolongate_row<Real>};
+constexpr CellKernels<Real> all = {cells<Real>,      divergence_of<Real>, gradient_of<Real>,
+                                   inflow<Real>,     outflow<Real>,       chebyshev<Real>,
+                                   schur_step<Real>, restrict_row<Real>,  prolongate_row<Real>};
 
 }  // namespace
 

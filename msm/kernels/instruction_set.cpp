@@ -27,16 +27,20 @@ InstructionSet choose() {
     if (name_of(set) == wanted) return set;
     names += (names.empty() ? "" : ", ") + name_of(set);
   }
-  throw std::runtime_error("SPRINGPROOF_INSTRUCTION_SET = \"" + std::string(wanted) + "\" cannot be used here (allowed: " + names + ")");
+  throw std::runtime_error("SPRINGPROOF_INSTRUCTION_SET = \"" + std::string(wanted) +
+                           "\" cannot be used here (allowed: " + names + ")");
 }
 
 }  // namespace
 
 std::string name_of(InstructionSet set) {
   switch (set) {
-    case InstructionSet::avx2: return "avx2";
-    case InstructionSet::avx512: return "avx512";
-    default: return "portable";
+    case InstructionSet::avx2:
+      return "avx2";
+    case InstructionSet::avx512:
+      return "avx512";
+    default:
+      return "portable";
   }
 }
 

@@ -13,7 +13,8 @@ struct Patterns {
 
 /// Sums of a component over the corners of the cells between four rows, which have (y, z) offsets 00, 10, 01, 11.
 template <class Real>
-SPRINGPROOF_INLINE Patterns<Real> patterns_of(const Real* r00, const Real* r10, const Real* r01, const Real* r11, long n) {
+SPRINGPROOF_INLINE Patterns<Real> patterns_of(const Real* r00, const Real* r10, const Real* r01, const Real* r11,
+                                              long n) {
   const Real* const rows[4] = {r00, r10, r01, r11};
   Lanes<Real> d[4], m[4];
   for (int i = 0; i < 4; ++i) {
@@ -26,8 +27,10 @@ SPRINGPROOF_INLINE Patterns<Real> patterns_of(const Real* r00, const Real* r10, 
 
 /// Adds what nodes at x get from the cells above and below them, `before` of the block before.
 template <class Real>
-SPRINGPROOF_INLINE void add_patterns(Real* f00, Real* f10, Real* f01, Real* f11, long n, const Patterns<Real>& g, Patterns<Real>& before) {
-  const Lanes<Real> U = g.yz + shift_in(before.yz, g.yz), P = shift_in(before.xy, g.xy) - g.xy, Q = shift_in(before.xz, g.xz) - g.xz;
+SPRINGPROOF_INLINE void add_patterns(Real* f00, Real* f10, Real* f01, Real* f11, long n, const Patterns<Real>& g,
+                                     Patterns<Real>& before) {
+  const Lanes<Real> U = g.yz + shift_in(before.yz, g.yz), P = shift_in(before.xy, g.xy) - g.xy,
+                    Q = shift_in(before.xz, g.xz) - g.xz;
   before = g;
   const Lanes<Real> sum = P + Q, difference = P - Q;
   store<Real>(load(f00 + n) + (U - sum), f00 + n);
@@ -39,12 +42,13 @@ SPRINGPROOF_INLINE void add_patterns(Real* f00, Real* f10, Real* f01, Real* f11,
 /// Forces of the cells between four rows, as HourglassCorrection: a bending mode of each component in each of its own
 /// patterns, coupled in pairs that share a neutral plane; torsional modes in the third.
 template <class Real>
-void hourglass_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], const Coefficients<Real>& c, const LatticeHourglass<Real>& k,
-                        int begin, int end) {
+void hourglass_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], const Coefficients<Real>& c,
+                        const LatticeHourglass<Real>& k, int begin, int end) {
   Patterns<Real> before[3];
   for (int b = begin; b < end; ++b) {
     const long n = long(b) * lanes<Real>;
-    const Patterns<Real> x = patterns_of(r[0].x, r[1].x, r[2].x, r[3].x, n), y = patterns_of(r[0].y, r[1].y, r[2].y, r[3].y, n),
+    const Patterns<Real> x = patterns_of(r[0].x, r[1].x, r[2].x, r[3].x, n),
+                         y = patterns_of(r[0].y, r[1].y, r[2].y, r[3].y, n),
                          z = patterns_of(r[0].z, r[1].z, r[2].z, r[3].z, n);
     const Lanes<Real> there = coefficient(c.of(b), hourglass_coefficient);
     const Lanes<Real> own = there * k.bending, other = there * k.coupling, twist = there * k.torsion;

@@ -6,7 +6,8 @@ namespace {
 
 /// Elongations of springs whose ends are (x, y, z) apart; their inverse lengths are kept.
 template <int axes, class Real>
-SPRINGPROOF_INLINE Lanes<Real> elongation(const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z, Real* inverse_length) {
+SPRINGPROOF_INLINE Lanes<Real> elongation(const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z,
+                                          Real* inverse_length) {
   const Lanes<Real> length = stdx::sqrt(x * x + y * y + z * z);
   store<Real>(Real(1) / length, inverse_length);
   return length - Real(root_of(axes));
@@ -18,8 +19,9 @@ void inflow_along(const Row<Real>& o, Real* J, Real* inverse_length, const Coeff
   for (int b = begin; b < end; ++b) {
     const long n = long(b) * lanes<Real>;
     const Real* entry = c.of(b);
-    const Lanes<Real> e = elongation<1, Real>(load(o.x + n + 1) - load(o.x + n) + Real(1), load(o.y + n + 1) - load(o.y + n),
-                                              load(o.z + n + 1) - load(o.z + n), inverse_length + n);
+    const Lanes<Real> e =
+        elongation<1, Real>(load(o.x + n + 1) - load(o.x + n) + Real(1), load(o.y + n + 1) - load(o.y + n),
+                            load(o.z + n + 1) - load(o.z + n), inverse_length + n);
     const Lanes<Real> far = coefficient(entry, 1) * e;
     store<Real>(load(J + n) + coefficient(entry, 0) * e + shift_in(before, far), J + n);
     before = far;
@@ -45,9 +47,11 @@ void inflow_between(const Row<Real>& o, const Row<Real>& r, Real* J_o, Real* J_r
       to_r += coefficient(entry, 1) * e;
     }
     if constexpr (slanted) {
-      const Lanes<Real> up = elongation<axes + 1, Real>(load(r.x + n + 1) - ox + Real(1), load(r.y + n + 1) - oy, load(r.z + n + 1) - oz, kept + stride);
-      const Lanes<Real> down = elongation<axes + 1, Real>(rx - load(o.x + n + 1) - Real(1), ry - (load(o.y + n + 1) - Real(dy)),
-                                                          rz - (load(o.z + n + 1) - Real(dz)), kept + 2 * stride);
+      const Lanes<Real> up = elongation<axes + 1, Real>(load(r.x + n + 1) - ox + Real(1), load(r.y + n + 1) - oy,
+                                                        load(r.z + n + 1) - oz, kept + stride);
+      const Lanes<Real> down =
+          elongation<axes + 1, Real>(rx - load(o.x + n + 1) - Real(1), ry - (load(o.y + n + 1) - Real(dy)),
+                                     rz - (load(o.z + n + 1) - Real(dz)), kept + 2 * stride);
       const Lanes<Real> up_r = coefficient(entry, 3) * up, down_o = coefficient(entry, 4) * down;
       to_o += coefficient(entry, 2) * up + shift_in(falling, down_o);
       to_r += coefficient(entry, 5) * down + shift_in(rising, up_r);
@@ -63,7 +67,8 @@ template <int pair, class Real>
 void inflow_of_pair(const LatticeView<Real>& l, int y, int z, const Coefficients<Real>& c, const LatticeRun& run) {
   const unsigned kinds = run.flows >> (3 * pair - 2) & 7;
   const Row<Real> o = row_of(l, y, z), r = row_of(l, y + row_pairs[pair][0], z + row_pairs[pair][1]);
-  Real *J_o = l.J + (long(z) * l.rows + y) * l.row, *J_r = J_o + (row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows) * l.row;
+  Real *J_o = l.J + (long(z) * l.rows + y) * l.row,
+       *J_r = J_o + (row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows) * l.row;
   Real* kept = inverse_lengths(l, y, z);
   if (kinds == 0) return;
   if (kinds == 1) return inflow_between<pair, true, false>(o, r, J_o, J_r, kept, l.row, c, run.begin, run.end);
@@ -80,7 +85,8 @@ void inflow(const LatticeView<Real>& l, int z) {
     const Coefficients<Real> c = {l.inflow_entry + row * l.row_blocks, l.inflow};
     for (int number = l.first_run[row]; number < l.first_run[row + 1]; ++number) {
       const LatticeRun& run = l.runs[number];
-      if (run.flows & 1) inflow_along(row_of(l, y, z), l.J + row * l.row, inverse_lengths(l, y, z), c, run.begin, run.end);
+      if (run.flows & 1)
+        inflow_along(row_of(l, y, z), l.J + row * l.row, inverse_lengths(l, y, z), c, run.begin, run.end);
       inflow_of_pair<1>(l, y, z, c, run);
       inflow_of_pair<2>(l, y, z, c, run);
       inflow_of_pair<3>(l, y, z, c, run);

@@ -9,7 +9,7 @@ namespace {
 /// What the springs to a row get by momentum dispersion, given what its nodes have.
 template <class Real>
 struct Dispersed {
-  const Real *o, *r;              ///< J of the two rows
+  const Real *o, *r;  ///< J of the two rows
   const Real* inverse_length;
   long stride;
   Coefficients<Real> out;
@@ -18,23 +18,28 @@ struct Dispersed {
 
 struct Undispersed {};
 
-/// (k (L' - L) + T) / L' of springs whose ends are (x, y, z) apart, T by dispersion; the ends are at a and b in their rows.
+/// (k (L' - L) + T) / L' of springs whose ends are (x, y, z) apart, T by dispersion; the ends are at a and b in their
+/// rows.
 template <int axes, class Real>
-SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z,
-                                                  const Undispersed&, int, int, long, long) {
+SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>& x, const Lanes<Real>& y,
+                                                  const Lanes<Real>& z, const Undispersed&, int, int, long, long) {
   return k - k * (Real(root_of(axes)) / stdx::sqrt(x * x + y * y + z * z));
 }
 template <int axes, class Real>
-SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>&, const Lanes<Real>&, const Lanes<Real>&,
-                                                  const Dispersed<Real>& d, int block, int direction, long a, long b) {
+SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>&, const Lanes<Real>&,
+                                                  const Lanes<Real>&, const Dispersed<Real>& d, int block,
+                                                  int direction, long a, long b) {
   const Real* out = d.out.of(block);
-  const Lanes<Real> tension = coefficient(out, 2 * direction) * load(d.o + a) + coefficient(out, 2 * direction + 1) * load(d.r + b);
-  return k + (d.sign * tension - k * Real(root_of(axes))) * load(d.inverse_length + direction * d.stride + long(block) * lanes<Real>);
+  const Lanes<Real> tension =
+      coefficient(out, 2 * direction) * load(d.o + a) + coefficient(out, 2 * direction + 1) * load(d.r + b);
+  return k + (d.sign * tension - k * Real(root_of(axes))) *
+                 load(d.inverse_length + direction * d.stride + long(block) * lanes<Real>);
 }
 
 /// Springs along the row.
 template <class Real, class Dispersion>
-void springs_along(const Row<Real>& o, const ForceRow<Real>& on_o, const Coefficients<Real>& c, const Dispersion& dispersion, int begin, int end) {
+void springs_along(const Row<Real>& o, const ForceRow<Real>& on_o, const Coefficients<Real>& c,
+                   const Dispersion& dispersion, int begin, int end) {
   Force<Real> before;
   for (int b = begin; b < end; ++b) {
     const long n = long(b) * lanes<Real>;
@@ -50,7 +55,8 @@ void springs_along(const Row<Real>& o, const ForceRow<Real>& on_o, const Coeffic
 /// Springs to another row, (dy, dz) away.
 template <int pair, bool straight, bool slanted, class Real, class OfStraight, class OfSlanted>
 void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real>& on_o, const ForceRow<Real>& on_r,
-                     const Coefficients<Real>& c, const OfStraight& of_straight, const OfSlanted& of_slanted, int begin, int end) {
+                     const Coefficients<Real>& c, const OfStraight& of_straight, const OfSlanted& of_slanted, int begin,
+                     int end) {
   constexpr int dy = row_pairs[pair][0], dz = row_pairs[pair][1], axes = dy * dy + dz * dz, first = 1 + 3 * (pair - 1);
   Force<Real> rising, falling;  // of the block before, on r and on o
   for (int b = begin; b < end; ++b) {
@@ -67,10 +73,12 @@ void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real
     }
     if constexpr (slanted) {
       Lanes<Real> x = load(r.x + n + 1) - ox + Real(1), y = load(r.y + n + 1) - oy, z = load(r.z + n + 1) - oz;
-      Lanes<Real> t = tension_per_length<axes + 1>(coefficient(k, first + 1), x, y, z, of_slanted, b, first + 1, n, n + 1);
+      Lanes<Real> t =
+          tension_per_length<axes + 1>(coefficient(k, first + 1), x, y, z, of_slanted, b, first + 1, n, n + 1);
       add(f_o, t, x, y, z);
       const Force<Real> up = {t * x, t * y, t * z};
-      x = rx - load(o.x + n + 1) - Real(1), y = ry - (load(o.y + n + 1) - Real(dy)), z = rz - (load(o.z + n + 1) - Real(dz));
+      x = rx - load(o.x + n + 1) - Real(1), y = ry - (load(o.y + n + 1) - Real(dy)),
+      z = rz - (load(o.z + n + 1) - Real(dz));
       t = tension_per_length<axes + 1>(coefficient(k, first + 2), x, y, z, of_slanted, b, first + 2, n + 1, n);
       subtract(f_r, t, x, y, z);
       const Force<Real> down = {t * x, t * y, t * z};
@@ -86,8 +94,9 @@ void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real
 
 /// A block of one component: v' = (v + dt f / m) decay, u' = u + dt v'; the forces' place is left empty.
 template <LatticeFinish finish, class Real>
-SPRINGPROOF_INLINE void finish_block(Real* f, const Lanes<Real>& inverse_mass, const Lanes<Real>& external, Real* u, Real* v, Real* stored,
-                         const LatticeStep<Real>& step, Lanes<Real>& free, Lanes<Real>& fixed) {
+SPRINGPROOF_INLINE void finish_block(Real* f, const Lanes<Real>& inverse_mass, const Lanes<Real>& external, Real* u,
+                                     Real* v, Real* stored, const LatticeStep<Real>& step, Lanes<Real>& free,
+                                     Lanes<Real>& fixed) {
   const Lanes<Real> internal = load(f);
   store(Lanes<Real>(0), f);
   if constexpr (finish == LatticeFinish::store_forces) {
@@ -117,7 +126,8 @@ double total(const Lanes<Real>& v) {
 }
 
 template <LatticeFinish finish, class Real>
-void finish_row(const LatticeView<Real>& l, long row, long at, const ForceRow<Real>& f, const LatticeStep<Real>& step, LatticeSums& sums) {
+void finish_row(const LatticeView<Real>& l, long row, long at, const ForceRow<Real>& f, const LatticeStep<Real>& step,
+                LatticeSums& sums) {
   Lanes<Real> free = 0, fixed = 0;
   const Coefficients<Real> c = {l.node_entry + row * l.row_blocks, l.nodes};
   for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run)
@@ -136,12 +146,16 @@ void finish_row(const LatticeView<Real>& l, long row, long at, const ForceRow<Re
 }
 
 template <class Real>
-void finish_row(const LatticeView<Real>& l, int y, int z, const ForceRow<Real>& f, const LatticeStep<Real>& step, LatticeSums& sums) {
+void finish_row(const LatticeView<Real>& l, int y, int z, const ForceRow<Real>& f, const LatticeStep<Real>& step,
+                LatticeSums& sums) {
   const long row = long(z) * l.rows + y, at = z * l.plane + y * l.row;
   switch (step.finish) {
-    case LatticeFinish::move: return finish_row<LatticeFinish::move>(l, row, at, f, step, sums);
-    case LatticeFinish::move_and_measure: return finish_row<LatticeFinish::move_and_measure>(l, row, at, f, step, sums);
-    case LatticeFinish::store_forces: return finish_row<LatticeFinish::store_forces>(l, row, at, f, step, sums);
+    case LatticeFinish::move:
+      return finish_row<LatticeFinish::move>(l, row, at, f, step, sums);
+    case LatticeFinish::move_and_measure:
+      return finish_row<LatticeFinish::move_and_measure>(l, row, at, f, step, sums);
+    case LatticeFinish::store_forces:
+      return finish_row<LatticeFinish::store_forces>(l, row, at, f, step, sums);
   }
 }
 
@@ -153,14 +167,16 @@ struct Neighbours {
 };
 
 template <int pair, class Real, class OfStraight, class OfSlanted>
-void pair_of_rows(const Neighbours<Real>& n, const Coefficients<Real>& c, const OfStraight& of_straight, const OfSlanted& of_slanted,
-                  const LatticeRun& run) {
+void pair_of_rows(const Neighbours<Real>& n, const Coefficients<Real>& c, const OfStraight& of_straight,
+                  const OfSlanted& of_slanted, const LatticeRun& run) {
   const unsigned kinds = run.springs >> (3 * pair - 2) & 7;
   const Row<Real>&o = n.at[0], &r = n.at[pair];
   const ForceRow<Real>&on_o = n.on[0], &on_r = n.on[pair];
   if (kinds == 0) return;
-  if (kinds == 1) return springs_between<pair, true, false>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
-  if (kinds % 2 == 0) return springs_between<pair, false, true>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
+  if (kinds == 1)
+    return springs_between<pair, true, false>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
+  if (kinds % 2 == 0)
+    return springs_between<pair, false, true>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
   springs_between<pair, true, true>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
 }
 
@@ -168,11 +184,17 @@ void pair_of_rows(const Neighbours<Real>& n, const Coefficients<Real>& c, const 
 template <class Real>
 Dispersed<Real> dispersed(const LatticeView<Real>& l, int y, int z, int pair) {
   const long row = long(z) * l.rows + y, other = row + row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows;
-  return {l.J + row * l.row, l.J + other * l.row, inverse_lengths(l, y, z), l.row, {l.outflow_entry + row * l.row_blocks, l.outflow}, l.outflow_sign};
+  return {l.J + row * l.row,
+          l.J + other * l.row,
+          inverse_lengths(l, y, z),
+          l.row,
+          {l.outflow_entry + row * l.row_blocks, l.outflow},
+          l.outflow_sign};
 }
 
 template <int pair, class Real>
-void pair_of_rows(const LatticeView<Real>& l, const Neighbours<Real>& n, const Coefficients<Real>& c, int y, int z, const LatticeRun& run) {
+void pair_of_rows(const LatticeView<Real>& l, const Neighbours<Real>& n, const Coefficients<Real>& c, int y, int z,
+                  const LatticeRun& run) {
   const unsigned flows = run.flows >> (3 * pair - 2) & 7;
   if (flows == 0) return pair_of_rows<pair>(n, c, Undispersed{}, Undispersed{}, run);
   const Dispersed<Real> d = dispersed(l, y, z, pair);
@@ -181,9 +203,12 @@ void pair_of_rows(const LatticeView<Real>& l, const Neighbours<Real>& n, const C
 }
 
 template <class Real>
-void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const Coefficients<Real>& c, int y, int z, const LatticeRun& run) {
-  if (run.flows & 1) springs_along(r.at[0], r.on[0], c, dispersed(l, y, z, 0), run.begin, run.end);
-  else if (run.springs & 1) springs_along(r.at[0], r.on[0], c, Undispersed{}, run.begin, run.end);
+void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const Coefficients<Real>& c, int y, int z,
+                   const LatticeRun& run) {
+  if (run.flows & 1)
+    springs_along(r.at[0], r.on[0], c, dispersed(l, y, z, 0), run.begin, run.end);
+  else if (run.springs & 1)
+    springs_along(r.at[0], r.on[0], c, Undispersed{}, run.begin, run.end);
   pair_of_rows<1>(l, r, c, y, z, run);
   pair_of_rows<2>(l, r, c, y, z, run);
   pair_of_rows<3>(l, r, c, y, z, run);
@@ -191,8 +216,10 @@ void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const 
   if (!run.volume && !run.hourglass) return;
   const Row<Real> rows[4] = {r.at[0], r.at[1], r.at[3], r.at[4]};
   const ForceRow<Real> on[4] = {r.on[0], r.on[1], r.on[3], r.on[4]};
-  if (run.volume && l.bounded) volume_of_cells<true>(rows, on, c, run.begin, run.end);
-  else if (run.volume) volume_of_cells<false>(rows, on, c, run.begin, run.end);
+  if (run.volume && l.bounded)
+    volume_of_cells<true>(rows, on, c, run.begin, run.end);
+  else if (run.volume)
+    volume_of_cells<false>(rows, on, c, run.begin, run.end);
   if (run.hourglass) hourglass_of_cells(rows, on, c, l.hourglass, run.begin, run.end);
 }
 
@@ -222,7 +249,8 @@ void take(const LatticeView<Real>& l, long row, const ForceRow<Real>& from, cons
 }
 
 template <class Real>
-void sweep(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, int begin, int end, const LatticeStep<Real>& step, LatticeSums& sums) {
+void sweep(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, int begin, int end, const LatticeStep<Real>& step,
+           LatticeSums& sums) {
   for (int z = begin; z < end; ++z)
     for (int y = 0; y < l.rows; ++y) {
       const long row = long(z) * l.rows + y;
@@ -234,8 +262,10 @@ void sweep(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, int begin,
       }
       const Coefficients<Real> c = {l.spring_entry + row * l.row_blocks, l.springs};
       for (int run = l.first_run[row]; run < l.first_run[row + 1]; ++run) forces_of_run(l, r, c, y, z, l.runs[run]);
-      if (slab.first && z == slab.begin) take<true>(l, row, r.on[0], first_row(l, slab, y));
-      else finish_row(l, y, z, r.on[0], step, sums);
+      if (slab.first && z == slab.begin)
+        take<true>(l, row, r.on[0], first_row(l, slab, y));
+      else
+        finish_row(l, y, z, r.on[0], step, sums);
     }
 }
 

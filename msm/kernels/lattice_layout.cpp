@@ -41,7 +41,8 @@ bool springs_fit(const Network& network, const std::vector<Place>& places) {
       if (step > 1) return false;
       square += step;
     }
-    if (square == 0 || std::abs(s.rest_length - network.cell_edge * std::sqrt(double(square))) > 1e-9 * s.rest_length) return false;
+    if (square == 0 || std::abs(s.rest_length - network.cell_edge * std::sqrt(double(square))) > 1e-9 * s.rest_length)
+      return false;
   }
   return true;
 }
@@ -50,7 +51,8 @@ bool cells_fit(const Network& network, const std::vector<Place>& places) {
   for (const Hexahedron& cell : network.cells)
     for (int n = 0; n < 8; ++n)
       for (int d = 0; d < 3; ++d)
-        if (places[cell[n]][d] - places[cell[0]][d] != hexahedron_corners[n][d] - hexahedron_corners[0][d]) return false;
+        if (places[cell[n]][d] - places[cell[0]][d] != hexahedron_corners[n][d] - hexahedron_corners[0][d])
+          return false;
   return true;
 }
 
@@ -71,7 +73,7 @@ const Law* law_of(const MassSpringModel& model) {
 bool laws_fit(const MassSpringModel& model) {
   std::vector<std::size_t> kinds;
   for (const ForceLaw& law : model.laws) {
-    if (std::holds_alternative<AngularSprings>(law)) return false;
+    if (!traits(law).lattice_kernels) return false;
     if (std::find(kinds.begin(), kinds.end(), law.index()) != kinds.end()) return false;
     kinds.push_back(law.index());
   }
@@ -89,7 +91,9 @@ Place axes_for(const Place& extent, int lanes) {
   const auto waste = [&](int d) { return double(rounded_up(extent[d], lanes)) / extent[d]; };
   Place axis = {0, 1, 2};
   std::stable_sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });
-  std::rotate(axis.begin(), std::min_element(axis.begin(), axis.end(), [&](int a, int b) { return waste(a) < waste(b); }), axis.end());
+  std::rotate(axis.begin(),
+              std::min_element(axis.begin(), axis.end(), [&](int a, int b) { return waste(a) < waste(b); }),
+              axis.end());
   if (extent[axis[1]] > extent[axis[2]]) std::swap(axis[1], axis[2]);
   return axis;
 }
@@ -147,7 +151,8 @@ PlaceOfSpring place_of(const Spring& s, const LatticeLayout& l) {
   };
   const Place i = place(l.slot[s.i]), j = place(l.slot[s.j]);
   const Direction d = direction_of({j[0] - i[0], j[1] - i[1], j[2] - i[2]});
-  return {l.slot[d.from_first ? s.i : s.j] + std::min(0, d.from_first ? j[0] - i[0] : i[0] - j[0]), d.number, d.from_first};
+  return {l.slot[d.from_first ? s.i : s.j] + std::min(0, d.from_first ? j[0] - i[0] : i[0] - j[0]), d.number,
+          d.from_first};
 }
 
 BlockCoefficients spring_coefficients(const MassSpringModel& model, const LatticeLayout& l) {
@@ -171,7 +176,8 @@ BlockCoefficients spring_coefficients(const MassSpringModel& model, const Lattic
 }
 
 /// `ends`: per spring at i and j.
-BlockCoefficients flow_coefficients_of(const std::vector<std::array<double, 2>>& ends, const Network& network, const LatticeLayout& l) {
+BlockCoefficients flow_coefficients_of(const std::vector<std::array<double, 2>>& ends, const Network& network,
+                                       const LatticeLayout& l) {
   BlockCoefficients c(l, flow_coefficients);
   for (std::size_t n = 0; n < network.springs.size(); ++n) {
     const PlaceOfSpring p = place_of(network.springs[n], l);
@@ -188,7 +194,8 @@ void add_flows(const MomentumDispersion& law, const Network& network, LatticeLay
     for (double& in : ends) in *= network.cell_edge;  // of elongations in edges
   if (law.conservative()) {
     for (std::size_t n = 0; n < c.in.size(); ++n)
-      for (int end = 0; end < 2; ++end) c.in[n][end] = std::copysign(std::sqrt(std::abs(c.in[n][end] * c.out[n][end])), c.in[n][end]);
+      for (int end = 0; end < 2; ++end)
+        c.in[n][end] = std::copysign(std::sqrt(std::abs(c.in[n][end] * c.out[n][end])), c.in[n][end]);
     l.outflow_sign = law.q < 0 ? -1 : 1;
   } else {
     l.outflow_entry = flow_coefficients_of(c.out, network, l).table(l.outflow);
@@ -197,7 +204,8 @@ void add_flows(const MomentumDispersion& law, const Network& network, LatticeLay
 }
 
 /// Per block of the lattice the directions whose springs have coefficients: where in tables there are any but 0.
-void mark_flows(const LatticeLayout& l, const std::vector<int>& entries, const std::vector<double>& table, std::vector<unsigned>& flows) {
+void mark_flows(const LatticeLayout& l, const std::vector<int>& entries, const std::vector<double>& table,
+                std::vector<unsigned>& flows) {
   for (std::size_t b = 0; b < entries.size(); ++b)
     for (int c = 0; c < flow_coefficients * l.lanes; ++c)
       if (table[entries[b] + c] != 0) flows[b] |= 1u << c / l.lanes / 2;
@@ -212,7 +220,8 @@ unsigned with_straight_flows(const LatticeRun& run) {
 }
 
 /// Adds the runs of a row, given the coefficients of its blocks, their flows, and which of them hold nodes.
-void add_runs(const LatticeLayout& l, const double* row, const unsigned* flows, const char* has_node, std::vector<LatticeRun>& runs) {
+void add_runs(const LatticeLayout& l, const double* row, const unsigned* flows, const char* has_node,
+              std::vector<LatticeRun>& runs) {
   const auto first = runs.size();
   bool open = false, crossing = false;  // crossing: the block before has springs or cells that end in this one
   for (int b = 0; b < l.row_blocks; ++b) {
@@ -222,8 +231,10 @@ void add_runs(const LatticeLayout& l, const double* row, const unsigned* flows, 
     for (int d = 0; d < lattice_coefficients; ++d)
       for (int lane = 0; lane < l.lanes; ++lane) {
         if (block[d * l.lanes + lane] == 0) continue;
-        if (d < lattice_directions) found.springs |= 1u << d;
-        else (d == kappa_coefficient ? found.volume : found.hourglass) = true;
+        if (d < lattice_directions)
+          found.springs |= 1u << d;
+        else
+          (d == kappa_coefficient ? found.volume : found.hourglass) = true;
         crosses = crosses || lane == l.lanes - 1;
       }
     const bool active = has_node[b] || found.springs || found.volume || found.hourglass || crossing;
@@ -265,7 +276,8 @@ bool is_lattice_of_springs(const MassSpringModel& model) {
   const Network& network = model.network;
   if (!network.image_of.empty() || !network.triangles.empty() || !laws_fit(model)) return false;
   const std::vector<Place> places = places_of(network);
-  if (places.empty() || !springs_fit(network, places) || !cells_fit(network, places) || !one_node_per_place(places)) return false;
+  if (places.empty() || !springs_fit(network, places) || !cells_fit(network, places) || !one_node_per_place(places))
+    return false;
   const Place extent = extent_of(places);
   double box = 1;
   for (int n : extent) box *= n + 16;  // with what rows are padded by
@@ -298,7 +310,8 @@ LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_
   mark_flows(l, l.outflow_entry, l.outflow, flows);
   l.first_run.push_back(0);
   for (long row = 0; row < l.rows(); ++row) {
-    add_runs(l, coefficients.block(row * l.row_blocks), &flows[row * l.row_blocks], &has_node[row * l.row_blocks], l.runs);
+    add_runs(l, coefficients.block(row * l.row_blocks), &flows[row * l.row_blocks], &has_node[row * l.row_blocks],
+             l.runs);
     l.first_run.push_back(static_cast<int>(l.runs.size()));
   }
   return l;

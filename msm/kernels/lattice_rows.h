@@ -42,13 +42,15 @@ Row<Real> row_of(const LatticeView<Real>& l, int y, int z) {
 }
 
 template <class Real>
-SPRINGPROOF_INLINE void add(Force<Real>& f, const Lanes<Real>& t, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z) {
+SPRINGPROOF_INLINE void add(Force<Real>& f, const Lanes<Real>& t, const Lanes<Real>& x, const Lanes<Real>& y,
+                            const Lanes<Real>& z) {
   f.x += t * x;
   f.y += t * y;
   f.z += t * z;
 }
 template <class Real>
-SPRINGPROOF_INLINE void subtract(Force<Real>& f, const Lanes<Real>& t, const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z) {
+SPRINGPROOF_INLINE void subtract(Force<Real>& f, const Lanes<Real>& t, const Lanes<Real>& x, const Lanes<Real>& y,
+                                 const Lanes<Real>& z) {
   f.x -= t * x;
   f.y -= t * y;
   f.z -= t * z;
@@ -76,7 +78,8 @@ SPRINGPROOF_INLINE Force<Real> difference(const Force<Real>& a, const Force<Real
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// Inverse lengths of the springs that start from a row, found by inflow(): direction after direction, l.row values each.
+/// Inverse lengths of the springs that start from a row, found by inflow(): direction after direction, l.row values
+/// each.
 template <class Real>
 Real* inverse_lengths(const LatticeView<Real>& l, int y, int z) {
   return l.inverse_lengths + (long(z % l.kept_planes) * l.rows + y) * lattice_directions * l.row;

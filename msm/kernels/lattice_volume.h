@@ -13,8 +13,10 @@ SPRINGPROOF_INLINE Lanes<Real> pressure(Lanes<Real> J, const Lanes<Real>& kappa)
     const Lanes<Real> d = J - Real(1);
     // 3 (J^(1/3) - 1) / J^(2/3); near 1 the root is known well enough for one step.
     Lanes<Real> y;
-    if (stdx::all_of(stdx::abs(d) < Real(0.125))) y = nearer_inverse_cube_root(J, Real(1) - d * (Real(1.0 / 3) - d * (Real(2.0 / 9) - d * Real(14.0 / 81))));
-    else y = inverse_cube_root(J);
+    if (stdx::all_of(stdx::abs(d) < Real(0.125)))
+      y = nearer_inverse_cube_root(J, Real(1) - d * (Real(1.0 / 3) - d * (Real(2.0 / 9) - d * Real(14.0 / 81))));
+    else
+      y = inverse_cube_root(J);
     return Real(3) * y * (Real(1) - y);
   } else {
     return J - Real(1);
@@ -23,7 +25,8 @@ SPRINGPROOF_INLINE Lanes<Real> pressure(Lanes<Real> J, const Lanes<Real>& kappa)
 
 /// Forces of the cells between four rows, which have (y, z) offsets 00, 10, 01, 11 from the first.
 template <bool bounded, class Real>
-void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], const Coefficients<Real>& c, int begin, int end) {
+void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], const Coefficients<Real>& c, int begin,
+                     int end) {
   using V = Lanes<Real>;
   Force<Real> before[3];  // bc, ca, ab
   for (int b = begin; b < end; ++b) {
@@ -31,7 +34,8 @@ void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], con
     V a[3], bb[3], cc[3];  // four times the cell's mean edges
     const auto edges = [&](const Real* p00, const Real* p10, const Real* p01, const Real* p11, int i) {
       const V low0 = load(p00 + n), low1 = load(p10 + n), low2 = load(p01 + n), low3 = load(p11 + n);
-      const V high0 = load(p00 + n + 1), high1 = load(p10 + n + 1), high2 = load(p01 + n + 1), high3 = load(p11 + n + 1);
+      const V high0 = load(p00 + n + 1), high1 = load(p10 + n + 1), high2 = load(p01 + n + 1),
+              high3 = load(p11 + n + 1);
       const V m0 = low0 + high0, m1 = low1 + high1, m2 = low2 + high2, m3 = low3 + high3;
       a[i] = ((high0 - low0) + (high1 - low1)) + ((high2 - low2) + (high3 - low3));
       bb[i] = (m1 - m0) + (m3 - m2);
@@ -43,11 +47,12 @@ void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], con
     a[0] += Real(4);
     bb[1] += Real(4);
     cc[2] += Real(4);
-    const auto cross = [](const V (&p)[3], const V (&q)[3]) -> Force<Real> {
+    const auto cross = [](const V(&p)[3], const V(&q)[3]) -> Force<Real> {
       return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
     };
     Force<Real> bc = cross(bb, cc), ca = cross(cc, a), ab = cross(a, bb);
-    const V J = Real(1.0 / 64) * (a[0] * bc.x + a[1] * bc.y + a[2] * bc.z), kappa = coefficient(c.of(b), kappa_coefficient);
+    const V J = Real(1.0 / 64) * (a[0] * bc.x + a[1] * bc.y + a[2] * bc.z),
+            kappa = coefficient(c.of(b), kappa_coefficient);
     const V p = Real(1.0 / 64) * kappa * pressure<bounded>(J, kappa);
     const auto scale = [&](Force<Real>& f) { f.x *= p, f.y *= p, f.z *= p; };
     scale(bc);

@@ -23,9 +23,11 @@ void by_place(const SpringBlocks& blocks, const NodalVectors& v, std::vector<Pad
 template <class Real>
 const ListKernels<Real>& list_kernels(InstructionSet set) {
   constexpr bool is_double = std::is_same_v<Real, double>;
-#define SPRINGPROOF_KERNELS_OF(instruction_set)                  \
-  if constexpr (is_double) return instruction_set::list_double; \
-  else return instruction_set::list_float
+#define SPRINGPROOF_KERNELS_OF(instruction_set) \
+  if constexpr (is_double)                      \
+    return instruction_set::list_double;        \
+  else                                          \
+    return instruction_set::list_float
 #ifdef SPRINGPROOF_X86_KERNELS
   if (set == InstructionSet::avx2) {
     SPRINGPROOF_KERNELS_OF(avx2);
@@ -42,7 +44,8 @@ template const ListKernels<double>& list_kernels<double>(InstructionSet set);
 template const ListKernels<float>& list_kernels<float>(InstructionSet set);
 
 template <class Real>
-ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network, const SpringBlocks& blocks)
+ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network,
+                                             const SpringBlocks& blocks)
     : a_i(blocks.entries()), a_j(a_i), c_i(a_i), c_j(a_i) {
   const MomentumDispersion::Coefficients c = law.coefficients(network);
   for (std::size_t e = 0; e < a_i.size(); ++e) {
@@ -63,7 +66,10 @@ ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, cons
 template <class Real>
 template <class Other>
 ListDispersionData<Real>::ListDispersionData(const ListDispersionData<Other>& o)
-    : a_i(o.a_i.begin(), o.a_i.end()), a_j(o.a_j.begin(), o.a_j.end()), c_i(o.c_i.begin(), o.c_i.end()), c_j(o.c_j.begin(), o.c_j.end()),
+    : a_i(o.a_i.begin(), o.a_i.end()),
+      a_j(o.a_j.begin(), o.a_j.end()),
+      c_i(o.c_i.begin(), o.c_i.end()),
+      c_j(o.c_j.begin(), o.c_j.end()),
       sink(o.sink) {}
 
 template <class Real>
@@ -84,8 +90,9 @@ bool ListForces<Real>::covers(const MassSpringModel& model) {
   for (const ForceLaw& law : model.laws) {
     springs += std::holds_alternative<Springs>(law);
     dispersions += std::holds_alternative<MomentumDispersion>(law);
+    if (!traits(law).list_kernels) return false;
   }
-  return springs == 1 && dispersions <= 1 && springs + dispersions == static_cast<int>(model.laws.size());
+  return springs == 1 && dispersions <= 1;
 }
 
 template <class Real>
@@ -118,7 +125,8 @@ void ListForces<Real>::add(const Padded<Real>* x, Padded<Real>* f, bool lagged) 
 
 template <class Real>
 void ListForces<Real>::add_springs(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const {
-  kernels_->spring_forces(blocks_.pattern(begin, end), {k_.data() + block_springs * begin, kL_.data() + block_springs * begin, nullptr}, x, f);
+  kernels_->spring_forces(blocks_.pattern(begin, end),
+                          {k_.data() + block_springs * begin, kL_.data() + block_springs * begin, nullptr}, x, f);
 }
 
 template <class Real>

@@ -1,6 +1,6 @@
-// Springs in blocks of four from one node.  Four differences of padded vectors give four squared lengths by shuffles, the
-// roots are taken in full registers, and each tension multiplies its own difference again: no transposes, and whole nodes
-// are loaded and stored, so that two lanes may share a node.
+// Springs in blocks of four from one node.  Four differences of padded vectors give four squared lengths by shuffles,
+// the roots are taken in full registers, and each tension multiplies its own difference again: no transposes, and whole
+// nodes are loaded and stored, so that two lanes may share a node.
 #include "msm/kernels/list_kernels.h"
 #include "msm/kernels/simd.h"
 
@@ -69,8 +69,8 @@ inline Wide<Real> join(const Four<Real>* parts) {
     return __builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7);
   else
     return __builtin_shufflevector(__builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7),
-                                   __builtin_shufflevector(parts[2], parts[3], 0, 1, 2, 3, 4, 5, 6, 7), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9,
-                                   10, 11, 12, 13, 14, 15);
+                                   __builtin_shufflevector(parts[2], parts[3], 0, 1, 2, 3, 4, 5, 6, 7), 0, 1, 2, 3, 4,
+                                   5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
 /// What one group of blocks works with.
@@ -107,9 +107,11 @@ struct Group {
 
 /// f_i += s d, f_j -= s d.
 template <class Real>
-inline void scatter(const int* i, const int* j, const Four<Real> (&d)[group<Real>][4], const Wide<Real>& s, Padded<Real>* f) {
+inline void scatter(const int* i, const int* j, const Four<Real> (&d)[group<Real>][4], const Wide<Real>& s,
+                    Padded<Real>* f) {
   for (int g = 0; g < group<Real>; ++g) {
-    const Four<Real> s0 = all<Real>(s[4 * g]), s1 = all<Real>(s[4 * g + 1]), s2 = all<Real>(s[4 * g + 2]), s3 = all<Real>(s[4 * g + 3]);
+    const Four<Real> s0 = all<Real>(s[4 * g]), s1 = all<Real>(s[4 * g + 1]), s2 = all<Real>(s[4 * g + 2]),
+                     s3 = all<Real>(s[4 * g + 3]);
     four(f, i[g]) += (s0 * d[g][0] + s1 * d[g][1]) + (s2 * d[g][2] + s3 * d[g][3]);
     four(f, j[4 * g]) -= s0 * d[g][0];
     four(f, j[4 * g + 1]) -= s1 * d[g][1];
@@ -150,8 +152,8 @@ void spring_forces(const ListPattern& p, const ListSprings<Real>& springs, const
 }
 
 template <class Real>
-void inflow(const ListPattern& p, const ListSprings<Real>& springs, const ListDispersion<Real>& dispersion, const Padded<Real>* x,
-            Real* J, Real* inverse_length) {
+void inflow(const ListPattern& p, const ListSprings<Real>& springs, const ListDispersion<Real>& dispersion,
+            const Padded<Real>* x, Real* J, Real* inverse_length) {
   for (long b = 0; b < p.blocks; b += group<Real>) {
     const Group<Real> at(p, b, x);
     const Wide<Real> square = at.squared_lengths(), length = square_root<Real>(square);
@@ -207,8 +209,8 @@ void stiffness(const ListPattern& p, const Padded<Real>* m, const Padded<Real>* 
 }
 
 template <class Real>
-void linear_inflow(const ListPattern& p, const Padded<Real>* m, const ListDispersion<Real>& dispersion, const Padded<Real>* u,
-                   Real* J, Real* kept) {
+void linear_inflow(const ListPattern& p, const Padded<Real>* m, const ListDispersion<Real>& dispersion,
+                   const Padded<Real>* u, Real* J, Real* kept) {
   for (long b = 0; b < p.blocks; b += group<Real>) {
     const Group<Real> at(p, b, u);
     const Wide<Real> t = at.along(m + 4 * b);
@@ -232,7 +234,8 @@ void smooth(const ListSmoothing<Real>& s) {
   for (long n = 0; n < s.nodes; ++n) {
     const int node = static_cast<int>(n);
     const Four<Real> r = four(s.r, node) - four(s.y, node);
-    const Four<Real> Dr = r[0] * four(s.inverse, 3 * node) + r[1] * four(s.inverse, 3 * node + 1) + r[2] * four(s.inverse, 3 * node + 2);
+    const Four<Real> Dr =
+        r[0] * four(s.inverse, 3 * node) + r[1] * four(s.inverse, 3 * node + 1) + r[2] * four(s.inverse, 3 * node + 2);
     const Four<Real> z = s.old_part * four(s.z, node) + s.new_part * Dr;
     four(s.r, node) = r;
     four(s.z, node) = z;

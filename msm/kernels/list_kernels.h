@@ -9,8 +9,8 @@ struct alignas(4 * sizeof(Real)) Padded {
   Real v[4];
 };
 
-constexpr int block_springs = 4;     ///< springs of a block, all from the same node i
-constexpr int blocks_together = 4;   ///< the number of blocks is a multiple of it
+constexpr int block_springs = 4;    ///< springs of a block, all from the same node i
+constexpr int blocks_together = 4;  ///< the number of blocks is a multiple of it
 
 /// Springs in blocks; entry 4 b + l is lane l of block b.  A lane that is not needed repeats another's nodes with zeros
 /// for everything it multiplies.
@@ -23,9 +23,9 @@ struct ListPattern {
 /// Nonlinear springs, per entry.
 template <class Real>
 struct ListSprings {
-  const Real* k = nullptr;       ///< [N/m]
-  const Real* kL = nullptr;      ///< stiffness times rest length [N]
-  const Real* L = nullptr;       ///< rest length [m]; of dispersion only
+  const Real* k = nullptr;   ///< [N/m]
+  const Real* kL = nullptr;  ///< stiffness times rest length [N]
+  const Real* L = nullptr;   ///< rest length [m]; of dispersion only
 };
 
 /// Momentum dispersion, per entry: J_n = sum a e over the springs at n, tension += c_i J_i + c_j J_j.
@@ -37,16 +37,17 @@ struct ListDispersion {
   const Real* c_j = nullptr;
 };
 
-/// One step of semi-implicit Euler on nodes that have all their forces: s + external = v / gain, x += dt v, and for the next
-/// step s = decay (s + external), to which the forces then add up.  No array of forces is needed, and none is swept.
+/// One step of semi-implicit Euler on nodes that have all their forces: s + external = v / gain, x += dt v, and for the
+/// next step s = decay (s + external), to which the forces then add up.  No array of forces is needed, and none is
+/// swept.
 template <class Real>
 struct ListStep {
   long nodes = 0;
   Real dt = 0, decay = 1;                  ///< decay = 1 / (1 + dt damping)
   const Padded<Real>* external = nullptr;  ///< [N]; the fourth number is the gain dt / m / (1 + dt damping)
   Padded<Real>* x = nullptr;
-  Padded<Real>* s = nullptr;               ///< [N]
-  Padded<Real>* f = nullptr;               ///< internal forces, if they are not in s yet; 0 afterwards
+  Padded<Real>* s = nullptr;  ///< [N]
+  Padded<Real>* f = nullptr;  ///< internal forces, if they are not in s yet; 0 afterwards
 };
 
 /// One step of a Chebyshev smoother over 3x3 node blocks D: r -= y, z = old z + new D^-1 r, x += z, y = 0.
@@ -66,11 +67,11 @@ struct ListKernels {
   /// f += forces of the springs at x.
   void (*spring_forces)(const ListPattern&, const ListSprings<Real>&, const Padded<Real>* x, Padded<Real>* f);
   /// J += sum a e; keeps 1 / length per entry.
-  void (*inflow)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&, const Padded<Real>* x, Real* J,
-                 Real* inverse_length);
+  void (*inflow)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&, const Padded<Real>* x,
+                 Real* J, Real* inverse_length);
   /// f += forces of springs and dispersion together, with the inverse lengths of inflow() at the same x.
-  void (*dispersed_forces)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&, const Padded<Real>* x,
-                           const Real* J, const Real* inverse_length, Padded<Real>* f);
+  void (*dispersed_forces)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&,
+                           const Padded<Real>* x, const Real* J, const Real* inverse_length, Padded<Real>* f);
   /// Sum of (f + external)^2 [N^2]; 0 without f.
   double (*step)(const ListStep<Real>&);
 
@@ -78,11 +79,11 @@ struct ListKernels {
   /// y += sum m (m . du).
   void (*stiffness)(const ListPattern&, const Padded<Real>* m, const Padded<Real>* u, Padded<Real>* y);
   /// J += sum a t, t = m . du kept per entry.
-  void (*linear_inflow)(const ListPattern&, const Padded<Real>* m, const ListDispersion<Real>&, const Padded<Real>* u, Real* J,
-                        Real* t);
+  void (*linear_inflow)(const ListPattern&, const Padded<Real>* m, const ListDispersion<Real>&, const Padded<Real>* u,
+                        Real* J, Real* t);
   /// y += sum m (t + c_i J_i + c_j J_j).
-  void (*linear_forces)(const ListPattern&, const Padded<Real>* m, const ListDispersion<Real>&, const Real* J, const Real* t,
-                        Padded<Real>* y);
+  void (*linear_forces)(const ListPattern&, const Padded<Real>* m, const ListDispersion<Real>&, const Real* J,
+                        const Real* t, Padded<Real>* y);
   void (*smooth)(const ListSmoothing<Real>&);
 };
 

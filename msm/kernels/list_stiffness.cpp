@@ -12,7 +12,8 @@ void by_place(const SpringBlocks& blocks, const double* v, double factor, std::v
   out.resize(blocks.order.size());
   for (std::size_t p = 0; p < out.size(); ++p) {
     const double* from = v + 3 * blocks.order[p];
-    out[p] = {{static_cast<Real>(factor * from[0]), static_cast<Real>(factor * from[1]), static_cast<Real>(factor * from[2]), 0}};
+    out[p] = {{static_cast<Real>(factor * from[0]), static_cast<Real>(factor * from[1]),
+               static_cast<Real>(factor * from[2]), 0}};
   }
 }
 
@@ -32,14 +33,20 @@ template void by_node<float>(const SpringBlocks&, const std::vector<Padded<float
 template <class Real>
 bool ListStiffness<Real>::covers(const MassSpringModel& model) {
   const Network& network = model.network;
-  return ListForces<Real>::covers(model) && std::all_of(network.springs.begin(), network.springs.end(), [&](const Spring& s) {
-           return s.stiffness > 0 && std::abs((network.X.row(s.j) - network.X.row(s.i)).norm() - s.rest_length) <= 1e-9 * s.rest_length;
+  return ListForces<Real>::covers(model) &&
+         std::all_of(network.springs.begin(), network.springs.end(), [&](const Spring& s) {
+           return s.stiffness > 0 &&
+                  std::abs((network.X.row(s.j) - network.X.row(s.i)).norm() - s.rest_length) <= 1e-9 * s.rest_length;
          });
 }
 
 template <class Real>
-ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks, InstructionSet set)
-    : set_(set), kernels_(&list_kernels<Real>(set)), blocks_(std::move(blocks)), m_(blocks_->entries(), Padded<Real>{}) {
+ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
+                                   InstructionSet set)
+    : set_(set),
+      kernels_(&list_kernels<Real>(set)),
+      blocks_(std::move(blocks)),
+      m_(blocks_->entries(), Padded<Real>{}) {
   if (!covers(model)) throw std::invalid_argument("list stiffness is of springs and momentum dispersion only");
   const Network& network = model.network;
   const MomentumDispersion* law = dispersion_of(model);
@@ -52,7 +59,8 @@ ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr
     for (int axis = 0; axis < 3; ++axis) m_[e].v[axis] = static_cast<Real>(scale * d[axis]);
     if (!law) continue;  // the elongation is m . du / root, and a tension along the spring m T / root
     ListDispersionData<Real>& data = dispersion_.front();
-    for (std::vector<Real>* values : {&data.a_i, &data.a_j, &data.c_i, &data.c_j}) (*values)[e] /= static_cast<Real>(root);
+    for (std::vector<Real>* values : {&data.a_i, &data.a_j, &data.c_i, &data.c_j})
+      (*values)[e] /= static_cast<Real>(root);
   }
   if (law) kept_.resize(blocks_->entries());
 }
@@ -60,7 +68,11 @@ ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr
 template <class Real>
 template <class Other>
 ListStiffness<Real>::ListStiffness(const ListStiffness<Other>& other, double unit)
-    : set_(other.set_), kernels_(&list_kernels<Real>(set_)), blocks_(other.blocks_), m_(other.m_.size()), kept_(other.kept_.size()) {
+    : set_(other.set_),
+      kernels_(&list_kernels<Real>(set_)),
+      blocks_(other.blocks_),
+      m_(other.m_.size()),
+      kept_(other.kept_.size()) {
   const double root = std::sqrt(unit);
   for (std::size_t e = 0; e < m_.size(); ++e)
     for (int d = 0; d < 4; ++d) m_[e].v[d] = static_cast<Real>(other.m_[e].v[d] / root);
@@ -99,7 +111,8 @@ struct Share {
 struct EntriesOfPlaces {
   std::vector<int> begin, entry;
 
-  explicit EntriesOfPlaces(const SpringBlocks& blocks) : begin(blocks.order.size() + 1, 0), entry(2 * blocks.entries()) {
+  explicit EntriesOfPlaces(const SpringBlocks& blocks)
+      : begin(blocks.order.size() + 1, 0), entry(2 * blocks.entries()) {
     for (std::size_t e = 0; e < blocks.entries(); ++e) {
       ++begin[blocks.i[e / 4] + 1];
       ++begin[blocks.j[e] + 1];

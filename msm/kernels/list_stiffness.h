@@ -1,4 +1,5 @@
-// The stiffness at rest of networks without a lattice, by the list kernels: one vector per spring instead of 3x3 blocks.
+// The stiffness at rest of networks without a lattice, by the list kernels: one vector per spring instead of 3x3
+// blocks.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,8 @@ class ListStiffness {
   static bool covers(const MassSpringModel& model);
 
   /// @throws std::invalid_argument if covers() is false.
-  ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks, InstructionSet set = instruction_set());
+  ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
+                InstructionSet set = instruction_set());
 
   /// Another's, in units of `unit` [N/m].
   template <class Other>

@@ -1,5 +1,5 @@
-// What a kernel may include besides plain structs.  Kernels are compiled with instructions that other processors lack, so
-// they must not bring inline functions of Eigen or the standard containers into the program (tests/cli/kernels.sh).
+// What a kernel may include besides plain structs.  Kernels are compiled with instructions that other processors lack,
+// so they must not bring inline functions of Eigen or the standard containers into the program (tests/cli/kernels.sh).
 #pragma once
 
 #include <experimental/simd>

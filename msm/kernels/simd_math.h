@@ -25,12 +25,14 @@ using RealVector = typename Builtin<Real, lanes<Real>>::type;
 SPRINGPROOF_INLINE Lanes<double> shift_in(const Lanes<double>& before, const Lanes<double>& v) {
   typename Builtin<long long, lanes<double>>::type order;
   for (int i = 0; i < lanes<double>; ++i) order[i] = lanes<double> - 1 + i;
-  return Lanes<double>(__builtin_shuffle(static_cast<RealVector<double>>(before), static_cast<RealVector<double>>(v), order));
+  return Lanes<double>(
+      __builtin_shuffle(static_cast<RealVector<double>>(before), static_cast<RealVector<double>>(v), order));
 }
 SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes<float>& v) {
   typename Builtin<int, lanes<float>>::type order;
   for (int i = 0; i < lanes<float>; ++i) order[i] = lanes<float> - 1 + i;
-  return Lanes<float>(__builtin_shuffle(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), order));
+  return Lanes<float>(
+      __builtin_shuffle(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), order));
 }
 
 /// J^(-1/3) from y near it, by a step of fourth order.
@@ -48,7 +50,8 @@ SPRINGPROOF_INLINE Lanes<Real> inverse_cube_root(const Lanes<Real>& J) {
   const Lanes<Real> size = stdx::abs(J);
   const Float s = __builtin_convertvector(static_cast<RealVector<Real>>(size), Float);
   const Float third = __builtin_convertvector(reinterpret_cast<Int>(s), Float) * (-1.0f / 3);
-  const Int bits = __builtin_convertvector(third, Int) + 0x54a21d2a;  // 4/3 of the exponent's bias, and a shift that spreads the error
+  const Int bits = __builtin_convertvector(third, Int) +
+                   0x54a21d2a;  // 4/3 of the exponent's bias, and a shift that spreads the error
   Lanes<Real> y(__builtin_convertvector(reinterpret_cast<Float>(bits), RealVector<Real>));
   for (int step = 0; step < 2; ++step) y = nearer_inverse_cube_root(size, y);
   stdx::where(J < Real(0), y) = -y;

@@ -7,8 +7,8 @@
 namespace springproof {
 namespace {
 
-// Of a layer, of a strip in it, of a step along the strip, in mean spring lengths: nodes of three layers are what a sweep
-// through the springs has in hand, and those of three strips what it has in the nearest cache.
+// Of a layer, of a strip in it, of a step along the strip, in mean spring lengths: nodes of three layers are what a
+// sweep through the springs has in hand, and those of three strips what it has in the nearest cache.
 constexpr double thickness[3] = {1.33, 3.3, 0.33};
 
 /// The axes of the body, the longest first.
@@ -29,13 +29,14 @@ std::vector<int> spatial_order(const Network& network) {
   const std::array<int, 3> axes = by_extent(network.X.colwise().maxCoeff() - lower);
   std::vector<std::array<long, 3>> key(order.size());
   for (int n = 0; n < network.nodes(); ++n)
-    for (int d = 0; d < 3; ++d) key[n][d] = static_cast<long>((network.X(n, axes[d]) - lower[axes[d]]) / (thickness[d] * edge));
+    for (int d = 0; d < 3; ++d)
+      key[n][d] = static_cast<long>((network.X(n, axes[d]) - lower[axes[d]]) / (thickness[d] * edge));
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
   return order;
 }
 
 struct Half {
-  int other;   ///< place of the other node
+  int other;  ///< place of the other node
   int spring;
 };
 
@@ -44,7 +45,8 @@ struct Adjacency {
   std::vector<int> begin;
   std::vector<Half> halves;
 
-  Adjacency(const Network& network, const std::vector<int>& place) : begin(place.size() + 1, 0), halves(2 * network.springs.size()) {
+  Adjacency(const Network& network, const std::vector<int>& place)
+      : begin(place.size() + 1, 0), halves(2 * network.springs.size()) {
     for (const Spring& s : network.springs) {
       ++begin[place[s.i] + 1];
       ++begin[place[s.j] + 1];
@@ -57,7 +59,8 @@ struct Adjacency {
       halves[next[j]++] = {i, s};
     }
     for (std::size_t n = 0; n < place.size(); ++n)
-      std::sort(halves.begin() + begin[n], halves.begin() + begin[n + 1], [](const Half& a, const Half& b) { return a.other < b.other; });
+      std::sort(halves.begin() + begin[n], halves.begin() + begin[n + 1],
+                [](const Half& a, const Half& b) { return a.other < b.other; });
   }
 };
 

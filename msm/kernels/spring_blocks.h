@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "msm/kernels/list_kernels.h"
-#include "msm/network.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 
-/// Nodes in layers across the longest axis of the body and in strips of a layer, so that neighbours lie close in memory and a
-/// sweep is done with a layer two layers later; springs in blocks of four that share their first node.  Which end of a spring
-/// comes first is chosen such that nearly all blocks are full.
+/// Nodes in layers across the longest axis of the body and in strips of a layer, so that neighbours lie close in memory
+/// and a sweep is done with a layer two layers later; springs in blocks of four that share their first node.  Which end
+/// of a spring comes first is chosen such that nearly all blocks are full.
 struct SpringBlocks {
   std::vector<int> order;   ///< per place the network's node
   std::vector<int> i, j;    ///< places: i per block, j per entry (four a block)
@@ -21,10 +21,14 @@ struct SpringBlocks {
   int nodes() const { return static_cast<int>(order.size()); }
   std::size_t entries() const { return j.size(); }
   ListPattern pattern() const { return pattern(0, static_cast<long>(i.size())); }
-  ListPattern pattern(long begin, long end) const { return {end - begin, i.data() + begin, j.data() + 4 * begin}; }  ///< of some blocks
+  ListPattern pattern(long begin, long end) const {
+    return {end - begin, i.data() + begin, j.data() + 4 * begin};
+  }  ///< of some blocks
 
   /// 0 if the spring of an entry has its node i first in the block, else 1.
-  int end_of_i(const Network& network, std::size_t e) const { return network.springs[spring[e]].i == order[i[e / 4]] ? 0 : 1; }
+  int end_of_i(const Network& network, std::size_t e) const {
+    return network.springs[spring[e]].i == order[i[e / 4]] ? 0 : 1;
+  }
 
   /// value(spring) per entry; 0 in lanes not needed.
   template <class Real, class Value>

@@ -41,7 +41,8 @@ void Workers::run(const std::function<void(int)>& job) {
     round_.notify_all();
   }
   job(0);
-  for (int left = busy_.load(std::memory_order_acquire); left > 0; left = busy_.load(std::memory_order_acquire)) wait_for_change(busy_, left);
+  for (int left = busy_.load(std::memory_order_acquire); left > 0; left = busy_.load(std::memory_order_acquire))
+    wait_for_change(busy_, left);
 }
 
 void Workers::work(int worker) {
@@ -56,8 +57,10 @@ void Workers::work(int worker) {
 
 void wait_until(const std::atomic<long>& reached, long value) {
   for (int i = 0; reached.load(std::memory_order_acquire) < value; ++i) {
-    if (i < patience) pause();
-    else std::this_thread::yield();
+    if (i < patience)
+      pause();
+    else
+      std::this_thread::yield();
   }
 }
 

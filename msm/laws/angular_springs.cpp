@@ -15,8 +15,11 @@ struct Corner {
   Vec3 d1, d2;
 
   Corner(const std::array<int, 3>& triangle, int corner, const NodalVectors& x)
-      : a(triangle[corner]), b(triangle[(corner + 1) % 3]), c(triangle[(corner + 2) % 3]),
-        d1((x.row(b) - x.row(a)).transpose()), d2((x.row(c) - x.row(a)).transpose()) {}
+      : a(triangle[corner]),
+        b(triangle[(corner + 1) % 3]),
+        c(triangle[(corner + 2) % 3]),
+        d1((x.row(b) - x.row(a)).transpose()),
+        d2((x.row(c) - x.row(a)).transpose()) {}
 
   double angle() const { return std::atan2(d1.cross(d2).norm(), d1.dot(d2)); }
 };
@@ -69,14 +72,14 @@ void AngularSprings::add_forces(const Network& network, const NodalVectors& x, N
 void AngularSprings::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   for_each_corner(network, x, [&](const Corner& corner, double opening) {
     const AngleGradient g(corner);
-    const Eigen::Matrix3d nn = g.normal * g.normal.transpose(), et1 = g.e1 * g.t1.transpose(), et2 = g.e2 * g.t2.transpose();
+    const Eigen::Matrix3d nn = g.normal * g.normal.transpose(), et1 = g.e1 * g.t1.transpose(),
+                          et2 = g.e2 * g.t2.transpose();
     const double moment = beta * opening;
     const Eigen::Matrix3d by_11 = beta * g.by_d1() * g.by_d1().transpose() +
                                   moment / (g.l1 * g.l1) * (et1 + et1.transpose() + g.cosine / g.sine * nn);
     const Eigen::Matrix3d by_22 = beta * g.by_d2() * g.by_d2().transpose() +
                                   moment / (g.l2 * g.l2) * (et2 + et2.transpose() + g.cosine / g.sine * nn);
-    const Eigen::Matrix3d by_12 =
-        beta * g.by_d1() * g.by_d2().transpose() - moment / (g.l1 * g.l2 * g.sine) * nn;
+    const Eigen::Matrix3d by_12 = beta * g.by_d1() * g.by_d2().transpose() - moment / (g.l1 * g.l2 * g.sine) * nn;
     const Eigen::Matrix3d by_21 = by_12.transpose();
     K.add(corner.b, corner.b, by_11);
     K.add(corner.c, corner.c, by_22);

@@ -1,8 +1,9 @@
 // Force law: angular springs at the corners of a planar triangular network (Kirkwood's model).
 #pragma once
 
-#include "msm/network.h"
-#include "msm/solve/block_matrix.h"
+#include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 
@@ -12,11 +13,13 @@ namespace springproof {
 /// An angle belongs to one triangle only: triangles superpose, a boundary needs no rule.
 /// No triangle may be flat (phi = 0 or pi: no direction for the force).
 struct AngularSprings {
+  static constexpr LawTraits traits = {"angular springs", Reach::springs};
+
   double beta = 0;  ///< stiffness of an angle [N m]
 
-  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]
-  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
-  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+  double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 };
 
 /// beta [N m] that gives a hexagonal lattice with springs k [N/m] of length a [m] the plane Poisson's ratio nu_2d:

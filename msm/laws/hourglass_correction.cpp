@@ -11,8 +11,7 @@ using CellVector = Eigen::Matrix<double, 24, 1>;
 CellVector hourglass(int component, int p, int q) {
   CellVector h = CellVector::Zero();
   for (int n = 0; n < 8; ++n)
-    h[3 * n + component] =
-        (2.0 * hexahedron_corners[n][p] - 1) * (2.0 * hexahedron_corners[n][q] - 1) / std::sqrt(8.0);
+    h[3 * n + component] = (2.0 * hexahedron_corners[n][p] - 1) * (2.0 * hexahedron_corners[n][q] - 1) / std::sqrt(8.0);
   return h;
 }
 
@@ -43,7 +42,8 @@ Eigen::Matrix<double, 24, 24> HourglassCorrection::cell_matrix(double edge) cons
   for (int y = 0; y < 3; ++y) {
     const int p = (y + 1) % 3, q = (y + 2) % 3;
     const CellVector hp = hourglass(p, p, y), hq = hourglass(q, q, y);
-    K += k.bending * (hp * hp.transpose() + hq * hq.transpose()) + k.coupling * (hp * hq.transpose() + hq * hp.transpose());
+    K += k.bending * (hp * hp.transpose() + hq * hq.transpose()) +
+         k.coupling * (hp * hq.transpose() + hq * hp.transpose());
   }
   if (!torsion) return K;
   for (int m = 0; m < 3; ++m)

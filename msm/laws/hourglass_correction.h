@@ -1,8 +1,9 @@
 // Force law: the six bending (and three torsional) hourglass modes of a cubic cell, given their continuum stiffness.
 #pragma once
 
-#include "msm/network.h"
-#include "msm/solve/block_matrix.h"
+#include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 
@@ -11,17 +12,19 @@ namespace springproof {
 /// orthogonal to affine fields, so the patch test and the moduli are untouched.
 /// Valid for small displacements from rest only (no corotated frame): linear kinematics.
 struct HourglassCorrection {
+  static constexpr LawTraits traits = {"hourglass correction", Reach::cells, true};
+
   double shear_modulus = 0;  ///< G [Pa]
   double poisson_ratio = 0;
-  double face_to_cube = 2;   ///< A of the springs it corrects
-  bool torsion = false;      ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
+  double face_to_cube = 2;  ///< A of the springs it corrects
+  bool torsion = false;     ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
 
-  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]
-  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
-  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+  double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 
-  /// What is added to the normalised modes of a cell of edge l [N/m]: to each bending mode, between the two that share a
-  /// neutral plane; to each torsional mode, among all three.
+  /// What is added to the normalised modes of a cell of edge l [N/m]: to each bending mode, between the two that share
+  /// a neutral plane; to each torsional mode, among all three.
   struct Stiffness {
     double bending, coupling, torsion = 0, torsion_coupling = 0;
   };

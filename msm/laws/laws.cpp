@@ -11,8 +11,7 @@ double energy(const MassSpringModel& model, const NodalVectors& x) {
 
 NodalVectors forces(const MassSpringModel& model, const NodalVectors& x) {
   NodalVectors f = NodalVectors::Zero(x.rows(), 3);
-  for (const ForceLaw& law : model.laws)
-    std::visit([&](const auto& l) { l.add_forces(model.network, x, f); }, law);
+  for (const ForceLaw& law : model.laws) std::visit([&](const auto& l) { l.add_forces(model.network, x, f); }, law);
   return f;
 }
 

@@ -9,7 +9,8 @@ namespace {
 
 using Coefficients = MomentumDispersion::Coefficients;
 
-Eigen::VectorXd inflow_of(const MomentumDispersion& law, const Coefficients& c, const Network& network, const NodalVectors& x) {
+Eigen::VectorXd inflow_of(const MomentumDispersion& law, const Coefficients& c, const Network& network,
+                          const NodalVectors& x) {
   Eigen::VectorXd J = Eigen::VectorXd::Zero(network.nodes());
   for (std::size_t n = 0; n < c.in.size(); ++n) {
     const Spring& s = network.springs[n];
@@ -20,7 +21,8 @@ Eigen::VectorXd inflow_of(const MomentumDispersion& law, const Coefficients& c, 
   return J;
 }
 
-double tension(const MomentumDispersion& law, const Coefficients& c, const Network& network, const Eigen::VectorXd& J, std::size_t s) {
+double tension(const MomentumDispersion& law, const Coefficients& c, const Network& network, const Eigen::VectorXd& J,
+               std::size_t s) {
   const Spring& spring = network.springs[s];
   return c.out[s][0] * J[law.sink(network, spring.i)] + c.out[s][1] * J[law.sink(network, spring.j)];
 }
@@ -132,7 +134,8 @@ std::vector<double> MomentumDispersion::stiffness_bound(const Network& network, 
   for (std::size_t s = 0; s < k.size(); ++s) {
     const Spring& spring = network.springs[s];
     for (int end = 0; end < 2; ++end)
-      if (c.in[s][end] != 0 || c.out[s][end] != 0) k[s] += spring.stiffness * R[sink(network, end == 0 ? spring.i : spring.j)];
+      if (c.in[s][end] != 0 || c.out[s][end] != 0)
+        k[s] += spring.stiffness * R[sink(network, end == 0 ? spring.i : spring.j)];
   }
   return k;
 }
@@ -146,7 +149,8 @@ void MomentumDispersion::add_tangent(const Network& network, const NodalVectors&
     const Vec3 d = (x.row(s.j) - x.row(s.i)).transpose();
     const double length = d.norm();
     const Vec3 e = d / length;
-    const Eigen::Matrix3d block = tension(*this, c, network, J, n) / length * (Eigen::Matrix3d::Identity() - e * e.transpose());
+    const Eigen::Matrix3d block =
+        tension(*this, c, network, J, n) / length * (Eigen::Matrix3d::Identity() - e * e.transpose());
     K.add(s.i, s.i, block);
     K.add(s.j, s.j, block);
     K.add(s.i, s.j, -block);

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "msm/network.h"
-#include "msm/solve/tangent.h"
+#include "msm/algebra/tangent.h"
+#include "msm/laws/law_traits.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 
@@ -20,9 +21,12 @@ enum class Dispersion {
 };
 
 struct MomentumDispersion {
+  static constexpr LawTraits traits = {"momentum dispersion", Reach::second_neighbours, true, true};
+
   double q = 0;  ///< Q / 2, the fraction of the incoming force that a node disperses
   Dispersion form = Dispersion::symmetric;
-  /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring; empty: 1.
+  /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring;
+  /// empty: 1.
   std::vector<double> weight = {};
   /// Per node the node whose J takes its springs' flow; empty: its own.  Symmetric form only.
   std::vector<int> group = {};
@@ -31,7 +35,8 @@ struct MomentumDispersion {
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; 0 for the forms that have none
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< [N]
-  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< its part between joined nodes
+  void add_tangent(const Network& network, const NodalVectors& x,
+                   BlockMatrix& K) const;  ///< its part between joined nodes
 
   /// The rest of the tangent, outflow^T inflow.
   void add_flow(const Network& network, const NodalVectors& x, Tangent& K) const;
@@ -48,14 +53,16 @@ struct MomentumDispersion {
   Coefficients coefficients(const Network& network) const;
 
   /// The node whose J the springs at a node add to.
-  int sink(const Network& network, int node) const { return group.empty() ? network.master(node) : group[network.master(node)]; }
+  int sink(const Network& network, int node) const {
+    return group.empty() ? network.master(node) : group[network.master(node)];
+  }
 
   /// The tension that given inflows add to each spring [N].
   std::vector<double> tensions(const Network& network, const Eigen::VectorXd& J) const;
 
-  /// Per spring k (R_i + R_j) [N/m], so that v . K v <= sum_s k (R_i + R_j) (n . dv)^2 for every motion v, K the stiffness
-  /// at rest.  By Cauchy and Schwarz over the springs of a node R_n = (|a| |c| + a . c) / 2, a . c = sum a c / k: q of the
-  /// symmetric form with w = k L, or 0 if q is negative.  `of_size`: |v . K v|, R_n = |a| |c|.
+  /// Per spring k (R_i + R_j) [N/m], so that v . K v <= sum_s k (R_i + R_j) (n . dv)^2 for every motion v, K the
+  /// stiffness at rest.  By Cauchy and Schwarz over the springs of a node R_n = (|a| |c| + a . c) / 2, a . c = sum a c
+  /// / k: q of the symmetric form with w = k L, or 0 if q is negative.  `of_size`: |v . K v|, R_n = |a| |c|.
   std::vector<double> stiffness_bound(const Network& network, bool of_size) const;
 };
 

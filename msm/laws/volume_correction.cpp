@@ -79,9 +79,9 @@ void add_volume_curvature(const Hexahedron& cell, const MeanEdgeVolume& v, doubl
   for (int m = 0; m < 8; ++m)
     for (int n = 0; n < 8; ++n) {
       // From the product rule on b x c, c x a, a x b.
-      const Eigen::Matrix3d curvature =
-          (1.0 / 16) * (sign(m, 0) * (sign(n, 2) * B - sign(n, 1) * C) + sign(m, 1) * (sign(n, 0) * C - sign(n, 2) * A) +
-                        sign(m, 2) * (sign(n, 1) * A - sign(n, 0) * B));
+      const Eigen::Matrix3d curvature = (1.0 / 16) * (sign(m, 0) * (sign(n, 2) * B - sign(n, 1) * C) +
+                                                      sign(m, 1) * (sign(n, 0) * C - sign(n, 2) * A) +
+                                                      sign(m, 2) * (sign(n, 1) * A - sign(n, 0) * B));
       K.add(cell[m], cell[n], pressure * curvature);
     }
 }

@@ -1,8 +1,9 @@
 // Force law: the volume energy of HybMSS, one term per cubic cell.
 #pragma once
 
-#include "msm/network.h"
-#include "msm/solve/block_matrix.h"
+#include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 
@@ -15,12 +16,14 @@ enum class VolumeEnergy {
 /// Energy sum_c V psi(V'/V) with V' = a . (b x c), a, b, c the mean edge vectors of the cell;
 /// Golec et al. (2019), eqs. (5.13)-(5.16).  DEVIATION from eq. (5.16): factor 1/4, docs/papers.md.
 struct VolumeCorrection {
+  static constexpr LawTraits traits = {"volume correction", Reach::cells, true};
+
   double kappa = 0;  ///< lambda - G [Pa]
   VolumeEnergy form = VolumeEnergy::bounded;
 
-  double energy(const Network& network, const NodalVectors& x) const;                        ///< [J]; +inf if J <= 0 (bounded)
-  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;     ///< f += -dE/dx [N]
-  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;     ///< K += d2E/dx2 [N/m]
+  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if J <= 0 (bounded)
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 };
 
 /// Mean-edge volume V' = a . (b x c) of a cell and its gradient (rows: corners in mesh order) [m^3, m^2].

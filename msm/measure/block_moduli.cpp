@@ -16,15 +16,18 @@ Eigen::Matrix3d central_gradient(const Network& network, const NodalVectors& u, 
   for (int n = 0; n < network.nodes(); ++n)
     if (((network.X.row(n).transpose() - middle).array().abs() <= reach.array() * (1 + 1e-9)).all()) nodes.push_back(n);
   Eigen::MatrixXd basis(nodes.size(), 4);
-  basis << Eigen::VectorXd::Ones(static_cast<Eigen::Index>(nodes.size())), (network.X(nodes, Eigen::all).rowwise() - middle.transpose());
+  basis << Eigen::VectorXd::Ones(static_cast<Eigen::Index>(nodes.size())),
+      (network.X(nodes, Eigen::all).rowwise() - middle.transpose());
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(basis);
-  if (nodes.size() < 4 || fit.rank() < 4) throw std::invalid_argument("too few nodes in the central region of the block");
+  if (nodes.size() < 4 || fit.rank() < 4)
+    throw std::invalid_argument("too few nodes in the central region of the block");
   return fit.solve(Eigen::MatrixXd(u(nodes, Eigen::all))).bottomRows(3).transpose();
 }
 
 }  // namespace
 
-BlockModuli measure_block(const MassSpringModel& model, const NodalVectors& u, const StretchedBlock& block, double radius) {
+BlockModuli measure_block(const MassSpringModel& model, const NodalVectors& u, const StretchedBlock& block,
+                          double radius) {
   const Network& network = model.network;
   const std::vector<double> tensions = linear_tensions(model, u);
   const Vec3 size = block.upper - block.lower, middle = (block.lower + block.upper) / 2;

@@ -38,7 +38,8 @@ std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVec
   const Network& network = model.network;
   std::vector<double> T;
   T.reserve(network.springs.size());
-  for (const Spring& s : network.springs) T.push_back(s.stiffness * between(s, u).dot(between(s, network.X).normalized()));
+  for (const Spring& s : network.springs)
+    T.push_back(s.stiffness * between(s, u).dot(between(s, network.X).normalized()));
   if (const MomentumDispersion* dispersion = dispersion_of(model)) {
     Tangent flow;
     dispersion->add_flow(network, network.X, flow);
@@ -73,8 +74,9 @@ Eigen::Matrix3d displacement_gradient(const Network& network, const NodalVectors
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(basis);
   if (static_cast<int>(near.size()) <= directions || fit.rank() <= directions)
-    throw std::invalid_argument(fmt::format("{} nodes within {} m of ({}, {}, {}) do not determine a gradient; take a larger radius",
-                                            near.size(), radius, point[0], point[1], point[2]));
+    throw std::invalid_argument(
+        fmt::format("{} nodes within {} m of ({}, {}, {}) do not determine a gradient; take a larger radius",
+                    near.size(), radius, point[0], point[1], point[2]));
   Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
   gradient.leftCols(directions) = fit.solve(value).bottomRows(directions).transpose() / radius;
   return gradient;
@@ -97,19 +99,18 @@ double momentum_flow(const Network& network, const NodalVectors& x, const std::v
   double sum = 0;
   for (std::size_t s = 0; s < tensions.size(); ++s) {
     const Spring& spring = network.springs[s];
-    if (beyond(spring.i) != beyond(spring.j)) sum += tensions[s] * std::abs(between(spring, x).normalized().dot(normal));
+    if (beyond(spring.i) != beyond(spring.j))
+      sum += tensions[s] * std::abs(between(spring, x).normalized().dot(normal));
   }
   return sum;
 }
 
 double poisson_ratio_of(const Eigen::Matrix3d& e, const Eigen::Matrix3d& s) {
-  return (e(0, 0) * s(1, 1) - e(1, 1) * s(0, 0)) /
-         (e(0, 0) * (s(0, 0) + s(2, 2)) - e(1, 1) * (s(1, 1) + s(2, 2)));
+  return (e(0, 0) * s(1, 1) - e(1, 1) * s(0, 0)) / (e(0, 0) * (s(0, 0) + s(2, 2)) - e(1, 1) * (s(1, 1) + s(2, 2)));
 }
 
 double poisson_ratio_as_printed(const Eigen::Matrix3d& e, const Eigen::Matrix3d& s) {
-  return (e(0, 0) * s(1, 1) - e(1, 1) * s(0, 0)) /
-         (e(0, 0) * (s(0, 0) + s(1, 1)) - e(1, 1) * (s(0, 0) + s(2, 2)));
+  return (e(0, 0) * s(1, 1) - e(1, 1) * s(0, 0)) / (e(0, 0) * (s(0, 0) + s(1, 1)) - e(1, 1) * (s(0, 0) + s(2, 2)));
 }
 
 }  // namespace springproof

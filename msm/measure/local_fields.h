@@ -7,13 +7,13 @@
 
 namespace springproof {
 
-/// Tension of each spring [N], positive if it pulls: its own and what momentum dispersion adds.  Forces of cells and angles
-/// are not tensions: models with those have their stress measured in part only.
+/// Tension of each spring [N], positive if it pulls: its own and what momentum dispersion adds.  Forces of cells and
+/// angles are not tensions: models with those have their stress measured in part only.
 std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVectors& u);  ///< displacement from rest
 std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVectors& x);  ///< positions
 
-/// Displacement gradient du_i/dX_j at a point: linear fit to the nodes closer than `radius` [m], weights (1 - r^2/R^2)^2
-/// (moving least squares; an affine field is exact).  In a planar network (all z equal) d/dz is 0.
+/// Displacement gradient du_i/dX_j at a point: linear fit to the nodes closer than `radius` [m], weights (1 -
+/// r^2/R^2)^2 (moving least squares; an affine field is exact).  In a planar network (all z equal) d/dz is 0.
 /// @throws std::invalid_argument if the nodes within reach do not span the space (plane).
 Eigen::Matrix3d displacement_gradient(const Network& network, const NodalVectors& u, const Vec3& point, double radius);
 
@@ -30,8 +30,8 @@ double momentum_flow(const Network& network, const NodalVectors& x, const std::v
                      const Vec3& point, const Vec3& normal);
 
 /// Poisson's ratio from normal strains and stresses along the axes, also if the sides are not free of stress:
-/// (exx syy - eyy sxx) / (exx (sxx + szz) - eyy (syy + szz)).  Kot & Nagahashi (2015), eq. (29), DEVIATION: subscripts of
-/// the denominator, docs/papers.md #15.
+/// (exx syy - eyy sxx) / (exx (sxx + szz) - eyy (syy + szz)).  Kot & Nagahashi (2015), eq. (29), DEVIATION: subscripts
+/// of the denominator, docs/papers.md #15.
 double poisson_ratio_of(const Eigen::Matrix3d& strain, const Eigen::Matrix3d& stress);
 
 /// Eq. (29) as printed: nu/(1 + nu) in uniaxial stress.  For the record only.

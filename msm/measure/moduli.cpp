@@ -3,9 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "msm/measure/homogenise.h"
-#include "msm/measure/periodic_model.h"
-#include "msm/solve/equilibrium.h"
+#include "msm/models.h"
+#include "msm/periodic/homogenise.h"
+#include "msm/periodic/periodic_model.h"
+#include "msm/statics/equilibrium.h"
 
 namespace springproof {
 namespace {
@@ -42,7 +43,8 @@ MeasuredModuli measure_block(const ModelParameters& parameters, const IsotropicM
                                    PrescribedDisplacement{"y_min", {free_component, 0.0, free_component}},
                                    PrescribedDisplacement{"z_min", {free_component, free_component, 0.0}},
                                    PrescribedDisplacement{"z_max", {free_component, free_component, strain}}};
-  const Equilibrium state = solved(model, transfer(loads, mesh, embedding, model.network, material.density, Kinematics::linear));
+  const Equilibrium state =
+      solved(model, transfer(loads, mesh, embedding, model.network, material.density, Kinematics::linear));
   double force = 0, lateral = 0;
   for (int node : embedding.held.at("z_max")) force += state.support(node, 2);
   const std::vector<int> side = nodes_of(patch(mesh, "x_max"));
@@ -67,7 +69,8 @@ MeasuredModuli measure_sheet(const ModelParameters& parameters, const IsotropicM
   const Equilibrium state = solved(model, bc);
   const Eigen::VectorXd x = X.col(0).array() - X.col(0).mean();
   const double in_plane = -x.dot(state.displacement.col(0)) / x.squaredNorm() / strain, nu = in_plane / (1 + in_plane);
-  const double volume = model.network.volume.sum(), E = twice_energy(model, state.displacement) / (volume * strain * strain);
+  const double volume = model.network.volume.sum(),
+               E = twice_energy(model, state.displacement) / (volume * strain * strain);
   return {E * (1 - nu * nu), nu, affine_shear(model, volume)};  // plane strain: E / (1 - nu^2), nu / (1 - nu)
 }
 

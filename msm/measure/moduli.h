@@ -1,20 +1,20 @@
 // What a model really has for moduli, measured.
 #pragma once
 
-#include "msm/models.h"
+#include "msm/parameters/model_table.h"
 
 namespace springproof {
 
 struct MeasuredModuli {
   double youngs_modulus;  ///< [Pa]
   double poisson_ratio;
-  double shear_modulus;   ///< [Pa]
+  double shear_modulus;  ///< [Pa]
 };
 
-/// Lattices whose nodes are the mesh's: uniaxial test between slipping plates (end force / (area * strain), lateral over
-/// axial strain) and an affine shear (from its energy), on a free block of `cells` cubed cells, linearised.  Planar
-/// networks: the same in the plane, as plane strain.  Others: the endless solid, homogenised; random networks on a sample
-/// of 1000 nodes that the calibration has not seen.
+/// Lattices whose nodes are the mesh's: uniaxial test between slipping plates (end force / (area * strain), lateral
+/// over axial strain) and an affine shear (from its energy), on a free block of `cells` cubed cells, linearised. Planar
+/// networks: the same in the plane, as plane strain.  Others: the endless solid, homogenised; random networks on a
+/// sample of 1000 nodes that the calibration has not seen.
 /// @throws std::runtime_error if there is no equilibrium (zero-energy modes).
 MeasuredModuli measure_moduli(const ModelParameters& parameters, const IsotropicMaterial& material, int cells = 4);
 

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "msm/measure/bulk_calibration.h"
+#include "msm/models.h"
+#include "msm/periodic/bulk_calibration.h"
 
 namespace springproof {
 namespace {
@@ -38,18 +39,27 @@ Eigen::MatrixXd in_plane(const Eigen::MatrixXd& K) {
 std::string stable_range_of_energy(const ModelParameters& p, const IsotropicMaterial& material) {
   const double q = bulk_calibration(p, material).q;
   if (!exact_volumes(p, material))
-    return fmt::format("on every network, as q = {:.4g} > -1/2 with weights kL: J^2 <= sum k L^2 sum k dL^2 at each node (Cauchy-Schwarz)", q);
+    return fmt::format(
+        "on every network, as q = {:.4g} > -1/2 with weights kL: J^2 <= sum k L^2 sum k dL^2 at each node "
+        "(Cauchy-Schwarz)",
+        q);
   if (q > -1e-12)  // round-off of the formula at nu = 1/4
-    return fmt::format("on every network, as q = {:.4g} >= 0 with exact volumes, a sum of squares; so from nu = {:.4g}, the springs' own, up", q,
-                       springs_poisson_ratio(p));
-  return fmt::format("not proved: q = {:.4g} < 0 with exact volumes; inside lattices it is, elsewhere measured only (weights kL: proved)", q);
+    return fmt::format(
+        "on every network, as q = {:.4g} >= 0 with exact volumes, a sum of squares; so from nu = {:.4g}, the springs' "
+        "own, up",
+        q, springs_poisson_ratio(p));
+  return fmt::format(
+      "not proved: q = {:.4g} < 0 with exact volumes; inside lattices it is, elsewhere measured only (weights kL: "
+      "proved)",
+      q);
 }
 
 }  // namespace
 
 BlockStability block_stability(const ModelParameters& parameters, const IsotropicMaterial& material, double cell_edge) {
   const bool planar = parameters.row.topology == Topology::hexagonal;
-  const Mesh mesh = planar ? block_mesh(cell_edge * Vec3(6, 6, 1), {6, 6, 1}) : block_mesh(cell_edge * Vec3(3, 3, 3), {3, 3, 3});
+  const Mesh mesh =
+      planar ? block_mesh(cell_edge * Vec3(6, 6, 1), {6, 6, 1}) : block_mesh(cell_edge * Vec3(3, 3, 3), {3, 3, 3});
   const MassSpringModel model = build_model(parameters, mesh, material);
   Eigen::MatrixXd K = dense_stiffness(model);
   if (planar) K = in_plane(K);
@@ -58,29 +68,39 @@ BlockStability block_stability(const ModelParameters& parameters, const Isotropi
   const int axes = planar ? 2 : 3;
   for (Eigen::Index i = 0; i < K.rows(); ++i)
     for (Eigen::Index j = 0; j < K.cols(); ++j) K(i, j) /= std::sqrt(mass[i / axes] * mass[j / axes]);
-  Eigen::VectorXcd values = s.asymmetry < 1e-13 ? Eigen::VectorXcd(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues().cast<std::complex<double>>())
-                                                : Eigen::VectorXcd(K.eigenvalues());
+  Eigen::VectorXcd values =
+      s.asymmetry < 1e-13 ? Eigen::VectorXcd(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly)
+                                                 .eigenvalues()
+                                                 .cast<std::complex<double>>())
+                          : Eigen::VectorXcd(K.eigenvalues());
   const double largest = values.cwiseAbs().maxCoeff();
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
   for (Eigen::Index i = planar ? 3 : 6; i < values.size(); ++i) {
     s.smallest_eigenvalue = std::min(s.smallest_eigenvalue, values[i].real() / largest);
     if (std::abs(values[i].imag()) > round_off * largest)
-      s.flutter_damping = std::max(s.flutter_damping, values[i].real() > 0 ? std::abs(values[i].imag()) / std::sqrt(values[i].real())
-                                                                          : std::numeric_limits<double>::infinity());
+      s.flutter_damping =
+          std::max(s.flutter_damping, values[i].real() > 0 ? std::abs(values[i].imag()) / std::sqrt(values[i].real())
+                                                           : std::numeric_limits<double>::infinity());
   }
   return s;
 }
 
 std::string stable_range(const ModelParameters& p, const IsotropicMaterial& material) {
-  if (p.has(Extension::volume_correction)) return "-1 < nu < 1/2: every cell is positive (at A = 0: but for zero-energy modes)";
-  if (p.has(Extension::angular_springs)) return "-1 < nu_2D < 1 in its plane: a triangle strains affinely, K > 0 and G > 0 suffice";
+  if (p.has(Extension::volume_correction))
+    return "-1 < nu < 1/2: every cell is positive (at A = 0: but for zero-energy modes)";
+  if (p.has(Extension::angular_springs))
+    return "-1 < nu_2D < 1 in its plane: a triangle strains affinely, K > 0 and G > 0 suffice";
   if (!p.has(Extension::momentum_dispersion)) return "never negative: springs alone are a sum of squares";
   if (p.dispersion == Dispersion::symmetric) return stable_range_of_energy(p, material);
-  if (p.row.topology == Topology::random || p.row.topology == Topology::hexagonal) return "no energy: not proved, measured only";
+  if (p.row.topology == Topology::random || p.row.topology == Topology::hexagonal)
+    return "no energy: not proved, measured only";
   if (std::isinf(p.face_to_cube))
-    return "endless lattice of 18 springs: real frequencies to nu = 0.46, positive real part to 0.4989 (Bloch waves); blocks: measured";
-  if (p.face_to_cube == 0) return "endless lattice of 14 springs: zero-energy mode; complex frequencies above nu = 1/4 (Bloch waves)";
-  if (p.face_to_cube == 1) return "endless lattice of 26 springs, A = 1: positive real part to nu = 0.4996 (Bloch waves); blocks: measured";
+    return "endless lattice of 18 springs: real frequencies to nu = 0.46, positive real part to 0.4989 (Bloch waves); "
+           "blocks: measured";
+  if (p.face_to_cube == 0)
+    return "endless lattice of 14 springs: zero-energy mode; complex frequencies above nu = 1/4 (Bloch waves)";
+  if (p.face_to_cube == 1)
+    return "endless lattice of 26 springs, A = 1: positive real part to nu = 0.4996 (Bloch waves); blocks: measured";
   return "no energy: not proved, measured only";
 }
 

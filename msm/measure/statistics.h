@@ -1,7 +1,7 @@
 // The numbers by which Kot et al. (2014) describe a network (sec. 3.3).
 #pragma once
 
-#include "msm/network.h"
+#include "msm/topology/network.h"
 #include "msm/topology/region.h"
 
 namespace springproof {
@@ -16,15 +16,15 @@ struct NetworkStatistics {
   double density;           ///< n = N/V [1/m^3]
 };
 
-/// Of all nodes and springs; <S> = 2 springs / nodes, the surface included, where nodes have fewer.  Images of a periodic
-/// network are not nodes, so that its numbers are those of the infinite network.
+/// Of all nodes and springs; <S> = 2 springs / nodes, the surface included, where nodes have fewer.  Images of a
+/// periodic network are not nodes, so that its numbers are those of the infinite network.
 NetworkStatistics statistics(const Network& network);
 
 /// Marks the nodes further from the region's surface than the longest spring: none of their springs is missing.
 std::vector<char> bulk_nodes(const Network& network, const Region& region);
 
-/// Of the bulk_nodes().  `springs` are those with an end there, a length counts once per such end, V is the share of these nodes.
-/// All zero (NaN for means) if there is no such node.
+/// Of the bulk_nodes().  `springs` are those with an end there, a length counts once per such end, V is the share of
+/// these nodes. All zero (NaN for means) if there is no such node.
 NetworkStatistics bulk_statistics(const Network& network, const Region& region);
 
 }  // namespace springproof

@@ -2,7 +2,8 @@
 
 #include <limits>
 
-#include "msm/solve/equilibrium.h"
+#include "msm/models.h"
+#include "msm/statics/equilibrium.h"
 
 namespace springproof {
 namespace {
@@ -11,11 +12,12 @@ double tension_limit(const ModelParameters& parameters, const IsotropicMaterial&
   const double largest = 0.5;
   const Mesh mesh = block_mesh(Vec3::Ones(), {1, 1, 1});
   const std::optional<double> free;
-  const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, free, free}},
-                                   PrescribedDisplacement{"y_min", {free, 0.0, free}},
-                                   PrescribedDisplacement{"z_min", {free, free, 0.0}},
-                                   PrescribedDisplacement{"z_max", {free, free, largest}}};
-  const LoadPath path = [&](double factor) { return transfer(loads, mesh, material.density, Kinematics::finite, factor); };
+  const std::vector<Load> loads = {
+      PrescribedDisplacement{"x_min", {0.0, free, free}}, PrescribedDisplacement{"y_min", {free, 0.0, free}},
+      PrescribedDisplacement{"z_min", {free, free, 0.0}}, PrescribedDisplacement{"z_max", {free, free, largest}}};
+  const LoadPath path = [&](double factor) {
+    return transfer(loads, mesh, material.density, Kinematics::finite, factor);
+  };
   NewtonOptions options;
   options.first_step = 0.02;
   const Equilibrium e = solve_finite(build_model(parameters, mesh, material), path, options);

@@ -1,7 +1,7 @@
 // How far a model can be stretched before its homogeneous state has no equilibrium.
 #pragma once
 
-#include "msm/models.h"
+#include "msm/parameters/model_table.h"
 
 namespace springproof {
 

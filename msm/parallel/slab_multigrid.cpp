@@ -32,7 +32,8 @@ void check(PetscErrorCode code) {
 
 }  // namespace
 
-PlaneExchange::PlaneExchange(const SlabLevel& level, MPI_Comm communicator) : level_(&level), communicator_(communicator) {
+PlaneExchange::PlaneExchange(const SlabLevel& level, MPI_Comm communicator)
+    : level_(&level), communicator_(communicator) {
   const int rank = rank_of(communicator);
   below_ = rank > 0 ? rank - 1 : MPI_PROC_NULL;
   above_ = rank + 1 < size_of(communicator) ? rank + 1 : MPI_PROC_NULL;
@@ -45,7 +46,8 @@ void PlaneExchange::exchange(int values_per_point, Pack pack, Unpack unpack) con
   std::vector<Real> out(size), in(size);
   const auto pass = [&](int send_plane, int to, int receive_plane, int from) {
     if (to != MPI_PROC_NULL) pack(begin[send_plane], begin[send_plane + 1], out.data());
-    MPI_Sendrecv(out.data(), size, mpi_type<Real>(), to, 0, in.data(), size, mpi_type<Real>(), from, 0, communicator_, MPI_STATUS_IGNORE);
+    MPI_Sendrecv(out.data(), size, mpi_type<Real>(), to, 0, in.data(), size, mpi_type<Real>(), from, 0, communicator_,
+                 MPI_STATUS_IGNORE);
     if (from != MPI_PROC_NULL) unpack(begin[receive_plane], begin[receive_plane + 1], in.data());
   };
   pass(level_->own_end - 1, above_, 0, below_);
@@ -67,8 +69,13 @@ void PlaneExchange::complete(Real* field) const {
 
 void PlaneExchange::complete(LatticeMotion& motion) const {
   exchange<double>(
-      6, [&](long begin, long end, double* buffer) { motion.read(static_cast<int>(begin), static_cast<int>(end), buffer); },
-      [&](long begin, long end, const double* buffer) { motion.write(static_cast<int>(begin), static_cast<int>(end), buffer); });
+      6,
+      [&](long begin, long end, double* buffer) {
+        motion.read(static_cast<int>(begin), static_cast<int>(end), buffer);
+      },
+      [&](long begin, long end, const double* buffer) {
+        motion.write(static_cast<int>(begin), static_cast<int>(end), buffer);
+      });
 }
 
 SlabPartition::SlabPartition(const std::array<int, 3>& block_cells, MPI_Comm communicator) : cells(block_cells) {
@@ -78,7 +85,8 @@ SlabPartition::SlabPartition(const std::array<int, 3>& block_cells, MPI_Comm com
   while (levels == 0 || (unknowns(levels) > shared_unknowns && along(2, levels + 1) >= 2 * processes)) ++levels;
   if (along(2, levels) < processes)
     throw std::invalid_argument("a block of " + std::to_string(cells[2]) + " planes of cells cannot be shared by " +
-                                std::to_string(processes) + " processes (allowed: at most " + std::to_string(along(2, 1)) + ")");
+                                std::to_string(processes) + " processes (allowed: at most " +
+                                std::to_string(along(2, 1)) + ")");
   PetscInt own = PETSC_DECIDE, all = along(2, levels);
   check(PetscSplitOwnership(communicator, &own, &all));
   PetscInt end = 0;
@@ -98,7 +106,8 @@ SlabLevel SlabPartition::level(int l, MPI_Comm communicator) const {
   return slab;
 }
 
-SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<char>& fixed, const CellMatrix& cell, MPI_Comm communicator)
+SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<char>& fixed, const CellMatrix& cell,
+                             MPI_Comm communicator)
     : communicator_(communicator) {
   const double unit = cell.diagonal().mean();
   unit_ = 1 / unit;
@@ -110,13 +119,15 @@ SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<c
   for (int l = 0; l < partition.levels; ++l) link(slabs_[l].lattice, slabs_[l + 1].lattice);
 
   LatticeLevels whole;
-  whole.levels.push_back(block_level(partition.cells, partition.levels, 0, (partition.cells[2] + (1 << partition.levels) - 1) >> partition.levels));
+  whole.levels.push_back(block_level(partition.cells, partition.levels, 0,
+                                     (partition.cells[2] + (1 << partition.levels) - 1) >> partition.levels));
   gather_fixed(whole.levels[0]);
   add_coarser_levels(whole);
   below_ = std::make_unique<Multigrid>(std::move(whole), cell, smoothing_degree);
   counts_.resize(size_of(communicator));
   begins_.resize(size_of(communicator));
-  const int own = static_cast<int>(slabs_.back().own_points()), begin = static_cast<int>(place_below() + slabs_.back().own_first());
+  const int own = static_cast<int>(slabs_.back().own_points()),
+            begin = static_cast<int>(place_below() + slabs_.back().own_first());
   MPI_Allgather(&own, 1, MPI_INT, counts_.data(), 1, MPI_INT, communicator);
   MPI_Allgather(&begin, 1, MPI_INT, begins_.data(), 1, MPI_INT, communicator);
   below_r_ = below_x_ = Eigen::VectorXf::Zero(3 * slabs_.back().lattice.stride());
@@ -161,11 +172,13 @@ void SlabMultigrid::cycle_below() {
   const LatticeLevel& lattice = whole.K.level();
   const long offset = place_below();
   for (int a = 0; a < 3; ++a)
-    MPI_Allgatherv(below_r_.data() + a * part.lattice.stride() + part.own_first(), static_cast<int>(part.own_points()), MPI_FLOAT,
-                   whole.r.data() + a * lattice.stride(), counts_.data(), begins_.data(), MPI_FLOAT, communicator_);
+    MPI_Allgatherv(below_r_.data() + a * part.lattice.stride() + part.own_first(), static_cast<int>(part.own_points()),
+                   MPI_FLOAT, whole.r.data() + a * lattice.stride(), counts_.data(), begins_.data(), MPI_FLOAT,
+                   communicator_);
   below_->cycle();
   for (int a = 0; a < 3; ++a)
-    below_x_.segment(a * part.lattice.stride(), part.lattice.points()) = whole.x.segment(a * lattice.stride() + offset, part.lattice.points());
+    below_x_.segment(a * part.lattice.stride(), part.lattice.points()) =
+        whole.x.segment(a * lattice.stride() + offset, part.lattice.points());
 }
 
 void SlabMultigrid::cycle(int l) {

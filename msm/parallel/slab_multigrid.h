@@ -3,8 +3,8 @@
 
 #include <mpi.h>
 
-#include "msm/kernels/lattice_motion.h"
-#include "msm/solve/multigrid.h"
+#include "msm/dynamics/lattice_motion.h"
+#include "msm/multigrid/multigrid.h"
 
 namespace springproof {
 
@@ -22,7 +22,7 @@ class PlaneExchange {
  public:
   PlaneExchange(const SlabLevel& level, MPI_Comm communicator);
   template <class Real>
-  void complete(Real* field) const;  ///< a nodal field of the level
+  void complete(Real* field) const;            ///< a nodal field of the level
   void complete(LatticeMotion& motion) const;  ///< positions and velocities
 
  private:
@@ -38,7 +38,7 @@ class PlaneExchange {
 /// How a block is shared out: each process has whole planes of cells of the coarsest level in slabs.
 struct SlabPartition {
   std::array<int, 3> cells{};
-  int levels = 0;            ///< of slabs; the lattice below them is on every process
+  int levels = 0;              ///< of slabs; the lattice below them is on every process
   int z_begin = 0, z_end = 0;  ///< own planes of cells of that lattice
 
   /// @throws std::invalid_argument if there are more processes than planes to share.
@@ -46,11 +46,13 @@ struct SlabPartition {
   SlabLevel level(int l, MPI_Comm communicator) const;
 };
 
-/// Displacement form of HybMSS (the cycle of Multigrid): levels of slabs above, the rest of the hierarchy on every process.
+/// Displacement form of HybMSS (the cycle of Multigrid): levels of slabs above, the rest of the hierarchy on every
+/// process.
 class SlabMultigrid {
  public:
   /// `fixed`: per unknown 3 * point + axis of this process' finest level.
-  SlabMultigrid(const SlabPartition& partition, const std::vector<char>& fixed, const CellMatrix& cell, MPI_Comm communicator);
+  SlabMultigrid(const SlabPartition& partition, const std::vector<char>& fixed, const CellMatrix& cell,
+                MPI_Comm communicator);
 
   const SlabLevel& finest() const { return slabs_[0]; }
   /// u of K u = b, u = 0 on fixed unknowns; nodal fields of the finest level, right on own points, u also beside them.
@@ -68,12 +70,12 @@ class SlabMultigrid {
 
   MPI_Comm communicator_;
   double unit_ = 1;
-  std::vector<SlabLevel> slabs_;           ///< the last is this process' part of the lattice below
+  std::vector<SlabLevel> slabs_;  ///< the last is this process' part of the lattice below
   std::vector<PlaneExchange> exchanges_;
   std::vector<SmoothingLevel> levels_;
   Eigen::VectorXf below_r_, below_x_;
   std::unique_ptr<Multigrid> below_;
-  std::vector<int> counts_, begins_;       ///< own points of each process in the lattice below
+  std::vector<int> counts_, begins_;  ///< own points of each process in the lattice below
   std::unique_ptr<LatticeOperator<double>> K_;
 };
 

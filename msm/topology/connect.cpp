@@ -33,14 +33,17 @@ int nearest_point(const std::vector<Vec3>& points, const PointCells& cells, cons
   double distance = std::numeric_limits<double>::infinity();
   const int most_rings = *std::max_element(cells.count.begin(), cells.count.end());
   for (int rings = 1; rings <= most_rings && distance > cell * cell * (rings - 1) * (rings - 1); ++rings)
-    cells.any_near(x, [&](int p) {
-      const double d = cells.nearest_image(points[p] - x).squaredNorm();
-      if (d < distance || (d == distance && p < nearest)) {
-        distance = d;
-        nearest = p;
-      }
-      return false;
-    }, rings);
+    cells.any_near(
+        x,
+        [&](int p) {
+          const double d = cells.nearest_image(points[p] - x).squaredNorm();
+          if (d < distance || (d == distance && p < nearest)) {
+            distance = d;
+            nearest = p;
+          }
+          return false;
+        },
+        rings);
   return nearest;
 }
 
@@ -100,8 +103,8 @@ double length_for(double springs_per_node, const std::vector<Vec3>& points, cons
   return (std::sqrt(below) + std::sqrt(above)) / 2;
 }
 
-std::vector<double> nearest_volumes(const std::vector<Vec3>& points, const PointCells& cells, double step, double volume,
-                                    const std::function<bool(const Vec3&)>& inside) {
+std::vector<double> nearest_volumes(const std::vector<Vec3>& points, const PointCells& cells, double step,
+                                    double volume, const std::function<bool(const Vec3&)>& inside) {
   std::vector<double> share(points.size(), 0);
   int count[3];
   for (int a = 0; a < 3; ++a) count[a] = std::max(1, static_cast<int>(std::ceil(cells.size[a] / step)));

@@ -16,17 +16,18 @@ struct Bond {
 /// Points reordered along a Morton curve through cells of the given edge [m], so that neighbours are near in memory.
 std::vector<Vec3> spatially_sorted(const std::vector<Vec3>& points, double edge);
 
-/// All pairs closer than max_length [m] whose line passes `inside` (empty: no test) at 1/4, 1/2 and 3/4, sorted by (i, j).
-/// Linear in the number of points.
+/// All pairs closer than max_length [m] whose line passes `inside` (empty: no test) at 1/4, 1/2 and 3/4, sorted by (i,
+/// j). Linear in the number of points.
 std::vector<Bond> bonds_within(const std::vector<Vec3>& points, const PointCells& cells, double max_length,
                                const std::function<bool(const Vec3&)>& inside);
 
 /// The length that joins each point of a periodic box with `springs_per_node` others on the mean [m].
 double length_for(double springs_per_node, const std::vector<Vec3>& points, const Vec3& box);
 
-/// Volume nearest to each point [m^3], by a lattice of about `step` [m] through the box of the cells; the sum is `volume`.
-/// `inside` (empty: everywhere) tells which lattice points count; a point that gets none counts as half of one.
-std::vector<double> nearest_volumes(const std::vector<Vec3>& points, const PointCells& cells, double step, double volume,
-                                    const std::function<bool(const Vec3&)>& inside);
+/// Volume nearest to each point [m^3], by a lattice of about `step` [m] through the box of the cells; the sum is
+/// `volume`. `inside` (empty: everywhere) tells which lattice points count; a point that gets none counts as half of
+/// one.
+std::vector<double> nearest_volumes(const std::vector<Vec3>& points, const PointCells& cells, double step,
+                                    double volume, const std::function<bool(const Vec3&)>& inside);
 
 }  // namespace springproof

@@ -31,9 +31,11 @@ namespace {
 std::vector<Spring> superposed(const Network& network) {
   const Grid& grid = *network.grid;
   const std::array<int, 3> points = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
-  const auto point = [&](const std::array<int, 3>& p) { return (std::size_t(p[2]) * points[1] + p[1]) * points[0] + p[0]; };
+  const auto point = [&](const std::array<int, 3>& p) {
+    return (std::size_t(p[2]) * points[1] + p[1]) * points[0] + p[0];
+  };
   struct Part {
-    std::size_t from;   ///< of the cell's lowest corner's point
+    std::size_t from;  ///< of the cell's lowest corner's point
     int slot, i, j;
     double stiffness, rest_length;
   };

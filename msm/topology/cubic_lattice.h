@@ -1,7 +1,7 @@
 // Cubic lattices by superposition of cells: what cells share merges, so boundaries follow by themselves.
 #pragma once
 
-#include "msm/network.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 

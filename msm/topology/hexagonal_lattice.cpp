@@ -40,7 +40,8 @@ std::vector<std::array<int, 3>> triangles_of(const Rows& r) {
 Network hexagonal_lattice(const Mesh& mesh, double edge) {
   if (!(edge > 0)) throw std::invalid_argument(fmt::format("edge: {} m, must be positive", edge));
   const Vec3 lower = mesh.nodes.colwise().minCoeff(), size = mesh.nodes.colwise().maxCoeff().transpose() - lower;
-  if (size[0] * size[1] / (edge * edge) > most_nodes) throw std::invalid_argument(fmt::format("edge: {:.3g} m makes too many nodes", edge));
+  if (size[0] * size[1] / (edge * edge) > most_nodes)
+    throw std::invalid_argument(fmt::format("edge: {:.3g} m makes too many nodes", edge));
   const int rows = std::max(1, static_cast<int>(std::lround(size[1] / (edge * std::sqrt(3.0) / 2))));
   const double height = size[1] / rows, a = height * 2 / std::sqrt(3.0);
   const int columns = std::max(1, static_cast<int>(std::lround(size[0] / a + 0.5)));
@@ -52,7 +53,8 @@ Network hexagonal_lattice(const Mesh& mesh, double edge) {
   const double start = lower[0] + (size[0] - columns * a) / 2;
   for (int row = 0; row <= rows; ++row)
     for (int n = grid.first(row); n < grid.first(row + 1); ++n)
-      network.X.row(n) << start + a * (n - grid.first(row) + 0.5 * (row % 2)), lower[1] + height * row, lower[2] + size[2] / 2;
+      network.X.row(n) << start + a * (n - grid.first(row) + 0.5 * (row % 2)), lower[1] + height * row,
+          lower[2] + size[2] / 2;
   network.triangles = triangles_of(grid);
   network.volume = Eigen::VectorXd::Zero(network.X.rows());
   std::vector<Spring> springs;

@@ -1,7 +1,7 @@
 // Planar networks of equilateral triangles, each node with six neighbours.
 #pragma once
 
-#include "msm/network.h"
+#include "msm/topology/network.h"
 
 namespace springproof {
 

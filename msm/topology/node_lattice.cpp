@@ -42,7 +42,8 @@ Network node_lattice(const Mesh& mesh, const CubicPattern& pattern) {
         for (int di = -1; di <= 1; ++di) {
           const int axes = std::abs(di) + std::abs(dj) + std::abs(dk);
           const int other = cell_at(i + di, j + dj, k + dk);
-          if (other > c && stiffness[axes] > 0) springs.push_back({c, other, stiffness[axes], edge * std::sqrt(double(axes))});
+          if (other > c && stiffness[axes] > 0)
+            springs.push_back({c, other, stiffness[axes], edge * std::sqrt(double(axes))});
         }
   }
   network.springs = merge_springs(std::move(springs));

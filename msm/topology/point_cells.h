@@ -12,11 +12,11 @@
 namespace springproof {
 
 struct PointCells {
-  Vec3 lower, size;             ///< box [m]
-  bool periodic;                ///< the box repeats along every axis
-  std::array<int, 3> count;     ///< cells along each axis, none narrower than the edge asked for
-  std::vector<int> first;       ///< of a cell, -1: empty
-  std::vector<int> next;        ///< point in the same cell, -1: last
+  Vec3 lower, size;          ///< box [m]
+  bool periodic;             ///< the box repeats along every axis
+  std::array<int, 3> count;  ///< cells along each axis, none narrower than the edge asked for
+  std::vector<int> first;    ///< of a cell, -1: empty
+  std::vector<int> next;     ///< point in the same cell, -1: last
 
   /// A periodic box needs three cells along each axis, or a neighbour would be met twice.
   PointCells(const Vec3& low, const Vec3& high, double edge, bool repeats)
@@ -24,12 +24,14 @@ struct PointCells {
     for (int a = 0; a < 3; ++a) count[a] = static_cast<int>(std::clamp(std::floor(size[a] / edge), 1.0, 1e6));
     if (periodic && *std::min_element(count.begin(), count.end()) < 3)
       throw std::invalid_argument("a periodic box must be at least three times as wide as the longest spring");
-    if (double(count[0]) * count[1] * count[2] > 1e9) throw std::invalid_argument("the nodes are too small for the body");
+    if (double(count[0]) * count[1] * count[2] > 1e9)
+      throw std::invalid_argument("the nodes are too small for the body");
     first.assign(std::size_t(count[0]) * count[1] * count[2], -1);
   }
 
   int cell_along(int axis, double x) const {
-    return static_cast<int>(std::clamp(std::floor((x - lower[axis]) / size[axis] * count[axis]), 0.0, count[axis] - 1.0));
+    return static_cast<int>(
+        std::clamp(std::floor((x - lower[axis]) / size[axis] * count[axis]), 0.0, count[axis] - 1.0));
   }
   std::size_t number(int i, int j, int k) const { return (std::size_t(k) * count[1] + j) * count[0] + i; }
 
@@ -44,8 +46,10 @@ struct PointCells {
   Vec3 nearest_image(Vec3 d) const {
     if (periodic)
       for (int a = 0; a < 3; ++a) {
-        if (d[a] > size[a] / 2) d[a] -= size[a];
-        else if (d[a] < -size[a] / 2) d[a] += size[a];
+        if (d[a] > size[a] / 2)
+          d[a] -= size[a];
+        else if (d[a] < -size[a] / 2)
+          d[a] += size[a];
       }
     return d;
   }

@@ -65,9 +65,10 @@ struct Boxes {
       });
       for (std::uint32_t c = 0; c < 8; ++c) {
         const Vec3 shift = edge.cwiseProduct(Vec3(c & 1, c >> 1 & 1, c >> 2) - Vec3(0.5, 0.5, 0.5)) / 2;
-        const bool covered = std::any_of(away.begin(), away.end(), [&](const Vec3& d) {  // the corner farthest from the node
-          return ((d + shift).cwiseAbs() + edge / 4).squaredNorm() < reach;
-        });
+        const bool covered =
+            std::any_of(away.begin(), away.end(), [&](const Vec3& d) {  // the corner farthest from the node
+              return ((d + shift).cwiseAbs() + edge / 4).squaredNorm() < reach;
+            });
         if (!covered) finer.push_back({2 * part[0] + (c & 1), 2 * part[1] + (c >> 1 & 1), 2 * part[2] + (c >> 2)});
       }
     }
@@ -166,7 +167,8 @@ int fill_box(Sample& sample, const Vec3& lower, const Vec3& upper, const std::fu
              long wanted) {
   std::array<std::uint32_t, 3> count;
   for (int a = 0; a < 3; ++a)
-    count[a] = static_cast<std::uint32_t>(std::clamp(std::ceil((upper[a] - lower[a]) / sample.min_distance), 1.0, 65535.0));
+    count[a] =
+        static_cast<std::uint32_t>(std::clamp(std::ceil((upper[a] - lower[a]) / sample.min_distance), 1.0, 65535.0));
   Boxes boxes{lower, (upper - lower).cwiseQuotient(Vec3(count[0], count[1], count[2])), inside, {}};
   for (std::uint32_t k = 0; k < count[2]; ++k)
     for (std::uint32_t j = 0; j < count[1]; ++j)

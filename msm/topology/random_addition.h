@@ -30,7 +30,8 @@ double uniform(std::mt19937_64& random);
 // are drawn in the rest, which is subdivided when few draws succeed.  So jamming is known and takes O(N).
 // What stays uncovered below 2^-16 of the first parts counts as covered.
 
-/// In a box; `inside` (empty: everywhere) tells where points may lie.  Parts with corners and centre outside are dropped.
+/// In a box; `inside` (empty: everywhere) tells where points may lie.  Parts with corners and centre outside are
+/// dropped.
 int fill_box(Sample& sample, const Vec3& lower, const Vec3& upper, const std::function<bool(const Vec3&)>& inside,
              long wanted);
 int fill_triangles(Sample& sample, const std::vector<std::array<Vec3, 3>>& triangles, long wanted);

@@ -28,7 +28,8 @@ void check(const RandomParameters& p, double volume) {
   require(p.min_length > 0, fmt::format("min_length: minL/l = {}, must be positive", p.min_length));
   require(p.min_length >= 0.05, fmt::format("min_length: minL/l = {}, below 0.05 nodes may coincide", p.min_length));
   require(!p.max_length || (*p.max_length > p.min_length && *p.max_length <= 4),
-          fmt::format("max_length: maxL/l = {}, must be above minL/l = {} and at most 4", p.max_length.value_or(0), p.min_length));
+          fmt::format("max_length: maxL/l = {}, must be above minL/l = {} and at most 4", p.max_length.value_or(0),
+                      p.min_length));
   require(p.springs_per_node >= 6 && p.springs_per_node <= 60,
           fmt::format("springs_per_node: {}, must be 6 (fewer cannot hold a node) to 60", p.springs_per_node));
   require(std::abs(p.stiffness_exponent) <= 10,
@@ -49,10 +50,11 @@ NetworkRepair repair_or_refuse(std::vector<Vec3>& points, std::vector<Bond>& bon
   const double before = double(points.size());
   const NetworkRepair counts = repair(points, bonds, box);
   if (points.empty() || counts.floppy_nodes + counts.detached_nodes > largest_loss * before)
-    throw std::invalid_argument(fmt::format(
-        "springs_per_node: {} of {} nodes are held by too few springs and {} hang apart; choose more springs per node (or a "
-        "larger max_length), or a smaller spacing",
-        counts.floppy_nodes, before, counts.detached_nodes));
+    throw std::invalid_argument(
+        fmt::format("springs_per_node: {} of {} nodes are held by too few springs and {} hang apart; choose more "
+                    "springs per node (or a "
+                    "larger max_length), or a smaller spacing",
+                    counts.floppy_nodes, before, counts.detached_nodes));
   return counts;
 }
 
@@ -73,10 +75,12 @@ void add_ghosts(const std::vector<Vec3>& points, std::vector<Bond>& bonds, const
   network.X.conservativeResize(network.X.rows() + static_cast<Eigen::Index>(images.size()), 3);
   for (std::size_t g = 0; g < images.size(); ++g)
     network.X.row(static_cast<Eigen::Index>(points.size() + g)) = images[g].transpose();
-  std::sort(bonds.begin(), bonds.end(), [](const Bond& a, const Bond& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
+  std::sort(bonds.begin(), bonds.end(),
+            [](const Bond& a, const Bond& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
 }
 
-Network assemble(const std::vector<Vec3>& points, std::vector<Bond> bonds, const RandomParameters& parameters, const Vec3* box) {
+Network assemble(const std::vector<Vec3>& points, std::vector<Bond> bonds, const RandomParameters& parameters,
+                 const Vec3* box) {
   Network network;
   network.X.resize(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t n = 0; n < points.size(); ++n) network.X.row(static_cast<Eigen::Index>(n)) = points[n].transpose();
@@ -106,9 +110,10 @@ Network random_network(const Region& region, const RandomParameters& parameters,
   const double max_length = bulk_max_length(parameters);
   if (!parameters.surface_nodes)
     check(parameters, (region.upper - region.lower + Vec3::Constant(2 * max_length)).prod());
-  std::vector<Vec3> points = spatially_sorted(parameters.surface_nodes ? nodes_from_surface(region, parameters)
-                                                                      : nodes_cut_by_surface(region, parameters, max_length),
-                                              max_length);
+  std::vector<Vec3> points =
+      spatially_sorted(parameters.surface_nodes ? nodes_from_surface(region, parameters)
+                                                : nodes_cut_by_surface(region, parameters, max_length),
+                       max_length);
   PointCells cells(region.lower, region.upper, max_length, false);
   for (const Vec3& p : points) cells.add(p);
   std::vector<Bond> bonds = bonds_within(points, cells, max_length, region.inside);

@@ -1,10 +1,11 @@
-// Disordered networks: random sequential addition of nodes, springs between all that are close (Kot et al. 2014, sec. 3.3).
+// Disordered networks: random sequential addition of nodes, springs between all that are close (Kot et al. 2014,
+// sec. 3.3).
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "msm/network.h"
+#include "msm/topology/network.h"
 #include "msm/topology/region.h"
 
 namespace springproof {
@@ -16,8 +17,8 @@ struct RandomParameters {
   double springs_per_node = 15;      ///< mean number <S> inside the bulk
   double stiffness_exponent = 0;     ///< p: k = (L/l)^-p [N/m]
   std::uint64_t seed = 1;            ///< the same seed gives the same network, to the last bit, on every machine
-  bool windows = false;              ///< nodes in stages, by spherical windows, as the paper; without surface nodes only
-  bool surface_nodes = true;         ///< nodes on the surface first; false: the surface cuts the sample, as in the paper
+  bool windows = false;       ///< nodes in stages, by spherical windows, as the paper; without surface nodes only
+  bool surface_nodes = true;  ///< nodes on the surface first; false: the surface cuts the sample, as in the paper
 };
 
 /// Nodes removed because the network cannot hold them.

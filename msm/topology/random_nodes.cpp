@@ -28,10 +28,10 @@ void require_placed(long placed, long wanted, const RandomParameters& parameters
   if (placed >= wanted) return;
   // A jammed sample holds so many nodes per minL^3.
   const double largest = parameters.min_length * std::cbrt(double(placed) / double(wanted));
-  throw std::invalid_argument(fmt::format(
-      "min_length: minL/l = {:.4g} was asked for, but random addition jams at {} of {} nodes; "
-      "this sample has room for minL/l = {:.3f} at most",
-      parameters.min_length, others + placed, others + wanted, std::floor(1000 * largest) / 1000));
+  throw std::invalid_argument(
+      fmt::format("min_length: minL/l = {:.4g} was asked for, but random addition jams at {} of {} nodes; "
+                  "this sample has room for minL/l = {:.3f} at most",
+                  parameters.min_length, others + placed, others + wanted, std::floor(1000 * largest) / 1000));
 }
 
 double length(const std::vector<std::array<Vec3, 2>>& edges) {
@@ -60,7 +60,13 @@ void fill_windows(Sample& sample, const Vec3& lower, const Vec3& upper, double d
         const Vec3 centre = lower + step * Vec3(i + 0.5, j + 0.5, k + 0.5);
         const auto in_window = [&](const Vec3& x) { return (x - centre).squaredNorm() < radius * radius; };
         long present = 0;
-        sample.cells.any_near(centre, [&](int p) { present += in_window(sample.points[p]); return false; }, 4);
+        sample.cells.any_near(
+            centre,
+            [&](int p) {
+              present += in_window(sample.points[p]);
+              return false;
+            },
+            4);
         const long wanted = static_cast<long>(expected + uniform(sample.random)) - present;
         const Vec3 reach = Vec3::Constant(radius);
         if (wanted > 0) fill_box(sample, centre - reach, centre + reach, in_window, wanted);
@@ -77,7 +83,8 @@ std::vector<Vec3> nodes_from_surface(const Region& region, const RandomParameter
     if (sample.is_free(corner)) sample.add(corner);
   const double corners = double(sample.points.size());
   const double edges = fill_edges(sample, features.edges, count_for(length(features.edges) / l - corners / 2));
-  const double faces = fill_triangles(sample, features.triangles, count_for(area(features.triangles) / (l * l) - edges / 2 - corners / 4));
+  const double faces = fill_triangles(sample, features.triangles,
+                                      count_for(area(features.triangles) / (l * l) - edges / 2 - corners / 4));
   const double weight = surface_weight * parameters.min_length;
   const long inner = count_for(region.volume / (l * l * l) - weight * (faces + edges / 2 + corners / 4));
   const long placed = fill_box(sample, region.lower, region.upper, region.inside, inner);
@@ -93,7 +100,9 @@ std::vector<Vec3> nodes_cut_by_surface(const Region& region, const RandomParamet
   // Walls would draw nodes to themselves; a periodic sample has none.  Windows leave their walls outside the box.
   Sample sample(lower, upper, parameters.min_length * parameters.spacing, !parameters.windows, parameters.seed);
   if (parameters.windows) fill_windows(sample, lower, upper, density);
-  const auto in_box = [&](const Vec3& x) { return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all(); };
+  const auto in_box = [&](const Vec3& x) {
+    return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
+  };
   const long present = std::count_if(sample.points.begin(), sample.points.end(), in_box);
   require_placed(present + fill_box(sample, lower, upper, {}, wanted - present), wanted, parameters);
   std::vector<Vec3> nodes;

@@ -33,7 +33,8 @@ bool edge_to_the_right(const RayParity& s, int i, int j, const Vec3& p) {
 }
 
 bool line_meets(const RayParity& s, const std::array<int, 3>& t, const Vec3& p) {
-  return edge_to_the_right(s, t[0], t[1], p) ^ edge_to_the_right(s, t[1], t[2], p) ^ edge_to_the_right(s, t[2], t[0], p);
+  return edge_to_the_right(s, t[0], t[1], p) ^ edge_to_the_right(s, t[1], t[2], p) ^
+         edge_to_the_right(s, t[2], t[0], p);
 }
 
 bool is_above(const RayParity& s, const std::array<int, 3>& t, const Vec3& p) {
@@ -87,7 +88,8 @@ void fill_buckets(RayParity& s) {
 void classify_cells(RayParity& s) {
   s.cell.assign(std::size_t(s.count[0]) * s.count[1] * s.count[2], outside_cell);
   const auto number = [&](int i, int j, int k) { return (std::size_t(k) * s.count[1] + j) * s.count[0] + i; };
-  for (const auto& t : s.triangles) for_cells_of(s, t, [&](int i, int j, int k) { s.cell[number(i, j, k)] = surface_cell; });
+  for (const auto& t : s.triangles)
+    for_cells_of(s, t, [&](int i, int j, int k) { s.cell[number(i, j, k)] = surface_cell; });
   for (int k = 0; k < s.count[2]; ++k)
     for (int j = 0; j < s.count[1]; ++j)
       for (int i = 0; i < s.count[0]; ++i) {

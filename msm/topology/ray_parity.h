@@ -4,16 +4,16 @@
 #include <array>
 #include <vector>
 
-#include "meshes/outer_facets.h"
+#include "meshes/locate/outer_facets.h"
 
 namespace springproof {
 
 /// Counts how often a ray along +z crosses the surface.  Triangles lie in buckets over the x-y plane; cells of a coarse
 /// grid that no triangle meets are classified once.
 struct RayParity {
-  std::vector<Vec3> points;                    ///< [m]
-  std::vector<std::array<int, 3>> triangles;   ///< closed: every edge belongs to an even number of triangles
-  double tolerance = 0;                        ///< points within this distance of the surface are inside [m]
+  std::vector<Vec3> points;                   ///< [m]
+  std::vector<std::array<int, 3>> triangles;  ///< closed: every edge belongs to an even number of triangles
+  double tolerance = 0;                       ///< points within this distance of the surface are inside [m]
 
   Vec3 lower = Vec3::Zero(), edge = Vec3::Ones();  ///< of the grid [m]
   std::array<int, 3> count{};                      ///< buckets are the columns of this grid

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "meshes/outer_facets.h"
+#include "meshes/locate/outer_facets.h"
 #include "meshes/volume.h"
 #include "msm/topology/point_cells.h"
 #include "msm/topology/ray_parity.h"
@@ -48,7 +48,9 @@ void add_surface(const Mesh& mesh, Region& region) {
 }
 
 std::function<bool(const Vec3&)> inside_grid(const Grid& grid, double tolerance) {
-  const auto number = [count = grid.cells](int i, int j, int k) { return (std::size_t(k) * count[1] + j) * count[0] + i; };
+  const auto number = [count = grid.cells](int i, int j, int k) {
+    return (std::size_t(k) * count[1] + j) * count[0] + i;
+  };
   auto filled = std::make_shared<std::vector<char>>(std::size_t(grid.cells[0]) * grid.cells[1] * grid.cells[2], 0);
   for (const auto& [i, j, k] : grid.cell_index) (*filled)[number(i, j, k)] = 1;
   return [filled, number, count = grid.cells, origin = grid.origin, spacing = grid.spacing, tolerance](const Vec3& p) {
@@ -84,8 +86,10 @@ void icosahedron(Points& points, Triangles& triangles) {
       for (int c = b + 1; c < 12; ++c) {
         const Vec3 ab = points[b] - points[a], ac = points[c] - points[a], bc = points[c] - points[b];
         if (std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()}) > 5) continue;
-        if (ab.cross(ac).dot(points[a]) > 0) triangles.push_back({a, b, c});
-        else triangles.push_back({a, c, b});
+        if (ab.cross(ac).dot(points[a]) > 0)
+          triangles.push_back({a, b, c});
+        else
+          triangles.push_back({a, c, b});
       }
   for (Vec3& p : points) p /= p.norm();
 }

@@ -10,12 +10,12 @@
 namespace springproof {
 
 struct Region {
-  Vec3 lower, upper;                                 ///< bounding box [m]
-  double volume;                                     ///< [m^3]
-  std::function<bool(const Vec3&)> inside;           ///< boundary included, within 1e-12 of size()
-  std::vector<Vec3> surface_points;                  ///< [m]; empty: no surface known
-  std::vector<std::array<int, 3>> surface_triangles; ///< anticlockwise seen from outside
-  std::vector<Patch> patches = {};                   ///< by numbers of surface points
+  Vec3 lower, upper;                                  ///< bounding box [m]
+  double volume;                                      ///< [m^3]
+  std::function<bool(const Vec3&)> inside;            ///< boundary included, within 1e-12 of size()
+  std::vector<Vec3> surface_points;                   ///< [m]; empty: no surface known
+  std::vector<std::array<int, 3>> surface_triangles;  ///< anticlockwise seen from outside
+  std::vector<Patch> patches = {};                    ///< by numbers of surface points
 
   double size() const { return (upper - lower).norm(); }
 };

@@ -27,7 +27,8 @@ bool is_floppy(const Sums& s) {
 std::vector<Sums> direction_sums(const std::vector<Vec3>& points, const std::vector<Bond>& bonds, const Vec3& box) {
   std::vector<Sums> sums(points.size());
   for (const Bond& bond : bonds) {
-    const Vec3 d = points[bond.j] - points[bond.i] + box.cwiseProduct(Vec3(bond.shift[0], bond.shift[1], bond.shift[2]));
+    const Vec3 d =
+        points[bond.j] - points[bond.i] + box.cwiseProduct(Vec3(bond.shift[0], bond.shift[1], bond.shift[2]));
     const double square = d.squaredNorm();
     for (const int n : {bond.i, bond.j}) {
       Sums& s = sums[n];

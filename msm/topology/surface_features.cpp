@@ -58,7 +58,8 @@ SurfaceFeatures surface_features(const Region& region) {
   }
   for (std::size_t i = 0; i < points.size(); ++i)
     if (is_corner(directions[i])) features.corners.push_back(points[i]);
-  for (const auto& [a, b, c] : region.surface_triangles) features.triangles.push_back({points[a], points[b], points[c]});
+  for (const auto& [a, b, c] : region.surface_triangles)
+    features.triangles.push_back({points[a], points[b], points[c]});
   return features;
 }
 

@@ -6,9 +6,9 @@
 namespace springproof {
 
 struct SurfaceFeatures {
-  std::vector<Vec3> corners;                    ///< where sharp edges end, meet or turn by more than 30 degrees [m]
-  std::vector<std::array<Vec3, 2>> edges;       ///< surface edges with normals more than 30 degrees apart [m]
-  std::vector<std::array<Vec3, 3>> triangles;   ///< the whole surface [m]
+  std::vector<Vec3> corners;                   ///< where sharp edges end, meet or turn by more than 30 degrees [m]
+  std::vector<std::array<Vec3, 2>> edges;      ///< surface edges with normals more than 30 degrees apart [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< the whole surface [m]
 };
 
 SurfaceFeatures surface_features(const Region& region);

@@ -10,8 +10,8 @@ declare -A below=(
   [fem_reference]="problem meshes fem_reference" [comparisons]="problem meshes msm fem_reference comparisons"
 )
 declare -A header=(
-  [problem]=problem/material.h [meshes]=meshes/mesh.h [msm]=msm/network.h
-  [fem_reference]=fem_reference/reference.h [comparisons]=comparisons/results.h
+  [problem]=problem/material.h [meshes]=meshes/mesh.h [msm]=msm/topology/network.h
+  [fem_reference]=fem_reference/reference.h [comparisons]=comparisons/report/results.h
 )
 for module in "${!below[@]}"; do
   paths=(-isystem "$eigen")

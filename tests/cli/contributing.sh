@@ -31,18 +31,18 @@ grep -q '^1 of 1 expectations hold' log || fail "the case is not judged: $(cat l
 
 # A model: the row of the page in the table, and the same by an option of hybmss.
 row=$(awk '/^```cpp$/ { getline; print; exit }' "$page")
-awk -v row="$row" '{ print } /^const std::vector<ModelRow> table = \{/ { print row }' "$source/msm/models.cpp" >models.cpp
+awk -v row="$row" '{ print } /^const std::vector<ModelRow> table = \{/ { print row }' "$source/msm/parameters/model_table.cpp" >model_table.cpp
 flags=(-std=c++20 -O0 -I"$binary/arrows/msm" -I"$binary/arrows/meshes" -I"$binary/arrows/problem" "${includes[@]/#/-isystem}")
 libraries=(-L"$binary/msm" -lmsm -L"$binary/meshes" -lmeshes -L"$binary/problem" -lproblem -ltomlplusplus -lfmt -lz)
 sed -e 's/int main()/int main(int count, char**)/' \
     -e 's/resolve({.*});/resolve(count > 1 ? ModelChoice{"hybmss_1", {}, "", {}} : ModelChoice{"hybmss", {{"face_to_cube", 1.0}}, "", {}});/' \
     "$source/examples/embed_msm.cpp" >bar.cpp
-if "$compiler" "${flags[@]}" bar.cpp models.cpp "${libraries[@]}" -o bar; then
+if "$compiler" "${flags[@]}" bar.cpp model_table.cpp "${libraries[@]}" -o bar; then
   added=$(./bar added)
   chosen=$(./bar)
   [ -n "$added" ] || fail "the new model prints nothing"
   [ "$added" = "$chosen" ] || fail "the new model gives '$added', hybmss with A = 1 '$chosen'"
 else
-  fail "msm/models.cpp does not compile with the new row"
+  fail "msm/parameters/model_table.cpp does not compile with the new row"
 fi
 exit $((failures > 0))

@@ -20,8 +20,7 @@ struct Term {
 double derivative(const Term& t, const Vec3& x, const std::array<int, 3>& orders) {
   double value = t.amplitude;
   for (int j = 0; j < 3; ++j)
-    value *=
-        std::pow(t.k[j] * pi, orders[j]) * std::sin(t.k[j] * pi * x[j] + t.phase[j] + orders[j] * pi / 2);
+    value *= std::pow(t.k[j] * pi, orders[j]) * std::sin(t.k[j] * pi * x[j] + t.phase[j] + orders[j] * pi / 2);
   return value;
 }
 
@@ -83,8 +82,7 @@ double l2_error(const VectorField& u, int degree, double nu, int cells, bool dis
   const fem::Solution solution = fem::solve_grid(problem);
   EXPECT_TRUE(solution.ok) << solution.message;
   NodalVectors exact(problem.points.rows(), 3);
-  for (Eigen::Index i = 0; i < exact.rows(); ++i)
-    exact.row(i) = displacement(u, problem.points.row(i)).transpose();
+  for (Eigen::Index i = 0; i < exact.rows(); ++i) exact.row(i) = displacement(u, problem.points.row(i)).transpose();
   return (solution.displacement - exact).norm() / exact.norm();
 }
 
@@ -116,9 +114,8 @@ std::vector<OrderCase> order_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, FemOrder, testing::ValuesIn(order_cases()), [](const auto& instance) {
-  return fmt::format(
-      "Q{}_{}_{}{:04.0f}", instance.param.degree, instance.param.distorted ? "distorted" : "straight",
-      instance.param.poisson_ratio < 0 ? "minus_" : "", 1e4 * std::abs(instance.param.poisson_ratio));
+  return fmt::format("Q{}_{}_{}{:04.0f}", instance.param.degree, instance.param.distorted ? "distorted" : "straight",
+                     instance.param.poisson_ratio < 0 ? "minus_" : "", 1e4 * std::abs(instance.param.poisson_ratio));
 });
 
 }  // namespace

@@ -26,8 +26,7 @@ TEST_P(FemPatchTest, AffineFieldIsExactInside) {
   Eigen::Matrix3d gradient;
   gradient << 1e-3, 2e-3, -0.5e-3, -1.5e-3, 0.7e-3, 0.3e-3, 0.9e-3, -1.1e-3, -0.6e-3;
   const Vec3 offset(0.01, -0.02, 0.03);
-  for (const std::string& face : test::block_faces)
-    problem.loads.push_back(PrescribedAffine{face, gradient, offset});
+  for (const std::string& face : test::block_faces) problem.loads.push_back(PrescribedAffine{face, gradient, offset});
   problem.points = test::points_inside(size, 200);
 
   const fem::Solution solution = fem::solve_grid(problem);
@@ -50,9 +49,8 @@ std::vector<PatchCase> patch_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, FemPatchTest, testing::ValuesIn(patch_cases()), [](const auto& instance) {
-  return fmt::format(
-      "Q{}_{}_{}{:04.0f}", instance.param.degree, instance.param.distorted ? "distorted" : "straight",
-      instance.param.poisson_ratio < 0 ? "minus_" : "", 1e4 * std::abs(instance.param.poisson_ratio));
+  return fmt::format("Q{}_{}_{}{:04.0f}", instance.param.degree, instance.param.distorted ? "distorted" : "straight",
+                     instance.param.poisson_ratio < 0 ? "minus_" : "", 1e4 * std::abs(instance.param.poisson_ratio));
 });
 
 }  // namespace

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "msm/calibrate.h"
-#include "msm/measure/bulk_calibration.h"
+#include "msm/dynamics/dynamics.h"
 #include "msm/measure/moduli.h"
 #include "msm/measure/stability.h"
-#include "msm/solve/dynamics.h"
-#include "msm/solve/equilibrium.h"
+#include "msm/parameters/calibrate.h"
+#include "msm/periodic/bulk_calibration.h"
+#include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 
 namespace springproof {
@@ -36,7 +36,8 @@ TEST(EmsmModuli, OfALatticeAreExactInEveryFormButThePublished) {
       }
       const MeasuredModuli plain = measure_moduli(emsm(Dispersion::published), m, cells);
       const double E = plain.youngs_modulus / 1e4;
-      EXPECT_GT(std::abs(plain.poisson_ratio - nu) + std::abs(E - 1), 1e-3) << nu;  // counts halves and quarters as springs
+      EXPECT_GT(std::abs(plain.poisson_ratio - nu) + std::abs(E - 1), 1e-3)
+          << nu;  // counts halves and quarters as springs
       EXPECT_GT(E, 0.88);
       EXPECT_LT(E, 1.08);
     }
@@ -76,7 +77,8 @@ TEST(NetworkMultigrid, IterationsDoNotGrowWithTheNetwork) {
 /// |forces + loads| on free unknowns, of the forces law itself at the small displacement t u.
 double unbalanced(const Solved& s) {
   const double t = 1e-7 / s.state.displacement.cwiseAbs().maxCoeff();
-  NodalVectors f = forces(s.built.model, s.built.model.network.X + t * s.state.displacement) + t * s.conditions.external;
+  NodalVectors f =
+      forces(s.built.model, s.built.model.network.X + t * s.state.displacement) + t * s.conditions.external;
   for (Eigen::Index i = 0; i < f.size(); ++i)
     if (s.conditions.fixed[i]) f.data()[i] = 0;
   return f.norm() / (t * s.conditions.external.norm());
@@ -88,7 +90,8 @@ TEST(NetworkMultigrid, UnsymmetricFormsConvergeOnABodyHeldAtAPoint) {
   for (double nu : {0.25, 0.49}) {
     const EmbeddedModel built = build_embedded(emsm(Dispersion::published), mesh, {1e4, nu, density});
     const std::optional<double> free;
-    const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, free, free}}, PrescribedDisplacement{"x_max", {0.016, free, free}}};
+    const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, free, free}},
+                                     PrescribedDisplacement{"x_max", {0.016, free, free}}};
     BoundaryConditions bc = transfer(loads, mesh, built.embedding, built.model.network, density, Kinematics::linear);
     hold_free_motions(built.model.network.X, bc);
     const Equilibrium e = solve_linear(built.model, bc, {LinearSolver::multigrid, 1e-10, 300});
@@ -114,7 +117,8 @@ TEST(NetworkMultigrid, UnsymmetricFormsTakeFewStepsOverTheSymmetricOne) {
     }
 }
 
-// An endless sample that the calibration has not seen has the material's moduli; one sample of 1000 nodes varies by 1 %.
+// An endless sample that the calibration has not seen has the material's moduli; one sample of 1000 nodes varies by 1
+// %.
 TEST(BulkCalibration, HoldsForOtherSamples) {
   for (double nu : {-0.5, 0.0, 0.25, 0.4, 0.49}) {
     const IsotropicMaterial m{1e4, nu, density};
@@ -158,7 +162,8 @@ TEST(BulkCalibration, IsContinuousWhereTheWeightsChange) {
   const ModelParameters p = random_emsm(10);
   const double own = springs_poisson_ratio(p);
   EXPECT_GT(own, 0.27);
-  const BulkCalibration below = calibrate_in_bulk(p, {1e4, own - 1e-5, density}), above = calibrate_in_bulk(p, {1e4, own + 1e-5, density});
+  const BulkCalibration below = calibrate_in_bulk(p, {1e4, own - 1e-5, density}),
+                        above = calibrate_in_bulk(p, {1e4, own + 1e-5, density});
   EXPECT_FALSE(exact_volumes(p, {1e4, own - 1e-5, density}));
   EXPECT_TRUE(exact_volumes(p, {1e4, own + 1e-5, density}));
   EXPECT_NEAR(below.q, 0, 1e-3);
@@ -167,7 +172,8 @@ TEST(BulkCalibration, IsContinuousWhereTheWeightsChange) {
 }
 
 TEST(BulkCalibration, ReachesTheEndsOfPoissonsRatio) {
-  for (double nu : {-0.99, 0.49}) EXPECT_NEAR(measure_moduli(random_emsm(15), {1e4, nu, density}).poisson_ratio, nu, 0.005);
+  for (double nu : {-0.99, 0.49})
+    EXPECT_NEAR(measure_moduli(random_emsm(15), {1e4, nu, density}).poisson_ratio, nu, 0.005);
 }
 
 // What is claimed is of the q and the weights that the model has, and a free block agrees.
@@ -193,7 +199,8 @@ TEST(BulkCalibration, SaysThatWeightsKLSaturate) {
   }
 }
 
-// A negative energy of exact volumes outweighs the springs where surface nodes lack some; k L, the default there, does not.
+// A negative energy of exact volumes outweighs the springs where surface nodes lack some; k L, the default there, does
+// not.
 TEST(EmsmWeights, BelowOneQuarterAreKLWhereExactVolumesAreUnstable) {
   const IsotropicMaterial m{1e4, -0.5, density};
   ModelParameters centred = test::model("emsm_centred");
@@ -216,7 +223,8 @@ TEST(BlockStability, TellsWhoFlutters) {
 
 TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
   const Mesh mesh = block_mesh({2, 1, 1}, {6, 3, 3});
-  const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"x_max", {-0.1, 0.2, 0.0}}};
+  const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}},
+                                   PrescribedDisplacement{"x_max", {-0.1, 0.2, 0.0}}};
   for (const char* name : {"emsm", "emsm_random"})
     for (double nu : {-0.3, 0.4})
       for (Dispersion form : {Dispersion::symmetric, Dispersion::published}) {
@@ -225,7 +233,9 @@ TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
         p.homogenised = false;
         const EmbeddedModel built = build_embedded(p, mesh, {1e5, nu, density});
         const auto path_to = [&](double size) {
-          return [&, size](double f) { return transfer(loads, mesh, built.embedding, built.model.network, density, Kinematics::finite, size * f); };
+          return [&, size](double f) {
+            return transfer(loads, mesh, built.embedding, built.model.network, density, Kinematics::finite, size * f);
+          };
         };
         const Equilibrium newton = solve_finite(built.model, path_to(1));
         ASSERT_TRUE(newton.ok) << name << " nu = " << nu << ": " << newton.message;
@@ -238,9 +248,11 @@ TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
         ASSERT_TRUE(run.state.ok) << name << " nu = " << nu << ": " << run.state.message;
         EXPECT_LE((run.state.displacement - newton.displacement).norm(), 1e-6 * newton.displacement.norm());
         // Strains of 1e-4: at 1e-5 the round-off of positions already reaches the tolerance of 1e-9 on forces.
-        const Equilibrium small = solve_finite(built.model, path_to(1e-3)), linear = solve_linear(built.model, path_to(1e-3)(1));
+        const Equilibrium small = solve_finite(built.model, path_to(1e-3)),
+                          linear = solve_linear(built.model, path_to(1e-3)(1));
         ASSERT_TRUE(small.ok) << name << " nu = " << nu << " form " << static_cast<int>(form) << ": " << small.message;
-        ASSERT_TRUE(linear.ok) << name << " nu = " << nu << " form " << static_cast<int>(form) << ": " << linear.message;
+        ASSERT_TRUE(linear.ok) << name << " nu = " << nu << " form " << static_cast<int>(form) << ": "
+                               << linear.message;
         EXPECT_LE((small.displacement - linear.displacement).norm(), 1e-3 * linear.displacement.norm());
       }
 }

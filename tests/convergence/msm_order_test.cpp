@@ -1,10 +1,11 @@
-// Observed order of the lattices under refinement, and what the hourglass correction gains: a cantilever under its weight.
+// Observed order of the lattices under refinement, and what the hourglass correction gains: a cantilever under its
+// weight.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <utility>
 
-#include "msm/solve/equilibrium.h"
+#include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 
 namespace springproof {
@@ -34,8 +35,8 @@ TEST(Order, OfTheSpringLatticesIsTwoInBending) {
 
 TEST(HourglassCorrection, TakesMostOfTheBendingErrorAway) {
   // What is left at nu = 0.499 is the clamped end: there the lattice resolves a boundary layer, not bending.
-  for (const auto& [nu, left] : {std::pair(-0.5, 0.1), std::pair(0.0, 0.1), std::pair(0.25, 0.15), std::pair(0.4, 0.3),
-                                 std::pair(0.499, 0.4)}) {
+  for (const auto& [nu, left] :
+       {std::pair(-0.5, 0.1), std::pair(0.0, 0.1), std::pair(0.25, 0.15), std::pair(0.4, 0.3), std::pair(0.499, 0.4)}) {
     const double converged = tip("hybmss_bt", nu, 12);
     const double corrected = tip("hybmss_bt", nu, 2) - converged, plain = tip("hybmss", nu, 2) - converged;
     EXPECT_LE(std::abs(corrected), left * std::abs(plain)) << "nu = " << nu;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "msm/measure/moduli.h"
-#include "msm/solve/equilibrium.h"
+#include "msm/statics/equilibrium.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
@@ -49,7 +49,8 @@ TEST(PatchTestSolvers, EverySolverAgrees) {
   for (double A : {0.25, 1.0, 2.0, 8.0}) {
     ModelParameters p = test::model("hybmss");
     p.face_to_cube = A;
-    for (double nu : {-0.9, 0.0, 0.4}) EXPECT_LE(patch_error(p, nu, {11, 7, 9}, LinearSolver::multigrid), test::patch_test);
+    for (double nu : {-0.9, 0.0, 0.4})
+      EXPECT_LE(patch_error(p, nu, {11, 7, 9}, LinearSolver::multigrid), test::patch_test);
     for (double nu : {0.45, 0.499, 0.4999})
       EXPECT_LE(patch_error(p, nu, {11, 7, 9}, LinearSolver::mixed_multigrid), test::patch_test);
   }
@@ -70,8 +71,7 @@ TEST_P(Moduli, ComeBackFromABlock) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Moduli, testing::ValuesIn(test::model_names()),
-                         [](const auto& i) { return i.param; });
+INSTANTIATE_TEST_SUITE_P(Models, Moduli, testing::ValuesIn(test::model_names()), [](const auto& i) { return i.param; });
 
 TEST(ModuliOfSprings, AreAlwaysThoseOfOneQuarter) {
   const MeasuredModuli m = measure_moduli(test::model("msm_18"), {1e4, 0.4, 1000});

@@ -19,7 +19,6 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace springproof;
-  return fuzz::read_or_refuse<std::exception>([&] {
-    fem::solutions_from_json(nlohmann::json::from_cbor(fuzz::view(data, size)));
-  });
+  return fuzz::read_or_refuse<std::exception>(
+      [&] { fem::solutions_from_json(nlohmann::json::from_cbor(fuzz::view(data, size))); });
 }

@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "fuzz/reader.h"
-#include "meshes/locate.h"
-#include "meshes/mesher_exchange.h"
-#include "meshes/outer_facets.h"
+#include "meshes/locate/locate.h"
+#include "meshes/locate/outer_facets.h"
+#include "meshes/mesher/mesher_exchange.h"
 
 namespace {
 
@@ -36,7 +36,8 @@ springproof::MeshedBody example() {
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  return springproof::fuzz::write_seed([](const char* file) { std::ofstream(file, std::ios::binary) << to_cbor(example()); });
+  return springproof::fuzz::write_seed(
+      [](const char* file) { std::ofstream(file, std::ios::binary) << to_cbor(example()); });
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,8 +3,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "comparisons/checksum.h"
-#include "comparisons/part_file.h"
+#include "comparisons/run/checksum.h"
+#include "comparisons/run/part_file.h"
 #include "fuzz/reader.h"
 
 namespace {
@@ -15,7 +15,8 @@ const std::string stamp = "a stamp";
 
 bool load(std::string_view bytes) {
   static const int file = memfd_create("part", 0);
-  fuzz::require(ftruncate(file, 0) == 0 && pwrite(file, bytes.data(), bytes.size(), 0) == ssize_t(bytes.size()), "the bytes can be given");
+  fuzz::require(ftruncate(file, 0) == 0 && pwrite(file, bytes.data(), bytes.size(), 0) == ssize_t(bytes.size()),
+                "the bytes can be given");
   return load_part(fmt::format("/proc/self/fd/{}", file), stamp).has_value();
 }
 
@@ -32,8 +33,14 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
   return fuzz::write_seed([](const char* file) {
     Part part;
     part.runs.push_back({.model = "hybmss", .kind = "msm", .cells = {2, 2, 2}, .ok = true});
-    part.rows.push_back({.case_name = "case", .model = "hybmss", .cells = {2, 2, 2}, .measure = "volume_change", .value = 0.1, .error = 0.01});
-    part.references.push_back({.measure = "volume_change", .cells = {{1, 1, 1}, {2, 2, 2}}, .values = {1, 2}, .observed_order = 2});
+    part.rows.push_back({.case_name = "case",
+                         .model = "hybmss",
+                         .cells = {2, 2, 2},
+                         .measure = "volume_change",
+                         .value = 0.1,
+                         .error = 0.01});
+    part.references.push_back(
+        {.measure = "volume_change", .cells = {{1, 1, 1}, {2, 2, 2}}, .values = {1, 2}, .observed_order = 2});
     part.pictures.push_back({.model = "fem", .rest = {0, 0, 0}, .displacement = {0, 0, 1}, .quads = {0, 0, 0, -1}});
     part.lines.push_back({.model = "hybmss", .distance = {0.5}, .strain = {1, 2, 3, 4, 5, 6}});
     part.splits.push_back({.model = "hybmss", .measure = "volume_change", .total = 1});

@@ -18,8 +18,8 @@ inline void require(bool holds, const char* what) {
   if (!holds) finding("this does not hold:", what);
 }
 
-/// Runs a reader that may throw a Refusal, and nothing else.  With SPRINGPROOF_FUZZ_READ in the environment (for seeds that are
-/// there to be read) it may not.
+/// Runs a reader that may throw a Refusal, and nothing else.  With SPRINGPROOF_FUZZ_READ in the environment (for seeds
+/// that are there to be read) it may not.
 template <class Refusal, class Reader>
 int read_or_refuse(const Reader& reader) {
   try {
@@ -30,7 +30,8 @@ int read_or_refuse(const Reader& reader) {
   return 0;
 }
 
-/// With SPRINGPROOF_FUZZ_WRITE in the environment: writes a file to start from there, and ends.  For formats that are not written by hand.
+/// With SPRINGPROOF_FUZZ_WRITE in the environment: writes a file to start from there, and ends.  For formats that are
+/// not written by hand.
 template <class Writer>
 int write_seed(const Writer& writer) {
   if (const char* file = std::getenv("SPRINGPROOF_FUZZ_WRITE")) {

@@ -1,6 +1,8 @@
 // One suite over the list of laws: what any force law must obey.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "msm/laws/laws.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
@@ -26,9 +28,8 @@ std::vector<Case> cases() {
       const Network network = build_model(p, mesh, material).network;
       const std::string name = suffix + "_A" + std::to_string(static_cast<int>(A));
       all.push_back({"Springs" + name, {network, {Springs{}}}, true});
-      all.push_back({"Hourglass" + name,
-                     {network, {HourglassCorrection{shear_modulus(material), nu, A, true}}},
-                     false});
+      all.push_back(
+          {"Hourglass" + name, {network, {HourglassCorrection{shear_modulus(material), nu, A, true}}}, false});
       for (auto form : {VolumeEnergy::paper, VolumeEnergy::bounded})
         all.push_back({(form == VolumeEnergy::paper ? "VolumePaper" : "VolumeBounded") + name,
                        {network, {VolumeCorrection{kappa(material), form}}},
@@ -39,9 +40,8 @@ std::vector<Case> cases() {
                      {network, {MomentumDispersion{q, Dispersion::share_weighted, spring_shares(network)}}},
                      true});
       all.push_back({"DispersionPublished" + name, {network, {MomentumDispersion{q, Dispersion::published}}}, true});
-      all.push_back({"DispersionTransposed" + name,
-                     {network, {MomentumDispersion{q, Dispersion::published_transposed}}},
-                     true});
+      all.push_back(
+          {"DispersionTransposed" + name, {network, {MomentumDispersion{q, Dispersion::published_transposed}}}, true});
     }
   }
   const Network sheet = test::bent_triangles();
@@ -49,6 +49,13 @@ std::vector<Case> cases() {
     all.push_back({"Angular" + std::string(beta < 0 ? "Negative" : "Positive"), {sheet, {AngularSprings{beta}}}, true});
   all.push_back({"SpringsOfASheet", {sheet, {Springs{}}}, true});
   return all;
+}
+
+TEST(LawSuiteCases, HaveEveryLawOfTheList) {
+  std::set<std::size_t> tested;
+  for (const Case& c : cases())
+    for (const ForceLaw& law : c.model.laws) tested.insert(law.index());
+  EXPECT_EQ(tested.size(), std::variant_size_v<ForceLaw>);
 }
 
 class LawSuite : public testing::TestWithParam<Case> {
@@ -140,8 +147,7 @@ TEST_P(LawSuite, TangentIsSymmetricIfThereIsAnEnergy) {
     EXPECT_GE(asymmetry, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()),
-                         [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()), [](const auto& i) { return i.param.name; });
 
 }  // namespace
 }  // namespace springproof

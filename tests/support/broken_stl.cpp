@@ -87,16 +87,25 @@ std::function<void(const fs::path&)> ascii(Surface (*make)()) {
 const std::vector<BrokenFile>& broken_files() {
   static const std::vector<BrokenFile> files = {
       {"hole", ascii(with_hole), "the surface is open: 3 open edges round 1 hole; the first, of 3 edges, is at", false},
-      {"flipped_facet", ascii(with_a_flipped_facet), "1 facet turned that faced the other way than its neighbours", true},
+      {"flipped_facet", ascii(with_a_flipped_facet), "1 facet turned that faced the other way than its neighbours",
+       true},
       {"duplicate_facet", ascii(with_a_facet_twice), "1 facet removed that was there twice", true},
       {"unwelded", ascii(unwelded), "open edges were closed by welding points up to 0.00034", true},
       {"self_intersecting", ascii(self_intersecting), "of facets cut each other, the first at", false},
-      {"two_shells", [](const fs::path& file) { write_stl_binary(file, both(pyramid_sphere(), moved(pyramid_sphere(), 0.5, {3, 0, 0}))); },
+      {"two_shells",
+       [](const fs::path& file) {
+         write_stl_binary(file, both(pyramid_sphere(), moved(pyramid_sphere(), 0.5, {3, 0, 0})));
+       },
        "2 shells that do not touch (allowed: one body): the largest has 1280 of 2560 facets", false},
       {"without_area", ascii(with_facets_without_area), "1 facet without area removed (the first at", true},
-      {"nan", [](const fs::path& file) { write_edited_ascii(file, [](std::string& t) { t.replace(t.rfind("vertex ") + 7, 3, "nan "); }); },
+      {"nan",
+       [](const fs::path& file) {
+         write_edited_ascii(file, [](std::string& t) { t.replace(t.rfind("vertex ") + 7, 3, "nan "); });
+       },
        ":8959:14: facet 1280: coordinate 'nan", false},
-      {"truncated", [](const fs::path& file) { write_edited_ascii(file, [](std::string& t) { t.resize(t.size() / 2); }); }, "cut off within facet 64", false},
+      {"truncated",
+       [](const fs::path& file) { write_edited_ascii(file, [](std::string& t) { t.resize(t.size() / 2); }); },
+       "cut off within facet 64", false},
       {"empty", [](const fs::path& file) { write_text(file, ""); }, ": is empty", false},
       {"wrong_header",
        [](const fs::path& file) {
@@ -104,7 +113,8 @@ const std::vector<BrokenFile>& broken_files() {
          std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(80).write("\1\1\0\0", 4);
        },
        "says 257 facets, but the file's size is that of 1280 facets", false},
-      {"no_stl", [](const fs::path& file) { write_text(file, "v 0 0 0\nv 1 0 0\nf 1 2 3\n"); }, "is no STL file: its first word is 'v'", false},
+      {"no_stl", [](const fs::path& file) { write_text(file, "v 0 0 0\nv 1 0 0\nf 1 2 3\n"); },
+       "is no STL file: its first word is 'v'", false},
   };
   return files;
 }

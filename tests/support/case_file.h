@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof::test {
 

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCore>
 #include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "msm/network.h"
+#include "msm/topology/network.h"
 
 namespace springproof::test {
 
@@ -115,7 +115,8 @@ inline Moduli block_moduli(const Network& network, const Vec3& lower, const Vec3
     given[3 * n] = upper[0] - lower[0];
   }
   const auto by_y = [&](int a, int b) { return network.X(a, 1) < network.X(b, 1); };
-  const int near = *std::min_element(bottom.begin(), bottom.end(), by_y), far = *std::max_element(bottom.begin(), bottom.end(), by_y);
+  const int near = *std::min_element(bottom.begin(), bottom.end(), by_y),
+            far = *std::max_element(bottom.begin(), bottom.end(), by_y);
   fixed[3 * near + 1] = fixed[3 * near + 2] = fixed[3 * far + 2] = 1;  // rigid motions, no force
   const auto full = stiffness(network, std::vector<char>(fixed.size(), 0));
   Eigen::VectorXd load = -full * given;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "msm/measure/homogenise.h"
+#include "msm/periodic/homogenise.h"
 #include "msm/topology/cubic_lattice.h"
 #include "support/zoo.h"
 

@@ -122,10 +122,11 @@ const Vec3& half_axes() {  // used before the globals of other units exist
 Surface sphere(double radius, int times) {
   const double g = std::numbers::phi;
   Surface s;
-  s.points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-              {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  s.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                 {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  s.points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+              {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  s.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int i = 0; i < times; ++i) {
     std::map<std::pair<int, int>, int> middles;
     const auto middle = [&](int a, int b) {
@@ -147,11 +148,14 @@ Surface sphere(double radius, int times) {
 Surface globe(double radius, int rings, int around) {
   Surface s;
   s.points = {{0, 0, radius}, {0, 0, -radius}};
-  const auto number = [&](int ring, int j) { return ring == 0 ? 0 : ring == rings ? 1 : 2 + (ring - 1) * around + j % around; };
+  const auto number = [&](int ring, int j) {
+    return ring == 0 ? 0 : ring == rings ? 1 : 2 + (ring - 1) * around + j % around;
+  };
   for (int i = 1; i < rings; ++i)
     for (int j = 0; j < around; ++j) {
       const double down = pi * i / rings, turn = 2 * pi * j / around;
-      s.points.push_back(radius * Vec3(std::sin(down) * std::cos(turn), std::sin(down) * std::sin(turn), std::cos(down)));
+      s.points.push_back(radius *
+                         Vec3(std::sin(down) * std::cos(turn), std::sin(down) * std::sin(turn), std::cos(down)));
     }
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < around; ++j) {

@@ -3,11 +3,12 @@
 
 #include <filesystem>
 
-#include "meshes/surface.h"
+#include "meshes/surface/surface.h"
 
 namespace springproof::test {
 
-/// Icosahedron cut `times` times, its points on the sphere about zero: 20 * 4^times facets, volume below 4/3 pi r^3 by O(h^2).
+/// Icosahedron cut `times` times, its points on the sphere about zero: 20 * 4^times facets, volume below 4/3 pi r^3 by
+/// O(h^2).
 Surface sphere(double radius, int times);
 
 /// Of parallels and meridians: needles at the poles, 2 * around * (rings - 1) facets.

@@ -1,5 +1,6 @@
 // STL files for the tests of the command line: good ones, broken ones and a table of these.   write_bodies FOLDER
-//   FOLDER/NAME.stl, FOLDER/broken/NAME.stl, FOLDER/broken.txt: name, "mended" or "refused", what is to be said; by tabs
+//   FOLDER/NAME.stl, FOLDER/broken/NAME.stl, FOLDER/broken.txt: name, "mended" or "refused", what is to be said; by
+//   tabs
 #include <fmt/format.h>
 
 #include <fstream>

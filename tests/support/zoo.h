@@ -74,8 +74,6 @@ inline Network bent_triangles(double edge = 0.5) {
   return network;
 }
 
-inline Eigen::Matrix3d rotation() {
-  return Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
-}
+inline Eigen::Matrix3d rotation() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix(); }
 
 }  // namespace springproof::test

@@ -74,8 +74,15 @@ void plain_step(PlainNode* nodes, long n, const PlainSpring* springs, long m, co
 }  // namespace
 
 BenchKernels bench_kernels() {
-  return {int(Lanes<double>::size()), int(Lanes<float>::size()), fma_rounds<double>, fma_rounds<float>, root_rounds<double>,
-          root_rounds<float>, read, triad, plain_step};
+  return {int(Lanes<double>::size()),
+          int(Lanes<float>::size()),
+          fma_rounds<double>,
+          fma_rounds<float>,
+          root_rounds<double>,
+          root_rounds<float>,
+          read,
+          triad,
+          plain_step};
 }
 
 }  // namespace springproof::bench::SPRINGPROOF_KERNEL_NAMESPACE

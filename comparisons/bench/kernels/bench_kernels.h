@@ -27,7 +27,8 @@ struct BenchKernels {
   /// a = b + s c, n a multiple of 64.
   void (*triad)(double* a, const double* b, const double* c, double s, long n);
   /// One semi-implicit Euler step: forces spring by spring, then v += (dt/m) f, x += dt v; f is zero before and after.
-  void (*plain_step)(PlainNode* nodes, long n, const PlainSpring* springs, long m, const double* dt_over_mass, double dt);
+  void (*plain_step)(PlainNode* nodes, long n, const PlainSpring* springs, long m, const double* dt_over_mass,
+                     double dt);
 };
 
 inline constexpr int fma_per_round = 12, roots_per_round = 8;

@@ -7,7 +7,7 @@
 #include "comparisons/bench/in_child.h"
 #include "comparisons/bench/lammps.h"
 #include "comparisons/bench/relaxation.h"
-#include "msm/solve/equilibrium.h"
+#include "msm/statics/equilibrium.h"
 
 #include <nlohmann/json.hpp>
 
@@ -28,7 +28,8 @@ TEST(PlainLoop, MovesAsTheForcesSay) {
       dt_over_mass.push_back(dt / mass[i]);
     }
     for (const Spring& s : model.network.springs) springs.push_back({s.i, s.j, s.stiffness, s.rest_length});
-    kernels_of(set).plain_step(nodes.data(), long(nodes.size()), springs.data(), long(springs.size()), dt_over_mass.data(), dt);
+    kernels_of(set).plain_step(nodes.data(), long(nodes.size()), springs.data(), long(springs.size()),
+                               dt_over_mass.data(), dt);
     double off = 0, largest = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i)
       for (int c = 0; c < 3; ++c) {
@@ -51,7 +52,9 @@ TEST(Lammps, HasOurForces) {
 
 TEST(Lammps, TakesLongerForMoreSprings) {
   if (!Lammps::available()) GTEST_SKIP() << "no lmp";
-  const auto seconds = [](int n) { return Lammps(lattice("hybmss_cf", {n, n, n}, 0.25).network).seconds_per_step(0.2, 3); };
+  const auto seconds = [](int n) {
+    return Lammps(lattice("hybmss_cf", {n, n, n}, 0.25).network).seconds_per_step(0.2, 3);
+  };
   const double ratio = seconds(16) / seconds(8);  // of springs: 7.6
   EXPECT_GT(ratio, 4);
   EXPECT_LT(ratio, 16);
@@ -64,7 +67,8 @@ TEST(Gamg, FindsOurEquilibrium) {
   const auto answer = in_child([&] {
     const Equilibrium ours = solve_linear(model, conditions);
     const GamgResult gamg = solve_gamg(model, conditions, 1e-10, ours.displacement);
-    return nlohmann::json{{"converged", gamg.converged}, {"iterations", gamg.iterations}, {"difference", gamg.difference}};
+    return nlohmann::json{
+        {"converged", gamg.converged}, {"iterations", gamg.iterations}, {"difference", gamg.difference}};
   });
   EXPECT_TRUE(answer.at("converged"));
   EXPECT_GT(answer.at("iterations"), 1);

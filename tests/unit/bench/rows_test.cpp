@@ -9,7 +9,9 @@
 namespace springproof::bench {
 namespace {
 
-BenchRow row(double value, double baseline, Target target) { return {"dynamics", "a", "10^3", "ns", value, baseline > 0 ? "b" : "", baseline, target}; }
+BenchRow row(double value, double baseline, Target target) {
+  return {"dynamics", "a", "10^3", "ns", value, baseline > 0 ? "b" : "", baseline, target};
+}
 
 TEST(BenchRows, SpeedUpsAreBaselineOverOurs) {
   EXPECT_DOUBLE_EQ(row(2, 10, at_least(5)).judged(), 5);

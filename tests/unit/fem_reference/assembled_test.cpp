@@ -13,8 +13,8 @@ fem::GridProblem leaning(int degree, double nu, const std::string& law) {
   problem.law = law;
   problem.tolerance = 1e-10;
   problem.place = test::shaken_inside(Vec3(1, 1, 2), 0.02);
-  problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}},
-                   PrescribedDisplacement{"z_max", {0.1, 0.05, -0.1}}, Gravity{{0, 1, 0}}, Pressure{"x_max", 50}};
+  problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"z_max", {0.1, 0.05, -0.1}},
+                   Gravity{{0, 1, 0}}, Pressure{"x_max", 50}};
   problem.points = test::points_inside(Vec3(1, 1, 2), 20);
   problem.stress_points = problem.points;
   return problem;
@@ -111,7 +111,8 @@ fem::Solution compressed(const Mesh& mesh, double nu) {
   fem::GridProblem problem = test::fem_block(Vec3(1, 1, 1), {4, 4, 4}, 0, 2, nu);
   problem.coarse = mesh;
   problem.tolerance = 1e-9;
-  problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"z_max", {0.0, 0.0, -0.05}}};
+  problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}},
+                   PrescribedDisplacement{"z_max", {0.0, 0.0, -0.05}}};
   problem.points = NodalVectors(0, 3);
   return fem::solve_grid(problem);
 }
@@ -146,7 +147,8 @@ TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
   shape.weights = Eigen::VectorXd::Constant(points, 0.25) + 0.1 * Eigen::VectorXd::Random(points);
   for (const fem::Form form : {fem::Form::pointwise, fem::Form::mean_dilatation, fem::Form::mixed})
     for (const char* name : {"", "hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"}) {
-      shape.pressures = form == fem::Form::mixed ? Eigen::MatrixXd(Eigen::MatrixXd::Random(points, 2)) : Eigen::MatrixXd(points, 0);
+      shape.pressures =
+          form == fem::Form::mixed ? Eigen::MatrixXd(Eigen::MatrixXd::Random(points, 2)) : Eigen::MatrixXd(points, 0);
       const fem::CellLaw law{fem::law_named(name), form, 0.7, 1.9};
       fem::CellVector x{0.05 * Eigen::MatrixXd::Random(n, 3), 0.1 * Eigen::VectorXd::Random(shape.pressures.cols())};
       double smallest = 1;

@@ -80,8 +80,7 @@ TEST_P(FemFinite, AffineFieldIsExactInside) {
       problem.points = test::points_inside(size, 50);
       const fem::Solution solution = fem::solve_grid(problem);
       ASSERT_TRUE(solution.ok) << solution.message;
-      const NodalVectors exact =
-          (problem.points * gradient.transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3);
+      const NodalVectors exact = (problem.points * gradient.transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3);
       EXPECT_LE((solution.displacement - exact).norm(), test::patch_test * exact.norm());
     }
 }
@@ -177,9 +176,8 @@ TEST(FemFiniteClampedCube, TwistsAsPublished) {
   fem::GridProblem problem = test::fem_block(Vec3(5, 5, 5), {5, 5, 5}, 1, 1, 0.25);
   problem.law = "hencky";
   for (const auto& [degrees, torque] : {std::pair(1.0, 1279.0), std::pair(45.0, 57981.0)}) {
-    problem.loads = {
-        PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}},
-        PrescribedRotation{"z_max", Vec3(2.5, 2.5, 5), Vec3::UnitZ(), degrees * 3.14159265358979 / 180}};
+    problem.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}},
+                     PrescribedRotation{"z_max", Vec3(2.5, 2.5, 5), Vec3::UnitZ(), degrees * 3.14159265358979 / 180}};
     const fem::Solution solution = fem::solve_grid(problem);
     ASSERT_TRUE(solution.ok) << solution.message;
     EXPECT_NEAR(solution.reactions[1].torque[2] / torque, 1, 0.03);

@@ -33,17 +33,13 @@ Matrix tensor(const fem::Voigt& v) {
   return m;
 }
 
-fem::Voigt engineering(const Matrix& m) {
-  return {m(0, 0), m(1, 1), m(2, 2), 2 * m(0, 1), 2 * m(1, 2), 2 * m(0, 2)};
-}
+fem::Voigt engineering(const Matrix& m) { return {m(0, 0), m(1, 1), m(2, 2), 2 * m(0, 1), 2 * m(1, 2), 2 * m(0, 2)}; }
 
 LawResponse at(Law law, const Matrix& F) {
   return fem::respond(law, mu, fem::pressure(law, lambda, fem::dilatation(law, plain(F))).value, plain(F));
 }
 
-Matrix cauchy(Law law, const Matrix& F) {
-  return F * tensor(at(law, F).S) * F.transpose() / F.determinant();
-}
+Matrix cauchy(Law law, const Matrix& F) { return F * tensor(at(law, F).S) * F.transpose() / F.determinant(); }
 
 std::vector<Matrix> some_gradients() {
   Matrix general, squeezed, sheared = Matrix::Identity();
@@ -74,12 +70,10 @@ TEST_P(FemLaw, TangentIsTheDerivativeOfTheStress) {
       for (int j = 0; j < 6; ++j) dS[i] += r.D[i][j] * dC[j];
     }
     EXPECT_LE((tensor(dS) - numeric).norm(), test::finite_difference * mu);
-    const double numeric_g =
-        (fem::dilatation(law, plain(plus)) - fem::dilatation(law, plain(minus))) / (2 * step);
+    const double numeric_g = (fem::dilatation(law, plain(plus)) - fem::dilatation(law, plain(minus))) / (2 * step);
     EXPECT_NEAR(dg, numeric_g, test::finite_difference);
-    const Matrix by_pressure = (tensor(fem::respond(law, mu, p + 1, plain(F)).S) -
-                                tensor(fem::respond(law, mu, p - 1, plain(F)).S)) /
-                               2;
+    const Matrix by_pressure =
+        (tensor(fem::respond(law, mu, p + 1, plain(F)).S) - tensor(fem::respond(law, mu, p - 1, plain(F)).S)) / 2;
     EXPECT_LE((tensor(r.Q) - by_pressure).norm(), test::round_off * 10);
   }
 }
@@ -91,9 +85,9 @@ TEST_P(FemLaw, PressureAndDilatationAreInverse) {
     const fem::ValueAndSlope back = fem::dilatation_at_pressure(GetParam(), lambda, p.value);
     EXPECT_NEAR(back.value, g, test::round_off);
     EXPECT_NEAR(back.slope * p.slope, 1, 1e-10);
-    const double numeric = (fem::pressure(GetParam(), lambda, g + step).value -
-                            fem::pressure(GetParam(), lambda, g - step).value) /
-                           (2 * step);
+    const double numeric =
+        (fem::pressure(GetParam(), lambda, g + step).value - fem::pressure(GetParam(), lambda, g - step).value) /
+        (2 * step);
     EXPECT_NEAR(p.slope, numeric, test::finite_difference * lambda);
   }
 }
@@ -125,14 +119,12 @@ TEST(FemLaws, AgreeWithClosedFormsInTriaxialStretch) {
   const Eigen::Vector3d stretch(1.3, 0.9, 0.8);
   const Matrix F = stretch.asDiagonal();
   const double J = stretch.prod(), l = 1.3;
-  EXPECT_NEAR(cauchy(Law::hencky, F)(0, 0), (2 * mu * std::log(l) + lambda * std::log(J)) / J,
-              test::round_off);
+  EXPECT_NEAR(cauchy(Law::hencky, F)(0, 0), (2 * mu * std::log(l) + lambda * std::log(J)) / J, test::round_off);
   EXPECT_NEAR(cauchy(Law::log_cauchy, F)(0, 0), 2 * mu * std::log(l) + lambda * std::log(J), test::round_off);
-  EXPECT_NEAR(cauchy(Law::neo_hooke, F)(0, 0), (mu * (l * l - 1) + lambda * std::log(J)) / J,
-              test::round_off);
+  EXPECT_NEAR(cauchy(Law::neo_hooke, F)(0, 0), (mu * (l * l - 1) + lambda * std::log(J)) / J, test::round_off);
   const double K = lambda + 2 * mu / 3, third = stretch.squaredNorm() / 3;
-  EXPECT_NEAR(cauchy(Law::neo_hooke_isochoric, F)(0, 0),
-              mu * std::pow(J, -5. / 3) * (l * l - third) + K * (J - 1), test::round_off);
+  EXPECT_NEAR(cauchy(Law::neo_hooke_isochoric, F)(0, 0), mu * std::pow(J, -5. / 3) * (l * l - third) + K * (J - 1),
+              test::round_off);
   const double trace_E = (stretch.squaredNorm() - 3) / 2;
   EXPECT_NEAR(cauchy(Law::st_venant_kirchhoff, F)(0, 0), l * l * (mu * (l * l - 1) + lambda * trace_E) / J,
               test::round_off);

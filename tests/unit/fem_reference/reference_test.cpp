@@ -11,7 +11,7 @@
 
 #include "fem_reference/exchange.h"
 #include "fem_reference/solve_grid.h"
-#include "meshes/child.h"
+#include "problem/system/child.h"
 
 namespace springproof {
 namespace {
@@ -112,11 +112,12 @@ TEST(FemReference, OddAnswersAreOneSentenceThatNamesProgramAndCase) {
   };
   answers("", "cannot be read");
   answers("nonsense", "cannot be read");
-  answers("\\200", "does not fit the question");      // []
-  answers("\\202\\240\\240", "cannot be read");      // [{}, {}]
-  answers("\\366", "does not fit the question");      // null
+  answers("\\200", "does not fit the question");  // []
+  answers("\\202\\240\\240", "cannot be read");   // [{}, {}]
+  answers("\\366", "does not fit the question");  // null
   EXPECT_NE(with_program("exit 0").find("cube.toml: the answer of springproof-fem ("), std::string::npos);
-  EXPECT_EQ(with_program("echo out of luck >&2; kill -SEGV $$"), "cube.toml: springproof-fem was killed by signal 11 (Segmentation fault): out of luck");
+  EXPECT_EQ(with_program("echo out of luck >&2; kill -SEGV $$"),
+            "cube.toml: springproof-fem was killed by signal 11 (Segmentation fault): out of luck");
 }
 
 TEST(FemReference, AnswersOfAnotherQuestionAreRefused) {

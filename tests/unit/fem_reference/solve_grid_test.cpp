@@ -10,8 +10,7 @@
 namespace springproof {
 namespace {
 
-constexpr double balance =
-    1e-8;  // of the solver's residual 1e-12, relative to the load, times the grid's 1/h
+constexpr double balance = 1e-8;  // of the solver's residual 1e-12, relative to the load, times the grid's 1/h
 
 const Vec3 size(2, 1, 1.5);
 
@@ -65,8 +64,8 @@ TEST_P(FemReactions, CarryAPointForceInsideACell) {
 TEST_P(FemReactions, CarryTheWrenchThatLoadsCarry) {
   const Wrench w{{1, -2, 3}, {0.2, 0.1, -0.4}, {0.5, 0.2, 1.1}};
   const Vec3 about_origin = w.moment + w.about.cross(w.force);
-  for (const Load& load : {Load(Traction{"z_max", {1, 2, 3}, w}), Load(Pressure{"y_max", 5, w}), Load(PatchForce{"x_max", {1, -2, 3}, w}),
-                           Load(Gravity{{0, 0, -1e-3}, w})}) {
+  for (const Load& load : {Load(Traction{"z_max", {1, 2, 3}, w}), Load(Pressure{"y_max", 5, w}),
+                           Load(PatchForce{"x_max", {1, -2, 3}, w}), Load(Gravity{{0, 0, -1e-3}, w})}) {
     fem::GridProblem loaded = problem;
     loaded.loads.push_back(load);
     expect_balance(loaded, w.force, about_origin);

@@ -67,7 +67,9 @@ TEST_P(ManyCubes, MatrixFreeAndAssembledAgree) {
   EXPECT_LT(free.iterations, GetParam().second > 0.4 ? 200 : 60);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, ManyCubes, testing::Values(std::pair(1, 0.3), std::pair(2, -0.5), std::pair(2, 0.3), std::pair(2, 0.499)));
+INSTANTIATE_TEST_SUITE_P(Elements, ManyCubes,
+                         testing::Values(std::pair(1, 0.3), std::pair(2, -0.5), std::pair(2, 0.3),
+                                         std::pair(2, 0.499)));
 
 TEST(ManyCubesRefined, ConvergeInAsManySteps) {
   fem::GridProblem problem = problem_of(2, 0.3);
@@ -90,7 +92,7 @@ TEST(PointsInTetrahedra, TakeLinearFieldsExactly) {
     for (const auto& t : cut) problem.coarse.tetrahedra.push_back({cell[t[0]], cell[t[1]], cell[t[2]], cell[t[3]]});
   for (const Patch& p : block.patches) {
     problem.coarse.patches.push_back({p.name, {}});
-    for (const auto& f : p.facets)   // the diagonal through the cell's corner 0 or 6
+    for (const auto& f : p.facets)  // the diagonal through the cell's corner 0 or 6
       for (const auto& t : {std::array{0, 1, 2}, {0, 2, 3}, {1, 2, 3}, {1, 3, 0}})
         problem.coarse.patches.back().facets.push_back({f[t[0]], f[t[1]], f[t[2]], -1});
     problem.loads.push_back(PrescribedAffine{p.name, H, Vec3::Zero()});
@@ -98,7 +100,7 @@ TEST(PointsInTetrahedra, TakeLinearFieldsExactly) {
   problem.degree = 2;
   problem.material = {1e4, 0.3, 1000};
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> x(-0.01, 1.01);   // some outside
+  std::uniform_real_distribution<double> x(-0.01, 1.01);  // some outside
   problem.points.resize(200, 3);
   for (double& value : problem.points.reshaped()) value = x(random);
   const fem::Solution s = fem::solve_grid(problem);

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "meshes/mesher.h"
+#include "meshes/mesher/mesher.h"
 #include "support/tolerances.h"
 
 namespace springproof {
@@ -18,8 +18,8 @@ struct BenchmarkBody {
   const char* geo;
   Vec3 size;
   Cells cells;
-  double volume;                    ///< of the true body [m^3]
-  double flat_error;                ///< relative error of the volume with straight edges, at most
+  double volume;      ///< of the true body [m^3]
+  double flat_error;  ///< relative error of the volume with straight edges, at most
   std::set<std::string> patches;
 };
 
@@ -31,12 +31,25 @@ const BenchmarkBody bodies[] = {
     {"block.geo", {1, 2, 3}, {2, 3, 4}, 6, 1e-12, faces},
     {"block_distorted.geo", {1, 1, 1}, {6, 6, 6}, 1, 1e-12, faces},
     {"cooks_membrane.geo", {48, 60, 1}, {4, 4, 1}, 1440, 1e-12, faces},
-    {"thick_cylinder.geo", {9, 9, 1}, {4, 8, 1}, pi / 4 * 72, 0.01, {"x_min", "y_min", "z_min", "z_max", "inner", "outer"}},
+    {"thick_cylinder.geo",
+     {9, 9, 1},
+     {4, 8, 1},
+     pi / 4 * 72,
+     0.01,
+     {"x_min", "y_min", "z_min", "z_max", "inner", "outer"}},
     {"thick_sphere.geo", {2, 2, 2}, {4, 4, 4}, pi / 6 * 7, 0.02, {"x_min", "y_min", "z_min", "inner", "outer"}},
-    {"elliptic_plate.geo", {3.25, 2.75, 0.6}, {4, 8, 3}, pi / 4 * (3.25 * 2.75 - 2) * 0.6, 0.01,
+    {"elliptic_plate.geo",
+     {3.25, 2.75, 0.6},
+     {4, 8, 3},
+     pi / 4 * (3.25 * 2.75 - 2) * 0.6,
+     0.01,
      {"x_min", "y_min", "bottom", "top", "hole", "edge_low", "edge_middle", "edge_high"}},
     {"twisted_beam.geo", {12, 1.1, 0.32}, {24, 2, 2}, 12 * 1.1 * 0.32, 0.01, {"root", "tip", "sides"}},
-    {"curved_beam.geo", {4.32, 4.32, 0.1}, {8, 2, 2}, pi / 4 * (4.32 * 4.32 - 4.12 * 4.12) * 0.1, 0.01,
+    {"curved_beam.geo",
+     {4.32, 4.32, 0.1},
+     {8, 2, 2},
+     pi / 4 * (4.32 * 4.32 - 4.12 * 4.12) * 0.1,
+     0.01,
      {"root", "tip", "inner", "outer", "z_min", "z_max"}},
 };
 
@@ -53,7 +66,8 @@ std::set<Sorted> surface(const Mesh& mesh) {
   for (const Hexahedron& cell : mesh.hexahedra)
     for (int f = 0; f < 6; ++f) ++count[sorted(face_of(cell, f))];
   for (const auto& [a, b, c, d] : mesh.tetrahedra)
-    for (const Sorted& facet : {Sorted{a, b, c, -1}, {a, b, d, -1}, {a, c, d, -1}, {b, c, d, -1}}) ++count[sorted(facet)];
+    for (const Sorted& facet : {Sorted{a, b, c, -1}, {a, b, d, -1}, {a, c, d, -1}, {b, c, d, -1}})
+      ++count[sorted(facet)];
   std::set<Sorted> outside;
   for (const auto& [facet, times] : count)
     if (times == 1) outside.insert(facet);
@@ -85,7 +99,8 @@ TEST_P(BenchmarkBodies, HaveTheirVolumeAndAllTheirSurfaceNamed) {
 INSTANTIATE_TEST_SUITE_P(Geo, BenchmarkBodies, testing::Combine(testing::ValuesIn(bodies), testing::Bool()),
                          [](const auto& instance) {
                            const std::string geo = std::get<0>(instance.param).geo;
-                           return geo.substr(0, geo.find('.')) + (std::get<1>(instance.param) ? "_tetrahedra" : "_hexahedra");
+                           return geo.substr(0, geo.find('.')) +
+                                  (std::get<1>(instance.param) ? "_tetrahedra" : "_hexahedra");
                          });
 
 /// Surface nodes lie where the benchmark puts them.

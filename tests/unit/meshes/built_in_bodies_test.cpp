@@ -5,8 +5,8 @@
 #include <numbers>
 #include <set>
 
-#include "meshes/mesher.h"
-#include "meshes/outer_facets.h"
+#include "meshes/locate/outer_facets.h"
+#include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
 
 namespace springproof {
@@ -31,19 +31,43 @@ const double fillet = 0.04 * (1 - pi / 4);  // fifths of both sides
 const BuiltIn bodies[] = {
     {"sphere.geo", {2, 2, 2}, 0.1, pi / 6, 0.01, 0.005, {"surface"}},
     {"cylinder.geo", {0.1, 0.08, 0.2}, 0.01, pi / 4, 0.03, 0.02, {"bottom", "top", "side"}},
-    {"l_bracket.geo", {0.1, 0.05, 0.12}, 0.005, 0.36 + fillet, 0.005, 1e-9, {"wall", "end", "top", "bottom", "fillet", "skin"}},
-    {"plate_with_hole.geo", {0.2, 0.1, 0.01}, 0.005, 1 - pi / 4 / 16 / 2, 0.001, 1e-9,
+    {"l_bracket.geo",
+     {0.1, 0.05, 0.12},
+     0.005,
+     0.36 + fillet,
+     0.005,
+     1e-9,
+     {"wall", "end", "top", "bottom", "fillet", "skin"}},
+    {"plate_with_hole.geo",
+     {0.2, 0.1, 0.01},
+     0.005,
+     1 - pi / 4 / 16 / 2,
+     0.001,
+     1e-9,
      {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", "hole"}},
     {"rabbit.geo", {0.2, 0.12, 0.25}, 0.01, 0.2607, 0.02, 0.01, {"feet", "ears", "head", "skin"}},
-    {"hand.geo", {0.137, 0.035, 0.188}, 0.006, 0.3100, 0.02, 0.01, {"wrist", "thumb", "index", "middle", "ring", "little", "skin"}},
-    {"armadillo.geo", {0.21, 0.22, 0.25}, 0.01, 0.0976, 0.02, 0.01, {"feet", "left_arm", "right_arm", "head", "tail", "skin"}},
+    {"hand.geo",
+     {0.137, 0.035, 0.188},
+     0.006,
+     0.3100,
+     0.02,
+     0.01,
+     {"wrist", "thumb", "index", "middle", "ring", "little", "skin"}},
+    {"armadillo.geo",
+     {0.21, 0.22, 0.25},
+     0.01,
+     0.0976,
+     0.02,
+     0.01,
+     {"feet", "left_arm", "right_arm", "head", "tail", "skin"}},
 };
 
 class BuiltInBodies : public testing::TestWithParam<BuiltIn> {};
 
 TEST_P(BuiltInBodies, FillTheirBoxAndNameTheirSurface) {
   const BuiltIn& body = GetParam();
-  const Mesh mesh = mesh_body({.file = find_geo({body.geo, {}, {}, {}}, "case.toml"), .size = body.size, .edge = body.edge}).mesh;
+  const Mesh mesh =
+      mesh_body({.file = find_geo({body.geo, {}, {}, {}}, "case.toml"), .size = body.size, .edge = body.edge}).mesh;
   const Vec3 low = mesh.nodes.colwise().minCoeff(), high = mesh.nodes.colwise().maxCoeff();
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(low[c], 0, body.box_error * body.size[c]) << c;

@@ -53,14 +53,15 @@ std::vector<T> read_array(const std::string& document, const std::string& name) 
   if (tag == std::string::npos) throw std::runtime_error("no array " + name);
   const std::size_t begin = document.find('>', tag) + 1, end = document.find('<', begin);
   const std::string text = document.substr(begin, end - begin);
-  constexpr std::size_t header_digits = 44;   // of 32 bytes
+  constexpr std::size_t header_digits = 44;  // of 32 bytes
   const auto head = decode_base64(text.substr(0, header_digits)), packed = decode_base64(text.substr(header_digits));
   std::uint64_t header[4];
   std::memcpy(header, head.data(), sizeof header);
   if (header[0] != 1 || header[2] != 0 || header[3] != packed.size()) throw std::runtime_error("wrong header");
   std::vector<T> values(header[1] / sizeof(T));
   uLongf size = header[1];
-  if (uncompress(reinterpret_cast<Bytef*>(values.data()), &size, packed.data(), packed.size()) != Z_OK || size != header[1])
+  if (uncompress(reinterpret_cast<Bytef*>(values.data()), &size, packed.data(), packed.size()) != Z_OK ||
+      size != header[1])
     throw std::runtime_error("cannot be decompressed");
   return values;
 }
@@ -114,13 +115,10 @@ TEST_F(Vtu, EveryArrayReadsBack) {
 
   const auto connectivity = read_array<std::int32_t>(document, "connectivity");
   ASSERT_EQ(connectivity.size(), 6u * 8 + 4);
-  EXPECT_TRUE(
-      std::equal(connectivity.begin() + 40, connectivity.begin() + 48, field.mesh->hexahedra[5].begin()));
+  EXPECT_TRUE(std::equal(connectivity.begin() + 40, connectivity.begin() + 48, field.mesh->hexahedra[5].begin()));
   EXPECT_EQ(connectivity.back(), 24);
-  EXPECT_EQ(read_array<std::int32_t>(document, "offsets"),
-            (std::vector<std::int32_t>{8, 16, 24, 32, 40, 48, 52}));
-  EXPECT_EQ(read_array<std::uint8_t>(document, "types"),
-            (std::vector<std::uint8_t>{12, 12, 12, 12, 12, 12, 10}));
+  EXPECT_EQ(read_array<std::int32_t>(document, "offsets"), (std::vector<std::int32_t>{8, 16, 24, 32, 40, 48, 52}));
+  EXPECT_EQ(read_array<std::uint8_t>(document, "types"), (std::vector<std::uint8_t>{12, 12, 12, 12, 12, 12, 10}));
   const auto changes = read_array<double>(document, "relative_volume_change");
   ASSERT_EQ(changes.size(), 7u);
   for (const double change : changes) EXPECT_NEAR(change, 1.1 * 0.95 * 1.2 - 1, test::round_off);
@@ -163,8 +161,7 @@ TEST_F(Vtu, WhatCannotBeWrittenThrowsAndLeavesNothing) {
 
 TEST_F(Vtu, WrongShapesAreRefused) {
   Field field = example();
-  EXPECT_THROW(write_vtu(folder_ / "a.vtu", field, {{"short", NodalVectors::Zero(3, 3)}}),
-               std::invalid_argument);
+  EXPECT_THROW(write_vtu(folder_ / "a.vtu", field, {{"short", NodalVectors::Zero(3, 3)}}), std::invalid_argument);
   field.displacement.conservativeResize(3, 3);
   EXPECT_THROW(write_vtu(folder_ / "a.vtu", field), std::invalid_argument);
   EXPECT_FALSE(fs::exists(folder_ / "a.vtu"));

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "meshes/mesher.h"
+#include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
 #include "support/tolerances.h"
 
@@ -41,8 +41,7 @@ class Gmsh : public testing::Test {
   fs::path folder_;
 };
 
-constexpr const char* parameters =
-    "DefineConstant[size_x = 1, size_y = 1, size_z = 1, nx = 1, ny = 1, nz = 1];\n";
+constexpr const char* parameters = "DefineConstant[size_x = 1, size_y = 1, size_z = 1, nx = 1, ny = 1, nz = 1];\n";
 
 TEST_F(Gmsh, BlockIsBlockMesh) {
   const Vec3 size(2.4, 0.37, 1.1);
@@ -66,8 +65,7 @@ TEST_F(Gmsh, BeamHasTheSamePatches) {
   const Mesh mesh = mesh_geo(built_in("beam.geo"), {2.4, 0.4, 0.4}, {24, 4, 4});
   EXPECT_EQ(mesh.hexahedra.size(), 24u * 16);
   EXPECT_EQ(mesh.hexahedra, block_mesh({2.4, 0.4, 0.4}, {24, 4, 4}).hexahedra);
-  for (const char* name : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"})
-    EXPECT_NO_THROW(patch(mesh, name));
+  for (const char* name : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}) EXPECT_NO_THROW(patch(mesh, name));
   EXPECT_TRUE(mesh.grid);
 }
 

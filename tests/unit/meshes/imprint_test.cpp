@@ -1,5 +1,5 @@
 // Patches have the area of their rules, on every mesh, and the body stays as it is.
-#include "meshes/imprint.h"
+#include "meshes/patches/imprint.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <map>
 
-#include "meshes/mesher.h"
-#include "meshes/select_patches.h"
+#include "meshes/mesher/mesher.h"
+#include "meshes/patches/select_patches.h"
 #include "meshes/volume.h"
 #include "support/bodies.h"
 #include "support/surfaces.h"
@@ -81,7 +81,8 @@ double area(const std::vector<FacetPart>& parts) {
 double smallest_volume(const Mesh& mesh) { return cell_volumes(mesh, mesh.nodes).minCoeff(); }
 
 /// @param change of the body's volume and surface that is allowed, relative
-Mesh expect_imprinted(const Mesh& before, const std::vector<PatchRule>& rules, const std::vector<double>& areas, double change = 1e-12) {
+Mesh expect_imprinted(const Mesh& before, const std::vector<PatchRule>& rules, const std::vector<double>& areas,
+                      double change = 1e-12) {
   Mesh mesh = before;
   select_patches(rules, mesh);
   for (std::size_t i = 0; i < rules.size(); ++i) {
@@ -92,7 +93,7 @@ Mesh expect_imprinted(const Mesh& before, const std::vector<PatchRule>& rules, c
   const double v = volume(before, before.nodes), s = area(outside_of(before));
   EXPECT_NEAR(volume(mesh, mesh.nodes), v, change * v);
   EXPECT_NEAR(area(outside_of(mesh)), s, change * s);
-  EXPECT_NEAR(volume(outside_of(mesh)), v, change * v);   // closed: faces match
+  EXPECT_NEAR(volume(outside_of(mesh)), v, change * v);  // closed: faces match
   EXPECT_GT(smallest_volume(mesh), 0);
   return mesh;
 }
@@ -108,7 +109,8 @@ TEST_P(Imprint, BoxOnACube) {
 TEST_P(Imprint, DiscOnACube) {
   for (const double radius : {0.15, 0.3, 0.03})
     expect_imprinted(cube(GetParam()), {near({0.45, 0.52, 1.3}, radius)}, {pi * radius * radius});
-  expect_imprinted(cube(GetParam()), {near({0.45, 1, 1.3}, 0.2)}, {pi * 0.04});          // half on one side and half on the next
+  expect_imprinted(cube(GetParam()), {near({0.45, 1, 1.3}, 0.2)},
+                   {pi * 0.04});  // half on one side and half on the next
   expect_imprinted(cube(GetParam()), {near({1, 1, 1}, 0.2)}, {3 * pi * 0.04 / 4});
 }
 
@@ -116,7 +118,7 @@ TEST_P(Imprint, HalfSpacesOfACube) {
   expect_imprinted(cube(GetParam()), {beyond({0, 0, 0.37}, {0, 0, -1})}, {1 + 4 * 0.37});
   expect_imprinted(cube(GetParam()), {beyond({0.2, 0, 0}, {-1, -1, -1})}, {3 * 0.2 * 0.2 / 2});
   expect_imprinted(cube(GetParam()), {beyond({0, 0, 1}, {0, 0, 1})}, {1});
-  expect_imprinted(cube(GetParam()), {beyond({0, 0, 1 - 1e-11}, {0, 0, 1})}, {1});       // to round-off the face itself
+  expect_imprinted(cube(GetParam()), {beyond({0, 0, 1 - 1e-11}, {0, 0, 1})}, {1});  // to round-off the face itself
 }
 
 TEST_P(Imprint, TiltedCube) {
@@ -129,7 +131,8 @@ TEST_P(Imprint, TiltedCube) {
 }
 
 TEST_P(Imprint, SeveralRulesThatOverlap) {
-  PatchRule a = boxed({0.2, 0.2, 0.9}, {0.6, 0.6, 1.1}), b = near({0.55, 0.55, 1}, 0.2), c = beyond({0.5, 0, 0}, {1, 0.2, 0}), d = boxed({0.2, 0.5, 0.9}, {0.6, 0.8, 1.1});
+  PatchRule a = boxed({0.2, 0.2, 0.9}, {0.6, 0.6, 1.1}), b = near({0.55, 0.55, 1}, 0.2),
+            c = beyond({0.5, 0, 0}, {1, 0.2, 0}), d = boxed({0.2, 0.5, 0.9}, {0.6, 0.8, 1.1});
   d.name = "other";
   expect_imprinted(cube(GetParam()), {a, c, d}, {0.16, 2 * 0.6 + 1 + 0.5 + 0.7, 0.12});
   expect_imprinted(cube(GetParam()), {b, a}, {pi * 0.04, 0.16});
@@ -137,19 +140,24 @@ TEST_P(Imprint, SeveralRulesThatOverlap) {
 
 TEST_P(Imprint, PatchesOfTheBodyKeepTheirArea) {
   const Mesh body = built_in("cylinder.geo", {1, 1, 1}, 2 * GetParam());
-  const Mesh cut = expect_imprinted(body, {near({0.5, 0.5, 1}, 0.3), boxed({0.3, 0.3, -1}, {0.62, 0.62, 0.1})}, {pi * 0.09, 0.32 * 0.32});
+  const Mesh cut = expect_imprinted(body, {near({0.5, 0.5, 1}, 0.3), boxed({0.3, 0.3, -1}, {0.62, 0.62, 0.1})},
+                                    {pi * 0.09, 0.32 * 0.32});
   for (const char* name : {"bottom", "top", "side"}) EXPECT_NEAR(area(cut, name), area(body, name), 1e-12) << name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Edges, Imprint, testing::Values(0.27, 0.18, 0.12), [](const auto& i) { return std::to_string(int(100 * i.param)); });
+INSTANTIATE_TEST_SUITE_P(Edges, Imprint, testing::Values(0.27, 0.18, 0.12),
+                         [](const auto& i) { return std::to_string(int(100 * i.param)); });
 
 /// On curved bodies the rule's part of the facets.
 TEST(ImprintCurved, AreaIsThatOfTheFacetsWithinTheRule) {
   for (const double edge : {0.3, 0.2}) {
     const Mesh ball = built_in("sphere.geo", {2, 2, 2}, edge), rod = built_in("cylinder.geo", {1, 1, 2}, edge / 1.5);
-    const std::vector<std::pair<Mesh, PatchRule>> pairs = {{ball, beyond({1, 1, 1.6}, {0, 0.3, 1})}, {ball, near({2, 1, 1.2}, 0.5)},
-                                                           {ball, boxed({0.7, 0.8, 1}, {1.35, 1.3, 3})}, {rod, beyond({0, 0, 0.77}, {0, 0, 1})},
-                                                           {rod, near({0.9, 0.9, 1}, 0.3)}, {tilted(rod), near(tilted({0.9, 0.9, 1}), 0.3)}};
+    const std::vector<std::pair<Mesh, PatchRule>> pairs = {{ball, beyond({1, 1, 1.6}, {0, 0.3, 1})},
+                                                           {ball, near({2, 1, 1.2}, 0.5)},
+                                                           {ball, boxed({0.7, 0.8, 1}, {1.35, 1.3, 3})},
+                                                           {rod, beyond({0, 0, 0.77}, {0, 0, 1})},
+                                                           {rod, near({0.9, 0.9, 1}, 0.3)},
+                                                           {tilted(rod), near(tilted({0.9, 0.9, 1}), 0.3)}};
     for (const auto& [body, rule] : pairs) {
       Mesh mesh = body;
       select_patches({rule}, mesh);
@@ -157,7 +165,7 @@ TEST(ImprintCurved, AreaIsThatOfTheFacetsWithinTheRule) {
       EXPECT_NEAR(area(mesh, rule.name), area(parts_of(rule, mesh)), 2e-5 * wanted) << rule.name;
       EXPECT_NEAR(area(mesh, rule.name), wanted, 1e-3 * wanted) << rule.name;
       EXPECT_NEAR(volume(mesh, mesh.nodes), v, 2e-4 * v);
-      EXPECT_NEAR(volume(outside_of(mesh)), volume(mesh, mesh.nodes), 1e-12 * v);   // closed
+      EXPECT_NEAR(volume(outside_of(mesh)), volume(mesh, mesh.nodes), 1e-12 * v);  // closed
       EXPECT_NEAR(area(outside_of(mesh)), outside, 2e-4 * outside);
       EXPECT_GT(smallest_volume(mesh), 0);
       EXPECT_GT(CutMesh(mesh).worst_shape(), 1e-3);

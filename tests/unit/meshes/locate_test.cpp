@@ -1,4 +1,4 @@
-#include "meshes/locate.h"
+#include "meshes/locate/locate.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,7 @@ namespace {
 
 Vec3 position(const Mesh& mesh, const Location& location) {
   Vec3 x = Vec3::Zero();
-  for (int n = 0; n < 8; ++n)
-    x += location.shape[n] * mesh.nodes.row(mesh.hexahedra[location.cell][n]).transpose();
+  for (int n = 0; n < 8; ++n) x += location.shape[n] * mesh.nodes.row(mesh.hexahedra[location.cell][n]).transpose();
   return x;
 }
 
@@ -52,8 +51,7 @@ TEST(Locate, DistortedCellsGiveThePointBack) {
 
 TEST(Locate, EveryNodeIsFound) {
   for (const Mesh& mesh : {distorted_block(), block_mesh({0.3, 0.7, 0.1}, {7, 3, 3})})
-    for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n)
-      EXPECT_TRUE(locate(mesh, mesh.nodes.row(n).transpose())) << n;
+    for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) EXPECT_TRUE(locate(mesh, mesh.nodes.row(n).transpose())) << n;
 }
 
 TEST(Locate, FarFromTheOrigin) {
@@ -65,8 +63,7 @@ TEST(Locate, FarFromTheOrigin) {
 
 TEST(Locate, NothingOutside) {
   const Mesh mesh = block_mesh({1, 1, 1}, {2, 2, 2});
-  for (const Vec3& point :
-       {Vec3(1.001, 0.5, 0.5), Vec3(0.5, -0.001, 0.5), Vec3(5, 5, 5), Vec3(0.5, 0.5, NAN)})
+  for (const Vec3& point : {Vec3(1.001, 0.5, 0.5), Vec3(0.5, -0.001, 0.5), Vec3(5, 5, 5), Vec3(0.5, 0.5, NAN)})
     EXPECT_FALSE(locate(mesh, point)) << point.transpose();
   EXPECT_FALSE(locate(Mesh{}, Vec3::Zero()));
 }
@@ -115,14 +112,16 @@ double distance_to(const Mesh& mesh, std::size_t cell, const Vec3& p) {
   return (p - p.cwiseMax(low).cwiseMin(high)).norm();
 }
 
-/// The nearest cell by looking at all; shape functions that sum to 1 and give the point, and so every linear field, back.
+/// The nearest cell by looking at all; shape functions that sum to 1 and give the point, and so every linear field,
+/// back.
 TEST(Locator, NearestCellAndLinearFields) {
   for (const Mesh& mesh : {ell(true), ell(false)}) {
     const Locator locator(mesh);
     std::mt19937 generator(4);
     for (int i = 0; i < 400; ++i) {
       const double reach = i % 4 == 0 ? 20 : 0.5;  // from far away as well
-      const Vec3 p = somewhere(generator, Vec3(-7, 3, 0.1) - Vec3::Constant(reach), Vec3(-5.5, 4, 2.1) + Vec3::Constant(reach));
+      const Vec3 p =
+          somewhere(generator, Vec3(-7, 3, 0.1) - Vec3::Constant(reach), Vec3(-5.5, 4, 2.1) + Vec3::Constant(reach));
       const Location at = locator(p);
       double least = 1e300;
       for (std::size_t c = 0; c < mesh.hexahedra.size(); ++c) least = std::min(least, distance_to(mesh, c, p));

@@ -16,9 +16,7 @@ namespace {
 
 const Vec3 size(2.4, 0.5, 0.3);
 
-Vec3 node(const Mesh& mesh, int n) {
-  return mesh.nodes.row(n).transpose();
-}
+Vec3 node(const Mesh& mesh, int n) { return mesh.nodes.row(n).transpose(); }
 
 /// The cells `keep` says, on the nodes of the whole block.
 template <class Keep>
@@ -75,8 +73,7 @@ TEST(HexahedronFaces, AreOutward) {
   const Mesh mesh = block_mesh({1, 1, 1}, {1, 1, 1});
   for (int f = 0; f < 6; ++f) {
     const auto face = face_of(mesh.hexahedra[0], f);
-    const Vec3 normal =
-        (node(mesh, face[1]) - node(mesh, face[0])).cross(node(mesh, face[2]) - node(mesh, face[1]));
+    const Vec3 normal = (node(mesh, face[1]) - node(mesh, face[0])).cross(node(mesh, face[2]) - node(mesh, face[1]));
     const Vec3 expected = (f % 2 ? 1 : -1) * Vec3::Unit(f / 2);
     EXPECT_TRUE(normal.isApprox(expected, test::round_off)) << f;
   }

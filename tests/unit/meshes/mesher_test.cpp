@@ -1,5 +1,5 @@
 // Any file a user brings through springproof-mesh.  Files are written by gmsh itself where it can write them.
-#include "meshes/mesher.h"
+#include "meshes/mesher/mesher.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,10 +10,10 @@
 #include <functional>
 #include <numbers>
 
-#include "meshes/child.h"
-#include "meshes/mesher_exchange.h"
-#include "meshes/outer_facets.h"
+#include "meshes/locate/outer_facets.h"
+#include "meshes/mesher/mesher_exchange.h"
 #include "meshes/volume.h"
+#include "problem/system/child.h"
 #include "support/tolerances.h"
 
 namespace springproof {
@@ -65,13 +65,9 @@ class Mesher : public testing::Test {
 
 #define EXPECT_SAYS(message, words) EXPECT_NE((message).find(words), std::string::npos) << (message)
 
-double volume_of(const Mesh& mesh) {
-  return volume(mesh, mesh.nodes);
-}
+double volume_of(const Mesh& mesh) { return volume(mesh, mesh.nodes); }
 
-Vec3 extent(const Mesh& mesh) {
-  return mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff();
-}
+Vec3 extent(const Mesh& mesh) { return mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff(); }
 
 std::size_t facets_in_patches(const Mesh& mesh) {
   std::size_t count = 0;
@@ -115,8 +111,8 @@ TEST_F(Mesher, MeshFilesOfBothVersionsAndBothKinds) {
       SCOPED_TRACE(version + (tetrahedra ? " tetrahedra" : " hexahedra"));
       const fs::path file = saved("box.msh", std::string(tetrahedra ? box_solid : hexahedra) +
                                                  "Physical Surface(\"x_min\") = {1};\nPhysical Surface(17) = {2};\n"
-                                                 "Physical Volume(\"body\") = {1};\nMesh.MshFileVersion = " + version +
-                                                 ";\nMesh.MeshSizeMax = 1;\nMesh 3;");
+                                                 "Physical Volume(\"body\") = {1};\nMesh.MshFileVersion = " +
+                                                 version + ";\nMesh.MeshSizeMax = 1;\nMesh 3;");
       const Mesh mesh = mesh_body({.file = file}).mesh;
       EXPECT_EQ(mesh.tetrahedra.empty(), !tetrahedra);
       EXPECT_EQ(mesh.hexahedra.size(), tetrahedra ? 0u : 8u);
@@ -129,7 +125,8 @@ TEST_F(Mesher, MeshFilesOfBothVersionsAndBothKinds) {
 }
 
 TEST_F(Mesher, SecondOrderCellsAreTakenByTheirCorners) {
-  const fs::path file = saved("box.msh", std::string(box_solid) + "Mesh.ElementOrder = 2; Mesh.MeshSizeMax = 1; Mesh 3;");
+  const fs::path file =
+      saved("box.msh", std::string(box_solid) + "Mesh.ElementOrder = 2; Mesh.MeshSizeMax = 1; Mesh 3;");
   const MeshedBody body = mesh_body({.file = file});
   EXPECT_NEAR(volume_of(body.mesh), 6, 1e-9);
   ASSERT_EQ(body.notes.size(), 1u);
@@ -137,10 +134,11 @@ TEST_F(Mesher, SecondOrderCellsAreTakenByTheirCorners) {
 }
 
 TEST_F(Mesher, MixedCellsAreRefusedWithTheirCounts) {
-  const fs::path file = write("mixed.msh",
-                              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n"
-                              "6 1 0 1\n7 1 1 1\n8 0 1 1\n9 2 0 0\n$EndNodes\n$Elements\n2\n1 5 2 1 1 1 2 3 4 5 6 7 8\n"
-                              "2 4 2 1 1 2 9 3 6\n$EndElements\n");
+  const fs::path file =
+      write("mixed.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n"
+            "6 1 0 1\n7 1 1 1\n8 0 1 1\n9 2 0 0\n$EndNodes\n$Elements\n2\n1 5 2 1 1 1 2 3 4 5 6 7 8\n"
+            "2 4 2 1 1 2 9 3 6\n$EndElements\n");
   const std::string message = message_of({.file = file});
   EXPECT_SAYS(message, "mixed or unknown cells");
   EXPECT_SAYS(message, "1 'Tetrahedron 4'");
@@ -156,7 +154,8 @@ TEST_F(Mesher, ASurfaceMeshIsFilled) {
 }
 
 TEST_F(Mesher, StlIsFilledAtAnyEdge) {
-  const fs::path file = saved("sphere.stl", "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\nMesh.MeshSizeMax = 0.1; Mesh 2;");
+  const fs::path file =
+      saved("sphere.stl", "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\nMesh.MeshSizeMax = 0.1; Mesh 2;");
   for (const double edge : {0.1, 0.3}) {
     const MeshedBody body = mesh_body({.file = file, .edge = edge});
     EXPECT_NEAR(volume_of(body.mesh), 4 * std::numbers::pi / 3, (edge > 0.2 ? 0.02 : 0.006) * 4.19) << edge;
@@ -195,14 +194,16 @@ TEST_F(Mesher, SeveralSolidsAreRefused) {
 TEST_F(Mesher, BadFilesOfEachKindAreRefusedByName) {
   for (const std::string name : {"bad.geo", "bad.stl", "bad.msh", "bad.step", "bad.stp", "bad.brep"}) {
     SCOPED_TRACE(name);
-    for (const std::string& text : {std::string(), std::string("not a body\n"), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16)}) {
+    for (const std::string& text :
+         {std::string(), std::string("not a body\n"), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16)}) {
       const std::string message = message_of({.file = write(name, text), .edge = 0.1});
       EXPECT_NE(message, "accepted");
       EXPECT_EQ(message.rfind((folder_.path / name).string(), 0), 0u) << message;
       EXPECT_SAYS(message_of({.file = folder_.path / ("none" + name), .edge = 0.1}), "no such file");
     }
   }
-  EXPECT_SAYS(message_of({.file = write("cut.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9"), .edge = 0.1}), "cut.msh");
+  EXPECT_SAYS(message_of({.file = write("cut.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9"), .edge = 0.1}),
+              "cut.msh");
 }
 
 TEST_F(Mesher, OnlyScriptsRunCommands) {
@@ -210,8 +211,9 @@ TEST_F(Mesher, OnlyScriptsRunCommands) {
   const std::string command = "SystemCall \"touch '" + trace.string() + "'\";\n";
   for (const std::string name : {"mesh.msh", "mesh.MSH", "part.step", "part.stp", "part.brep", "skin.stl"}) {
     SCOPED_TRACE(name);
-    for (const std::string& text : {command, "\n" + command, "// $MeshFormat\n" + command, " $MeshFormat\n" + command,
-                                    "solid x\nendsolid x\n" + command, "$PostFormat\n" + command, "View \"x\" {};\n" + command}) {
+    for (const std::string& text :
+         {command, "\n" + command, "// $MeshFormat\n" + command, " $MeshFormat\n" + command,
+          "solid x\nendsolid x\n" + command, "$PostFormat\n" + command, "View \"x\" {};\n" + command}) {
       const std::string message = message_of({.file = write(name, text), .edge = 0.1});
       EXPECT_EQ(message.rfind((folder_.path / name).string(), 0), 0u) << message;
       EXPECT_FALSE(fs::exists(trace)) << text;
@@ -256,13 +258,17 @@ TEST_F(Mesher, AMesherThatCrashesIsAnInputError) {
 TEST_F(Mesher, OddAnswersAreOneSentenceThatNamesProgramAndBody) {
   const fs::path geo = write("box.geo", box_solid);
   // Nothing, no CBOR, null, [], {}, {"mesh": {}}, a mesh with numbers for its nodes.
-  for (const char* answer : {"", "nonsense", "\\366", "\\200", "\\240", "\\241dmesh\\240", "\\241dmesh\\241enodes\\001"}) {
+  for (const char* answer :
+       {"", "nonsense", "\\366", "\\200", "\\240", "\\241dmesh\\240", "\\241dmesh\\241enodes\\001"}) {
     use_program("printf '" + std::string(answer) + "' > \"$2\"");
     try {
       mesh_body({.file = geo, .edge = 1});
       ADD_FAILURE() << "accepted: " << answer;
     } catch (const std::runtime_error& e) {
-      EXPECT_EQ(std::string(e.what()), geo.string() + ": the answer of springproof-mesh cannot be used (build springproof and springproof-mesh together)");
+      EXPECT_EQ(
+          std::string(e.what()),
+          geo.string() +
+              ": the answer of springproof-mesh cannot be used (build springproof and springproof-mesh together)");
     }
   }
 }
@@ -320,9 +326,12 @@ TEST_F(Mesher, OwnScriptsCanBeRefused) {
 
 TEST_F(Mesher, FacetsByTheMillionAreRefusedAtOnce) {
   const std::uint32_t count = 6'000'000;
-  const fs::path file = write("large.stl", std::string(80, ' ') + std::string(reinterpret_cast<const char*>(&count), 4));
+  const fs::path file =
+      write("large.stl", std::string(80, ' ') + std::string(reinterpret_cast<const char*>(&count), 4));
   fs::resize_file(file, 84 + 50ull * count);  // takes no room
-  EXPECT_SAYS(message_of({.file = file, .edge = 1}), "large.stl: about 6e+06 facets (allowed: up to 5e+06, as they take some 3.6e+02 s and the time limit is 300 s");
+  EXPECT_SAYS(
+      message_of({.file = file, .edge = 1}),
+      "large.stl: about 6e+06 facets (allowed: up to 5e+06, as they take some 3.6e+02 s and the time limit is 300 s");
 }
 
 TEST_F(Mesher, FileNamesOfAnyBytesAndMeshesBeyondAllMeans) {
@@ -331,7 +340,8 @@ TEST_F(Mesher, FileNamesOfAnyBytesAndMeshesBeyondAllMeans) {
   fs::copy_file(write("box.geo", box_solid), folder / "box.geo");
   EXPECT_GT(mesh_body({.file = folder / "box.geo", .edge = 1}).mesh.tetrahedra.size(), 0u);
   const fs::path block = find_geo({"block.geo", {}, {}, {}}, "case.toml");
-  EXPECT_SAYS(message_of({.file = block, .size = {1, 1, 1}, .cells = {1000, 1000, 1000}}), "1000 x 1000 x 1000 = 1e+09 cells (allowed: up to 5e+06");
+  EXPECT_SAYS(message_of({.file = block, .size = {1, 1, 1}, .cells = {1000, 1000, 1000}}),
+              "1000 x 1000 x 1000 = 1e+09 cells (allowed: up to 5e+06");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "meshes/outer_facets.h"
+#include "meshes/locate/outer_facets.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "meshes/facet_tree.h"
+#include "meshes/locate/facet_tree.h"
 #include "support/bodies.h"
 
 namespace springproof {
 namespace {
 
-/// Blocks of hexahedra, of tetrahedra, and both in one mesh (next to each other, apart), their nodes renumbered at random.
+/// Blocks of hexahedra, of tetrahedra, and both in one mesh (next to each other, apart), their nodes renumbered at
+/// random.
 Mesh body(bool hexahedra, bool tetrahedra) {
   const Mesh block = block_mesh({3, 2, 2}, {3, 2, 2}), cut = test::tetrahedra_of(block);
   const int n = static_cast<int>(block.nodes.rows());
@@ -41,7 +42,8 @@ Mesh body(bool hexahedra, bool tetrahedra) {
 /// By counting every face in a map: the same facets in the same order.
 TEST(OuterFacets, ThoseOfOneCellByAscendingKey) {
   constexpr int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-  for (const auto& [with_hexahedra, with_tetrahedra] : {std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {
+  for (const auto& [with_hexahedra, with_tetrahedra] :
+       {std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {
     const Mesh mesh = body(with_hexahedra, with_tetrahedra);
     std::map<std::array<int, 4>, std::vector<std::array<int, 4>>> all;
     const auto count = [&](const std::array<int, 4>& nodes) {

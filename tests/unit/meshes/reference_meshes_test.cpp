@@ -5,10 +5,10 @@
 #include <fstream>
 #include <numbers>
 
-#include "meshes/child.h"
-#include "meshes/mesher.h"
+#include "meshes/mesher/mesher.h"
 #include "meshes/quality.h"
 #include "meshes/volume.h"
+#include "problem/system/child.h"
 #include "support/surfaces.h"
 
 namespace springproof {
@@ -36,11 +36,16 @@ void expect_refined(const MeshedBody& body, double true_volume) {
     if (i == 0) continue;
     const double ratio = size_ratio(*meshes[i - 1], *meshes[i]);
     const bool few = meshes[i - 1]->tetrahedra.size() < 100;  // numbers that jump
-    EXPECT_GE(ratio, few ? least_ratio : 1.3) << meshes[i - 1]->tetrahedra.size() << " and " << meshes[i]->tetrahedra.size() << " tetrahedra";
-    EXPECT_LE(ratio, few ? 2.1 : 1.75) << meshes[i - 1]->tetrahedra.size() << " and " << meshes[i]->tetrahedra.size() << " tetrahedra";
+    EXPECT_GE(ratio, few ? least_ratio : 1.3)
+        << meshes[i - 1]->tetrahedra.size() << " and " << meshes[i]->tetrahedra.size() << " tetrahedra";
+    EXPECT_LE(ratio, few ? 2.1 : 1.75) << meshes[i - 1]->tetrahedra.size() << " and " << meshes[i]->tetrahedra.size()
+                                       << " tetrahedra";
   }
   EXPECT_EQ(std::count_if(body.notes.begin(), body.notes.end(),
-                          [](const std::string& note) { return note.starts_with("coarser by") && note.find("tetrahedra, mean edge") != std::string::npos; }),
+                          [](const std::string& note) {
+                            return note.starts_with("coarser by") &&
+                                   note.find("tetrahedra, mean edge") != std::string::npos;
+                          }),
             2);
 }
 
@@ -52,7 +57,8 @@ class ReferenceMeshes : public testing::TestWithParam<ReferenceBody> {
 TEST_P(ReferenceMeshes, AreRefined) {
   const fs::path file = folder_.path / "body.stl";
   write_stl_binary(file, GetParam().surface);
-  expect_refined(mesh_body({.file = file, .edge = GetParam().edge, .tetrahedra = 6000, .coarser = {2.25, 1.5}}), volume(GetParam().surface));
+  expect_refined(mesh_body({.file = file, .edge = GetParam().edge, .tetrahedra = 6000, .coarser = {2.25, 1.5}}),
+                 volume(GetParam().surface));
 }
 
 const ReferenceBody bodies[] = {
@@ -70,7 +76,8 @@ const ReferenceBody bodies[] = {
     {"plate", box({1, 1, 0.02}, 1), 0},
     {"edges_longer_than_the_body", box({1, 1, 1}, 1), 3},
 };
-INSTANTIATE_TEST_SUITE_P(Bodies, ReferenceMeshes, testing::ValuesIn(bodies), [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Bodies, ReferenceMeshes, testing::ValuesIn(bodies),
+                         [](const auto& i) { return i.param.name; });
 
 class ReferenceMeshesOfFiles : public testing::Test {
  protected:
@@ -87,7 +94,8 @@ TEST_F(ReferenceMeshesOfFiles, ADenseSurfaceIsThinnedOutOnceForAllMeshes) {
     write_stl_binary(file, surface);
     const MeshedBody body = mesh_body({.file = file, .tetrahedra = 3000, .coarser = {2.25, 1.5}});
     for (const Mesh* mesh : {&body.mesh, &body.coarser[0], &body.coarser[1]}) EXPECT_GT(quality_of(*mesh).worst, 0.02);
-    return std::count_if(body.notes.begin(), body.notes.end(), [](const std::string& note) { return note.find("thinned out to") != std::string::npos; });
+    return std::count_if(body.notes.begin(), body.notes.end(),
+                         [](const std::string& note) { return note.find("thinned out to") != std::string::npos; });
   };
   EXPECT_EQ(thinnings(globe(1, 100, 200)), 1);
   EXPECT_EQ(thinnings(noisy_sphere(1, 6, 0.005, 3)), 1);
@@ -96,12 +104,17 @@ TEST_F(ReferenceMeshesOfFiles, ADenseSurfaceIsThinnedOutOnceForAllMeshes) {
 
 TEST_F(ReferenceMeshesOfFiles, ScriptsOfEveryKindAreRefined) {
   const auto meshed = [](const std::string& name, const Vec3& size, double edge) {
-    return mesh_body({.file = find_geo({name, {}, {}, {}}, "case.toml"), .size = size, .edge = edge, .tetrahedra = 6000, .coarser = {2.25, 1.5}});
+    return mesh_body({.file = find_geo({name, {}, {}, {}}, "case.toml"),
+                      .size = size,
+                      .edge = edge,
+                      .tetrahedra = 6000,
+                      .coarser = {2.25, 1.5}});
   };
   expect_refined(meshed("block.geo", {1, 2, 3}, 0), 6);
   expect_refined(meshed("block.geo", {1, 1, 1}, 0.7), 1);
   const double fifth = 0.02;
-  expect_refined(meshed("l_bracket.geo", {0.1, 0.05, 0.1}, 0), 0.05 * fifth * (0.1 + 0.08 + fifth * (1 - std::numbers::pi / 4)));
+  expect_refined(meshed("l_bracket.geo", {0.1, 0.05, 0.1}, 0),
+                 0.05 * fifth * (0.1 + 0.08 + fifth * (1 - std::numbers::pi / 4)));
 }
 
 TEST_F(ReferenceMeshesOfFiles, SolidsAndMeshFilesAreRefined) {
@@ -113,10 +126,12 @@ Mesh.MeshSizeMax = 0.25;
 Mesh 3;
 )";
   const fs::path step = folder_.path / "form.step", msh = folder_.path / "form.msh";
-  mesh_body({.file = write("form.geo", script + "Save \"" + step.string() + "\";\nSave \"" + msh.string() + "\";\n"), .edge = 1});
+  mesh_body({.file = write("form.geo", script + "Save \"" + step.string() + "\";\nSave \"" + msh.string() + "\";\n"),
+             .edge = 1});
   const double inside = 2 + std::numbers::pi * 0.16;
   expect_refined(mesh_body({.file = step, .scale = 1000, .tetrahedra = 6000, .coarser = {2.25, 1.5}}), inside);
-  expect_refined(mesh_body({.file = msh, .tetrahedra = 6000, .coarser = {2.25, 1.5}}), volume_of(mesh_body({.file = msh}).mesh));
+  expect_refined(mesh_body({.file = msh, .tetrahedra = 6000, .coarser = {2.25, 1.5}}),
+                 volume_of(mesh_body({.file = msh}).mesh));
 }
 
 TEST_F(ReferenceMeshesOfFiles, AScriptWithLayersOfItsOwnIsRefused) {

@@ -1,5 +1,5 @@
 // The search for meshes that differ enough, with laws of how many cells an edge makes instead of a mesher.
-#include "meshes/refined_meshes.h"
+#include "meshes/mesher/refined_meshes.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,8 @@ void expect_near_those_wanted(const MeshedBody& body) {
 }
 
 bool says(const std::vector<std::string>& notes, const std::string& words) {
-  return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(words) != std::string::npos; });
+  return std::any_of(notes.begin(), notes.end(),
+                     [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
 std::string refusal(const MeshRequest& r, const MeshAt& at) {
@@ -70,7 +71,8 @@ TEST(RefinedMeshes, AreCountedAndNotMeasuredByTheirEdges) {
   // A plate of one layer; a body whose cells in the middle are larger; one whose number of cells scatters.
   expect_near_those_wanted(mesh_refined(three_meshes(0.01), law([](double h) { return 1 / (h * h); })));
   expect_near_those_wanted(mesh_refined(three_meshes(0.01), law([](double h) { return 0.3 / std::pow(h, 2.5); })));
-  expect_near_those_wanted(mesh_refined(three_meshes(0.01), law([](double h) { return (1 + 0.3 * std::sin(400 * h)) / std::pow(h, 3); })));
+  expect_near_those_wanted(
+      mesh_refined(three_meshes(0.01), law([](double h) { return (1 + 0.3 * std::sin(400 * h)) / std::pow(h, 3); })));
 }
 
 TEST(RefinedMeshes, GoRoundEdgesThatCannotBeMeshed) {
@@ -97,7 +99,9 @@ TEST(RefinedMeshes, AreAllFinerWhereNoLongerEdgesAreToBeHad) {
 TEST(RefinedMeshes, HaveTheSameFewestCellsWhateverTheEdge) {
   // 3900 cells, some more or less, up to edges of 0.45: as a surface whose triangles stay small.
   const MeshAt at = [](double edge, double) {
-    return mesh_of(3900 * std::pow(std::min(1.0, 0.45 / edge), 3) * std::pow(std::max(1.0, 0.12 / edge), 3) + 100 * std::sin(100 * edge), edge);
+    return mesh_of(3900 * std::pow(std::min(1.0, 0.45 / edge), 3) * std::pow(std::max(1.0, 0.12 / edge), 3) +
+                       100 * std::sin(100 * edge),
+                   edge);
   };
   const MeshedBody body = mesh_refined(three_meshes(0.18), at);
   for (const double ratio : ratios(body)) EXPECT_GE(ratio, least_ratio);
@@ -137,7 +141,8 @@ TEST(RefinedMeshes, EachKeepsItsNotes) {
     return made;
   };
   const MeshedBody body = mesh_refined(three_meshes(0.05), at);
-  for (const char* note : {"made 100", "coarser by 1.50: made 150", "coarser by 1.50: made 225"}) EXPECT_TRUE(says(body.notes, note)) << note;
+  for (const char* note : {"made 100", "coarser by 1.50: made 150", "coarser by 1.50: made 225"})
+    EXPECT_TRUE(says(body.notes, note)) << note;
   EXPECT_TRUE(says(body.notes, "coarser by 1.50: 702 tetrahedra, mean edge"));
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "meshes/surface_check.h"
-#include "meshes/surface_topology.h"
+#include "meshes/surface/surface_check.h"
+#include "meshes/surface/surface_topology.h"
 #include "support/surfaces.h"
 #include "support/tolerances.h"
 
@@ -47,9 +47,9 @@ TEST(Remesh, GivesEvenTrianglesOfTheSameBody) {
     const double change = volume(fine) / volume(c.surface) - 1;
     const std::vector<double> lengths = edge_lengths(fine);
     const double middle = lengths[lengths.size() / 2];
-    const std::string said = std::to_string(fine.triangles.size()) + " facets, volume " + std::to_string(100 * change) + " %, edges " +
-                             std::to_string(lengths.front() / c.edge) + " " + std::to_string(middle / c.edge) + " " +
-                             std::to_string(lengths.back() / c.edge);
+    const std::string said = std::to_string(fine.triangles.size()) + " facets, volume " + std::to_string(100 * change) +
+                             " %, edges " + std::to_string(lengths.front() / c.edge) + " " +
+                             std::to_string(middle / c.edge) + " " + std::to_string(lengths.back() / c.edge);
     RecordProperty(c.name, said);
     EXPECT_LT(std::abs(change), c.volume_change) << c.name << ": " << said;
     // Edges between 4/5 and 4/3 of the target are left as they are.
@@ -66,7 +66,9 @@ TEST(Remesh, KeepsSharpEdgesAndCorners) {
   for (const double x : {0.0, 1.0})
     for (const double y : {0.0, 2.0})
       for (const double z : {0.0, 3.0})
-        EXPECT_TRUE(std::any_of(fine.points.begin(), fine.points.end(), [&](const Vec3& p) { return p == Vec3(x, y, z); })) << x << y << z;
+        EXPECT_TRUE(
+            std::any_of(fine.points.begin(), fine.points.end(), [&](const Vec3& p) { return p == Vec3(x, y, z); }))
+            << x << y << z;
 }
 
 TEST(Remesh, NoiseIsNoLine) {
@@ -82,11 +84,13 @@ TEST(Thinned, KeepsFlatFacesCreasesAndCorners) {
   EXPECT_LT(thin.triangles.size(), 1300u);
   EXPECT_NEAR(volume(thin), 6, 1e-9);
   EXPECT_NEAR(area(thin), 22, 1e-9);
-  for (const Vec3& p : thin.points) EXPECT_LT(std::min(p.cwiseAbs().minCoeff(), (p - size).cwiseAbs().minCoeff()), 1e-9);
+  for (const Vec3& p : thin.points)
+    EXPECT_LT(std::min(p.cwiseAbs().minCoeff(), (p - size).cwiseAbs().minCoeff()), 1e-9);
 }
 
 TEST(Thinned, KeepsTheBody) {
-  const Surface bodies[] = {noisy_sphere(1, 6, 0.01, 7), scan(5, 0.005, 3), torus(2, 0.2, 300, 60), globe(1, 100, 200), trefoil(0.4, 300, 40)};
+  const Surface bodies[] = {noisy_sphere(1, 6, 0.01, 7), scan(5, 0.005, 3), torus(2, 0.2, 300, 60), globe(1, 100, 200),
+                            trefoil(0.4, 300, 40)};
   for (const Surface& s : bodies) {
     const double edge = std::sqrt(area(s) / 1000);
     const Surface thin = thinned(s, edge);

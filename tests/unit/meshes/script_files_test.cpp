@@ -1,11 +1,11 @@
 // Which files a body is made from.
-#include "meshes/script_files.h"
+#include "meshes/mesher/script_files.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "meshes/child.h"
+#include "problem/system/child.h"
 
 namespace springproof {
 namespace {
@@ -20,7 +20,8 @@ class ScriptFiles : public testing::Test {
   }
   std::set<std::string> behind(const std::string& name) {
     std::set<std::string> names;
-    for (const fs::path& file : files_behind(folder_.path / name)) names.insert(fs::relative(file, fs::canonical(folder_.path)));
+    for (const fs::path& file : files_behind(folder_.path / name))
+      names.insert(fs::relative(file, fs::canonical(folder_.path)));
     return names;
   }
 
@@ -38,9 +39,12 @@ TEST_F(ScriptFiles, IncludesAreFollowedAndAppliedFromWhereTheyStand) {
 }
 
 TEST_F(ScriptFiles, NamesMadeByAScriptAndOptionsAreSeen) {
-  write("body.geo", "For i In {1 : 2}\n Merge Sprintf(\"part%g.stl\", i);\nEndFor\nMerge StrCat(CurrentDirectory, \"last.step\");\n");
+  write(
+      "body.geo",
+      "For i In {1 : 2}\n Merge Sprintf(\"part%g.stl\", i);\nEndFor\nMerge StrCat(CurrentDirectory, \"last.step\");\n");
   for (const char* name : {"part1.stl", "part2.stl", "last.step", "body.geo.opt", "other.stl"}) write(name);
-  EXPECT_EQ(behind("body.geo"), (std::set<std::string>{"body.geo", "body.geo.opt", "part1.stl", "part2.stl", "last.step"}));
+  EXPECT_EQ(behind("body.geo"),
+            (std::set<std::string>{"body.geo", "body.geo.opt", "part1.stl", "part2.stl", "last.step"}));
 }
 
 TEST_F(ScriptFiles, OtherBodiesStandAlone) {

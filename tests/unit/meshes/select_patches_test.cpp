@@ -1,4 +1,4 @@
-#include "meshes/select_patches.h"
+#include "meshes/patches/select_patches.h"
 
 #include <gtest/gtest.h>
 
@@ -104,7 +104,8 @@ TEST(SelectPatches, AllConditionsMustHold) {
 
 TEST(SelectPatches, BoundariesBelongToTheSelection) {
   EXPECT_NEAR(area(beyond({0, 0, 2}, {0, 0, 1}), bare_block()), 4 * 2, 1e-12);
-  EXPECT_NEAR(area(boxed({0.25, 0, 0.25}, {0.75, 1e-6, 0.75}), bare_block()), 4 * 0.25, 1e-12);  // middles on the box's edges
+  EXPECT_NEAR(area(boxed({0.25, 0, 0.25}, {0.75, 1e-6, 0.75}), bare_block()), 4 * 0.25,
+              1e-12);  // middles on the box's edges
   EXPECT_NEAR(area(facing({1, 1, 0}, 45), bare_block()), 2 * 2 + 4 * 2, 1e-12);
 }
 
@@ -117,7 +118,8 @@ TEST(SelectPatches, FacingIsACapOfASphere) {
   }
   ball.grid.reset();
   for (const double degrees : {20.0, 60.0, 120.0})
-    EXPECT_NEAR(area(facing({1, 2, -1}, degrees), ball), 2 * M_PI * (1 - std::cos(degrees * M_PI / 180)), 0.1) << degrees;
+    EXPECT_NEAR(area(facing({1, 2, -1}, degrees), ball), 2 * M_PI * (1 - std::cos(degrees * M_PI / 180)), 0.1)
+        << degrees;
   EXPECT_EQ(selected(facing({1, 2, -1}, 180), ball).facets.size(), 6u * 24 * 24);
 }
 
@@ -148,15 +150,19 @@ TEST(SelectPatches, RulesAddToWhatThereIs) {
 
 TEST(SelectPatches, WhatSelectsNothingIsExplained) {
   EXPECT_EQ(message_of({boxed({5, 0, 0}, {6, 2, 2})}, bare_block()),
-            "case.toml:7:1: patch: 'p' selects no facet of the surface: box_m holds for none, the nearest one has its middle 1 m from the box "
+            "case.toml:7:1: patch: 'p' selects no facet of the surface: box_m holds for none, the nearest one has its "
+            "middle 1 m from the box "
             "(the body spans (0, 0, 0) to (4, 2, 2) m)");
-  EXPECT_NE(message_of({beyond({0, 0, 2.5}, {0, 0, 1})}, bare_block()).find("beyond holds for none, the nearest one has its middle 0.5 m short of the plane"),
+  EXPECT_NE(message_of({beyond({0, 0, 2.5}, {0, 0, 1})}, bare_block())
+                .find("beyond holds for none, the nearest one has its middle 0.5 m short of the plane"),
             std::string::npos);
-  EXPECT_NE(message_of({facing({1, 1, 0}, 40)}, bare_block()).find("facing holds for none, the nearest one is turned 5 degrees too far away"),
+  EXPECT_NE(message_of({facing({1, 1, 0}, 40)}, bare_block())
+                .find("facing holds for none, the nearest one is turned 5 degrees too far away"),
             std::string::npos);
   PatchRule both = facing({0, 0, 1}, 1);
   both.near = PatchRule::Near{Vec3(2, 1, -1), 0.1};
-  EXPECT_NE(message_of({both}, bare_block()).find("facing holds for 32 of 160; near holds for 1 of 160 (the body"), std::string::npos)
+  EXPECT_NE(message_of({both}, bare_block()).find("facing holds for 32 of 160; near holds for 1 of 160 (the body"),
+            std::string::npos)
       << message_of({both}, bare_block());
 }
 
@@ -164,7 +170,10 @@ TEST(SelectPatches, NamesThatAreTakenAreRefused) {
   PatchRule taken = facing({0, 0, 1}, 1);
   taken.name = "z_max";
   const std::string message = message_of({taken}, block_mesh({4, 2, 2}, {8, 4, 4}));
-  EXPECT_EQ(message.rfind("case.toml:7:1: patch.name: the body already has a patch 'z_max' (allowed: a name other than x_min", 0), 0u) << message;
+  EXPECT_EQ(message.rfind(
+                "case.toml:7:1: patch.name: the body already has a patch 'z_max' (allowed: a name other than x_min", 0),
+            0u)
+      << message;
   EXPECT_NE(message_of({facing({0, 0, 1}, 1), facing({0, 0, 1}, 1)}, bare_block()), "accepted");
 }
 

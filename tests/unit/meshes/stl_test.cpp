@@ -1,4 +1,4 @@
-#include "meshes/stl.h"
+#include "meshes/surface/stl.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 #include "support/surfaces.h"
 
 namespace springproof {
@@ -80,8 +80,10 @@ TEST_F(Stl, BothKindsComeBackAsWritten) {
 }
 
 TEST_F(Stl, CoordinatesOfAnySizeAndSpelling) {
-  const Surface s = read_stl(write("e.stl", "solid\nfacet normal nan nan nan\nouter loop\nvertex 1e-6 -2.5E+03 +.5\nvertex 1. 1e-400 0\n"
-                                            "vertex -0 1e6 3\nendloop\nendfacet\nendsolid\n"));
+  const Surface s =
+      read_stl(write("e.stl",
+                     "solid\nfacet normal nan nan nan\nouter loop\nvertex 1e-6 -2.5E+03 +.5\nvertex 1. 1e-400 0\n"
+                     "vertex -0 1e6 3\nendloop\nendfacet\nendsolid\n"));
   ASSERT_EQ(s.points.size(), 3u);
   EXPECT_EQ(s.points[0], Vec3(1e-6, -2500, 0.5));
   EXPECT_EQ(s.points[1], Vec3(1, 0, 0));
@@ -123,31 +125,45 @@ TEST_F(Stl, RefusesWhatIsCutOff) {
   // Wherever the cut is, short of the last word, it is seen as one.
   const std::string text = "solid a\n" + facet + facet + "endsolid";
   for (std::size_t size = 7; size < text.size(); ++size)
-    EXPECT_NE(message(text.substr(0, size)).find("cut off"), std::string::npos) << message(text.substr(0, size)) << '\n' << text.substr(0, size);
+    EXPECT_NE(message(text.substr(0, size)).find("cut off"), std::string::npos) << message(text.substr(0, size)) << '\n'
+                                                                                << text.substr(0, size);
 }
 
 TEST_F(Stl, RefusesAWrongCountWithBothNumbers) {
-  EXPECT_NE(message(binary(12, 10)).find("says 12 facets, but the file's size is that of 10 facets:"), std::string::npos) << message(binary(12, 10));
-  EXPECT_NE(message(binary(10, 12)).find("says 10 facets, but the file's size is that of 12 facets:"), std::string::npos);
-  EXPECT_NE(message(binary(3, 3).substr(0, 200)).find("says 3 facets, but the file's size is that of 2 facets and 16 bytes"), std::string::npos);
+  EXPECT_NE(message(binary(12, 10)).find("says 12 facets, but the file's size is that of 10 facets:"),
+            std::string::npos)
+      << message(binary(12, 10));
+  EXPECT_NE(message(binary(10, 12)).find("says 10 facets, but the file's size is that of 12 facets:"),
+            std::string::npos);
+  EXPECT_NE(
+      message(binary(3, 3).substr(0, 200)).find("says 3 facets, but the file's size is that of 2 facets and 16 bytes"),
+      std::string::npos);
   // 200 million facets, 10 GB, claimed: nothing is allocated for them.
-  EXPECT_NE(message(binary(200'000'000, 2)).find("says 200000000 facets, but the file's size is that of 2 facets"), std::string::npos);
+  EXPECT_NE(message(binary(200'000'000, 2)).find("says 200000000 facets, but the file's size is that of 2 facets"),
+            std::string::npos);
   EXPECT_NE(message(binary(0xffffffffu, 1)).find("says 4294967295 facets"), std::string::npos);
 }
 
 TEST_F(Stl, RefusesHugeFiles) {
   const fs::path file = write("huge.stl", binary(200'000'000, 0));
   fs::resize_file(file, 84 + std::uintmax_t{50} * 200'000'000);  // a hole: takes no room on the disk
-  EXPECT_NE(message_of(file).find("has 10000000084 bytes (allowed: up to 2147483648)"), std::string::npos) << message_of(file);
+  EXPECT_NE(message_of(file).find("has 10000000084 bytes (allowed: up to 2147483648)"), std::string::npos)
+      << message_of(file);
 }
 
 TEST_F(Stl, RefusesWhatIsNoFiniteNumber) {
-  EXPECT_NE(message(binary(3, 3, std::nanf(""))).find(": facet 3: a coordinate is not a finite number (corners (3, 4, 5), (6, nan, 8)"), std::string::npos)
+  EXPECT_NE(message(binary(3, 3, std::nanf("")))
+                .find(": facet 3: a coordinate is not a finite number (corners (3, 4, 5), (6, nan, 8)"),
+            std::string::npos)
       << message(binary(3, 3, std::nanf("")));
   EXPECT_NE(message(binary(1, 1, INFINITY)).find(": facet 1: a coordinate is not"), std::string::npos);
-  for (const auto& [word, complaint] : {std::pair("nan", "coordinate 'nan' is not a finite number"), {"-inf", "coordinate '-inf' is not a finite"},
-                                        {"1e999", "coordinate '1e999' is not a finite"}, {"1,5", "'1,5' is not a number"},
-                                        {"1.#QNAN", "'1.#QNAN' is not a number"}, {"+-1", "'+-1' is not"}, {"vertex", "'vertex' is not a number"}}) {
+  for (const auto& [word, complaint] : {std::pair("nan", "coordinate 'nan' is not a finite number"),
+                                        {"-inf", "coordinate '-inf' is not a finite"},
+                                        {"1e999", "coordinate '1e999' is not a finite"},
+                                        {"1,5", "'1,5' is not a number"},
+                                        {"1.#QNAN", "'1.#QNAN' is not a number"},
+                                        {"+-1", "'+-1' is not"},
+                                        {"vertex", "'vertex' is not a number"}}) {
     std::string text = "solid\n" + facet + facet + "endsolid\n";
     text.replace(text.rfind("0 1 0"), 1, word);
     EXPECT_EQ(message(text).find(fmt::format(":13:8: facet 2: {}", complaint)), 0u) << message(text);
@@ -155,8 +171,10 @@ TEST_F(Stl, RefusesWhatIsNoFiniteNumber) {
 }
 
 TEST_F(Stl, RefusesOtherFiles) {
-  EXPECT_EQ(message(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + std::string(500, '\x7')), ": is no STL file but a PNG picture");
-  EXPECT_EQ(message("Dear reader,\nthis is a letter.\n"), ": is no STL file: its first word is 'Dear' (ASCII STL begins with 'solid')");
+  EXPECT_EQ(message(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + std::string(500, '\x7')),
+            ": is no STL file but a PNG picture");
+  EXPECT_EQ(message("Dear reader,\nthis is a letter.\n"),
+            ": is no STL file: its first word is 'Dear' (ASCII STL begins with 'solid')");
   EXPECT_EQ(message("ISO-10303-21;\nHEADER;"), ": is no STL file but a STEP model");
   EXPECT_EQ(message("solid ground is what we need"), ":1:29: cut off after facet 0: no 'endsolid'");
   EXPECT_EQ(message("solid ground\nis what we need"), ":2:1: facet 1: 'is' where 'facet' or 'endsolid' should stand");
@@ -164,8 +182,11 @@ TEST_F(Stl, RefusesOtherFiles) {
   std::string noise;
   for (int i = 0; i < 5000; ++i) noise += static_cast<char>(i * 37 % 251);
   EXPECT_NE(message(noise).find("cut off or no STL file"), std::string::npos) << message(noise);
-  EXPECT_NE(message("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\n").find(
-                ":7:1: facet 1: 'vertex' where 'endloop' should stand"), std::string::npos) << "four corners";
+  EXPECT_NE(message("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 "
+                    "0\nendloop\nendfacet\n")
+                .find(":7:1: facet 1: 'vertex' where 'endloop' should stand"),
+            std::string::npos)
+      << "four corners";
 }
 
 TEST_F(Stl, AMillionFacetsTakeSeconds) {

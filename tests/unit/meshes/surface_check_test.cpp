@@ -1,4 +1,4 @@
-#include "meshes/surface_check.h"
+#include "meshes/surface/surface_check.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,11 +12,11 @@
 #include <numbers>
 #include <random>
 
-#include "meshes/stl.h"
-#include "meshes/surface_cgal.h"
-#include "meshes/surface_repair.h"
-#include "meshes/surface_topology.h"
-#include "problem/experiment.h"
+#include "meshes/surface/stl.h"
+#include "meshes/surface/surface_cgal.h"
+#include "meshes/surface/surface_repair.h"
+#include "meshes/surface/surface_topology.h"
+#include "problem/case_file/experiment.h"
 #include "support/broken_stl.h"
 #include "support/surfaces.h"
 #include "support/tolerances.h"
@@ -69,8 +69,10 @@ TEST(TestSurfaces, TheirVolumeConverges) {
   const auto ratio = [](double coarse, double fine, double exact) { return (coarse - exact) / (fine - exact); };
   EXPECT_NEAR(ratio(volume(sphere(1, 3)), volume(sphere(1, 4)), 4 * pi / 3), 4, 0.1);
   EXPECT_NEAR(ratio(volume(torus(2, 0.5, 60, 30)), volume(torus(2, 0.5, 120, 60)), pi * pi), 4, 0.1);
-  EXPECT_NEAR(ratio(volume(trefoil(0.4, 300, 16)), volume(trefoil(0.4, 600, 32)), pi * 0.16 * trefoil_length()), 4, 0.2);
-  EXPECT_LT(std::abs(volume(scan(5, 0, 3)) / scan_volume() - 1), 0.4 * std::abs(volume(scan(4, 0, 3)) / scan_volume() - 1));
+  EXPECT_NEAR(ratio(volume(trefoil(0.4, 300, 16)), volume(trefoil(0.4, 600, 32)), pi * 0.16 * trefoil_length()), 4,
+              0.2);
+  EXPECT_LT(std::abs(volume(scan(5, 0, 3)) / scan_volume() - 1),
+            0.4 * std::abs(volume(scan(4, 0, 3)) / scan_volume() - 1));
 }
 
 TEST(CheckSurface, WeldsToTheSurfaceItWas) {
@@ -88,7 +90,8 @@ TEST(CheckSurface, DoesNotMindUnitsNorPlace) {
     for (const Vec3& by : {Vec3(0, 0, 0), Vec3(100, -20, 3)}) {
       const Surface there = moved(s, scale, scale * by);
       EXPECT_EQ(outcome(loose(there)), "clean") << scale;
-      EXPECT_NEAR(volume(check_surface(there, "a").surface), volume(s) * std::pow(scale, 3), 1e-9 * volume(s) * std::pow(scale, 3));
+      EXPECT_NEAR(volume(check_surface(there, "a").surface), volume(s) * std::pow(scale, 3),
+                  1e-9 * volume(s) * std::pow(scale, 3));
     }
 }
 
@@ -114,7 +117,8 @@ TEST_P(BrokenStl, GetsItsMessageOrIsMended) {
   RecordProperty("said", said);
   fs::remove(file);
 }
-INSTANTIATE_TEST_SUITE_P(Files, BrokenStl, testing::ValuesIn(broken_files()), [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Files, BrokenStl, testing::ValuesIn(broken_files()),
+                         [](const auto& i) { return i.param.name; });
 
 // What is mended.
 
@@ -125,7 +129,8 @@ TEST(CheckSurface, MendingAFlippedFacetGivesTheSurfaceBack) {
   EXPECT_NEAR(volume(check_surface(turned(pyramid_sphere()), "a").surface), volume(pyramid_sphere()), 1e-12);
   Surface half = pyramid_sphere();
   for (std::size_t f = 0; f < half.triangles.size(); f += 3) std::swap(half.triangles[f][0], half.triangles[f][1]);
-  EXPECT_NE(outcome(half).find("427 facets turned that faced the other way than their neighbours"), std::string::npos) << outcome(half);
+  EXPECT_NE(outcome(half).find("427 facets turned that faced the other way than their neighbours"), std::string::npos)
+      << outcome(half);
   EXPECT_NEAR(volume(check_surface(half, "a").surface), volume(pyramid_sphere()), 1e-12);
 }
 
@@ -156,7 +161,8 @@ TEST(CheckSurface, FacetsWithoutAreaGoWithoutAHole) {
 
 TEST(CheckSurface, EdgesAreDrawnAnewWithTheRightNeighbours) {
   Surface s = sphere(1, 2);
-  for (std::size_t f = 0; f < s.triangles.size(); f += 7) {  // a corner of every seventh facet moves into its opposite edge
+  for (std::size_t f = 0; f < s.triangles.size();
+       f += 7) {  // a corner of every seventh facet moves into its opposite edge
     const auto& [a, b, c] = s.triangles[f];
     s.points[c] = (s.points[a] + s.points[b]) / 2;
   }
@@ -180,7 +186,8 @@ TEST(CheckSurface, CoarserWeldingMovesLittleAndLosesNoFacet) {
     small.points.insert(small.points.end(), {p, q, r});
     small.triangles.push_back({n, n + 1, n + 2});
   }
-  EXPECT_NE(outcome(small).find("smaller than that would be lost: weld the points in a mesh editor"), std::string::npos) << outcome(small);
+  EXPECT_NE(outcome(small).find("smaller than that would be lost: weld the points in a mesh editor"), std::string::npos)
+      << outcome(small);
 }
 
 // What is refused.
@@ -209,7 +216,8 @@ TEST(CheckSurface, SelfIntersectionsArePlaced) {
   EXPECT_NE(knot.find("remove the self-intersections in a mesh editor"), std::string::npos) << knot;
   // A spike that pierces the far side at (0, 0, -1) only there.
   Surface spike = sphere(1, 3);
-  const auto top = std::max_element(spike.points.begin(), spike.points.end(), [](const Vec3& p, const Vec3& q) { return p.z() < q.z(); });
+  const auto top = std::max_element(spike.points.begin(), spike.points.end(),
+                                    [](const Vec3& p, const Vec3& q) { return p.z() < q.z(); });
   *top = Vec3(0, 0, -1.2);
   const auto pairs = intersecting_facets(spike, 10000);
   ASSERT_FALSE(pairs.empty());
@@ -226,7 +234,8 @@ TEST(CheckSurface, ManyIntersectionsEndTheSearch) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(-1, 1);
   for (Vec3& p : crumpled.points) p = Vec3(share(random), share(random), share(random));
-  EXPECT_NE(outcome(crumpled).find("at least 10000 pairs of facets cut each other"), std::string::npos) << outcome(crumpled);
+  EXPECT_NE(outcome(crumpled).find("at least 10000 pairs of facets cut each other"), std::string::npos)
+      << outcome(crumpled);
 }
 
 TEST(CheckSurface, ShellsAndCavities) {
@@ -234,19 +243,26 @@ TEST(CheckSurface, ShellsAndCavities) {
   EXPECT_NE(outcome(both(ball, moved(ball, 1, {2.5, 0, 0}))).find("2 shells that do not touch"), std::string::npos);
   const std::string cavity = "1 closed shell lies inside the body, the first at";
   EXPECT_NE(outcome(both(ball, moved(turned(ball), 0.5, {0, 0, 0}))).find(cavity), std::string::npos);
-  EXPECT_NE(outcome(both(moved(ball, 0.5, {0.1, 0, 0}), ball)).find(cavity), std::string::npos) << "whichever way it is turned";
+  EXPECT_NE(outcome(both(moved(ball, 0.5, {0.1, 0, 0}), ball)).find(cavity), std::string::npos)
+      << "whichever way it is turned";
   // In the box around the ring, but not in the ring.
-  EXPECT_NE(outcome(both(torus(2, 0.5, 40, 20), moved(ball, 0.5, {0, 0, 0}))).find("2 shells that do not touch"), std::string::npos);
-  EXPECT_NE(outcome(both(both(ball, moved(ball, 0.1, {0.5, 0, 0})), moved(ball, 0.1, {-0.5, 0, 0}))).find("2 closed shells lie inside"),
+  EXPECT_NE(outcome(both(torus(2, 0.5, 40, 20), moved(ball, 0.5, {0, 0, 0}))).find("2 shells that do not touch"),
+            std::string::npos);
+  EXPECT_NE(outcome(both(both(ball, moved(ball, 0.1, {0.5, 0, 0})), moved(ball, 0.1, {-0.5, 0, 0})))
+                .find("2 closed shells lie inside"),
             std::string::npos);
 }
 
 TEST(CheckSurface, WhatIsNoManifold) {
   // Boxes that touch along an edge, at a corner, at a face.
   const Surface unit = box({1, 1, 1}, 2);
-  EXPECT_NE(outcome(both(unit, moved(unit, 1, {1, 1, 0}))).find("2 edges of more than two facets, the first at (1, 1, "), std::string::npos)
+  EXPECT_NE(
+      outcome(both(unit, moved(unit, 1, {1, 1, 0}))).find("2 edges of more than two facets, the first at (1, 1, "),
+      std::string::npos)
       << outcome(both(unit, moved(unit, 1, {1, 1, 0})));
-  EXPECT_NE(outcome(both(unit, moved(unit, 1, {1, 1, 1}))).find("1 point where parts of the surface only touch, the first at (1, 1, 1)"), std::string::npos)
+  EXPECT_NE(outcome(both(unit, moved(unit, 1, {1, 1, 1})))
+                .find("1 point where parts of the surface only touch, the first at (1, 1, 1)"),
+            std::string::npos)
       << outcome(both(unit, moved(unit, 1, {1, 1, 1})));
   EXPECT_NE(outcome(both(unit, moved(unit, 1, {1, 0, 0}))).find("edges of more than two facets"), std::string::npos);
   // A facet too many.
@@ -264,7 +280,8 @@ Surface klein_bottle() {
     for (int j = 0; j < m; ++j) {
       const double u = 2 * pi * i / n, v = 2 * pi * j / m;
       const double r = 3 + std::cos(u / 2) * std::sin(v) - std::sin(u / 2) * std::sin(2 * v);
-      s.points.emplace_back(r * std::cos(u), r * std::sin(u), std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v));
+      s.points.emplace_back(r * std::cos(u), r * std::sin(u),
+                            std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v));
     }
   const auto number = [](int i, int j) { return i < n ? i * m + (j + m) % m : (2 * m - j) % m; };
   for (int i = 0; i < n; ++i)
@@ -277,7 +294,8 @@ Surface klein_bottle() {
 
 TEST(CheckSurface, WhatBoundsNoBody) {
   EXPECT_EQ(outcome({}), "a.stl: has no facets");
-  EXPECT_NE(outcome(klein_bottle()).find("the surface has only one side"), std::string::npos) << outcome(klein_bottle());
+  EXPECT_NE(outcome(klein_bottle()).find("the surface has only one side"), std::string::npos)
+      << outcome(klein_bottle());
   Surface point = box({1, 1, 1}, 1);
   for (Vec3& p : point.points) p = Vec3(1, 2, 3);
   EXPECT_EQ(outcome(point), "a.stl: all facets are one point");
@@ -292,9 +310,12 @@ TEST(CheckSurface, WhatBoundsNoBody) {
   Surface nan = box({1, 1, 1}, 1);
   nan.points[nan.triangles[4][0]].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(outcome(nan).find("a coordinate is not a finite number"), std::string::npos);
-  EXPECT_NE(outcome(moved(box({1, 1, 1}, 1), 1e-20, Vec3::Zero())).find("diagonal of its bounding box is 1.73e-20"), std::string::npos);
-  EXPECT_NE(outcome(moved(box({1, 1, 1}, 1), 1e200, Vec3::Zero())).find("diagonal of its bounding box"), std::string::npos);
-  EXPECT_NE(outcome(moved(box({1, 1, 1}, 1), 1, Vec3(1e12, 0, 0))).find("times its diagonal away from the origin"), std::string::npos);
+  EXPECT_NE(outcome(moved(box({1, 1, 1}, 1), 1e-20, Vec3::Zero())).find("diagonal of its bounding box is 1.73e-20"),
+            std::string::npos);
+  EXPECT_NE(outcome(moved(box({1, 1, 1}, 1), 1e200, Vec3::Zero())).find("diagonal of its bounding box"),
+            std::string::npos);
+  EXPECT_NE(outcome(moved(box({1, 1, 1}, 1), 1, Vec3(1e12, 0, 0))).find("times its diagonal away from the origin"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,15 +1,17 @@
-#include "meshes/tetrahedron_locator.h"
+#include "meshes/locate/tetrahedron_locator.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "meshes/mesher.h"
+#include "meshes/mesher/mesher.h"
 
 namespace springproof {
 namespace {
 
-Mesh tetrahedral_block() { return mesh_geo(find_geo({"block.geo", {}, {}, {}}, "case.toml"), {1, 2, 3}, {4, 5, 6}, {.tetrahedra = true}); }
+Mesh tetrahedral_block() {
+  return mesh_geo(find_geo({"block.geo", {}, {}, {}}, "case.toml"), {1, 2, 3}, {4, 5, 6}, {.tetrahedra = true});
+}
 
 Vec3 at(const Mesh& mesh, const TetrahedronLocator::Place& place) {
   Vec3 x = Vec3::Zero();
@@ -37,7 +39,7 @@ TEST(TetrahedronLocator, PointsOutsideGetACellThatTheyAreNear) {
   const TetrahedronLocator locate(mesh.nodes, mesh.tetrahedra);
   const auto above = locate({0.3, 0.7, 3.2});
   EXPECT_NEAR(above.outside, 0.2, 1e-12);
-  EXPECT_LT((at(mesh, above) - Vec3(0.3, 0.7, 3.2)).norm(), 1e-12);   // continued linearly
+  EXPECT_LT((at(mesh, above) - Vec3(0.3, 0.7, 3.2)).norm(), 1e-12);  // continued linearly
   EXPECT_NEAR(locate({-5, 1, 1}).outside, 5, 1e-12);
 }
 

@@ -31,8 +31,7 @@ Corners noise(double size, unsigned seed) {
 /// exact for degree 5.
 template <class Function>
 double integrate(Function&& f) {
-  const double points[] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)},
-               weights[] = {5. / 18, 8. / 18, 5. / 18};
+  const double points[] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)}, weights[] = {5. / 18, 8. / 18, 5. / 18};
   double sum = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
@@ -145,8 +144,7 @@ TEST(VolumeChange, FirstOrderIsTheIntegralOfTheDivergence) {
     const Eigen::Matrix3d J = gradients * X;
     return (J.inverse() * (gradients * u)).trace() * J.determinant();
   });
-  EXPECT_NEAR(volume_change_first_order(one_cell(X), u), divergence / volume_by_quadrature(X),
-              test::round_off);
+  EXPECT_NEAR(volume_change_first_order(one_cell(X), u), divergence / volume_by_quadrature(X), test::round_off);
 }
 
 TEST(VolumeChange, SmallDisplacementsKeepTheirDigits) {

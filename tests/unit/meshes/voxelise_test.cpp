@@ -1,4 +1,4 @@
-#include "meshes/voxelise.h"
+#include "meshes/voxels/voxelise.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "meshes/mesher.h"
-#include "meshes/outer_facets.h"
-#include "meshes/scan_lines.h"
+#include "meshes/locate/outer_facets.h"
+#include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
+#include "meshes/voxels/scan_lines.h"
 #include "support/bodies.h"
 
 namespace springproof {
@@ -48,7 +48,8 @@ Mesh torus(double R, double r, int around) {
   bar.nodes.conservativeResize(layer * around, 3);
   bar.patches.clear();
   return mapped(bar, [&](const Vec3& p) -> Vec3 {
-    const double x = p.x() - 1, y = p.y() - 1, s = std::hypot(x, y) == 0 ? 0 : r * std::max(std::abs(x), std::abs(y)) / std::hypot(x, y);
+    const double x = p.x() - 1, y = p.y() - 1,
+                 s = std::hypot(x, y) == 0 ? 0 : r * std::max(std::abs(x), std::abs(y)) / std::hypot(x, y);
     const double angle = 2 * pi * p.z();
     return {(R + s * x) * std::cos(angle), (R + s * x) * std::sin(angle), -s * y};
   });
@@ -65,7 +66,8 @@ int euler_number(const Mesh& mesh) {
   for (const Hexahedron& cell : mesh.hexahedra)
     for (int f = 0; f < 6; ++f) {
       auto face = face_of(cell, f);
-      for (int c = 0; c < 4; ++c) edges.push_back({std::min(face[c], face[(c + 1) % 4]), std::max(face[c], face[(c + 1) % 4])});
+      for (int c = 0; c < 4; ++c)
+        edges.push_back({std::min(face[c], face[(c + 1) % 4]), std::max(face[c], face[(c + 1) % 4])});
       std::sort(face.begin(), face.end());
       faces.push_back(face);
     }
@@ -97,7 +99,8 @@ std::string message_of(const std::function<void()>& f) {
 }
 
 TEST(VoxelGrid, HoldsTheBodyAndIsCentredOnIt) {
-  const Mesh body = mapped(block_mesh({1, 0.5, 0.25}, {1, 1, 1}), [](const Vec3& p) -> Vec3 { return p + Vec3(3, -2, 0.5); });
+  const Mesh body =
+      mapped(block_mesh({1, 0.5, 0.25}, {1, 1, 1}), [](const Vec3& p) -> Vec3 { return p + Vec3(3, -2, 0.5); });
   const VoxelGrid grid = voxel_grid(body, 0.2);
   EXPECT_EQ(grid.cells, (std::array<int, 3>{5, 3, 2}));
   EXPECT_LE((grid.origin - Vec3(3, -2.05, 0.425)).norm(), 1e-12);
@@ -128,7 +131,8 @@ TEST(Voxelise, GivesABlockBackAsItIs) {
   EXPECT_EQ(voxels.mesh.grid->cell_index, block.grid->cell_index);
   for (const Patch& p : block.patches) {
     EXPECT_EQ(nodes_of(patch(voxels.mesh, p.name)), nodes_of(p)) << p.name;
-    EXPECT_NEAR(nodal_areas(voxels.mesh, patch(voxels.mesh, p.name)).sum(), nodal_areas(block, p).sum(), 1e-14) << p.name;
+    EXPECT_NEAR(nodal_areas(voxels.mesh, patch(voxels.mesh, p.name)).sum(), nodal_areas(block, p).sum(), 1e-14)
+        << p.name;
   }
 }
 
@@ -149,10 +153,12 @@ TEST(Voxelise, GivesBlocksBackAtTheirOwnCellSize) {
 
 /// Facets, edges and vertices of the body on the centres themselves: half of them count, whatever the triangulation.
 TEST(Voxelise, SurfaceThroughCentresIsHalfOpen) {
-  const Mesh block = mapped(block_mesh({0.5, 0.3, 0.4}, {5, 3, 4}), [](const Vec3& p) -> Vec3 { return p + Vec3::Constant(0.05); });
+  const Mesh block =
+      mapped(block_mesh({0.5, 0.3, 0.4}, {5, 3, 4}), [](const Vec3& p) -> Vec3 { return p + Vec3::Constant(0.05); });
   const VoxelGrid grid{Vec3::Zero(), 0.1, {6, 4, 5}};
   Mesh rounded = block;  // as coordinates come out of a file
-  for (double& x : rounded.nodes.reshaped()) x = std::round(x * 1e12) / 1e12 + 1e-12 * std::sin(1e15 * x + double(&x - rounded.nodes.data()));
+  for (double& x : rounded.nodes.reshaped())
+    x = std::round(x * 1e12) / 1e12 + 1e-12 * std::sin(1e15 * x + double(&x - rounded.nodes.data()));
   for (const Mesh& body : {block, test::tetrahedra_of(block), rounded}) {
     const Mesh mesh = voxelise(grid, body).mesh;
     EXPECT_EQ(mesh.hexahedra.size(), 60u);
@@ -201,7 +207,8 @@ TEST(Voxelise, TurnedCubesLeakNowhere) {
     for (int k = 0; k < grid.cells[2]; ++k)
       for (int j = 0; j < grid.cells[1]; ++j)
         for (int i = 0; i < grid.cells[0]; ++i, ++n) {
-          const double reach = (R.transpose() * (grid.origin + edge * Vec3(i + 0.5, j + 0.5, k + 0.5))).cwiseAbs().maxCoeff();
+          const double reach =
+              (R.transpose() * (grid.origin + edge * Vec3(i + 0.5, j + 0.5, k + 0.5))).cwiseAbs().maxCoeff();
           if (std::abs(reach - 1) > 1e-8) {
             ASSERT_EQ(bool(filled[n]), reach < 1) << turn << ": " << i << " " << j << " " << k;
           }
@@ -237,7 +244,8 @@ TEST(Voxelise, VerticesOnTheLinesLeakNowhere) {
   }
 }
 
-/// Tetrahedra that fill a block share every lattice point on their common facets out: each belongs to exactly one of them.
+/// Tetrahedra that fill a block share every lattice point on their common facets out: each belongs to exactly one of
+/// them.
 TEST(Voxelise, NeighboursShareEveryCentreOnce) {
   Mesh body = test::tetrahedra_of(block_mesh({6, 6, 6}, {2, 2, 2}));
   std::vector<int> owners(216, 0);
@@ -301,7 +309,8 @@ TEST(Voxelise, FacetsTakeTheNearestPatchOrNone) {
 TEST(Voxelise, PatchesAreThoseOfTheNearestFacet) {
   Mesh body = mapped(ball(6), [](const Vec3& p) -> Vec3 { return {p.x() * std::exp(p.x()), p.y(), p.z()}; });
   body.patches.clear();
-  for (const OuterFacet& f : outer_facets(body)) body.patches.push_back({std::to_string(body.patches.size()), {f.nodes}});
+  for (const OuterFacet& f : outer_facets(body))
+    body.patches.push_back({std::to_string(body.patches.size()), {f.nodes}});
   const Mesh mesh = voxelise(voxel_grid(body, 0.15), body).mesh;
   const auto corner = [&](int n) -> Vec3 { return body.nodes.row(n).transpose(); };
   std::size_t facets = 0;
@@ -345,12 +354,15 @@ TEST(Voxelise, LeavesOutAFewCubesThatHangOnByAnEdge) {
   EXPECT_EQ(voxels.notes[0], "2 of 194 cubes hang on by an edge or lie apart: left out");
 
   const Mesh on_edge = body_of({9, 8, 4}, [](int i, int, int k) { return (i < 8 && k < 3) || (i == 8 && k == 3); });
-  const Mesh one = body_of({9, 8, 4}, [](int i, int j, int k) { return (i < 8 && k < 3) || (i == 8 && j == 2 && k == 3); });
+  const Mesh one =
+      body_of({9, 8, 4}, [](int i, int j, int k) { return (i < 8 && k < 3) || (i == 8 && j == 2 && k == 3); });
   const Voxels kept = voxelise(voxel_grid(one, 1), one);
   EXPECT_EQ(kept.mesh.hexahedra.size(), 192u);
   EXPECT_EQ(kept.notes.front(), "1 of 193 cubes hangs on by an edge or lies apart: left out");
   const std::string message = message_of([&] { voxelise(voxel_grid(on_edge, 1), on_edge); });
-  EXPECT_NE(message.find("the 200 cubes of 1 m fall into 2 pieces that share no face, the largest of 192; take smaller voxels"), std::string::npos)
+  EXPECT_NE(message.find(
+                "the 200 cubes of 1 m fall into 2 pieces that share no face, the largest of 192; take smaller voxels"),
+            std::string::npos)
       << message;
 }
 
@@ -380,12 +392,20 @@ TEST(Voxelise, PiecesJoinInEveryDirection) {
 
 TEST(Voxelise, RefusesWhatIsNoBodyOfCubes) {
   const Mesh body = block_mesh({1, 1, 1}, {1, 1, 1});
-  EXPECT_NE(message_of([&] { voxelise({Vec3::Zero(), 0.25, {4, 4, 3}}, body); }).find("which is not within the box"), std::string::npos);
-  EXPECT_NE(message_of([&] { voxelise({Vec3(0.1, 0, 0), 0.25, {4, 4, 4}}, body); }).find("which is not within the box"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              voxelise({Vec3::Zero(), 0.25, {4, 4, 3}}, body);
+            }).find("which is not within the box"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] {
+              voxelise({Vec3(0.1, 0, 0), 0.25, {4, 4, 4}}, body);
+            }).find("which is not within the box"),
+            std::string::npos);
   EXPECT_THROW(voxelise({Vec3::Zero(), 0.25, {4, 4, 0}}, body), std::invalid_argument);
   EXPECT_THROW(voxelise({Vec3::Zero(), 0, {4, 4, 4}}, body), std::invalid_argument);
   const Mesh sliver = block_mesh({1, 1, 0.1}, {1, 1, 1});
-  EXPECT_NE(message_of([&] { voxelise({Vec3::Zero(), 0.5, {2, 2, 2}}, sliver); }).find("no cube of 0.5 m has its centre in the body"),
+  EXPECT_NE(message_of([&] {
+              voxelise({Vec3::Zero(), 0.5, {2, 2, 2}}, sliver);
+            }).find("no cube of 0.5 m has its centre in the body"),
             std::string::npos);
 }
 

@@ -38,7 +38,8 @@ TEST(ExactField, BodyForceBalancesTheStress) {
         }
         const Vec3 f = exact_body_force(field, X, m);
         // Central differences: h^2 pi^2 k^2 / 6, twice, of a force of the order of G pi^2 |u|.
-        EXPECT_LE((f + divergence).norm(), 3e-5 * std::max(f.norm(), 1e3)) << field << " nu " << nu << " at " << X.transpose();
+        EXPECT_LE((f + divergence).norm(), 3e-5 * std::max(f.norm(), 1e3))
+            << field << " nu " << nu << " at " << X.transpose();
         EXPECT_GT(f.norm(), 0);
       }
 }

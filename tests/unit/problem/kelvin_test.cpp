@@ -24,7 +24,8 @@ auto derivative(const F& f, const Vec3& X, int j) {
 TEST(Kelvin, StrainIsThatOfTheDisplacement) {
   for (const Vec3& X : places) {
     Eigen::Matrix3d gradient;
-    for (int j = 0; j < 3; ++j) gradient.col(j) = derivative([](const Vec3& p) { return kelvin_displacement(solution, p); }, X, j);
+    for (int j = 0; j < 3; ++j)
+      gradient.col(j) = derivative([](const Vec3& p) { return kelvin_displacement(solution, p); }, X, j);
     const Eigen::Matrix3d strain = kelvin_strain(solution, X);
     EXPECT_LE(((gradient + gradient.transpose()) / 2 - strain).norm(), 1e-8 * strain.norm());
   }
@@ -34,7 +35,8 @@ TEST(Kelvin, StressIsHookesOfTheStrain) {
   for (const Vec3& X : places) {
     const Eigen::Matrix3d strain = kelvin_strain(solution, X), stress = kelvin_stress(solution, X);
     const double G = shear_modulus(solution.material), lambda = lame_lambda(solution.material);
-    EXPECT_LE((2 * G * strain + lambda * strain.trace() * Eigen::Matrix3d::Identity() - stress).norm(), 1e-13 * stress.norm());
+    EXPECT_LE((2 * G * strain + lambda * strain.trace() * Eigen::Matrix3d::Identity() - stress).norm(),
+              1e-13 * stress.norm());
   }
 }
 

@@ -16,8 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Relative to `scale`, the size of the numbers it was computed from.
 void expect_close(double value, double expected, double scale) {
-  EXPECT_LE(std::abs(value - expected), test::round_off * std::abs(scale))
-      << value << " against " << expected;
+  EXPECT_LE(std::abs(value - expected), test::round_off * std::abs(scale)) << value << " against " << expected;
 }
 
 std::string message_of(const Moduli& given, double density = 1000) {

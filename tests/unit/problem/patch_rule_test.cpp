@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "problem/experiment.h"
+#include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
 namespace springproof {
@@ -55,8 +55,10 @@ TEST(PatchRules, ReadBackAsWritten) {
 }
 
 TEST(PatchRules, AreForBodiesOfVoxels) {
-  EXPECT_EQ(message_of(std::string(test::small_case) + "[[patch]]\nname = \"low\"\nfacing = { direction = [0, 0, -1], within_deg = 10 }\n")
-                .find("case.toml:13:1: patch: is for bodies of voxels"), 0u);
+  EXPECT_EQ(message_of(std::string(test::small_case) +
+                       "[[patch]]\nname = \"low\"\nfacing = { direction = [0, 0, -1], within_deg = 10 }\n")
+                .find("case.toml:13:1: patch: is for bodies of voxels"),
+            0u);
 }
 
 TEST(PatchRules, NoneIsTheUsualCase) { EXPECT_TRUE(parse_experiment(test::small_case, "case.toml").patches.empty()); }
@@ -69,15 +71,19 @@ struct Mistake {
 
 TEST(PatchRules, MistakesAreExplained) {
   const Mistake mistakes[] = {
-      {"name = \"thumb\"", "name = \"wrist\"", "case.toml:22:8: patch.name: 'wrist' is the name of another patch (allowed: a name of its own)"},
+      {"name = \"thumb\"", "name = \"wrist\"",
+       "case.toml:22:8: patch.name: 'wrist' is the name of another patch (allowed: a name of its own)"},
       {"name = \"thumb\"\n", "", "case.toml:21:1: patch.name: is missing"},
       {"name = \"thumb\"", "name = 3", ":22:8: patch.name: is the integer 3 (allowed: a string)"},
       {"name = \"thumb\"", "name = \"\"", "patch.name: is empty"},
-      {"near = { point_m = [4, 5, 6], radius_m = 1 }", "", ":21:1: patch: 'thumb' does not say where it lies (allowed: one or more of box_m"},
-      {"box_m", "box", ":16:1: patch.box: unknown key (allowed: name, box_m, beyond, facing, near); did you mean 'box_m'?"},
+      {"near = { point_m = [4, 5, 6], radius_m = 1 }", "",
+       ":21:1: patch: 'thumb' does not say where it lies (allowed: one or more of box_m"},
+      {"box_m", "box",
+       ":16:1: patch.box: unknown key (allowed: name, box_m, beyond, facing, near); did you mean 'box_m'?"},
       {"[[0, 0, 0], [1, 2, 3]]", "[[0, 0, 0]]", ":16:9: patch.box_m: is a list of 1"},
       {"[[0, 0, 0], [1, 2, 3]]", "[0, 0, 0, 1, 2, 3]", ":16:9: patch.box_m: is a list of 6"},
-      {"[[0, 0, 0], [1, 2, 3]]", "[[0, 0, 0], [1, 0, 3]]", ":16:21: patch.box_m: has 0 for y, where the first corner has 0"},
+      {"[[0, 0, 0], [1, 2, 3]]", "[[0, 0, 0], [1, 0, 3]]",
+       ":16:21: patch.box_m: has 0 for y, where the first corner has 0"},
       {"[[0, 0, 0], [1, 2, 3]]", "[[0, 0, 0], [1, inf, 3]]", "patch.box_m: is inf"},
       {"[[0, 0, 0], [1, 2, 3]]", "\"all\"", "patch.box_m: is the string 'all'"},
       {"normal = [0, 3, 4]", "normal = [0, 0, 0]", ":17:42: patch.beyond.normal: is the zero vector"},
@@ -103,7 +109,8 @@ TEST(PatchRules, MistakesAreExplained) {
   std::string table = patch_case;
   table.erase(table.rfind("\n[[patch]]"));
   table.replace(table.find("[[patch]]"), 9, "[patch]");
-  EXPECT_NE(message_of(table).find("patch: is a table (allowed: tables headed [[patch]])"), std::string::npos) << message_of(table);
+  EXPECT_NE(message_of(table).find("patch: is a table (allowed: tables headed [[patch]])"), std::string::npos)
+      << message_of(table);
 }
 
 }  // namespace

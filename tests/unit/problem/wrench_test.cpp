@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "problem/constraints.h"
+#include "problem/loads.h"
 
 namespace springproof {
 namespace {

@@ -1,0 +1,44 @@
+// A second opinion: the same case by CalculiX and by our finite element reference, each with its uncertainty.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "comparisons/judge/reference_value.h"
+#include "problem/case_file/experiment.h"
+
+namespace springproof {
+
+struct CrossCheckOptions {
+  std::optional<double> poisson_ratio;  ///< empty: every one of the case
+  Cells cells = {0, 0, 0};              ///< finest of CalculiX' three grids; {0,0,0} = chosen
+  double time_limit = 600;              ///< per run of ccx [s]
+};
+
+/// One quantity by both programs.
+struct SecondOpinion {
+  std::string measure;
+  std::string unit;
+  ReferenceValue calculix, ours;
+  double difference = 0;  ///< calculix - ours; for the displacement field its largest size over the nodes
+  bool agrees = false;    ///< |difference| is within the sum of both uncertainties
+};
+
+/// The verdict from two values with uncertainty.
+SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& calculix, const ReferenceValue& ours);
+
+/// The material of `experiment` with this Poisson's ratio, or its first.
+/// @throws InputError listing those there are.
+const IsotropicMaterial& material_of(const Experiment& experiment, std::optional<double> poisson_ratio);
+
+/// Exit statuses of cross_check.
+enum CrossCheckStatus { all_agree = 0, some_differ = 1, no_program = 3, cross_check_interrupted = 130 };
+
+/// Runs both programs, on three grids each, and prints a table per Poisson's ratio; progress goes to stderr.
+/// A program that gives no answer counts as not agreeing.
+/// @throws InputError for everything a user can get wrong, a law that CalculiX does not have among them.
+int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options);
+
+}  // namespace springproof

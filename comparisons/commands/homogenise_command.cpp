@@ -1,0 +1,210 @@
+#include "comparisons/commands/homogenise_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Dense>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "comparisons/run/status.h"
+#include "msm/measure/statistics.h"
+#include "msm/parameters/calibrate.h"
+#include "msm/periodic/homogenise.h"
+#include "msm/periodic/periodic_model.h"
+
+namespace springproof {
+namespace {
+
+constexpr int random_nodes = 1331, lattice_nodes = 27;
+
+struct Sample {
+  std::uint64_t seed;
+  long nodes;
+  double springs_per_node;
+  Homogenised h;
+};
+
+/// A number of a sample: what it is called, and where it is.
+struct Quantity {
+  const char* key;
+  const char* label;
+  double (*of)(const Homogenised&);
+  bool modulus;  ///< in pascal
+};
+
+const std::vector<Quantity> quantities = {
+    {"youngs_modulus_Pa", "E [Pa]", [](const Homogenised& h) { return h.youngs_modulus; }, true},
+    {"poisson_ratio", "nu", [](const Homogenised& h) { return h.poisson_ratio; }, false},
+    {"shear_modulus_Pa", "G [Pa]", [](const Homogenised& h) { return h.shear_modulus; }, true},
+    {"bulk_modulus_Pa", "K [Pa]", [](const Homogenised& h) { return h.bulk_modulus; }, true},
+    {"anisotropy", "anisotropy", [](const Homogenised& h) { return h.anisotropy; }, false},
+    {"asymmetry", "asymmetry", [](const Homogenised& h) { return h.asymmetry; }, false}};
+
+struct MeanAndSpread {
+  double mean = 0, spread = 0;  ///< spread: standard deviation of a sample; 0 for a single one
+};
+
+MeanAndSpread over(const std::vector<Sample>& samples, const Quantity& quantity) {
+  MeanAndSpread m;
+  const auto n = static_cast<double>(samples.size());
+  for (const Sample& s : samples) m.mean += quantity.of(s.h) / n;
+  for (const Sample& s : samples) m.spread += std::pow(quantity.of(s.h) - m.mean, 2);
+  m.spread = samples.size() > 1 ? std::sqrt(m.spread / (n - 1)) : 0;
+  return m;
+}
+
+Sample measure(ModelParameters p, const IsotropicMaterial& material, double spacing, int nodes, std::uint64_t seed) {
+  p.random.seed = seed;
+  const MassSpringModel model = periodic_model(p, material, spacing, nodes);
+  const NetworkStatistics s = statistics(model.network);
+  return {seed, s.nodes, s.springs_per_node, homogenise(model)};
+}
+
+std::vector<Sample> measure_seeds(const ModelParameters& p, const IsotropicMaterial& material, double spacing,
+                                  int nodes) {
+  std::vector<Sample> samples;
+  Status status;
+  const Status::Working working(status, fmt::format("homogenise {}", p.row.name));
+  for (int i = 0; i < p.seeds; ++i) {
+    progress::phase(fmt::format("network {} of {}, about {} nodes", i + 1, p.seeds, nodes));
+    samples.push_back(measure(p, material, spacing, nodes, p.random.seed + static_cast<std::uint64_t>(i)));
+  }
+  return samples;
+}
+
+bool stable(const Homogenised& h) {
+  return Eigen::LLT<Eigen::Matrix<double, 6, 6>>(h.C + h.C.transpose()).info() == Eigen::Success;
+}
+
+/// The modulus that the calibration was set to.
+double wanted(const Quantity& quantity, const ModelParameters& p, const IsotropicMaterial& m) {
+  const IsotropicMaterial aim =
+      p.has(Extension::none) ? IsotropicMaterial{2.5 * spring_shear_modulus(p, m), 0.25, m.density} : m;
+  Homogenised h{};
+  h.youngs_modulus = aim.youngs_modulus;
+  h.poisson_ratio = aim.poisson_ratio;
+  h.shear_modulus = shear_modulus(aim);
+  h.bulk_modulus = bulk_modulus(aim);
+  return quantity.of(h);
+}
+
+nlohmann::json matrix_json(const Eigen::Matrix<double, 6, 6>& C) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (int i = 0; i < 6; ++i) rows.push_back(std::vector<double>{C(i, 0), C(i, 1), C(i, 2), C(i, 3), C(i, 4), C(i, 5)});
+  return rows;
+}
+
+nlohmann::json to_json(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m,
+                       double spacing) {
+  nlohmann::json out = {{"model", {{"name", p.row.name}, {"spacing_m", spacing}}},
+                        {"notation", "Voigt: xx yy zz yz zx xy, engineering shear strains"}};
+  for (const Quantity& q : quantities) {
+    const MeanAndSpread result = over(samples, q);
+    out["calibrated_to"][q.key] = wanted(q, p, m);
+    out["mean"][q.key] = result.mean;
+    out["spread"][q.key] = result.spread;
+  }
+  out["samples"] = nlohmann::json::array();
+  for (const Sample& s : samples) {
+    nlohmann::json sample = {{"seed", s.seed},
+                             {"nodes", s.nodes},
+                             {"springs_per_node", s.springs_per_node},
+                             {"C_Pa", matrix_json(s.h.C)},
+                             {"stable", stable(s.h)},
+                             {"iterations", s.h.iterations},
+                             {"residual", s.h.residual}};
+    for (const Quantity& q : quantities) sample[q.key] = q.of(s.h);
+    out["samples"].push_back(sample);
+  }
+  return out;
+}
+
+void print(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m, double spacing) {
+  const Sample& first = samples.front();
+  fmt::print("model      {}: {}\n", p.row.name, p.row.what);
+  fmt::print("cell       {} nodes, {:.3g} springs per node, spacing {:.6g} m, {} sample{}\n\n", first.nodes,
+             first.springs_per_node, spacing, samples.size(), samples.size() > 1 ? "s" : "");
+  fmt::print("C [Pa]     xx yy zz yz zx xy{}\n", samples.size() > 1 ? fmt::format(", seed {}", first.seed) : "");
+  const double round_off = 1e-12 * first.h.C.cwiseAbs().maxCoeff();
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) fmt::print("{:>14.6g}", std::abs(first.h.C(i, j)) > round_off ? first.h.C(i, j) : 0.0);
+    fmt::print("\n");
+  }
+  fmt::print("\n{:<12}{:>14}{:>14}{:>14}{:>10}\n", "", "mean", "spread", "calibrated to", "ratio");
+  for (const Quantity& q : quantities) {
+    const MeanAndSpread result = over(samples, q);
+    const double aim = wanted(q, p, m);
+    fmt::print("{:<12}{:>14.6g}{:>14.2g}", q.label, result.mean, result.spread);
+    if (q.modulus) fmt::print("{:>14.6g}{:>10.4f}", aim, result.mean / aim);
+    if (std::string(q.key) == "poisson_ratio") fmt::print("{:>14.6g}", aim);
+    fmt::print("\n");
+  }
+  for (const Sample& s : samples)
+    if (!stable(s.h))
+      fmt::print("\nwarning: seed {}: the stiffness is not positive definite; such a body is unstable\n", s.seed);
+  fmt::print("\n{}\n", p.row.topology == Topology::random && p.homogenised
+                           ? "The network that compare uses, calibrated on another sample of the same kind; ratio is "
+                             "what networks of this size scatter."
+                           : "The calibration takes the strain as affine; ratio is what is left once the nodes have "
+                             "found their places.");
+}
+
+}  // namespace
+
+void HomogeniseCommand::add_options(CLI::App& command) {
+  command.add_option("--youngs-modulus,-E", moduli_.youngs_modulus, "Young's modulus [Pa]");
+  command.add_option("--poisson-ratio,--nu", moduli_.poisson_ratio, "Poisson's ratio, -1 < nu < 0.5");
+  command.add_option("--shear-modulus,-G", moduli_.shear_modulus, "shear modulus [Pa]");
+  command.add_option("--bulk-modulus,-K", moduli_.bulk_modulus, "bulk modulus [Pa]");
+  command.add_option("--lame-lambda", moduli_.lame_lambda, "Lame's first parameter [Pa]");
+  command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
+  command.add_option("--spacing", spacing_, "cell edge, or mean distance (V/N)^(1/3) of random nodes [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      .add_option(
+          "--nodes", nodes_,
+          fmt::format("nodes of the periodic cell (default {} random, {} on a lattice)", random_nodes, lattice_nodes))
+      ->check(CLI::Range(1, 1000000));
+  const auto number = [&](const std::string& option, const std::string& key, const std::string& what) {
+    command.add_option_function<double>(
+        option, [this, key](double v) { choice_.options[key] = v; }, what);
+  };
+  const auto word = [&](const std::string& option, const std::string& key, const std::string& what) {
+    command.add_option_function<std::string>(
+        option, [this, key](const std::string& v) { choice_.options[key] = v; }, what);
+  };
+  number("--springs-per-node", "springs_per_node", "random: mean number of springs at a node (default 15)");
+  number("--min-length", "min_length", "random: least distance of two nodes over the spacing (default 0.8)");
+  number("--max-length", "max_length", "random: longest spring over the spacing, instead of --springs-per-node");
+  number("--stiffness-exponent", "stiffness_exponent", "random: p in k ~ L^-p (default 0)");
+  number("--seed", "seed", "random: first seed (default 1)");
+  number("--seeds", "seeds", "random: number of networks (default 1)");
+  number("--face-to-cube", "face_to_cube", "lattices: A = k_f / k_c");
+  word("--dispersion", "dispersion", "eMSM: symmetric, share_weighted, published or published_transposed");
+  word("--weights", "weights", "eMSM, symmetric: volume or kL (default: by the sign of q)");
+  word("--calibration", "calibration", "random: homogenised (default, as compare) or affine (the papers' formulas)");
+  word("--surface", "surface", "random: nodes (default) or cut, whose springs are left as they are made");
+  command.add_flag("--json", json_, "print JSON");
+}
+
+int HomogeniseCommand::run() const {
+  IsotropicMaterial m;
+  try {
+    m = material_from(moduli_);
+  } catch (const std::invalid_argument& e) {
+    throw InputError(e.what());
+  }
+  const ModelParameters p = resolve(choice_);
+  const int nodes = nodes_.value_or(p.row.topology == Topology::random ? random_nodes : lattice_nodes);
+  const std::vector<Sample> samples = measure_seeds(p, m, spacing_, nodes);
+  if (json_)
+    fmt::print("{}\n", to_json(samples, p, m, spacing_).dump(2));
+  else
+    print(samples, p, m, spacing_);
+  return 0;
+}
+
+}  // namespace springproof

@@ -1,0 +1,159 @@
+// springproof: can a mass-spring model be trusted as an elastic solid?
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+
+#include "comparisons/commands/calculix_command.h"
+#include "comparisons/commands/describe.h"
+#include "comparisons/commands/homogenise_command.h"
+#include "comparisons/commands/material_command.h"
+#include "comparisons/commands/pictures_command.h"
+#include "comparisons/commands/versions.h"
+#include "comparisons/run/suite.h"
+#include "fem_reference/reference.h"
+#include "msm/parameters/model_table.h"
+#include "problem/case_file/experiment.h"
+#include "problem/case_file/measures.h"
+#include "problem/system/child.h"
+#include "problem/system/shortened.h"
+
+namespace {
+
+using namespace springproof;
+
+int list() {
+  fmt::print("Cases (springproof compare NAME):\n");
+  for (const auto& file : built_in_cases()) {
+    fmt::print("  {:<38} {}\n", case_name(file), read_experiment(file).what);
+  }
+  fmt::print("\nModels ([compare] models = [...]):\n");
+  for (const ModelRow& row : model_table()) fmt::print("  {:<38} {}\n", row.name, row.what);
+  fmt::print("\nMeasures ([compare] measures = [...]):\n");
+  for (const Measure& measure : measure_table()) fmt::print("  {:<28}{}\n", measure.name, measure.what);
+  return 0;
+}
+
+int run_bench(const std::vector<std::string>& arguments) {
+  const std::filesystem::path program = find_program("springproof-bench", "SPRINGPROOF_BENCH_PROGRAM");
+  if (program.empty())
+    throw std::runtime_error(
+        "the program springproof-bench is neither beside this one nor named by SPRINGPROOF_BENCH_PROGRAM");
+  std::signal(SIGINT, [](int) { interrupt_children(); });
+  std::signal(SIGTERM, [](int) { interrupt_children(); });
+  const ChildEnd end = run_child({program, arguments, {}, {}, {}});
+  if (end.kind == ChildEnd::killed) throw std::runtime_error("springproof-bench " + words_for(end));
+  return end.status;
+}
+
+int describe(const CLI::App& app, const std::string& form) {
+  std::vector<std::string> cases, models;
+  for (const auto& file : built_in_cases()) cases.push_back(case_name(file));
+  for (const ModelRow& row : model_table()) models.push_back(row.name);
+  fmt::print("{}", form == "man" ? man_page(app, SPRINGPROOF_VERSION)
+                                 : bash_completion(app, {{"CASE", cases}, {"--model", models}}));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app{"Mass-spring models of elastic solids, proved against finite elements.", "springproof"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", versions);
+
+  std::vector<std::string> names;
+  SuiteOptions options;
+  CLI::App* compare_command = app.add_subcommand(
+      "compare", "Run cases with every model and the FEM reference; write results.csv, results.json and report.html");
+  compare_command
+      ->add_option("CASE", names, "case files (*.toml), folders of them, or built-in names (springproof list)")
+      ->required();
+  compare_command->add_option("--out", options.out, "folder for the results")->capture_default_str();
+  compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")
+      ->check(CLI::NonNegativeNumber);
+  compare_command
+      ->add_option("--poisson-ratio", options.poisson_ratios, "only these of the cases' Poisson's ratios (0.25,0.49)")
+      ->delimiter(',')
+      ->take_all();
+  compare_command
+      ->add_option("--finer", options.finer,
+                   "reference grids with so many times the cells along each direction (known values for a calibration)")
+      ->check(CLI::Range(1, 16));
+  compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
+  compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
+  compare_command->add_flag("--vtu,!--no-vtu", options.vtu, "also write a VTU file of every run, for ParaView");
+  compare_command->footer(
+      "Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, "
+      "or nothing was compared, 2 the input is unusable, 130 interrupted.");
+
+  CLI::App* list_command = app.add_subcommand("list", "Built-in cases, models and measures");
+
+  MaterialCommand material;
+  CLI::App* material_command = app.add_subcommand(
+      "material",
+      "Any two moduli in: spring constants, kappa, safe time step, validity range, and the moduli measured back");
+  material.add_options(*material_command);
+
+  HomogeniseCommand homogenisation;
+  CLI::App* homogenise_command = app.add_subcommand(
+      "homogenise",
+      "The moduli of an endless network of a model: effective stiffness, anisotropy, mean and spread over seeds");
+  homogenisation.add_options(*homogenise_command);
+
+  ExportCommand export_case;
+  CLI::App* export_command = app.add_subcommand("export", "A case as an input deck for another program");
+  export_case.add_options(*export_command);
+
+  CrossCheckCommand second_opinion;
+  CLI::App* cross_check_command =
+      app.add_subcommand("cross-check", "The same case by CalculiX and by our FEM reference, with both uncertainties");
+  second_opinion.add_options(*cross_check_command);
+
+  PicturesCommand pictures;
+  CLI::App* pictures_command =
+      app.add_subcommand("pictures", "The figures and bodies of a report as PNG files, without a display");
+  pictures.add_options(*pictures_command);
+
+  CLI::App* bench_command =
+      app.add_subcommand("bench", "Measure what things cost, each beside its baseline (springproof bench --help)");
+  bench_command->set_help_flag();
+  bench_command->prefix_command();  // the program that it starts knows its options
+
+  std::string form;
+  CLI::App* describe_command =
+      app.add_subcommand("describe", "The command line as a man page, or as completion for bash")->group("");
+  describe_command->add_option("FORM", form)->required()->check(CLI::IsMember({"man", "bash"}));
+
+  for (CLI::App* command : {compare_command, export_command, cross_check_command})
+    command->add_flag_callback(
+        "--no-scripts", [] { setenv("SPRINGPROOF_NO_SCRIPTS", "1", 1); },
+        "refuse .geo scripts other than the built-in ones: a script can run any command");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  if (*compare_command) return compare(find_cases(names), options);
+  if (*list_command) return list();
+  if (*describe_command) return describe(app, form);
+  if (*bench_command) return run_bench(bench_command->remaining());
+  if (*homogenise_command) return homogenisation.run();
+  if (*export_command) return export_case.run();
+  if (*pictures_command) return pictures.run();
+  if (*cross_check_command) return second_opinion.run();
+  return material.run();
+} catch (const springproof::InputError& e) {
+  fmt::print(stderr, "error: {}\n", e.what());
+  return 2;
+} catch (const std::filesystem::filesystem_error& e) {
+  fmt::print(stderr, "error: {}: {}\n", springproof::shortened(e.path1().string()), e.code().message());
+  return 2;
+} catch (const std::exception& e) {
+  fmt::print(stderr, "error: {}\n", e.what());
+  return 1;
+}

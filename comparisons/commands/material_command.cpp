@@ -1,0 +1,234 @@
+#include "comparisons/commands/material_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "msm/dynamics/time_step.h"
+#include "msm/measure/moduli.h"
+#include "msm/measure/stability.h"
+#include "msm/measure/statistics.h"
+#include "msm/measure/validity.h"
+#include "msm/models.h"
+#include "msm/parameters/calibrate.h"
+#include "msm/periodic/bulk_calibration.h"
+#include "msm/topology/cubic_lattice.h"
+
+namespace springproof {
+namespace {
+
+/// Spring constants inside the lattice, by kind (1, 2, 3 axes apart): a cell's share times the cells that share it.
+std::array<double, 3> lattice_constants(const MassSpringModel& model) {
+  std::array<double, 3> k = {0, 0, 0};
+  for (const Spring& s : model.network.cell_springs) {
+    const int axes = static_cast<int>(std::lround(std::pow(s.rest_length / model.network.cell_edge, 2)));
+    k[axes - 1] = s.stiffness * (axes == 1 ? 4 : axes == 2 ? 2 : 1);
+  }
+  return k;
+}
+
+const char* name_of(Dispersion form) {
+  switch (form) {
+    case Dispersion::symmetric:
+      return "symmetric";
+    case Dispersion::share_weighted:
+      return "share_weighted";
+    case Dispersion::published:
+      return "published";
+    case Dispersion::published_transposed:
+      return "published_transposed";
+  }
+  return "";
+}
+
+/// A body that shows the row's time step: one cube where one bounds them all, else a block, or a sheet.
+Mesh sample_mesh(const ModelRow& row, double l) {
+  const int n = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion ? 1 : 5;
+  const int layers = row.topology == Topology::hexagonal ? 1 : n;
+  return block_mesh(l * Vec3(n, n, layers), {n, n, layers});
+}
+
+/// What momentum dispersion and disorder add to the table.
+struct DispersionFacts {
+  double q = 0, spring_factor = 1;  ///< spring_factor: springs over those of eq. (20) of Kot et al. (2014)
+  BlockStability stability;
+  NetworkStatistics network;
+};
+
+DispersionFacts facts_of(const ModelParameters& p, const IsotropicMaterial& m, const MassSpringModel& model, double l) {
+  DispersionFacts facts{0, 1, block_stability(p, m, l), statistics(model.network)};
+  if (const MomentumDispersion* dispersion = dispersion_of(model)) facts.q = dispersion->q;
+  facts.spring_factor = bulk_calibration(p, m).spring_shear_modulus / affine_calibration(p, m).spring_shear_modulus;
+  return facts;
+}
+
+nlohmann::json json_of(const DispersionFacts& f, const ModelParameters& p, const IsotropicMaterial& m) {
+  nlohmann::json out = {
+      {"stable_range", stable_range(p, m)},
+      {"asymmetry", f.stability.asymmetry},
+      {"smallest_eigenvalue", f.stability.smallest_eigenvalue},
+      {"flutter_damping_1_s", std::isfinite(f.stability.flutter_damping) ? nlohmann::json(f.stability.flutter_damping)
+                                                                         : nlohmann::json(nullptr)}};
+  if (p.has(Extension::momentum_dispersion))
+    out["dispersion"] = {{"q", f.q},
+                         {"form", name_of(p.dispersion)},
+                         {"conservative", p.dispersion == Dispersion::symmetric},
+                         {"weights", p.dispersion != Dispersion::symmetric ? "counts"
+                                     : exact_volumes(p, m)                 ? "volume"
+                                                                           : "kL"}};
+  if (p.row.topology == Topology::random)
+    out["network"] = {{"springs_per_node", f.network.springs_per_node},
+                      {"mean_length_m", f.network.mean_length},
+                      {"springs_over_eq_20", f.spring_factor}};
+  return out;
+}
+
+void print(const DispersionFacts& f, const ModelParameters& p, const IsotropicMaterial& m) {
+  if (p.row.topology == Topology::random)
+    fmt::print(
+        "network    <S> = {:.3g}   <L> = {:.4g} m (of a block of 5 x 5 x 5)   springs = {:.4g} times those of eq. "
+        "(20)\n",
+        f.network.springs_per_node, f.network.mean_length, f.spring_factor);
+  if (p.has(Extension::momentum_dispersion))
+    fmt::print("dispersion q = {:.6g}   form {}{}   {}\n", f.q, name_of(p.dispersion),
+               p.dispersion != Dispersion::symmetric ? ""
+               : exact_volumes(p, m)                 ? ", weights volume"
+                                                     : ", weights kL",
+               p.dispersion == Dispersion::symmetric ? "conservative, symmetric stiffness"
+                                                     : "not conservative, stiffness not symmetric");
+  fmt::print("stable     {}\n", stable_range(p, m));
+  fmt::print(
+      "           measured on a small free block: |K - K^T| / |K| = {:.2g}, smallest eigenvalue {:.2g} of the largest, "
+      "{}\n\n",
+      f.stability.asymmetry, f.stability.smallest_eigenvalue,
+      f.stability.flutter_damping > 0
+          ? fmt::format("flutters below a damping of {:.3g} 1/s", f.stability.flutter_damping)
+          : "no flutter");
+}
+
+}  // namespace
+
+void MaterialCommand::add_options(CLI::App& command) {
+  command.add_option("--youngs-modulus,-E", moduli_.youngs_modulus, "Young's modulus [Pa]");
+  command.add_option("--poisson-ratio,--nu", moduli_.poisson_ratio, "Poisson's ratio, -1 < nu < 0.5");
+  command.add_option("--shear-modulus,-G", moduli_.shear_modulus, "shear modulus [Pa]");
+  command.add_option("--bulk-modulus,-K", moduli_.bulk_modulus, "bulk modulus [Pa]");
+  command.add_option("--lame-lambda", moduli_.lame_lambda, "Lame's first parameter [Pa]");
+  command.add_option("--density", density_, "density [kg/m^3]")->capture_default_str();
+  command.add_option("--cell-size", cell_size_, "edge of the cubic cells [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
+  command.add_option("--face-to-cube", face_to_cube_, "A = k_f / k_c");
+  command.add_option("--dispersion", dispersion_, "eMSM: symmetric, share_weighted, published or published_transposed");
+  command.add_option("--weights", weights_, "eMSM, symmetric: volume or kL (default: by the sign of q)");
+  command.add_option("--springs-per-node", springs_per_node_, "random: mean number of springs at a node (default 15)");
+  command.add_flag("--json", json_, "print JSON");
+}
+
+int MaterialCommand::run() const {
+  IsotropicMaterial m;
+  try {
+    m = material_from(moduli_, density_);
+  } catch (const std::invalid_argument& e) {
+    throw InputError(e.what());
+  }
+  ModelChoice choice = choice_;
+  if (face_to_cube_) choice.options["face_to_cube"] = *face_to_cube_;
+  if (dispersion_) choice.options["dispersion"] = *dispersion_;
+  if (weights_) choice.options["weights"] = *weights_;
+  if (springs_per_node_) choice.options["springs_per_node"] = *springs_per_node_;
+  const ModelParameters p = resolve(choice);
+  const double l = cell_size_;
+  const MassSpringModel model = build_model(p, sample_mesh(p.row, l), m);
+  const bool lattice = p.row.topology == Topology::cells;
+  const std::array<double, 3> k = lattice_constants(model);
+  const double time_step = safe_time_step(model, m.density);
+  const MeasuredModuli measured = measure_moduli(p, m);
+  const bool has_limits = lattice && !p.has(Extension::momentum_dispersion);
+  const StrainLimits limits =
+      has_limits ? strain_limits(p, m)
+                 : StrainLimits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  const DispersionFacts facts = facts_of(p, m, model, l);
+  const double correction = p.has(Extension::volume_correction) ? kappa(m) : 0.0;
+
+  if (json_) {
+    const auto limit = [](double strain) {
+      return std::isfinite(strain) ? nlohmann::json(strain) : nlohmann::json(nullptr);
+    };
+    nlohmann::json out = {
+        {"material",
+         {{"youngs_modulus_Pa", m.youngs_modulus},
+          {"poisson_ratio", m.poisson_ratio},
+          {"shear_modulus_Pa", shear_modulus(m)},
+          {"bulk_modulus_Pa", bulk_modulus(m)},
+          {"lame_lambda_Pa", lame_lambda(m)},
+          {"density_kg_m3", m.density}}},
+        {"model",
+         {{"name", p.row.name},
+          {"face_to_cube", std::isinf(p.face_to_cube) ? nlohmann::json("infinity") : nlohmann::json(p.face_to_cube)},
+          {"cell_size_m", l}}},
+        {"springs", {{"k_e_N_m", k[0]}, {"k_f_N_m", k[1]}, {"k_c_N_m", k[2]}}},
+        {"kappa_Pa", correction},
+        {"corner_mass_kg", m.density * l * l * l / 8},
+        {"safe_time_step_s", time_step},
+        {"tension_limit_strain", {{"bounded", limit(limits.bounded_energy)}, {"paper", limit(limits.paper_energy)}}},
+        {"measured",
+         {{"youngs_modulus_Pa", measured.youngs_modulus},
+          {"poisson_ratio", measured.poisson_ratio},
+          {"shear_modulus_Pa", measured.shear_modulus}}}};
+    if (!lattice) out.erase("springs");
+    out.update(json_of(facts, p, m));
+    fmt::print("{}\n", out.dump(2));
+    return 0;
+  }
+  const auto strain = [](double limit) {
+    return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %");
+  };
+  fmt::print(
+      "material   E = {:.6g} Pa   nu = {:.6g}   G = {:.6g} Pa   K = {:.6g} Pa   lambda = {:.6g} Pa   rho = {:.6g} "
+      "kg/m^3\n",
+      m.youngs_modulus, m.poisson_ratio, shear_modulus(m), bulk_modulus(m), lame_lambda(m), m.density);
+  fmt::print("model      {}: {}{}   cell edge l = {:.6g} m\n\n", p.row.name, p.row.what,
+             p.row.topology == Topology::cells || p.row.topology == Topology::centres
+                 ? fmt::format("   A = {:g}", p.face_to_cube)
+                 : "",
+             l);
+  if (lattice) {
+    fmt::print("springs inside the lattice (a free edge has 1/4, a surface edge or face diagonal 1/2 of it)\n");
+    fmt::print("  k_e  cell edge       {:>14.6g} N/m   rest length {:.6g} m\n", k[0], l);
+    fmt::print("  k_f  face diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[1], l * std::sqrt(2.0));
+    fmt::print("  k_c  cube diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[2], l * std::sqrt(3.0));
+  }
+  print(facts, p, m);
+  if (lattice) {
+    fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", correction,
+               p.has(Extension::volume_correction) ? "" : "    (this model has none)");
+    fmt::print("mass per cell corner   {:>14.6g} kg\n", m.density * l * l * l / 8);
+  }
+  fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", time_step,
+             has_limits ? "any mesh of these cells" : "a block of 5 cells; safe_time_step() knows each network's");
+  if (has_limits)
+    fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n",
+               strain(limits.bounded_energy), strain(limits.paper_energy));
+  fmt::print("\nmeasured back from {}\n", lattice                                 ? "a block of 4 x 4 x 4 cells"
+                                          : p.row.topology == Topology::hexagonal ? "a sheet of 4 rows"
+                                                                                  : "an endless sample");
+  fmt::print("  E  = {:.8g} Pa   ({:+.2e} relative)\n", measured.youngs_modulus,
+             measured.youngs_modulus / m.youngs_modulus - 1);
+  fmt::print("  nu = {:.8g}   ({:+.2e})\n", measured.poisson_ratio, measured.poisson_ratio - m.poisson_ratio);
+  fmt::print("  G  = {:.8g} Pa   ({:+.2e} relative)\n", measured.shear_modulus,
+             measured.shear_modulus / shear_modulus(m) - 1);
+  if (p.has(Extension::none) && std::abs(m.poisson_ratio - 0.25) > 1e-12)
+    fmt::print("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss or emsm for nu = {:g}\n",
+               m.poisson_ratio);
+  if (lattice && p.face_to_cube < 0.2)
+    fmt::print("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");
+  if (p.paper_e_form) fmt::print("\nwarning: paper_e_form is right for nu = 1/4 only\n");
+  return 0;
+}
+
+}  // namespace springproof

@@ -1,0 +1,32 @@
+// The parameter oracle: any two moduli in, everything a spring programmer needs out.
+#pragma once
+
+#include <string>
+
+#include "problem/case_file/experiment.h"
+
+namespace CLI {
+class App;
+}
+
+namespace springproof {
+
+class MaterialCommand {
+ public:
+  void add_options(CLI::App& command);
+
+  /// Prints the table (or JSON).  @return 0.
+  /// @throws InputError if the moduli or the model cannot be used.
+  int run() const;
+
+ private:
+  Moduli moduli_;
+  double density_ = 1000;
+  double cell_size_ = 0.1;
+  ModelChoice choice_{"hybmss", {}, "hybmss", {}};
+  std::optional<double> face_to_cube_, springs_per_node_;
+  std::optional<std::string> dispersion_, weights_;
+  bool json_ = false;
+};
+
+}  // namespace springproof

@@ -1,0 +1,169 @@
+#include "comparisons/judge/calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* header = "case,poisson_ratio,element,measure,value,uncertainty,where";
+constexpr double near_incompressible = 0.45;  // Poisson's ratio
+constexpr double largest_known_uncertainty =
+    0.25;  // of the stated one or of the error, as a verdict asks it of a reference
+
+struct KnownLine {
+  std::string case_name;
+  double poisson_ratio;
+  std::string element, measure;
+  double value, uncertainty;
+  std::string where;
+};
+
+double number_of(const std::string& text, const SourceLocation& at, const char* column) try {
+  std::size_t end = 0;
+  const double x = std::stod(text, &end);
+  if (end != text.size() || !std::isfinite(x)) throw std::invalid_argument(text);
+  return x;
+} catch (const std::logic_error&) {
+  throw InputError(at, fmt::format("{}: '{}' is no number (allowed: a finite number)", column, text));
+}
+
+/// The last column may hold commas.
+KnownLine read_line(const std::string& text, const SourceLocation& at) {
+  std::array<std::string, 7> cells;
+  std::istringstream in(text);
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!std::getline(in, cells[i], ','))
+      throw InputError(at, fmt::format("{} columns (allowed: seven, {})", i, header));
+  std::getline(in, cells[6]);
+  return {cells[0], number_of(cells[1], at, "poisson_ratio"), cells[2],
+          cells[3], number_of(cells[4], at, "value"),         number_of(cells[5], at, "uncertainty"),
+          cells[6]};
+}
+
+std::vector<KnownLine> read_table(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<KnownLine> lines;
+  std::string text;
+  for (int number = 1; std::getline(in, text); ++number) {
+    const SourceLocation at{file.string(), number, 1};
+    if (number == 1 && text != header)
+      throw InputError(at, fmt::format("'{}' is no header (allowed: {})", text, header));
+    if (number > 1 && !text.empty()) lines.push_back(read_line(text, at));
+  }
+  return lines;
+}
+
+std::string kind_of(const Experiment& e, const ReferenceRecord& r) {
+  if (e.model_kinematics() == Kinematics::finite) return "finite strain";
+  if (r.poisson_ratio >= near_incompressible) return "near-incompressible";
+  return r.element[0] == 'q' ? "hexahedra" : "tetrahedra";
+}
+
+double ratio(const KnownQuantity& q) {
+  return q.uncertainty > 0 ? q.error() / q.uncertainty : q.error() > 0 ? HUGE_VAL : 0;
+}
+
+CalibrationShare share_of(const std::string& kind, const std::vector<KnownQuantity>& quantities) {
+  CalibrationShare share{kind, 0, 0, 0, 0};
+  std::vector<double> ratios;
+  for (const KnownQuantity& q : quantities) {
+    if (kind != "all" && q.kind != kind) continue;
+    ratios.push_back(ratio(q));
+    share.inside += q.inside();
+  }
+  share.quantities = static_cast<int>(ratios.size());
+  if (ratios.empty()) return share;
+  std::sort(ratios.begin(), ratios.end());
+  share.median_ratio = (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
+  share.largest_ratio = ratios.back();
+  return share;
+}
+
+Json json_of(const CalibrationShare& s) {
+  return {{"kind", s.kind},
+          {"quantities", s.quantities},
+          {"inside", s.inside},
+          {"median_ratio", s.median_ratio},
+          {"largest_ratio", s.largest_ratio}};
+}
+
+Json json_of(const KnownQuantity& q) {
+  return {{"case", q.case_name},
+          {"poisson_ratio", q.poisson_ratio},
+          {"element", q.element},
+          {"measure", q.measure},
+          {"unit", q.unit},
+          {"kind", q.kind},
+          {"known", q.known},
+          {"known_uncertainty", q.known_uncertainty},
+          {"where", q.where},
+          {"value", q.value},
+          {"uncertainty", q.uncertainty},
+          {"note", q.note}};
+}
+
+template <class T>
+Json list(const std::vector<T>& items) {
+  Json out = Json::array();
+  for (const T& item : items) out.push_back(json_of(item));
+  return out;
+}
+
+}  // namespace
+
+double KnownQuantity::error() const { return std::abs(value - known); }
+
+std::vector<KnownQuantity> known_quantities(const CaseResult& result) {
+  const Experiment& e = result.experiment;
+  const std::filesystem::path file = e.file.parent_path() / "known.csv";
+  std::vector<KnownQuantity> quantities;
+  if (!std::filesystem::exists(file)) return quantities;
+  for (const KnownLine& line : read_table(file))
+    for (const ReferenceRecord& r : result.references) {
+      if (line.case_name != e.name || line.element != r.element || line.measure != r.measure ||
+          std::abs(line.poisson_ratio - r.poisson_ratio) > 1e-9)
+        continue;
+      if (line.uncertainty > largest_known_uncertainty * std::max(r.uncertainty, std::abs(r.value - line.value)))
+        continue;
+      quantities.push_back({e.name, r.poisson_ratio, r.element, r.measure, r.unit, kind_of(e, r), line.value,
+                            line.uncertainty, line.where, r.value, r.uncertainty, r.note});
+    }
+  return quantities;
+}
+
+std::vector<CalibrationShare> calibration_shares(const std::vector<KnownQuantity>& quantities) {
+  std::vector<CalibrationShare> shares;
+  for (const char* kind : {"hexahedra", "tetrahedra", "near-incompressible", "finite strain", "all"})
+    if (const CalibrationShare share = share_of(kind, quantities); share.quantities > 0) shares.push_back(share);
+  return shares;
+}
+
+Json calibration_json(const std::vector<KnownQuantity>& quantities) {
+  if (quantities.empty()) return nullptr;
+  return {{"shares", list(calibration_shares(quantities))}, {"quantities", list(quantities)}};
+}
+
+std::string calibration_table(const std::vector<KnownQuantity>& quantities) {
+  if (quantities.empty()) return "";
+  std::string out = fmt::format("{:<20} {:>10} {:>7} {:>7} {:>13} {:>8}\n", "known quantities of", "number", "inside",
+                                "share", "median ratio", "largest");
+  for (const CalibrationShare& s : calibration_shares(quantities))
+    out += fmt::format("{:<20} {:>10} {:>7} {:>6.1f}% {:>13.2f} {:>8.2f}\n", s.kind, s.quantities, s.inside,
+                       100.0 * s.inside / s.quantities, s.median_ratio, s.largest_ratio);
+  for (const KnownQuantity& q : quantities)
+    if (!q.inside())
+      out += fmt::format("outside: {}, nu = {:g}, {}, {}: {:.6g} +- {:.1e} {}, known {:.6g} ({})\n", q.case_name,
+                         q.poisson_ratio, q.element, q.measure, q.value, q.uncertainty, q.unit, q.known, q.where);
+  return out;
+}
+
+}  // namespace springproof

@@ -1,0 +1,54 @@
+// Are the reference's stated uncertainties right?  They are held against answers that are exact, or known far better.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "comparisons/report/results.h"
+
+namespace springproof {
+
+/// A quantity of one element of [reference] beside what it really is.
+struct KnownQuantity {
+  std::string case_name;
+  double poisson_ratio = 0;
+  std::string element;  ///< "q2", "p2", ...
+  std::string measure;
+  std::string unit;
+  std::string kind;  ///< of reference: "hexahedra", "tetrahedra", "finite strain", "near-incompressible"
+  double known = 0;
+  double known_uncertainty = 0;  ///< of the known value itself; 0: exact
+  std::string where;             ///< it comes from: "Lame, closed form", "3 times finer"
+  double value = 0;              ///< the reference's
+  double uncertainty = 0;        ///< as stated
+  std::string note;
+
+  double error() const;  ///< |value - known|
+  bool inside() const { return error() <= uncertainty; }
+};
+
+/// The quantities of a case that the table `known.csv` beside its file knows; none without that table.
+/// Lines: case,poisson_ratio,element,measure,value,uncertainty,where.
+/// Left out are values known too badly to judge: no better than a quarter of the stated uncertainty and of the error.
+/// @throws InputError with file and line for a line that cannot be read.
+std::vector<KnownQuantity> known_quantities(const CaseResult& result);
+
+/// How many lie within their stated uncertainty, and how wide that is.
+struct CalibrationShare {
+  std::string kind;  ///< of reference; "all"
+  int quantities = 0, inside = 0;
+  double median_ratio = 0;  ///< of |error| / uncertainty
+  double largest_ratio = 0;
+};
+
+/// One per kind that occurs, then "all"; nothing if there is no quantity.
+std::vector<CalibrationShare> calibration_shares(const std::vector<KnownQuantity>& quantities);
+
+/// {"shares": [...], "quantities": [...]} (docs/results.md); null if there is no quantity.
+nlohmann::json calibration_json(const std::vector<KnownQuantity>& quantities);
+
+/// The shares as a table, and each quantity outside; empty if there is no quantity.
+std::string calibration_table(const std::vector<KnownQuantity>& quantities);
+
+}  // namespace springproof

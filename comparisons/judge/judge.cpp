@@ -1,0 +1,119 @@
+#include "comparisons/judge/judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "comparisons/judge/measures.h"
+
+namespace springproof {
+namespace {
+
+// A reference may be at most this uncertain, as a fraction of the tolerance it decides.
+constexpr double largest_uncertainty_fraction = 0.25;
+
+bool same(double a, double b) { return std::abs(a - b) < 1e-9; }
+
+const Row* find_row(const CaseResult& result, const std::string& model, double nu, const Cells& cells,
+                    const std::string& measure) {
+  for (const Row& row : result.rows)
+    if (row.model == model && same(row.poisson_ratio, nu) && row.cells == cells && row.measure == measure) return &row;
+  return nullptr;
+}
+
+const ReferenceRecord* find_reference(const CaseResult& result, const std::string& element, double nu,
+                                      const std::string& measure) {
+  for (const ReferenceRecord& r : result.references)
+    if (r.element == element && same(r.poisson_ratio, nu) && r.measure == measure) return &r;
+  return nullptr;
+}
+
+void decide(const Expectation& e, bool any_reference, Check& check) {
+  const bool by_fem = e.source == Source::extrapolated_fem;
+  if (check.computed && e.at_least)
+    check.verdict = *check.computed >= *e.at_least ? Verdict::pass : Verdict::fail;
+  else if (!check.computed)
+    check.verdict = is_distance(e.measure) && !any_reference ? Verdict::no_reference : Verdict::no_result;
+  else if (by_fem && !check.reference_uncertainty)
+    check.verdict = Verdict::no_reference;
+  else {
+    const double miss = std::abs(*check.computed - check.expected), doubt = check.reference_uncertainty.value_or(0);
+    if (miss > check.within + doubt)
+      check.verdict = Verdict::fail;
+    else if (doubt > largest_uncertainty_fraction * check.within)
+      check.verdict = Verdict::reference_too_coarse;
+    else
+      check.verdict = miss <= check.within ? Verdict::pass : Verdict::fail;
+  }
+}
+
+Check judge_one(const CaseResult& result, const Expectation& e, double nu, const Cells& cells) {
+  Check check{e.model,
+              nu,
+              cells,
+              e.measure,
+              unit_of(e.measure),
+              to_string(e.source),
+              e.at_least ? *e.at_least : e.value.value_or(0),
+              {},
+              0,
+              {},
+              Verdict::no_result,
+              e.where,
+              e.at_least.has_value()};
+  if (const auto element = reference_element(result.experiment, e.model)) {
+    if (const ReferenceRecord* r = find_reference(result, *element, nu, e.measure)) {
+      check.computed = r->value;
+      check.reference_uncertainty = r->uncertainty;
+    }
+  } else if (const Row* row = find_row(result, e.model, nu, cells, e.measure)) {
+    check.computed = row->value;
+    if (e.source == Source::extrapolated_fem || is_distance(e.measure)) {
+      check.reference_uncertainty = row->reference_uncertainty;
+      if (!e.value) check.expected = row->reference.value_or(0);
+    }
+  }
+  check.within = e.relative ? e.within * std::abs(check.expected) : e.within;
+  const bool any_reference = std::any_of(result.references.begin(), result.references.end(),
+                                         [&](const ReferenceRecord& r) { return same(r.poisson_ratio, nu); });
+  decide(e, any_reference, check);
+  return check;
+}
+
+}  // namespace
+
+std::optional<std::string> reference_element(const Experiment& experiment, const std::string& model) {
+  const std::vector<std::string>& elements = experiment.reference.elements;
+  if (model == "fem" && !elements.empty()) return elements.front();
+  if (!experiment.models.empty())
+    for (const std::string& peer : experiment.elements)
+      if (model == "fem_" + peer) return {};
+  for (const std::string& element : elements)
+    if (model == "fem_" + element) return element;
+  return {};
+}
+
+void judge(CaseResult& result) {
+  const Experiment& experiment = result.experiment;
+  for (const Expectation& e : experiment.expectations)
+    for (const IsotropicMaterial& material : experiment.materials) {
+      if (e.poisson_ratio && !same(*e.poisson_ratio, material.poisson_ratio)) continue;
+      const std::vector<Cells> everywhere = reference_element(experiment, e.model)
+                                                ? std::vector<Cells>{experiment.body.cells.front()}
+                                            : e.cells ? std::vector<Cells>{*e.cells}
+                                                      : experiment.body.cells;
+      for (const Cells& cells : everywhere)
+        result.checks.push_back(judge_one(result, e, material.poisson_ratio, cells));
+    }
+  for (const PublishedValue& p : experiment.published) {
+    PublishedRow row{p.model, p.poisson_ratio, p.measure, unit_of(p.measure), p.value, {}, p.where, p.remark};
+    const Row* ours =
+        find_row(result, p.model, p.poisson_ratio, p.cells.value_or(experiment.body.cells.front()), p.measure);
+    if (ours) row.computed = ours->value;
+    if (const auto element = reference_element(experiment, p.model))
+      if (const ReferenceRecord* r = find_reference(result, *element, p.poisson_ratio, p.measure))
+        row.computed = r->value;
+    result.published.push_back(row);
+  }
+}
+
+}  // namespace springproof

@@ -1,0 +1,26 @@
+// The mean displacement of a patch: where it is sampled, the same places for every discretisation.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+/// Quadrature points over the facets of one patch.
+struct PatchSamples {
+  std::string patch;
+  NodalVectors points;      ///< rest positions, n x 3 [m]
+  Eigen::VectorXd weights;  ///< share of each in the patch's area, n; they sum to 1
+};
+
+/// Those of every patch of a mesh that has an area.  Exact for displacements that are biquadratic on its facets
+/// (quadratic on triangles), which those of its elements are.
+std::vector<PatchSamples> samples_of_patches(const Mesh& mesh);
+
+/// mean_displacement.<patch>.x|y|z|magnitude [m]; `u` n x 3 at the points of all patches, one after the other.
+std::map<std::string, double> mean_displacements(const std::vector<PatchSamples>& patches, const NodalVectors& u);
+
+}  // namespace springproof

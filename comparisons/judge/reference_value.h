@@ -1,0 +1,95 @@
+// How sure a reference is: three grids, observed order, Richardson limit, grid convergence index (GCI).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/vector.h"
+
+namespace springproof {
+
+/// What a sequence of grids does.
+enum class Sequence { equal, converging, not_converging };
+
+/// A number with its uncertainty (about two standard deviations, in ASME V&V 20's sense).
+struct ReferenceValue {
+  double value = 0;
+  double uncertainty = 0;
+  std::optional<double> observed_order;  ///< empty: not extrapolated
+  std::string note;
+  Sequence sequence = Sequence::converging;  ///< equal: on all grids, to solver accuracy
+  bool matters = true;  ///< false where it is less than a tenth of what the body's loads and displacements would allow
+};
+
+inline constexpr double solver_noise = 1e-7;       ///< of a value or field, relative to its scale
+inline constexpr double safety_factor = 1.25;      ///< Fs for three grids (Roache)
+inline constexpr double coarse_safety_factor = 3;  ///< Fs for two grids, and for three that are hardly refined
+inline constexpr double smallest_ratio = 1.2;      ///< of cell sizes, below which a sequence tells no order
+inline constexpr double smallest_correlation =
+    0.5;  ///< of a field's two differences, below which it is not extrapolated
+
+/// The highest order that is believed of a sequence, whatever it shows.  With clamped edges 2, as they keep the true
+/// order low.
+inline constexpr double clamped_order = 2;
+
+/// That of a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution displacements converge with
+/// degree + 1 and stresses with degree; all else as with clamped edges.
+double trusted_order(const std::string& measure, const std::string& element, bool smooth);
+
+/// Cell sizes of the first grid over the second's, and of the second over the third's.
+struct GridRatios {
+  double coarse = 2, fine = 2;
+};
+
+/// False for ratios below smallest_ratio, or inverted ones.
+bool are_refined(const GridRatios& ratios);
+
+/// Limit of a quantity computed on three grids (coarse to fine; the last three of more).  `noise`: round-off of the
+/// values. Monotone, with an order p that takes the limit no further from the finest grid than the three are apart (at
+/// ratios of 2: p of 1/2 or more): Richardson extrapolation with p, but at most `highest_order`.  Its uncertainty is Fs
+/// times the larger of the two errors that the two differences come to on the finest grid at that order: where it shows
+/// a higher one, two grids have come to agree faster than is believed, and the first difference counts. Otherwise the
+/// finest value, with an uncertainty of Fs times: of slow sequences the step that p, at least 1/2, would make, or the
+/// spread of the three; of those that are not monotone the last difference, or what first order leaves of the first.
+/// Grids that are not refined: the finest value, 3 times the spread.
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order = clamped_order,
+                           const GridRatios& ratios = {});
+
+/// Limit from grids of cell sizes h and h/2 alone, first order being assumed (edges of cubes and of supports are
+/// singular): 2 f2 - f1, uncertainty 3 |f2 - f1| (Roache's safety factor for two grids).
+ReferenceValue extrapolate_two(double f1, double f2);
+
+/// Three grids may agree by accident: raises the uncertainty of every value to the median of its kind ("force",
+/// "stress", ...), both as fractions of the magnitude of the vector or tensor that the value is a component of.  Values
+/// that are equal on all grids neither count nor change.
+void raise_to_usual(std::map<std::string, ReferenceValue>& limits);
+
+/// Median relative uncertainty of the values that matter, if most of them do not converge; otherwise 0.
+double doubt_of(const std::map<std::string, ReferenceValue>& limits);
+
+/// "force", "displacement", "stress", "volume_change", ... of a measure.
+std::string kind_of(const std::string& measure);
+
+/// The same for a displacement field sampled at the same points on three grids, in the weighted L2 norm: the order is
+/// that of the first difference's part along the second.  It is extrapolated only where the two point the same way and
+/// there is no `doubt` (below).  Otherwise the uncertainty is Fs times what first order leaves after the last
+/// difference, or, where the differences do not fall that fast, Fs times the largest of the three distances, node by
+/// node; never less than the doubt.
+struct ReferenceField {
+  NodalVectors displacement;
+  double uncertainty = 0;             ///< relative to the norm of the finest field
+  Eigen::VectorXd nodal_uncertainty;  ///< the same at each node, absolute [m]
+  std::optional<double> observed_order;
+  std::string note;
+  Sequence sequence = Sequence::converging;
+  std::optional<double> correlation;  ///< of u2 - u1 and u3 - u2, from -1 to 1; empty: one of them is round-off
+};
+ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights,
+                           const GridRatios& ratios = {}, double doubt = 0);
+
+/// Weighted L2 norm of a nodal field: sqrt(sum w |u|^2 / sum w).
+double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights);
+
+}  // namespace springproof

@@ -1,0 +1,370 @@
+#include "comparisons/report/headline.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "comparisons/report/headline_cases.h"
+#include "comparisons/report/headline_words.h"
+#include "comparisons/report/results.h"
+
+namespace springproof {
+namespace {
+
+using namespace words;
+
+/// The largest error at one Poisson's ratio, over the cases.
+struct Worst {
+  double error = -1;
+  double uncertainty = 0;
+  std::string case_name;
+
+  void take(double other, double its_uncertainty, const std::string& its_case) {
+    if (other > error) *this = {other, its_uncertainty, its_case};
+  }
+};
+
+using ByNu = std::map<double, Worst>;
+
+struct ModelErrors {
+  ByNu displacement, volume, reaction;
+  ByNu springs;                        // displacement: the springs' own part of it, on bodies of voxels
+  ByNu rank;                           // what the closest model is found by
+  std::set<std::string> cases;         // in which a displacement was compared
+  std::optional<double> own_nu;        // the only Poisson's ratio that the model claims
+  bool parts = false, wholes = false;  // ranked by the springs' own part somewhere, by the whole error somewhere
+};
+
+struct ModelKey {
+  bool large_deformation, fem;
+  std::size_t order;  // of first appearance
+  std::string name;
+  auto operator<=>(const ModelKey&) const = default;
+};
+
+std::string range_text(double from, double to) {
+  return from == to ? fmt::format("at ν = {}", nu_text(from))
+                    : fmt::format("for ν from {} to {}", nu_text(from), nu_text(to));
+}
+
+std::string range_text(const ByNu& errors) { return range_text(errors.begin()->first, errors.rbegin()->first); }
+
+/// The listed Poisson's ratios at which the error stays within `limit`: "for ν from 0 to 0.4 and at ν =
+/// 0.49".
+std::string where_within(const ByNu& errors, double limit) {
+  std::vector<std::string> parts;
+  for (auto it = errors.begin(); it != errors.end();) {
+    if (it->second.error > limit) {
+      ++it;
+      continue;
+    }
+    const double from = it->first;
+    double to = from;
+    for (; it != errors.end() && it->second.error <= limit; ++it) to = it->first;
+    parts.push_back(range_text(from, to));
+  }
+  return fmt::format("{}", fmt::join(parts, " and "));
+}
+
+/// The first of 1 % and 5 % that is held somewhere but not everywhere.
+std::string tighter_clause(const ByNu& errors, double worst) {
+  for (double limit : {0.01, 0.05}) {
+    const std::string where = where_within(errors, limit);
+    if (worst > limit && !where.empty()) return fmt::format("; within {} % {}", percent(limit), where);
+  }
+  return "";
+}
+
+const std::pair<const double, Worst>& largest(const ByNu& errors) {
+  return *std::max_element(errors.begin(), errors.end(),
+                           [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
+}
+
+/// Those at the Poisson's ratios that the model claims.
+ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
+  ByNu out = by_nu;
+  if (errors.own_nu)
+    std::erase_if(out, [&](const auto& entry) { return std::abs(entry.first - *errors.own_nu) > 1e-9; });
+  return out;
+}
+
+std::string own_ratio_clause(const ModelErrors& errors) {
+  const ByNu own = claimed(errors, errors.displacement);
+  if (!errors.own_nu || own.size() == errors.displacement.size()) return "";
+  const std::string there =
+      own.empty() ? "which was not run" : fmt::format("there within {} %", percent(largest(own).second.error));
+  return fmt::format("; a solid of ν = {} alone, {}", nu_text(errors.own_nu), there);
+}
+
+std::string sentence(const ModelErrors& errors) {
+  if (errors.displacement.empty()) return "no displacement could be compared.";
+  const auto& [nu, worst] = largest(errors.displacement);
+  std::string out = fmt::format("displacement within {} % of FEM {} (worst: {}", percent(worst.error),
+                                range_text(errors.displacement), at_nu(worst.case_name, nu));
+  if (worst.error <= worst.uncertainty)
+    out += fmt::format(", below the {} % uncertainty of the reference", percent(worst.uncertainty));
+  out += ")";
+  out += tighter_clause(errors.displacement, worst.error);
+  if (!errors.springs.empty())
+    out += fmt::format("; its springs within {} % of FEM on the same cubes",
+                       percent(largest(errors.springs).second.error));
+  if (!errors.reaction.empty())
+    out += fmt::format("; reactions of moved supports within {} %", percent(largest(errors.reaction).second.error));
+  if (!errors.volume.empty())
+    out += fmt::format("; volume change within {} percentage points", percent(largest(errors.volume).second.error));
+  return out + own_ratio_clause(errors) + ".";
+}
+
+std::string expected_text(const Json& check) {
+  const std::string expected = number_text(number_of(check, "expected"));
+  if (check.value("at_least", false)) return "at least " + expected;
+  return fmt::format("{} ± {}", expected, number_text(number_of(check, "within")));
+}
+
+std::string check_line(const std::string& case_name, const Json& check) {
+  const std::string where = string_of(check, "where");
+  return fmt::format("{}: {}, {} at ν = {}, {}: computed {}, expected {} ({}{}{})", case_name,
+                     string_of(check, "model"), string_of(check, "measure"), nu_text(number_of(check, "poisson_ratio")),
+                     cells_words(check), number_text(number_of(check, "computed")), expected_text(check),
+                     string_of(check, "source"), where.empty() ? "" : ", ", where);
+}
+
+std::string run_line(const std::string& case_name, const Json& run) {
+  const std::string message = string_of(run, "message");
+  return fmt::format("{}: {} at ν = {}, {}: {}", case_name, string_of(run, "model"),
+                     nu_text(number_of(run, "poisson_ratio")), cells_words(run),
+                     message.empty() ? "no reason given" : message);
+}
+
+// ---- which model comes closest
+
+struct Candidate {
+  std::string name;
+  const ModelErrors* errors;
+  ByNu rank;  ///< where the model claims to hold
+  double error() const { return largest(rank).second.error; }
+  double uncertainty() const { return largest(rank).second.uncertainty; }
+  auto breadth() const { return std::tuple(errors->cases.size(), rank.size()); }
+};
+
+/// The spring models that were compared most widely in linear cases, the closest first.
+std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models) {
+  std::vector<Candidate> all;
+  for (const auto& [key, errors] : models)
+    if (Candidate c{key.name, &errors, claimed(errors, errors.rank)};
+        !key.large_deformation && !key.fem && !c.rank.empty())
+      all.push_back(c);
+  if (all.empty()) return all;
+  const auto widest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+                        return a.breadth() < b.breadth();
+                      })->breadth();
+  std::erase_if(all, [&](const Candidate& c) { return c.breadth() < widest; });
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.error() < b.error(); });
+  return all;
+}
+
+std::string where_text(const Candidate& c) {
+  const auto cases = c.errors->cases.size();
+  return fmt::format("{}, in {} linear case{}", range_text(c.rank), cases, cases == 1 ? "" : "s");
+}
+
+std::string closest_text(const Candidate& best) {
+  const ModelErrors& e = *best.errors;
+  std::string within = fmt::format("its displacements stay within {} % of finite elements",
+                                   percent(largest(claimed(e, e.displacement)).second.error));
+  if (const ByNu springs = claimed(e, e.springs); e.wholes && e.parts)
+    within =
+        fmt::format("its largest error, of bodies of voxels the springs' own part, is {} %", percent(best.error()));
+  else if (!springs.empty())
+    within = fmt::format(
+        "its springs stay within {} % of finite elements on the same cubes ({} % of the reference with coarse cells "
+        "and staircase)",
+        percent(largest(springs).second.error), percent(largest(claimed(e, e.displacement)).second.error));
+  if (const ByNu reaction = claimed(e, e.reaction); !reaction.empty())
+    within += fmt::format(", the reactions of moved supports within {} %", percent(largest(reaction).second.error));
+  return fmt::format("Of the spring models {} comes closest: {} {}.", best.name, within, where_text(best));
+}
+
+std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
+  std::vector<std::string> names;
+  for (const Candidate& c : tied) names.push_back(fmt::format("{} ({} %)", c.name, percent(c.error())));
+  const bool parts = tied.front().errors->parts;
+  return fmt::format(
+      "Of the spring models {} come closest and cannot be told apart: their largest errors{} differ by no more than "
+      "the {} % that the "
+      "reference is uncertain by, {}.",
+      listed(names), parts ? ", of bodies of voxels the springs' own part," : "", percent(uncertainty),
+      where_text(tied.front()));
+}
+
+/// That every model was run off the only Poisson's ratio that it claims; or nothing.
+std::string no_claim_text(const std::map<ModelKey, ModelErrors>& models) {
+  std::vector<std::string> names;
+  for (const auto& [key, errors] : models)
+    if (!key.large_deformation && !key.fem && errors.own_nu && !errors.rank.empty())
+      names.push_back(fmt::format("{} (a solid of ν = {} alone)", key.name, nu_text(errors.own_nu)));
+  if (names.empty()) return "";
+  return fmt::format("No spring model was compared at a Poisson's ratio that it claims: {}.", listed(names));
+}
+
+std::string answer(const std::map<ModelKey, ModelErrors>& models) {
+  std::vector<Candidate> all = candidates(models);
+  if (all.empty()) return no_claim_text(models);
+  const Candidate& best = all.front();
+  double uncertainty = 0;
+  std::vector<Candidate> tied;
+  for (const Candidate& c : all) {
+    const double doubt = std::max(best.uncertainty(), c.uncertainty());
+    if (&c != &best && c.error() - best.error() > doubt) continue;
+    tied.push_back(c);
+    uncertainty = std::max(uncertainty, doubt);
+  }
+  return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
+}
+
+// ---- collecting
+
+class Collector {
+ public:
+  void add_case(const Json& result) {
+    const Json& experiment = object_of(result, "experiment");
+    case_name_ = string_of(experiment, "name");
+    large_ = string_of(experiment, "kinematics") != "linear";
+    const Json& measures = list_of(experiment, "measures");
+    compares_displacement_ = std::find(measures.begin(), measures.end(), "displacement_error") != measures.end();
+    for (const Json& check : list_of(result, "checks")) add_check(check);
+    for (const Json& run : list_of(result, "runs")) add_run(run);
+    append(headline_.failures, failures_of(result));
+    append(headline_.verification, verification_lines(result));
+    append(headline_.deformations, {deformation_line(result)});
+    append(headline_.warnings, {deformation_warning(result)});
+    if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
+    for (const Json& model : list_of(experiment, "models"))
+      models_for(string_of(model, "label"), number_of(model, "own_poisson_ratio"));
+  }
+
+  Headline take() {
+    std::map<ModelKey, ModelErrors> sorted;
+    for (auto& [key, errors] : models_) {
+      const bool fem = fem_.contains(key.second);
+      sorted[{key.first, fem, order_of(key.second), key.second}] = errors;
+    }
+    for (const auto& [key, errors] : sorted)
+      headline_.models.push_back({key.name, key.fem, key.large_deformation, sentence(errors)});
+    headline_.answer = answer(sorted);
+    return headline_;
+  }
+
+ private:
+  static void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
+    std::copy_if(more.begin(), more.end(), std::back_inserter(lines),
+                 [](const std::string& line) { return !line.empty(); });
+  }
+
+  /// What a model claims, where it was compared.
+  void models_for(const std::string& label, std::optional<double> own_nu) {
+    if (const auto found = models_.find({large_, label}); found != models_.end()) found->second.own_nu = own_nu;
+  }
+
+  std::size_t order_of(const std::string& model) {
+    const auto found = std::find(order_.begin(), order_.end(), model);
+    if (found != order_.end()) return found - order_.begin();
+    order_.push_back(model);
+    return order_.size() - 1;
+  }
+
+  void add_run(const Json& run) {
+    const std::string model = string_of(run, "model");
+    if (string_of(run, "kind") == "fem") fem_.insert(model);
+    if (compares_displacement_ && string_of(run, "kind") == "msm") models_[{large_, model}];
+    order_of(model);
+    if (!run.value("ok", false)) headline_.failed_runs.push_back(run_line(case_name_, run));
+  }
+
+  void add_rows(const Json& result) {
+    std::map<std::string, double> finest;
+    for (const Json& row : list_of(result, "rows")) {
+      double& cells = finest[string_of(row, "model")];
+      cells = std::max(cells, cell_count(cells_of(row)));
+    }
+    const auto is_finest = [&](const Json& item) {
+      return cell_count(cells_of(item)) == finest[string_of(item, "model")];
+    };
+    std::map<std::tuple<std::string, double, std::string>, double> own_parts;  // by model, nu and measure
+    for (const Json& split : list_of(result, "splits"))
+      if (const auto part = number_of(split, "model_error"), nu = number_of(split, "poisson_ratio");
+          part && nu && is_finest(split))
+        own_parts[{string_of(split, "model"), *nu, string_of(split, "measure")}] = *part;
+    for (const Json& row : list_of(result, "rows"))
+      if (is_finest(row)) add_row(row, own_parts);
+  }
+
+  void add_row(const Json& row, const std::map<std::tuple<std::string, double, std::string>, double>& own_parts) {
+    const std::string measure = string_of(row, "measure"), model = string_of(row, "model");
+    const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
+    const bool displacement = measure == "displacement_error", reaction = measure == "reaction_error";
+    if (!nu || !error || !(displacement || reaction || measure == "volume_change")) return;
+    const double uncertainty = number_of(row, "reference_uncertainty").value_or(0);
+    ModelErrors& errors = models_[{large_, model}];
+    ByNu& kind = displacement ? errors.displacement : reaction ? errors.reaction : errors.volume;
+    kind[*nu].take(std::abs(*error), uncertainty, case_name_);
+    if (!displacement && !reaction) return;
+    if (displacement) errors.cases.insert(case_name_);
+    const auto part = own_parts.find({model, *nu, measure});
+    const bool has_part = part != own_parts.end();
+    (has_part ? errors.parts : errors.wholes) = true;
+    if (has_part && displacement) errors.springs[*nu].take(part->second, uncertainty, case_name_);
+    errors.rank[*nu].take(has_part ? part->second : *error, uncertainty, case_name_);
+  }
+
+  void add_check(const Json& check) {
+    const std::string verdict = string_of(check, "verdict");
+    if (verdict == "pass") ++headline_.held;
+    if (verdict == "reference too coarse") ++headline_.reference_too_coarse;
+    if (verdict == "no reference") ++headline_.no_reference;
+    if (verdict == "no result") ++headline_.no_result;
+    if (verdict == "fail") {
+      ++headline_.failed;
+      headline_.failed_checks.push_back(check_line(case_name_, check));
+    }
+  }
+
+  Headline headline_;
+  std::string case_name_;
+  bool large_ = false, compares_displacement_ = false;
+  std::map<std::pair<bool, std::string>, ModelErrors> models_;
+  std::set<std::string> fem_;
+  std::vector<std::string> order_;
+};
+
+}  // namespace
+
+Headline headline(const Json& results) {
+  Collector collector;
+  for (const Json& result : list_of(results, "cases")) collector.add_case(result);
+  Headline h = collector.take();
+  h.doubt = doubt_sentence(list_of(results, "cases"));
+  return h;
+}
+
+bool success(const Headline& h) {
+  return h.failed + h.no_result + h.no_reference + h.reference_too_coarse == 0 && h.failures.empty();
+}
+
+std::string expectations_sentence(const Headline& h) {
+  const int all = h.held + h.failed + h.reference_too_coarse + h.no_reference + h.no_result;
+  if (all == 0) return "No expectations are stated.";
+  std::string out = fmt::format("{} of {} expectations hold", h.held, all);
+  if (h.failed) out += fmt::format(", {} fail{}", h.failed, h.failed == 1 ? "s" : "");
+  if (h.reference_too_coarse) out += fmt::format(", for {} the reference is too coarse", h.reference_too_coarse);
+  if (h.no_reference) out += fmt::format(", for {} there is no reference", h.no_reference);
+  if (h.no_result) out += fmt::format(", for {} there is no result", h.no_result);
+  return out + ".";
+}
+
+}  // namespace springproof

@@ -1,0 +1,95 @@
+#include "comparisons/report/picture.h"
+
+#include "comparisons/report/thin_surface.h"
+#include "meshes/locate/locate.h"
+#include "meshes/locate/outer_facets.h"
+#include "meshes/volume.h"
+
+namespace springproof {
+namespace {
+
+using Facet = std::array<int, 4>;
+
+std::vector<Facet> surface_of(const Mesh& mesh) {
+  std::vector<Facet> facets;
+  for (const OuterFacet& f : outer_facets(mesh)) facets.push_back(f.nodes);
+  return thinned(mesh.nodes, facets);
+}
+
+/// Mean of V'/V - 1 over the cells at each node [1].
+Eigen::VectorXd nodal_volume_change(const Field& field) {
+  const Mesh& mesh = *field.mesh;
+  const Eigen::VectorXd change =
+      (cell_volumes(mesh, mesh.nodes + field.displacement).array() / cell_volumes(mesh, mesh.nodes).array() - 1)
+          .matrix();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(mesh.nodes.rows()), cells = sum;
+  Eigen::Index number = 0;
+  const auto add = [&](const auto& cell) {
+    for (int n : cell) {
+      sum[n] += change[number];
+      cells[n] += 1;
+    }
+    ++number;
+  };
+  for (const Hexahedron& cell : mesh.hexahedra) add(cell);
+  for (const Tetrahedron& cell : mesh.tetrahedra) add(cell);
+  return sum.cwiseQuotient(cells);
+}
+
+void append(const Eigen::RowVector3d& v, std::vector<float>& out) {
+  for (double value : v) out.push_back(static_cast<float>(value));
+}
+
+/// Numbers the nodes of the facets in order of appearance; `add` puts the values of one into the picture.
+template <class Add>
+void add_facets(const std::vector<Facet>& facets, const NodalVectors& points, Picture& p, const Add& add) {
+  std::vector<int> number(static_cast<std::size_t>(points.rows()), -1);
+  int used = 0;
+  for (const Facet& facet : facets)
+    for (int n : facet) {
+      if (n >= 0 && number[n] < 0) {
+        number[n] = used++;
+        append(points.row(n), p.rest);
+        add(n);
+      }
+      p.quads.push_back(n < 0 ? -1 : number[n]);
+    }
+}
+
+}  // namespace
+
+Picture picture(const std::string& model, double poisson_ratio, const Cells& cells, const Field& field,
+                const NodalVectors* truth) {
+  Picture p{model, poisson_ratio, cells, {}, {}, {}, {}, {}, "cells"};
+  const Eigen::VectorXd volume_change = nodal_volume_change(field);
+  add_facets(surface_of(*field.mesh), field.mesh->nodes, p, [&](int n) {
+    append(field.displacement.row(n), p.displacement);
+    p.volume_change.push_back(static_cast<float>(volume_change[n]));
+    if (truth) p.difference.push_back(static_cast<float>((field.displacement.row(n) - truth->row(n)).norm()));
+  });
+  return p;
+}
+
+Picture smooth_picture(const std::string& model, double poisson_ratio, const Cells& cells, const Field& field,
+                       const Mesh& body, const NodalVectors* truth) {
+  Picture p{model, poisson_ratio, cells, {}, {}, {}, {}, {}, "smooth"};
+  const Eigen::VectorXd volume_change = nodal_volume_change(field);
+  Locator locator(*field.mesh);
+  add_facets(surface_of(body), body.nodes, p, [&](int n) {
+    const Location at = locator(body.nodes.row(n).transpose());
+    Eigen::RowVector3d u = Eigen::RowVector3d::Zero(), v = u;
+    double change = 0;
+    for (int c = 0; c < 8; ++c) {
+      const int node = field.mesh->hexahedra[at.cell][c];
+      u += at.shape[c] * field.displacement.row(node);
+      if (truth) v += at.shape[c] * truth->row(node);
+      change += at.shape[c] * volume_change[node];
+    }
+    append(u, p.displacement);
+    p.volume_change.push_back(static_cast<float>(change));
+    if (truth) p.difference.push_back(static_cast<float>((u - v).norm()));
+  });
+  return p;
+}
+
+}  // namespace springproof

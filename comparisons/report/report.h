@@ -1,0 +1,14 @@
+// report.html: one self-contained page that opens offline.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+namespace springproof {
+
+/// Writes the page.  `results` is the document written to results.json, `pictures` an array with what
+/// pictures_to_json made of each case.  The page carries Chart.js, three.js and OrbitControls inline, once.
+/// @throws std::runtime_error if the file cannot be written (nothing half-written is left).
+void write_report(const std::filesystem::path& file, const nlohmann::json& results, const nlohmann::json& pictures);
+
+}  // namespace springproof

@@ -1,0 +1,441 @@
+#include "comparisons/report/results.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+
+#include "problem/case_file/measures.h"
+#include "problem/system/encoding.h"
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
+
+Json numbers(const std::vector<double>& xs) {
+  Json out = Json::array();
+  for (double x : xs) out.push_back(number(x));
+  return out;
+}
+
+Json vector(const Vec3& v) { return numbers({v.x(), v.y(), v.z()}); }
+
+// ---- loads as sentences
+
+std::string text(const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
+
+std::string components(const std::vector<std::string>& axes) {
+  if (axes.size() < 2) return axes.empty() ? "" : axes[0];
+  const std::vector<std::string> head(axes.begin(), axes.end() - 1);
+  return fmt::format("{} and {}", fmt::join(head, ", "), axes.back());
+}
+
+std::string sentence(const PrescribedDisplacement& load) {
+  std::vector<std::string> held, moved, free;
+  for (int c = 0; c < 3; ++c) {
+    const std::string axis(1, "xyz"[c]);
+    const auto& u = load.displacement[c];
+    if (!u) {
+      free.push_back(axis);
+    } else if (*u == 0) {
+      held.push_back(axis);
+    } else {
+      moved.push_back(fmt::format("by {:.6g} m in {}", *u, axis));
+    }
+  }
+  std::vector<std::string> parts;
+  if (!moved.empty()) parts.push_back("moved " + components(moved));
+  if (held.size() == 3) {
+    parts.push_back("held");
+  } else if (!held.empty()) {
+    parts.push_back("held in " + components(held));
+  }
+  if (!free.empty()) parts.push_back("free in " + components(free));
+  return fmt::format("{}: {}", load.on, fmt::join(parts, ", "));
+}
+
+std::string sentence(const PrescribedAffine& load) {
+  const auto& A = load.gradient;
+  return fmt::format("{}: moved by u = A X + b with the rows of A {} {} {} and b = {} m", load.on,
+                     text(A.row(0).transpose()), text(A.row(1).transpose()), text(A.row(2).transpose()),
+                     text(load.offset));
+}
+
+std::string sentence(const PrescribedRotation& load) {
+  return fmt::format("{}: turned by {:.6g} degrees about the axis {} through {} m", load.on,
+                     load.angle * 180 / std::numbers::pi, text(load.axis), text(load.point));
+}
+
+std::string sentence(const PrescribedField& load) {
+  return fmt::format("{}: moved by the exact field '{}'", load.on, load.field);
+}
+
+std::string sentence(const FieldBodyForce& load) {
+  return fmt::format("whole body: the body force of the exact field '{}'", load.field);
+}
+
+std::string sentence(const Pressure& load) { return fmt::format("{}: pressed by {:.6g} Pa", load.on, load.pressure); }
+
+std::string sentence(const Traction& load) {
+  return fmt::format("{}: loaded by a traction of {} Pa", load.on, text(load.traction));
+}
+
+std::string sentence(const PatchForce& load) {
+  return fmt::format("{}: loaded by a total force of {} N", load.on, text(load.force));
+}
+
+std::string sentence(const Gravity& load) {
+  return fmt::format("whole body: gravity of {} m/s²", text(load.acceleration));
+}
+
+std::string sentence(const PointForce& load) {
+  return fmt::format("point {} m: loaded by a force of {} N", text(load.at), text(load.force));
+}
+
+// ---- the parts of a case
+
+Json json_of(const IsotropicMaterial& m) {
+  return {{"youngs_modulus", number(m.youngs_modulus)},
+          {"poisson_ratio", number(m.poisson_ratio)},
+          {"density", number(m.density)}};
+}
+
+Json json_of(const ModelChoice& model) {
+  Json options = Json::object();
+  for (const auto& [key, value] : model.options)
+    options[key] = std::visit([](const auto& x) { return Json(x); }, value);
+  return {{"name", model.name}, {"label", model.label}, {"options", options}};
+}
+
+Json json_of(const Probe& probe) { return {{"name", probe.name}, {"at", vector(probe.at)}}; }
+
+Json json_of(const Section& section) { return {{"point", vector(section.point)}, {"normal", vector(section.normal)}}; }
+
+Json json_of(const Line& line) {
+  return {{"from", vector(line.from)}, {"to", vector(line.to)}, {"points", line.points}, {"middle", line.middle}};
+}
+
+Json json_of(const Row& r) {
+  return {{"case_name", r.case_name},
+          {"kinematics", r.kinematics},
+          {"model", r.model},
+          {"poisson_ratio", number(r.poisson_ratio)},
+          {"cells", r.cells},
+          {"measure", r.measure},
+          {"value", number(r.value)},
+          {"unit", r.unit},
+          {"reference", number(r.reference)},
+          {"reference_uncertainty", number(r.reference_uncertainty)},
+          {"error", number(r.error)},
+          {"samples", r.samples},
+          {"spread", number(r.spread)}};
+}
+
+Json json_of(const Run& r) {
+  return {{"model", r.model},
+          {"kind", r.kind},
+          {"poisson_ratio", number(r.poisson_ratio)},
+          {"cells", r.cells},
+          {"kinematics", r.kinematics},
+          {"ok", r.ok},
+          {"message", r.message},
+          {"solver", r.solver},
+          {"iterations", r.iterations},
+          {"residual", number(r.residual)},
+          {"set_up_seconds", number(r.set_up_seconds)},
+          {"seconds", number(r.seconds)},
+          {"unknowns", r.unknowns},
+          {"memory_MiB", number(r.memory_MiB)}};
+}
+
+Json json_of(const ReferenceRecord& r) {
+  return {{"poisson_ratio", number(r.poisson_ratio)},
+          {"measure", r.measure},
+          {"unit", r.unit},
+          {"cells", r.cells},
+          {"values", numbers(r.values)},
+          {"observed_order", number(r.observed_order)},
+          {"value", number(r.value)},
+          {"uncertainty", number(r.uncertainty)},
+          {"note", r.note},
+          {"element", r.element},
+          {"converging", r.converging},
+          {"correlation", number(r.correlation)}};
+}
+
+Json json_of(const Check& c) {
+  return {{"model", c.model},
+          {"poisson_ratio", number(c.poisson_ratio)},
+          {"cells", c.cells},
+          {"measure", c.measure},
+          {"unit", c.unit},
+          {"source", c.source},
+          {"expected", number(c.expected)},
+          {"computed", number(c.computed)},
+          {"within", number(c.within)},
+          {"reference_uncertainty", number(c.reference_uncertainty)},
+          {"verdict", to_string(c.verdict)},
+          {"where", c.where},
+          {"at_least", c.at_least}};
+}
+
+Json json_of(const LineRecord& l) {
+  return {{"model", l.model},
+          {"poisson_ratio", number(l.poisson_ratio)},
+          {"cells", l.cells},
+          {"first", l.first},
+          {"last", l.last},
+          {"distance", numbers(l.distance)},
+          {"strain", numbers(l.strain)},
+          {"stress", numbers(l.stress)},
+          {"exact_strain", numbers(l.exact_strain)},
+          {"exact_stress", numbers(l.exact_stress)}};
+}
+
+Json json_of(const ErrorSplit& s) {
+  return {{"model", s.model},
+          {"poisson_ratio", number(s.poisson_ratio)},
+          {"cells", s.cells},
+          {"voxel_edge_m", number(s.voxel_edge)},
+          {"measure", s.measure},
+          {"unit", s.unit},
+          {"total", number(s.total)},
+          {"model_error", number(s.model_error)},
+          {"discretisation_error", number(s.discretisation_error)},
+          {"geometry_error", number(s.geometry_error)},
+          {"uncertainty", number(s.body_uncertainty)},
+          {"voxel_uncertainty", number(s.voxel_uncertainty)}};
+}
+
+Json json_of(const Deformation& d) {
+  return {{"poisson_ratio", number(d.poisson_ratio)},
+          {"principal_strain", number(d.principal_strain)},
+          {"rotation_deg", number(d.rotation_deg)}};
+}
+
+Json json_of(const PublishedRow& p) {
+  return {{"model", p.model},
+          {"poisson_ratio", number(p.poisson_ratio)},
+          {"measure", p.measure},
+          {"unit", p.unit},
+          {"published", number(p.published)},
+          {"computed", number(p.computed)},
+          {"where", p.where},
+          {"remark", p.remark}};
+}
+
+template <class T>
+Json list(const std::vector<T>& items) {
+  Json out = Json::array();
+  for (const T& item : items) out.push_back(json_of(item));
+  return out;
+}
+
+Json json_of(const Experiment& e) {
+  Json poisson_ratios = Json::array(), loads = Json::array();
+  for (const auto& m : e.materials) poisson_ratios.push_back(number(m.poisson_ratio));
+  for (const auto& load : e.loads) loads.push_back(describe(load));
+  return {
+      {"name", e.name},
+      {"folder", e.folder},
+      {"cite", e.cite},
+      {"what", e.what},
+      {"kinematics", e.kinematics},
+      {"body",
+       {{"geo", e.body.geo}, {"size", vector(e.body.size)}, {"cells", e.body.cells}, {"voxels", e.body.is_voxels()}}},
+      {"materials", list(e.materials)},
+      {"poisson_ratios", poisson_ratios},
+      {"loads", loads},
+      {"models", list(e.models)},
+      {"elements", e.elements},
+      {"cost", e.cost},
+      {"measures", e.measures},
+      {"moved_patches", moved_patches(e)},
+      {"probes", list(e.probes)},
+      {"section", e.section ? json_of(*e.section) : Json(nullptr)},
+      {"line", e.line ? json_of(*e.line) : Json(nullptr)},
+      {"reference",
+       {{"cells", e.reference.cells},
+        {"elements", e.reference.elements},
+        {"grading", e.reference.grading},
+        {"edge", e.reference.edge},
+        {"smooth", e.reference.smooth}}},
+      {"exact", e.exact},
+      {"text", e.text}};
+}
+
+// ---- pictures
+
+template <class T>
+void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
+  for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+}
+
+constexpr long not_finite = -32768;
+
+std::string base64_floats(const std::vector<float>& values) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(4 * values.size());
+  for (float value : values) {
+    std::uint32_t bits;
+    static_assert(sizeof bits == sizeof value);
+    std::memcpy(&bits, &value, sizeof bits);
+    append_little_endian(bits, bytes);
+  }
+  return base64(bytes.data(), bytes.size());
+}
+
+/// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough to look at.
+Json shorts_json(const std::vector<float>& values) {
+  double largest = 0;
+  for (float value : values)
+    if (std::isfinite(value)) largest = std::max<double>(largest, std::abs(value));
+  const double scale = largest > 0 ? largest / 32767 : 1;
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(2 * values.size());
+  for (float value : values) {
+    const long steps = std::isfinite(value) ? std::lround(value / scale) : not_finite;
+    append_little_endian(static_cast<std::uint16_t>(steps), bytes);
+  }
+  return {{"scale", scale}, {"base64", base64(bytes.data(), bytes.size())}};
+}
+
+/// Triangles (fourth number -1) repeat their last corner.
+Json quads_json(const std::vector<int>& quads, std::size_t nodes) {
+  const bool small = nodes <= 65536;
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    const int node = i % 4 == 3 && quads[i] < 0 ? quads[i - 1] : quads[i];
+    if (node < 0 || static_cast<std::size_t>(node) >= nodes)
+      throw std::invalid_argument(fmt::format("picture: facet names node {} of {}", node, nodes));
+    if (small)
+      append_little_endian(static_cast<std::uint16_t>(node), bytes);
+    else
+      append_little_endian(static_cast<std::uint32_t>(node), bytes);
+  }
+  return {{"type", small ? "uint16" : "uint32"}, {"base64", base64(bytes.data(), bytes.size())}};
+}
+
+void check_sizes(const Picture& p) {
+  const auto nodes = p.rest.size() / 3;
+  if (p.rest.size() % 3 != 0 || p.displacement.size() != p.rest.size() || p.quads.size() % 4 != 0 ||
+      (!p.difference.empty() && p.difference.size() != nodes) ||
+      (!p.volume_change.empty() && p.volume_change.size() != nodes))
+    throw std::invalid_argument(fmt::format(
+        "picture of {}: {} rest, {} displacement, {} difference, {} volume changes, {} facet numbers", p.model,
+        p.rest.size(), p.displacement.size(), p.difference.size(), p.volume_change.size(), p.quads.size()));
+}
+
+// ---- CSV
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string out = "\"";
+  for (char c : field) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string csv_number(const std::optional<double>& x) { return x && std::isfinite(*x) ? fmt::format("{}", *x) : ""; }
+
+}  // namespace
+
+std::string to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::fail:
+      return "fail";
+    case Verdict::reference_too_coarse:
+      return "reference too coarse";
+    case Verdict::no_reference:
+      return "no reference";
+    case Verdict::no_result:
+      return "no result";
+  }
+  throw std::invalid_argument("no such verdict");
+}
+
+bool is_tetrahedra(const Cells& cells) { return cells[0] > 0 && cells[1] == 0 && cells[2] == 0; }
+
+std::string cells_text(const Cells& cells, std::string_view times) {
+  return is_tetrahedra(cells) ? fmt::format("{} tets", cells[0]) : fmt::format("{}", fmt::join(cells, times));
+}
+
+double cell_count(const Cells& cells) {
+  return is_tetrahedra(cells) ? cells[0] : double(cells[0]) * cells[1] * cells[2];
+}
+
+std::string describe(const Load& load) {
+  return std::visit([](const auto& l) { return sentence(l); }, load);
+}
+
+Json to_json(const CaseResult& result) {
+  Json experiment = json_of(result.experiment);
+  for (Json& model : experiment["models"]) {
+    const auto own = result.own_poisson_ratios.find(model["label"]);
+    model["own_poisson_ratio"] = own == result.own_poisson_ratios.end() ? Json(nullptr) : number(own->second);
+  }
+  return {{"experiment", experiment},
+          {"runs", list(result.runs)},
+          {"rows", list(result.rows)},
+          {"references", list(result.references)},
+          {"checks", list(result.checks)},
+          {"published", list(result.published)},
+          {"lines", list(result.lines)},
+          {"splits", list(result.splits)},
+          {"deformations", list(result.deformations)},
+          {"notes", result.notes}};
+}
+
+Json pictures_to_json(const CaseResult& result) {
+  Json meshes = Json::array(), pictures = Json::array();
+  std::vector<const Picture*> owners;  // one per entry of meshes
+  for (const Picture& p : result.pictures) {
+    check_sizes(p);
+    std::size_t mesh = 0;
+    while (mesh < owners.size() && (owners[mesh]->rest != p.rest || owners[mesh]->quads != p.quads)) ++mesh;
+    if (mesh == owners.size()) {
+      owners.push_back(&p);
+      meshes.push_back({{"rest", base64_floats(p.rest)}, {"quads", quads_json(p.quads, p.rest.size() / 3)}});
+    }
+    pictures.push_back({{"model", p.model},
+                        {"poisson_ratio", number(p.poisson_ratio)},
+                        {"cells", p.cells},
+                        {"surface", p.surface},
+                        {"mesh", mesh},
+                        {"displacement", shorts_json(p.displacement)},
+                        {"difference", shorts_json(p.difference)},
+                        {"volume_change", shorts_json(p.volume_change)}});
+  }
+  return {{"case", result.experiment.name},
+          {"folder", result.experiment.folder},
+          {"meshes", meshes},
+          {"pictures", pictures}};
+}
+
+std::string to_csv(const std::vector<CaseResult>& results) {
+  std::string out =
+      "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error,samples,"
+      "spread\n";
+  for (const CaseResult& result : results)
+    for (const Row& r : result.rows)
+      out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.case_name), quoted(r.kinematics),
+                         quoted(r.model), csv_number(r.poisson_ratio), cells_text(r.cells), quoted(r.measure),
+                         csv_number(r.value), quoted(r.unit), csv_number(r.reference),
+                         csv_number(r.reference_uncertainty), csv_number(r.error), r.samples, csv_number(r.spread));
+  return out;
+}
+
+}  // namespace springproof

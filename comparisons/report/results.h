@@ -1,0 +1,193 @@
+// What a comparison produces: rows, references with their uncertainty, verdicts.  The only input of the report.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "problem/case_file/experiment.h"
+
+namespace springproof {
+
+/// One number of one model: a line of results.csv.
+struct Row {
+  std::string case_name;
+  std::string kinematics;  ///< "linear", "finite" (springs) or the FEM's law
+  std::string model;       ///< "hybmss", "fem_q1", ...
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::string measure;  ///< "displacement_error", "volume_change", "force.z_max.z", ...
+  double value = 0;
+  std::string unit;
+  std::optional<double> reference;
+  std::optional<double> reference_uncertainty;
+  std::optional<double> error;        ///< value - reference; for measures that are errors, the value itself
+  int samples = 1;                    ///< disordered networks behind the value, which is then their mean
+  std::optional<double> spread = {};  ///< standard deviation over them; empty: one sample
+};
+
+/// One run of one solver.
+struct Run {
+  std::string model;
+  std::string kind;  ///< "msm" or "fem"
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::string kinematics;
+  bool ok = false;
+  std::string message;  ///< why there is no result, with the load reached
+  std::string solver;   ///< "CG + multigrid", "Newton, 8 load steps, Cholesky", ...
+  int iterations = 0;
+  double residual = 0;        ///< relative
+  double seconds = 0;         ///< CPU time from a discrete system with its loads to the displacement
+  long unknowns = 0;          ///< displacements that are free
+  double memory_MiB = 0;      ///< largest resident memory of the solver's program up to the end of this run; in an
+                              ///< experiment with `cost` what the run added
+  double set_up_seconds = 0;  ///< CPU time from the mesh in memory to that system
+};
+
+/// How sure the reference is of one measure: three grids, observed order, Richardson limit, GCI.
+struct ReferenceRecord {
+  double poisson_ratio = 0;
+  std::string measure;
+  std::string unit;
+  std::vector<Cells> cells;              ///< of the grids, coarse to fine
+  std::vector<double> values;            ///< on each grid
+  std::optional<double> observed_order;  ///< empty: the sequence is not monotone
+  double value = 0;                      ///< extrapolated (or the finest where it cannot be)
+  double uncertainty = 0;
+  std::string note;                        ///< "Richardson", "not monotone: spread of the three grids", ...
+  std::string element = "q2";              ///< of [reference] elements
+  bool converging = true;                  ///< false: the grids tell no order, the value is the finest
+  std::optional<double> correlation = {};  ///< of a field: how far its two differences point the same way, -1 to 1
+};
+
+enum class Verdict { pass, fail, reference_too_coarse, no_reference, no_result };
+std::string to_string(Verdict verdict);
+
+/// One [[expect]] judged.
+struct Check {
+  std::string model;
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::string measure;
+  std::string unit;
+  std::string source;  ///< "analytic", "extrapolated FEM", "published", "regression"
+  double expected = 0;
+  std::optional<double> computed;
+  double within = 0;  ///< absolute
+  std::optional<double> reference_uncertainty;
+  Verdict verdict = Verdict::no_result;
+  std::string where;
+  bool at_least = false;  ///< holds when computed >= expected; no tolerance
+};
+
+/// One [[published]] value beside ours.
+struct PublishedRow {
+  std::string model;
+  double poisson_ratio = 0;
+  std::string measure;
+  std::string unit;
+  double published = 0;
+  std::optional<double> computed;
+  std::string where;
+  std::string remark;
+};
+
+/// Where a model's difference from the body-fitted reference comes from, on a body of voxels.  Of a scalar measure the
+/// three parts add up to the total; of displacement_error each is the norm of its own field, over the reference's norm.
+struct ErrorSplit {
+  std::string model;
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  double voxel_edge = 0;  ///< [m]
+  std::string measure;
+  std::string unit;
+  double total = 0;                 ///< model - body-fitted limit
+  double model_error = 0;           ///< model - eight-node elements on the same voxels
+  double discretisation_error = 0;  ///< those - the limit of refined elements on the same voxels
+  double geometry_error = 0;        ///< that limit - body-fitted limit
+  double body_uncertainty = 0;      ///< of the body-fitted limit, and so of the total
+  double voxel_uncertainty = 0;     ///< of the limit on the voxels
+};
+
+/// The deformed surface of one run, for the report's 3D view.
+struct Picture {
+  std::string model;  ///< "fem" is the reference sampled at the same nodes
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  std::vector<float> rest;           ///< surface nodes, xyz xyz ... [m]
+  std::vector<float> displacement;   ///< same length [m]
+  std::vector<float> difference;     ///< |u - u_fem| per surface node [m]; empty for "fem"
+  std::vector<int> quads;            ///< 4 surface-node numbers per facet; of a triangle the last is -1
+  std::vector<float> volume_change;  ///< V'/V - 1, mean over the cells at each surface node [1]
+  std::string surface = "cells";  ///< "cells": outer facets of the mesh; "smooth": the true surface, carried by voxels
+};
+
+/// xx yy zz xy yz xz at each point of a line, one point after the other.
+using LineTensors = std::vector<double>;
+
+/// Strain and stress of one model along the case's line; of several networks, of the first.
+struct LineRecord {
+  std::string model;
+  double poisson_ratio = 0;
+  Cells cells = {0, 0, 0};
+  int first = 0, last = 0;                 ///< of the points, from 1, that deviations are the mean over
+  std::vector<double> distance;            ///< of each point from the line's start [m]
+  LineTensors strain;                      ///< [1]
+  LineTensors stress;                      ///< [Pa]; empty: the model has forces that are no tensions of springs
+  LineTensors exact_strain, exact_stress;  ///< Kelvin's
+};
+
+/// How far the reference of a case is deformed at one Poisson's ratio (comparisons/judge/deformation.h).
+struct Deformation {
+  double poisson_ratio = 0;
+  double principal_strain = 0;  ///< [1]
+  double rotation_deg = 0;
+};
+
+struct CaseResult {
+  Experiment experiment;
+  std::map<std::string, double>
+      own_poisson_ratios;  ///< of the models, by label, that are solids of one Poisson's ratio only
+  std::vector<Run> runs;
+  std::vector<Row> rows;
+  std::vector<ReferenceRecord> references;
+  std::vector<Check> checks;
+  std::vector<PublishedRow> published;
+  std::vector<Picture> pictures;
+  std::vector<LineRecord> lines;
+  std::vector<ErrorSplit> splits;
+  std::vector<Deformation> deformations;
+  std::vector<std::string> notes;  ///< what was mended or left out of the body
+};
+
+/// {812, 0, 0} stands for 812 tetrahedra, which form no grid.
+bool is_tetrahedra(const Cells& cells);
+
+/// "10x10x10" or "812 tets".
+std::string cells_text(const Cells& cells, std::string_view times = "x");
+
+/// Hexahedra or tetrahedra of which there are so many.
+double cell_count(const Cells& cells);
+
+/// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".
+std::string describe(const Load& load);
+
+/// Everything but pictures; the schema is written out in docs/results.md.
+/// Numbers that are not finite become null.
+nlohmann::json to_json(const CaseResult& result);
+
+/// {"case", "folder", "meshes", "pictures"}: surfaces of equal rest shape are stored once; arrays are base64 of
+/// little-endian numbers, displacements as 16-bit multiples of a scale (docs/results.md).
+/// @throws std::invalid_argument if the arrays of a picture do not fit each other.
+nlohmann::json pictures_to_json(const CaseResult& result);
+
+/// results.csv: one line per row of every case, numbers with as many digits as read back exactly, empty where not
+/// known; quoted by RFC 4180.
+std::string to_csv(const std::vector<CaseResult>& results);
+
+}  // namespace springproof

@@ -1,0 +1,466 @@
+#include "comparisons/run/case_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "comparisons/judge/deformation.h"
+#include "comparisons/judge/line_measure.h"
+#include "comparisons/judge/measures.h"
+#include "comparisons/report/picture.h"
+#include "comparisons/run/case_checks.h"
+#include "comparisons/run/model_run.h"
+#include "comparisons/run/reference_grids.h"
+#include "comparisons/run/voxel_body.h"
+#include "comparisons/run/voxel_reference.h"
+#include "meshes/mesher/mesher.h"
+#include "msm/models.h"
+#include "msm/statics/equilibrium.h"
+#include "problem/case_file/measures.h"
+#include "problem/system/child.h"
+#include "problem/system/file_name.h"
+#include "problem/system/progress.h"
+
+namespace springproof {
+namespace {
+
+// Elements of the finest reference grid (Q2): what a few seconds of one core can solve.
+constexpr double linear_reference_elements = 4096;
+constexpr double finite_reference_elements = 1000;
+
+// Cells of one lattice: what its matrices can hold in a workstation's memory.
+constexpr double largest_lattice = 4e6;
+
+/// Near-cubic elements, counts divisible by four so that the grid can be halved twice.
+Cells reference_cells(const Experiment& e) {
+  if (e.reference.cells[0] > 0) return e.reference.cells;
+  const double elements =
+      e.model_kinematics() == Kinematics::linear ? linear_reference_elements : finite_reference_elements;
+  const double edge = std::cbrt(e.body.size.prod() / elements);
+  Cells cells;
+  for (int d = 0; d < 3; ++d) cells[d] = 4 * std::max(1, static_cast<int>(std::lround(e.body.size[d] / edge / 4)));
+  return cells;
+}
+
+/// The finite element answer at the nodes of one lattice.
+struct Reference {
+  ReferenceField field;
+  std::map<std::string, ReferenceValue> scalars;  ///< the same for every lattice
+};
+
+/// One case at one material, while it is being run.
+struct PartRun {
+  const PreparedCase& prepared;
+  const IsotropicMaterial& material;
+  const std::filesystem::path& vtu_folder;
+  Part part;
+
+  ReferenceGrids grids;                             ///< no elements: none to be had
+  std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: none to be had
+  std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
+
+  const Experiment& experiment() const { return prepared.experiment; }
+};
+
+Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
+  return {model,
+          "fem",
+          run.material.poisson_ratio,
+          s.grid.cells,
+          s.law.empty() ? run.experiment().kinematics : s.law,
+          s.ok,
+          s.message,
+          s.form,
+          s.iterations,
+          s.residual,
+          s.times.solve,
+          s.unknowns,
+          s.memory_MiB,
+          s.times.set_up};
+}
+
+/// Runs the finite elements.
+void run_fem(PartRun& run) {
+  run.grids = solve_grids(run.prepared, run.material);
+  if (run.grids.elements.empty())
+    run.part.runs.push_back({"fem_" + run.experiment().reference.elements.front(), "fem", run.material.poisson_ratio,
+                             run.prepared.reference_cells, run.experiment().kinematics, false, run.grids.failure, "", 0,
+                             0, 0, 0, 0});
+  for (const ElementGrids& e : run.grids.elements)
+    for (const fem::Solution& s : e.grids) run.part.runs.push_back(fem_run(run, s, "fem_" + e.element));
+  for (const auto& on_cubes : run.grids.refined)
+    for (const fem::Solution& s : on_cubes) run.part.runs.push_back(fem_run(run, s, "fem_q2"));
+}
+
+void record_elements(PartRun& run) {
+  for (const ElementGrids& e : run.grids.elements) {
+    if (!complete(e)) continue;
+    const std::vector<ReferenceRecord> records = records_of(run.prepared, run.material, e);
+    run.part.references.insert(run.part.references.end(), records.begin(), records.end());
+  }
+  if (run.experiment().models.empty()) run.part.rows = rows_of(run.prepared, run.part.references);
+}
+
+/// The first element's fields as the reference of the lattices; with an exact field, that field.
+void build_reference(PartRun& run) {
+  run.reference.assign(run.prepared.meshes.size(), {});
+  run.voxels.assign(run.prepared.meshes.size(), {});
+  if (run.grids.elements.empty() || !complete(run.grids.elements.front())) return;
+  const ElementGrids& first = run.grids.elements.front();
+  const std::map<std::string, ReferenceValue> scalars = limits_of(run.prepared, first);
+  for (std::size_t i = 0; i < run.prepared.meshes.size(); ++i) {
+    const Mesh& mesh = *run.prepared.meshes[i];
+    std::vector<NodalVectors> fields;
+    for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
+    run.reference[i] =
+        Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), doubt_of(scalars)), scalars};
+    widen(run.prepared.load_spread, run.reference[i]->field);
+    if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
+    if (i > 0 || !run.experiment().exact.empty()) continue;
+    const ReferenceField& f = run.reference[i]->field;
+    ReferenceRecord record{run.material.poisson_ratio,
+                           "displacement_error",
+                           "1",
+                           {},
+                           {},
+                           f.observed_order,
+                           0,
+                           f.uncertainty,
+                           with_note(first, f.note),
+                           first.element,
+                           f.sequence != Sequence::not_converging,
+                           f.correlation};
+    for (std::size_t g = 0; g < 3; ++g) {
+      record.cells.push_back(first.grids[g].grid.cells);
+      record.values.push_back(displacement_error(fields[g], f.displacement, nodal_volumes(mesh)));
+    }
+    run.part.references.push_back(record);
+  }
+}
+
+/// Which lattice has the most cells.
+std::size_t finest_lattice(const PreparedCase& prepared) {
+  const auto& meshes = prepared.meshes;
+  const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
+  return static_cast<std::size_t>(std::max_element(meshes.begin(), meshes.end(), finer) - meshes.begin());
+}
+
+/// How far the reference is deformed, on the finest lattice.
+void measure_deformation(PartRun& run) {
+  const std::size_t finest = finest_lattice(run.prepared);
+  if (!run.reference[finest]) return;
+  const NodalVectors& u = run.reference[finest]->field.displacement;
+  const DeformationSize size = deformation_size(*run.prepared.meshes[finest], u, run.experiment().model_kinematics());
+  run.part.deformations.push_back(
+      {run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi});
+}
+
+/// Distances from the reference field [their units].
+std::map<std::string, double> distances(const PartRun& run, std::size_t lattice, const NodalVectors& u) {
+  const Mesh& mesh = *run.prepared.meshes[lattice];
+  const NodalVectors& v = run.reference[lattice]->field.displacement;
+  std::map<std::string, double> out = {{"displacement_error", displacement_error(u, v, nodal_volumes(mesh))},
+                                       {"displacement_error_max", displacement_error_max(u, v)}};
+  if (run.experiment().section) {
+    out["section_distance"] = section_distance(mesh, *run.experiment().section, u, v);
+    out["section_axis_distance"] = section_axis_distance(mesh, *run.experiment().section, u, v);
+  }
+  return out;
+}
+
+/// Mean and standard deviation of a measure over the samples that have it.
+void set_value(const std::vector<std::map<std::string, double>>& samples, const std::string& measure, Row& row) {
+  double sum = 0, squares = 0;
+  row.samples = 0;
+  for (const auto& sample : samples) {
+    const auto at = sample.find(measure);
+    if (at == sample.end()) continue;
+    ++row.samples;
+    sum += at->second;
+    squares += at->second * at->second;
+  }
+  row.value = sum / row.samples;
+  if (row.samples > 1) row.spread = std::sqrt(std::max(0.0, squares - sum * row.value) / (row.samples - 1));
+}
+
+std::set<std::string> measures_in(const std::vector<std::map<std::string, double>>& samples) {
+  std::set<std::string> names;
+  for (const auto& sample : samples)
+    for (const auto& [measure, value] : sample) names.insert(measure);
+  return names;
+}
+
+/// Distances from the reference, one of each measure for each sample, as rows whose best value is 0.
+void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<std::string, double>>& samples,
+                   const std::map<std::string, double>& uncertainty) {
+  for (const std::string& measure : measures_in(samples)) {
+    if (!wanted(measure, run.experiment().measures)) continue;
+    Row row = blank;
+    row.measure = measure;
+    set_value(samples, measure, row);
+    row.unit = unit_of(measure);
+    row.reference = 0.0;
+    row.reference_uncertainty = uncertainty.at(measure);
+    row.error = row.value;
+    run.part.rows.push_back(row);
+  }
+}
+
+/// One displacement field and one set of scalars per sample.
+void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
+              const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
+  const auto& reference = run.reference[lattice];
+  const Row blank{run.experiment().name,
+                  kinematics,
+                  model,
+                  run.material.poisson_ratio,
+                  run.experiment().body.cells[lattice],
+                  "",
+                  0,
+                  "",
+                  {},
+                  {},
+                  {},
+                  1,
+                  {}};
+  for (const std::string& measure : measures_in(scalars)) {
+    if (!wanted(measure, run.experiment().measures)) continue;
+    Row row = blank;
+    row.measure = measure;
+    set_value(scalars, measure, row);
+    row.unit = unit_of(measure);
+    if (is_deviation(measure)) row.error = row.value;
+    if (reference && reference->scalars.contains(measure) && comparable(run.prepared, measure)) {
+      const ReferenceValue& r = reference->scalars.at(measure);
+      row.reference = r.value;
+      row.reference_uncertainty = r.uncertainty;
+      row.error = row.value - r.value;
+    }
+    run.part.rows.push_back(row);
+  }
+  if (!reference) return;
+  // What the reference may be off, node by node, measured by the same ruler.
+  NodalVectors doubt = reference->field.displacement;
+  doubt.col(0) += reference->field.nodal_uncertainty;
+  const auto of_sample = [&](const NodalVectors& field, const std::map<std::string, double>& values) {
+    std::map<std::string, double> out = distances(run, lattice, field);
+    if (const auto error = reaction_error(run.prepared, values, reference->scalars)) out["reaction_error"] = *error;
+    return out;
+  };
+  std::vector<std::map<std::string, double>> of_samples;
+  for (std::size_t s = 0; s < u.size(); ++s) of_samples.push_back(of_sample(u[s], scalars[s]));
+  add_distances(run, blank, of_samples, of_sample(doubt, values_of(reference->scalars, 1)));
+}
+
+void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
+  const auto& reference = run.reference[lattice];
+  const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
+  const Cells& cells = run.experiment().body.cells[lattice];
+  if (lattice == 0) {
+    const NodalVectors* difference_to = model == "fem" ? nullptr : truth;
+    run.part.pictures.push_back(picture(model, run.material.poisson_ratio, cells, field, difference_to));
+    if (run.experiment().body.is_voxels())
+      run.part.pictures.push_back(smooth_picture(model, run.material.poisson_ratio, cells, field,
+                                                 *run.prepared.tetrahedra.back(), difference_to));
+  }
+  if (run.vtu_folder.empty()) return;
+  std::vector<std::pair<std::string, NodalVectors>> extra;
+  if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
+  const std::string name =
+      fmt::format("{}_nu{}_{}x{}x{}.vtu", file_name(model), run.material.poisson_ratio, cells[0], cells[1], cells[2]);
+  write_vtu(run.vtu_folder / name, field, extra);
+}
+
+void add_line(PartRun& run, std::size_t lattice, const std::string& model, LineRecord line) {
+  line.model = model;
+  line.poisson_ratio = run.material.poisson_ratio;
+  line.cells = run.experiment().body.cells[lattice];
+  run.part.lines.push_back(std::move(line));
+}
+
+void add_splits(PartRun& run, std::size_t lattice, const std::string& model, const std::vector<NodalVectors>& u,
+                const std::vector<std::map<std::string, double>>& scalars) {
+  const auto& reference = run.reference[lattice];
+  const auto& voxels = run.voxels[lattice];
+  if (!reference || !voxels) return;
+  for (ErrorSplit& split :
+       split_error(run.prepared, lattice, *voxels, {reference->field, reference->scalars}, u, scalars)) {
+    split.model = model;
+    split.poisson_ratio = run.material.poisson_ratio;
+    run.part.splits.push_back(std::move(split));
+  }
+}
+
+void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
+  const Experiment& e = run.experiment();
+  const std::string& label = e.models[number].label;
+  const std::string kind = e.model_kinematics() == Kinematics::linear ? "linear" : "finite";
+  const std::vector<ModelSample> samples = run_samples(run.prepared, lattice, number, run.material);
+  std::vector<NodalVectors> fields;
+  std::vector<std::map<std::string, double>> scalars;
+  for (const ModelSample& sample : samples) {
+    const Equilibrium& s = sample.state;
+    run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message,
+                             s.solver, s.iterations, s.residual, sample.times.solve, s.unknowns, s.memory_MiB,
+                             sample.times.set_up});
+    if (!s.ok) continue;
+    if (fields.empty()) {
+      save(run, lattice, label, sample.field);
+      if (sample.line) add_line(run, lattice, label, *sample.line);
+    }
+    fields.push_back(sample.field.displacement);
+    scalars.push_back(sample.scalars);
+  }
+  if (fields.empty()) return;
+  add_rows(run, lattice, label, kind, fields, scalars);
+  add_splits(run, lattice, label, fields, scalars);
+}
+
+/// @throws InputError at the model's place in the case, if its options lead to no network.
+EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& parameters, const Mesh& mesh,
+                           const IsotropicMaterial& material, const Region* region) try {
+  return build_embedded(parameters, mesh, material, region);
+} catch (const InputError& e) {
+  throw InputError(choice.where, fmt::format("compare.models: {}", e.what()));
+}
+
+/// Builds the model and puts the loads on it, for what may be wrong with either.
+void try_model(const Experiment& experiment, const ModelChoice& choice, const ModelParameters& parameters,
+               const Mesh& mesh, const Region* region) try {
+  const auto [model, embedding] = build_chosen(choice, parameters, mesh, experiment.materials.front(), region);
+  if (parameters.row.topology == Topology::cells) return;
+  const BoundaryConditions bc =
+      transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
+  if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
+} catch (const InputError&) {
+  throw;
+} catch (const std::runtime_error&) {
+  // No network with this material's moduli: the run will say so.
+}
+
+/// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.
+std::vector<Load> lattice_loads(const Experiment& experiment) {
+  std::vector<Load> loads;
+  for (const Load& load : experiment.loads)
+    if (!std::holds_alternative<FieldBodyForce>(load)) loads.push_back(load);
+  return loads;
+}
+
+void check_fineness(const Experiment& e) {
+  for (const Cells& c : e.body.cells)
+    if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
+      throw InputError(
+          e.body.where,
+          fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
+                      c[0], c[1], c[2], total, largest_lattice));
+}
+
+void prepare_blocks(PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  prepared.reference_cells = reference_cells(e);
+  check_fineness(e);
+  for (const Cells& cells : e.body.cells) {
+    prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells)));
+    prepared.regions.push_back(nullptr);
+  }
+}
+
+/// The patches of the body itself, where their mean displacement is measured.
+void sample_patches(PreparedCase& prepared) {
+  if (!wanted("mean_displacement", prepared.experiment.measures)) return;
+  const bool voxels = prepared.experiment.body.is_voxels();
+  prepared.patch_samples =
+      samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.meshes[finest_lattice(prepared)]);
+}
+
+/// Tries what the case asks for on one lattice.
+void try_lattice(PreparedCase& prepared, std::size_t lattice) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *prepared.meshes[lattice];
+  std::vector<std::string> patches;
+  for (const Patch& p : mesh.patches) patches.push_back(p.name);
+  check_patches(e, patches);
+  check_mean_displacements(e, patches);
+  prepared.sharing = patches_sharing_supports(e.loads, mesh, e.model_kinematics());
+  if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
+    require_supported(transfer(lattice_loads(e), mesh, 1000, e.model_kinematics()), mesh.nodes);
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    if (const ModelParameters& p = prepared.models[m]; p.row.topology == Topology::cells || lattice == 0)
+      try_model(e, e.models[m], p, mesh, prepared.regions[lattice].get());
+  const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  if (e.section) section_distance(mesh, *e.section, u, u);
+  at_measured_points(prepared, lattice, u);
+}
+
+/// The finite elements' results at the nodes of one lattice.
+void add_fem(PartRun& run, std::size_t lattice) {
+  const PreparedCase& prepared = run.prepared;
+  if (run.reference[lattice]) {
+    Field field = sampled_field(prepared, lattice, run.grids.elements.front().grids.back());
+    field.displacement = run.reference[lattice]->field.displacement;
+    save(run, lattice, "fem", field);
+  }
+  if (lattice >= run.grids.peers.size()) return;
+  for (const fem::Solution& s : run.grids.peers[lattice]) {
+    const std::string name = "fem_" + s.grid.element;
+    run.part.runs.push_back(fem_run(run, s, name));
+    run.part.runs.back().cells = prepared.experiment.body.cells[lattice];
+    if (!s.ok) continue;
+    add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_lattice(prepared, lattice, s.displacement)},
+             {measures_of(prepared, s)});
+    save(run, lattice, name, sampled_field(prepared, lattice, s));
+  }
+}
+
+}  // namespace
+
+bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree) {
+  const double unknowns = 3.0 * static_cast<double>(mesh.nodes.rows()) * degree * degree * degree;
+  return experiment.most_unknowns == 0 || unknowns <= experiment.most_unknowns;
+}
+
+PreparedCase prepare(const Experiment& experiment) try {
+  PreparedCase prepared;
+  prepared.experiment = experiment;
+  check_expectations(experiment);
+  for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
+  check_kinematics(experiment, prepared.models);
+  prepared.geo = find_geo(experiment.body, experiment.file);
+  progress::phase("cutting the body");
+  experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
+  check_fineness(prepared.experiment);
+  sample_patches(prepared);
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    progress::phase(
+        fmt::format("trying loads and models on {} cells", cells_text(prepared.experiment.body.cells[lattice], " x ")));
+    try_lattice(prepared, lattice);
+  }
+  return prepared;
+} catch (const NoRoom&) {  // no fault of the case
+  throw;
+} catch (const InputError& e) {
+  const std::string message = e.what(), file = experiment.file.string();
+  throw InputError(message.starts_with(file) ? message : file + ": " + message);
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(experiment.file.string() + ": " + e.what());
+}
+
+Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {
+  PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}, {}};
+  if (!vtu_folder.empty()) std::filesystem::create_directories(vtu_folder);
+  if (!prepared.experiment.reference.elements.empty()) run_fem(run);
+  record_elements(run);
+  build_reference(run);
+  measure_deformation(run);
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    add_fem(run, lattice);
+    if (!small_enough(prepared.experiment, *prepared.meshes[lattice])) continue;
+    for (std::size_t m = 0; m < prepared.models.size(); ++m) run_model(run, lattice, m);
+  }
+  if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);
+  return std::move(run.part);
+}
+
+}  // namespace springproof

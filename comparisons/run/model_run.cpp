@@ -1,0 +1,145 @@
+#include "comparisons/run/model_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "comparisons/judge/line_measure.h"
+#include "comparisons/judge/measures.h"
+#include "comparisons/run/reference_grids.h"
+#include "comparisons/run/voxel_body.h"
+#include "msm/measure/block_moduli.h"
+#include "msm/measure/statistics.h"
+#include "msm/models.h"
+#include "msm/parameters/calibrate.h"
+#include "problem/case_file/measures.h"
+#include "problem/system/progress.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof {
+namespace {
+
+bool asked(const Experiment& e, const std::string& measure) {
+  return std::find(e.measures.begin(), e.measures.end(), measure) != e.measures.end();
+}
+
+void add_network(const Network& network, std::map<std::string, double>& out) {
+  const NetworkStatistics s = statistics(network);
+  out["network.nodes"] = static_cast<double>(s.nodes);
+  out["network.springs"] = static_cast<double>(s.springs);
+  out["network.springs_per_node"] = s.springs_per_node;
+  out["network.mean_length"] = s.mean_length;
+  out["network.length_deviation"] = s.length_deviation;
+}
+
+/// The papers' moduli of a block stretched along x; lengths of the local fields as the network's spacing asks.
+void add_moduli(const Experiment& e, const MassSpringModel& model, const NodalVectors& u,
+                std::map<std::string, double>& out) {
+  const StretchedBlock block{Vec3::Zero(), e.body.size, *elongation_along_x(e)};
+  const double spacing = std::cbrt(model.network.volume.sum() / model.network.nodes());
+  const double width = std::min(e.body.size[1], e.body.size[2]);
+  const BlockModuli m = measure_block(model, u, block, std::min(2.5 * spacing, 0.45 * width));
+  out["moduli.youngs_modulus"] = m.youngs_modulus_nominal;
+  out["moduli.youngs_modulus_local"] = m.youngs_modulus_local;
+  out["moduli.poisson_ratio"] = m.poisson_ratio;
+  out["moduli.poisson_ratio_of_fields"] = m.poisson_ratio_of_fields;
+  out["moduli.poisson_ratio_as_printed"] = m.poisson_ratio_as_printed;
+  out["moduli.affine_youngs_modulus"] = 2.5 * affine_shear_modulus(model.network);
+}
+
+/// A network with what was found.
+struct Solved {
+  EmbeddedModel built;
+  BoundaryConditions conditions;
+  Equilibrium state;
+  RunTimes times;
+};
+
+Solved solve_network(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+                     const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const Kinematics kinematics = e.model_kinematics();
+  const Mesh& mesh = *prepared.meshes[lattice];
+  const double start = cpu_seconds();
+  Solved s{build_embedded(parameters, mesh, material, prepared.regions[lattice].get()), {}, {}, {}};
+  const LoadPath path = [&](double factor) {
+    BoundaryConditions bc =
+        transfer(e.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
+    if (parameters.hold_rigid_motions) hold_free_motions(s.built.model.network.X, bc);
+    return bc;
+  };
+  s.conditions = path(1.0);
+  const double ready = cpu_seconds();
+  LinearOptions options;
+  if (e.cost) options.tolerance = compared_residual;
+  s.state = kinematics == Kinematics::linear ? solve_linear(s.built.model, s.conditions, options)
+                                             : solve_finite(s.built.model, path);
+  s.times = {ready - start, cpu_seconds() - ready};
+  return s;
+}
+
+/// With times worth comparing, and the memory of this run alone.
+Solved solve_and_count(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+                       const IsotropicMaterial& material) {
+  if (lattice == 0)
+    solve_network(prepared, lattice, parameters, material);  // what is kept from run to run is not counted
+  const MemoryGrowth memory;
+  Solved s = solve_network(prepared, lattice, parameters, material);
+  s.state.memory_MiB = memory.most_MiB();
+  if (s.state.ok)
+    s.times = least_times(s.times, [&] { return solve_network(prepared, lattice, parameters, material).times; });
+  return s;
+}
+
+/// One network of the model, solved and measured.
+ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+                       const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const auto& mesh = prepared.meshes[lattice];
+  const auto solve = e.cost ? solve_and_count : solve_network;
+  const auto [built, conditions, state, times] = solve(prepared, lattice, parameters, material);
+  const Network& network = built.model.network;
+  ModelSample sample;
+  sample.state = state;
+  sample.times = times;
+  if (!sample.state.ok) return sample;
+  sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, e.model_kinematics());
+  if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
+  sample.scalars =
+      field_measures(prepared, sample.field, at_measured_points(prepared, lattice, sample.field.displacement));
+  if (asked(e, "network")) add_network(network, sample.scalars);
+  if (asked(e, "line")) {
+    sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);
+    sample.scalars.merge(line_deviations(*sample.line));
+  }
+  if (asked(e, "moduli")) add_moduli(e, built.model, sample.state.displacement, sample.scalars);
+  return sample;
+}
+
+}  // namespace
+
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number,
+                                     const IsotropicMaterial& material) {
+  std::vector<ModelSample> samples;
+  ModelParameters parameters = prepared.models[number];
+  for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
+    progress::phase(
+        fmt::format("{} on {} cells{}", prepared.experiment.models[number].label,
+                    cells_text(prepared.experiment.body.cells[lattice], " x "),
+                    parameters.seeds > 1 ? fmt::format(", network {} of {}", seed + 1, parameters.seeds) : ""));
+    try {
+      samples.push_back(run_sample(prepared, lattice, parameters, material));
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli
+      samples.emplace_back();
+      samples.back().state.message = e.what();
+    } catch (const std::invalid_argument& e) {  // it jams, with this seed
+      samples.emplace_back();
+      samples.back().state.message = e.what();
+    }
+  }
+  return samples;
+}
+
+}  // namespace springproof

@@ -1,0 +1,28 @@
+// One spring model on one lattice at one material: solved, over all its seeds, and measured.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "comparisons/run/case_run.h"
+#include "msm/statics/equilibrium.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof {
+
+/// What one network gives.
+struct ModelSample {
+  Equilibrium state;
+  RunTimes times;
+  Field field;                            ///< on the lattice's mesh; empty where state.ok is false
+  std::map<std::string, double> scalars;  ///< every measure that has a value of its own
+  std::optional<LineRecord> line;         ///< where the case has one
+};
+
+/// Solves model `number` of the case on lattice `lattice`; one sample per seed.
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number,
+                                     const IsotropicMaterial& material);
+
+}  // namespace springproof

@@ -1,0 +1,363 @@
+#include "comparisons/run/reference_grids.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "comparisons/judge/judge.h"
+#include "comparisons/judge/measures.h"
+#include "comparisons/run/voxel_reference.h"
+#include "problem/case_file/measures.h"
+#include "problem/exact_field.h"
+#include "problem/system/child.h"
+
+namespace springproof {
+namespace {
+
+/// All points at which the displacement is wanted: the nodes of every lattice, then the measured points.
+NodalVectors sample_points(const PreparedCase& prepared) {
+  const NodalVectors measured = measured_points(prepared);
+  Eigen::Index count = measured.rows();
+  for (const auto& mesh : prepared.meshes) count += mesh->nodes.rows();
+  NodalVectors points(count, 3);
+  Eigen::Index at = 0;
+  for (const auto& mesh : prepared.meshes) {
+    points.middleRows(at, mesh->nodes.rows()) = mesh->nodes;
+    at += mesh->nodes.rows();
+  }
+  points.bottomRows(measured.rows()) = measured;
+  return points;
+}
+
+/// A direction of one cell (plane strain) stays so.
+Cells divided(const Cells& cells, int divisor) {
+  Cells coarse;
+  for (int d = 0; d < 3; ++d) coarse[d] = std::max(1, cells[d] / divisor);
+  return coarse;
+}
+
+/// An element's three grids, coarse to fine.
+void add_reference_grids(const PreparedCase& prepared, const std::string& element, double grading,
+                         fem::Request& request) {
+  for (int divisor : {4, 2, 1}) request.grids.push_back({divided(prepared.reference_cells, divisor), element, grading});
+}
+
+/// What the program that dies of a request leaves of it.
+std::vector<fem::Solution> without_answer(const fem::Request& request, const std::string& why) {
+  std::vector<fem::Solution> none(request.grids.size());
+  for (std::size_t i = 0; i < none.size(); ++i) {
+    none[i].grid = request.grids[i];
+    none[i].message = why;
+  }
+  return none;
+}
+
+/// Solves on every grid; if the program dies, once more for each element apart.
+/// @throws std::runtime_error if no element has an answer.
+std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
+  return fem::solve(request);
+} catch (const std::runtime_error&) {
+  std::vector<fem::Solution> all;
+  bool any = false;
+  for (auto from = request.grids.begin(), to = from; from != request.grids.end() && !children_interrupted();
+       from = to) {
+    to = std::find_if(from, request.grids.end(),
+                      [&](const fem::Discretisation& g) { return g.element != from->element; });
+    if (to - from == static_cast<std::ptrdiff_t>(request.grids.size())) throw;
+    fem::Request part = request;
+    part.grids.assign(from, to);
+    std::vector<fem::Solution> solutions;
+    try {
+      solutions = fem::solve(part);
+      any = true;
+    } catch (const std::runtime_error& own) {
+      solutions = without_answer(part, own.what());
+    }
+    all.insert(all.end(), solutions.begin(), solutions.end());
+  }
+  if (!any) throw;
+  return all;
+}
+
+/// Elements that fail on graded grids, whose thin cells turn inside out first, are solved on three uniform ones.
+void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<ElementGrids>& elements) {
+  if (prepared.experiment.reference.grading == 1) return;
+  for (ElementGrids& e : elements) {
+    const auto failed = std::find_if(e.grids.begin(), e.grids.end(), [](const fem::Solution& s) { return !s.ok; });
+    if (failed == e.grids.end()) continue;
+    const std::string why = fmt::format("the graded grid of {} cells has no result ({})",
+                                        cells_text(failed->grid.cells, " x "), failed->message);
+    request.grids.clear();
+    add_reference_grids(prepared, e.element, 1, request);
+    try {
+      e.grids = fem::solve(request);
+    } catch (const std::runtime_error& error) {
+      e.grids = without_answer(request, error.what());
+    }
+    e.note = "uniform grids: " + why;
+    for (fem::Solution& s : e.grids)
+      if (!s.ok) s.message = fmt::format("on a uniform grid {}; {}", s.message, why);
+  }
+}
+
+/// What values of a measure are measured by: the largest displacement, the strain, the largest force (also of those
+/// that balance torques, and times the body's size for torques), or the largest stress.
+double scale_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
+                double largest_displacement) {
+  if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return largest_displacement;
+  if (measure.starts_with("volume_change")) return largest_displacement / body_size;
+  const bool is_stress = measure.starts_with("stress.");
+  double force = 0, stress = 0;
+  for (const auto& [name, value] : values) {
+    if (name.starts_with("force.")) force = std::max(force, std::abs(value));
+    if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body_size);
+    if (name.starts_with("stress.")) stress = std::max(stress, std::abs(value));
+  }
+  return is_stress ? stress : force * (measure.starts_with("torque.") ? body_size : 1);
+}
+
+std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double nu, const ElementGrids& e) {
+  const NodalVectors truth = exact_at_nodes(prepared);
+  const Eigen::VectorXd weights = nodal_volumes(*prepared.meshes.front());
+  std::vector<double> errors;
+  for (const fem::Solution& s : e.grids)
+    errors.push_back(displacement_error(at_lattice(prepared, 0, s.displacement), truth, weights));
+  const double coarse = std::log2(errors[0] / errors[1]), fine = std::log2(errors[1] / errors[2]);
+  const std::string note = "against the exact field '" + prepared.experiment.exact + "', finest grid";
+  return {{nu, "displacement_error", "1", {}, errors, fine, errors[2], 0, note, e.element},
+          {nu,
+           "displacement_error_order",
+           "1",
+           {},
+           {std::numeric_limits<double>::quiet_NaN(), coarse, fine},
+           {},
+           fine,
+           0,
+           "of the two finest grids",
+           e.element}};
+}
+
+/// The value that the case file expects of a measure of an element, or nothing.
+std::optional<double> target(const Experiment& experiment, const ReferenceRecord& r) {
+  if (r.measure == "displacement_error") return 0;
+  for (const Expectation& e : experiment.expectations)
+    if (e.value && e.measure == r.measure && reference_element(experiment, e.model) == r.element &&
+        (!e.poisson_ratio || std::abs(*e.poisson_ratio - r.poisson_ratio) < 1e-9))
+      return e.value;
+  return {};
+}
+
+}  // namespace
+
+NodalVectors probe_points(const Experiment& e) {
+  NodalVectors points(static_cast<Eigen::Index>(e.probes.size()), 3);
+  for (std::size_t i = 0; i < e.probes.size(); ++i)
+    points.row(static_cast<Eigen::Index>(i)) = e.probes[i].at.transpose();
+  return points;
+}
+
+NodalVectors measured_points(const PreparedCase& prepared) {
+  NodalVectors points = probe_points(prepared.experiment);
+  for (const PatchSamples& p : prepared.patch_samples) {
+    points.conservativeResize(points.rows() + p.points.rows(), 3);
+    points.bottomRows(p.points.rows()) = p.points;
+  }
+  return points;
+}
+
+std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u) {
+  const std::vector<Probe>& probes = prepared.experiment.probes;
+  const auto count = static_cast<Eigen::Index>(probes.size());
+  auto values = scalar_measures(field, probes, u.topRows(count));
+  values.merge(mean_displacements(prepared.patch_samples, u.bottomRows(u.rows() - count)));
+  return values;
+}
+
+bool complete(const ElementGrids& e) {
+  return e.grids.size() == 3 && std::all_of(e.grids.begin(), e.grids.end(), [](const auto& s) { return s.ok; });
+}
+
+std::string with_note(const ElementGrids& e, const std::string& note) {
+  return e.note.empty() || note.empty() ? e.note + note : note + "; " + e.note;
+}
+
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
+  const Experiment& experiment = prepared.experiment;
+  if (experiment.body.is_voxels()) return solve_body_grids(prepared, material);
+  const bool stresses = wanted("stress", experiment.measures);
+  fem::Request request{
+      experiment, material, {}, sample_points(prepared), stresses ? probe_points(experiment) : NodalVectors(0, 3),
+      1e-8};
+  for (const std::string& element : experiment.reference.elements)
+    add_reference_grids(prepared, element, experiment.reference.grading, request);
+  const std::size_t references = request.grids.size();
+  std::vector<std::size_t> lattices;
+  if (!experiment.models.empty())
+    for (std::size_t i = 0; i < prepared.meshes.size(); ++i)
+      for (const std::string& element : experiment.elements)
+        if (small_enough(experiment, *prepared.meshes[i], element[1] - '0')) {
+          request.grids.push_back({experiment.body.cells[i], element, 1.0});
+          lattices.push_back(i);
+        }
+  try {
+    const std::vector<fem::Solution> solutions = solve_apart(request);
+    ReferenceGrids out;
+    auto at = solutions.begin();
+    for (const std::string& element : experiment.reference.elements) {
+      out.elements.push_back({element, {at, at + 3}});
+      at += 3;
+    }
+    fall_back(prepared, request, out.elements);
+    out.peers.resize(prepared.meshes.size());
+    for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
+    return out;
+  } catch (const NoRoom&) {  // no fault of the case
+    throw;
+  } catch (const std::runtime_error& e) {
+    return {{}, {}, {}, e.what()};
+  }
+}
+
+Eigen::Index first_node(const PreparedCase& prepared, std::size_t lattice) {
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < lattice; ++i) at += prepared.meshes[i]->nodes.rows();
+  return at;
+}
+
+NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples) {
+  return samples.middleRows(first_node(prepared, lattice), prepared.meshes[lattice]->nodes.rows());
+}
+
+Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem::Solution& s) {
+  return {prepared.meshes[lattice], at_lattice(prepared, lattice, s.displacement), s.reactions, s.volume_change,
+          s.volume_change_first_order};
+}
+
+std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s) {
+  const std::vector<Probe>& probes = prepared.experiment.probes;
+  const Eigen::Index nodes = first_node(prepared, prepared.meshes.size());
+  auto values =
+      field_measures(prepared, sampled_field(prepared, 0, s), s.displacement.bottomRows(s.displacement.rows() - nodes));
+  if (s.stress.rows() == static_cast<Eigen::Index>(probes.size())) values.merge(stress_measures(probes, s.stress));
+  return values;
+}
+
+bool comparable(const PreparedCase& prepared, const std::string& measure) {
+  if (!measure.starts_with("force.") && !measure.starts_with("torque.")) return true;
+  const auto from = measure.find('.') + 1;
+  return !prepared.sharing.contains(measure.substr(from, measure.rfind('.') - from));
+}
+
+std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
+                                     const std::map<std::string, ReferenceValue>& truth) {
+  return reaction_difference(values, values_of(truth), truth, comparable_moved_patches(prepared),
+                             prepared.experiment.body.size.maxCoeff());
+}
+
+NodalVectors exact_at_nodes(const PreparedCase& prepared) {
+  if (prepared.experiment.exact.empty()) return NodalVectors(0, 3);
+  NodalVectors u = prepared.meshes.front()->nodes;
+  for (Eigen::Index n = 0; n < u.rows(); ++n)
+    u.row(n) = exact_displacement(prepared.experiment.exact, Vec3(u.row(n).transpose())).transpose();
+  return u;
+}
+
+std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared) {
+  std::vector<std::string> patches = moved_patches(prepared.experiment);
+  std::erase_if(patches, [&](const std::string& patch) { return prepared.sharing.contains(patch); });
+  return patches;
+}
+
+GridRatios ratios_of(const ElementGrids& e) {
+  const Cells& finest = e.grids[2].grid.cells;
+  const auto refined =
+      is_tetrahedra(finest) ? 3 : std::count_if(finest.begin(), finest.end(), [](int n) { return n > 1; });
+  const auto ratio = [&](int coarse, int fine) {
+    return std::pow(cell_count(e.grids[fine].grid.cells) / cell_count(e.grids[coarse].grid.cells),
+                    1.0 / static_cast<double>(std::max(refined, 1L)));
+  };
+  return {ratio(0, 1), ratio(1, 2)};
+}
+
+void widen(double spread, ReferenceField& field) {
+  field.uncertainty += spread;
+  field.nodal_uncertainty += spread * field.displacement.rowwise().norm();
+}
+
+std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
+  std::vector<std::map<std::string, double>> values;
+  for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
+  const double largest_displacement = e.grids[2].displacement.rowwise().norm().maxCoeff();
+  const Experiment& experiment = prepared.experiment;
+  std::map<std::string, ReferenceValue> limits;
+  for (const auto& [measure, fine] : values[2]) {
+    const double scale = scale_of(measure, values[2], experiment.body.size.norm(), largest_displacement);
+    ReferenceValue& limit = limits[measure];
+    limit = extrapolate({values[0].at(measure), values[1].at(measure), fine}, solver_noise * scale,
+                        trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+    limit.matters = std::abs(limit.value) >= 0.1 * scale;
+  }
+  raise_to_usual(limits);
+  for (auto& [measure, limit] : limits) limit.uncertainty += prepared.load_spread * std::abs(limit.value);
+  return limits;
+}
+
+std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                        const ElementGrids& e) {
+  const Experiment& experiment = prepared.experiment;
+  const double nu = material.poisson_ratio;
+  std::vector<ReferenceRecord> records;
+  for (const auto& [measure, limit] : limits_of(prepared, e)) {
+    if (!wanted(measure, experiment.measures) || !comparable(prepared, measure)) continue;
+    std::vector<double> sequence;
+    for (const fem::Solution& s : e.grids) sequence.push_back(measures_of(prepared, s).at(measure));
+    records.push_back({nu,
+                       measure,
+                       unit_of(measure),
+                       {},
+                       sequence,
+                       limit.observed_order,
+                       limit.value,
+                       limit.uncertainty,
+                       limit.note,
+                       e.element,
+                       limit.sequence != Sequence::not_converging});
+  }
+  if (!experiment.exact.empty())
+    for (const ReferenceRecord& r : exact_records(prepared, nu, e))
+      if (wanted(r.measure, experiment.measures)) records.push_back(r);
+  for (ReferenceRecord& r : records) {
+    r.note = with_note(e, r.note);
+    for (const fem::Solution& s : e.grids) r.cells.push_back(s.grid.cells);
+  }
+  return records;
+}
+
+std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<ReferenceRecord>& records) {
+  const Experiment& experiment = prepared.experiment;
+  std::vector<Row> rows;
+  for (const ReferenceRecord& r : records)
+    for (std::size_t i = 0; i < r.values.size(); ++i) {
+      if (!std::isfinite(r.values[i])) continue;
+      Row row{experiment.name,
+              experiment.kinematics,
+              "fem_" + r.element,
+              r.poisson_ratio,
+              r.cells[i],
+              r.measure,
+              r.values[i],
+              r.unit,
+              target(experiment, r),
+              {},
+              {},
+              1,
+              {}};
+      if (row.reference) row.error = row.value - *row.reference;
+      rows.push_back(row);
+    }
+  return rows;
+}
+
+}  // namespace springproof

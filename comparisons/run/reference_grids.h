@@ -1,0 +1,92 @@
+// The finite element reference on its grids: what is asked for, and what three grids of one element say.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "comparisons/judge/reference_value.h"
+#include "comparisons/run/case_run.h"
+#include "fem_reference/reference.h"
+
+namespace springproof {
+
+/// One element of [reference] on three grids, coarse to fine.
+struct ElementGrids {
+  std::string element;
+  std::vector<fem::Solution> grids;
+  std::string note = {};  ///< why these are not the grids asked for
+};
+
+/// The note of a limit, and that of the grids that it comes from.
+std::string with_note(const ElementGrids& e, const std::string& note);
+
+/// True if all three grids have a result.
+bool complete(const ElementGrids& e);
+
+struct ReferenceGrids {
+  std::vector<ElementGrids> elements;  ///< in the order of [reference] elements; empty: the program gave no answer
+  std::vector<std::vector<fem::Solution>> peers;  ///< per lattice the elements of [compare], if there are models; none
+                                                  ///< where that would be too many cubes
+  std::vector<std::vector<fem::Solution>> refined;  ///< of a body of voxels, per lattice: q2 on its cubes, and on these
+                                                    ///< cut into eight; none where that would be too many
+  std::string failure;                              ///< why there is no answer
+};
+
+/// Displacements are asked for at the nodes of every lattice and at the measured points, stresses at the probes if the
+/// case measures them. An element without a result on some graded grid is solved on uniform ones; an element that the
+/// program dies of is alone in that.
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
+
+/// Row of Solution::displacement that the nodes of a lattice begin at; of the one past the last, that of the measured
+/// points.
+Eigen::Index first_node(const PreparedCase& prepared, std::size_t lattice);
+
+/// The part of Solution::displacement that belongs to the nodes of one lattice.
+NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples);
+
+Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem::Solution& s);
+
+/// Every scalar measure of one solution, stresses among them.
+std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);
+
+/// Rest positions of the probes, n x 3 [m].
+NodalVectors probe_points(const Experiment& experiment);
+
+/// Those and after them the points of the patches whose mean displacement is measured.
+NodalVectors measured_points(const PreparedCase& prepared);
+
+/// The measures of a field that have a value of their own; `u` is the displacement at the measured points.
+std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u);
+
+/// False for the force or torque on a patch that shares held nodes with another: no reference can be given.
+bool comparable(const PreparedCase& prepared, const std::string& measure);
+
+/// The supports that are moved and whose reactions are their own.
+std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared);
+
+/// Largest relative error of the force or torque on a moved support; nothing where none is moved, or none can be
+/// compared.
+std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
+                                     const std::map<std::string, ReferenceValue>& truth);
+
+/// The exact field of the case at the nodes of its first lattice; empty if there is none.
+NodalVectors exact_at_nodes(const PreparedCase& prepared);
+
+/// By which the cell sizes of the three grids fall, as the number of cells grows; layers of one cell stay so.
+GridRatios ratios_of(const ElementGrids& e);
+
+/// Adds a relative uncertainty.
+void widen(double spread, ReferenceField& field);
+
+/// Limit and uncertainty of every scalar measure.
+std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);
+
+/// What the report shows of one element: the measures wanted, on each grid, with their limits; with an exact field also
+/// displacement_error and its observed order.
+std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                        const ElementGrids& e);
+
+/// The records of a case without models as rows of results.csv, one per grid, beside the values expected.
+std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<ReferenceRecord>& records);
+
+}  // namespace springproof

@@ -1,0 +1,413 @@
+#include "comparisons/run/suite.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "comparisons/judge/calibration.h"
+#include "comparisons/judge/judge.h"
+#include "comparisons/report/headline.h"
+#include "comparisons/report/report.h"
+#include "comparisons/run/case_run.h"
+#include "comparisons/run/checksum.h"
+#include "comparisons/run/folder_lock.h"
+#include "comparisons/run/part_file.h"
+#include "comparisons/run/status.h"
+#include "comparisons/run/time_left.h"
+#include "fem_reference/reference.h"
+#include "meshes/mesher/script_files.h"
+#include "problem/system/child.h"
+#include "problem/system/file_name.h"
+#include "problem/system/files.h"
+#include "problem/system/shortened.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> interrupted = false;
+
+void on_interrupt(int) {
+  interrupted = true;
+  fem::interrupt();
+}
+
+template <class Iterator>
+std::vector<fs::path> toml_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".toml") files.push_back(entry->path());
+  if (error) throw InputError(shortened(fmt::format("{}: cannot be read: {}", folder.string(), error.message())));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The case's name as a file name.
+std::string key_of(const fs::path& file) {
+  std::string key = case_name(file);
+  std::replace(key.begin(), key.end(), '/', '-');
+  return file_name(key);
+}
+
+/// Everything that a case is computed from.
+std::string checksum_of(const PreparedCase& p) {
+  std::string all = checksum(p.experiment.text);
+  for (const fs::path& file : files_behind(p.geo)) all += file.filename().string() + checksum(text_of_file(file));
+  return checksum(all);
+}
+
+/// One part of one case: the unit of work.
+struct Task {
+  const PreparedCase* prepared;
+  std::size_t material;
+  fs::path file;  ///< where the finished part is kept
+  fs::path vtu;
+  std::string stamp;
+  std::string title;
+  Part part;
+  bool done = false;
+};
+
+void require_writable(const fs::path& folder) {
+  if (folder.empty()) throw InputError("--out: needs the name of a folder");
+  std::error_code error;
+  fs::create_directories(folder / "parts", error);
+  const fs::path trial = folder / ".writable";
+  std::ofstream out;
+  if (!error) out.open(trial), out << "x", out.close();
+  if (error || !out)
+    throw InputError(shortened(fmt::format("--out: cannot write into {}: {}", folder.string(),
+                                           error ? error.message() : std::strerror(errno))));
+  fs::remove(trial, error);
+}
+
+std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const SuiteOptions& options) {
+  std::vector<Task> tasks;
+  const std::string fem = fem::version();
+  for (const PreparedCase& p : prepared) {
+    const std::string sum = checksum_of(p);
+    for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
+      const std::string key = key_of(p.experiment.file);
+      const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
+      const std::string stamp =
+          fmt::format("{} | {} | {} | {} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu, options.finer, sum);
+      tasks.push_back({&p,
+                       m,
+                       options.out / "parts" / (key + "-" + nu + ".cbor"),
+                       options.vtu ? options.out / "vtu" / key : fs::path(),
+                       stamp,
+                       fmt::format("{}  {}", case_name(p.experiment.file), nu),
+                       {}});
+    }
+  }
+  return tasks;
+}
+
+/// Leaves a case the Poisson's ratios that are wanted, and what is expected there or everywhere.
+/// @throws InputError if it has none of them.
+Experiment only(const std::vector<double>& wanted, Experiment e) {
+  if (wanted.empty()) return e;
+  const auto left_out = [&](double nu) {
+    return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return std::abs(w - nu) < 1e-12; });
+  };
+  std::string has;
+  for (const IsotropicMaterial& m : e.materials) has += fmt::format("{}{}", has.empty() ? "" : ", ", m.poisson_ratio);
+  std::erase_if(e.materials, [&](const IsotropicMaterial& m) { return left_out(m.poisson_ratio); });
+  std::erase_if(e.expectations, [&](const Expectation& x) { return x.poisson_ratio && left_out(*x.poisson_ratio); });
+  std::erase_if(e.published, [&](const PublishedValue& v) { return left_out(v.poisson_ratio); });
+  if (e.materials.empty())
+    throw InputError(fmt::format("{}: poisson_ratio: none of those wanted (allowed: {})", e.file.string(), has));
+  return e;
+}
+
+/// Multiplies the cells of the reference's grids along each direction, but for layers of one cell.
+/// @throws InputError if the case leaves its reference to the program.
+Experiment finer(int times, Experiment e) {
+  if (times == 1) return e;
+  if (e.reference.cells[0] == 0 && e.reference.edge == 0)
+    throw InputError(fmt::format(
+        "--finer: {} leaves its reference grids to the program; give it [reference] cells or edge_m", e.file.string()));
+  for (int& n : e.reference.cells)
+    if (n > 1) n *= times;
+  e.reference.edge /= times;
+  return e;
+}
+
+/// Those before an interrupt, which ends the mesher too.
+std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
+  std::vector<PreparedCase> prepared;
+  Status status(options.quiet);
+  for (const fs::path& file : cases) try {
+      const Status::Working working(status, case_name(file));
+      if (!interrupted)
+        prepared.push_back(prepare(finer(options.finer, only(options.poisson_ratios, read_experiment(file)))));
+    } catch (const std::runtime_error&) {
+      if (!interrupted) throw;
+    }
+  return prepared;
+}
+
+/// Shows the parts under way and prints those finished, with the time left; safe from several workers.
+class Progress {
+ public:
+  Progress(const std::vector<Task>& tasks, int jobs, bool quiet)
+      : tasks_(tasks),
+        time_left_(expected(tasks), jobs),
+        status_(quiet, [this] { return time_left_.at(now()); }),
+        quiet_(quiet) {
+    const std::size_t parts = tasks.size(), at_once = std::min<std::size_t>(parts, jobs);
+    if (const auto all = time_left_.at(0); all && *all > 60 && !quiet)
+      status_.print(
+          fmt::format("about {} for {} part{}, {} at once", time_words(*all), parts, parts == 1 ? "" : "s", at_once));
+  }
+
+  /// A task for the length of the scope.
+  auto working(std::size_t task) {
+    time_left_.started(task, now());
+    return Status::Working(status_, fmt::format("[{}/{}] {}", task + 1, tasks_.size(), tasks_[task].title));
+  }
+
+  void finished(std::size_t task, double seconds, bool taken_back) {
+    const std::lock_guard lock(mutex_);
+    ++count_;
+    taken_back ? time_left_.kept(task) : time_left_.finished(task, now());
+    const auto& runs = tasks_[task].part.runs;
+    const auto failed = std::count_if(runs.begin(), runs.end(), [](const Run& r) { return !r.ok; });
+    std::string remark = taken_back ? "kept from before" : fmt::format("{:.1f} s", seconds);
+    if (failed) remark += fmt::format(", {} run{} without a result", failed, failed == 1 ? "" : "s");
+    if (!quiet_) status_.print(fmt::format("[{}/{}] {:<44} {}", count_, tasks_.size(), tasks_[task].title, remark));
+  }
+
+ private:
+  static std::vector<double> expected(const std::vector<Task>& tasks) {
+    std::vector<double> seconds;
+    for (const Task& t : tasks)
+      seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
+    return seconds;
+  }
+  double now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  const std::vector<Task>& tasks_;
+  std::mutex mutex_;
+  std::size_t count_ = 0;
+  TimeLeft time_left_;
+  Status status_;
+  const bool quiet_;
+};
+
+/// What was finished before, unless its file has changed since.
+std::optional<Part> kept_part(const Task& task) try {
+  return load_part(task.file, task.stamp);
+} catch (const DamagedPart& e) {
+  fmt::print(stderr, "note: {}; this part is computed anew\n", e.what());
+  return {};
+}
+
+void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
+  const int jobs =
+      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::atomic<std::size_t> next = 0;
+  Progress progress(tasks, jobs, options.quiet);
+  std::mutex failure_mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i; !interrupted && (i = next++) < tasks.size();) try {
+        Task& task = tasks[i];
+        const auto start = std::chrono::steady_clock::now();
+        const Status::Working working = progress.working(i);
+        std::optional<Part> kept;
+        if (options.resume) kept = kept_part(task);
+        task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu);
+        if (interrupted) return;  // its FEM program may have been stopped by the same signal
+        if (!kept) save_part(task.file, task.stamp, task.part);
+        task.done = true;
+        progress.finished(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                          kept.has_value());
+      } catch (...) {
+        const std::lock_guard lock(failure_mutex);
+        if (!failure) failure = std::current_exception();
+        next = tasks.size();
+      }
+  };
+  std::vector<std::thread> workers;
+  for (std::size_t j = 0; j < std::min(static_cast<std::size_t>(jobs), tasks.size()); ++j) workers.emplace_back(work);
+  for (std::thread& w : workers) w.join();
+  if (failure && !interrupted) std::rethrow_exception(failure);
+}
+
+template <class T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const std::vector<Task>& tasks) {
+  std::vector<CaseResult> results;
+  for (const PreparedCase& p : prepared) {
+    CaseResult result;
+    result.experiment = p.experiment;
+    result.notes = p.notes;
+    for (std::size_t m = 0; m < p.models.size(); ++m)
+      if (const auto own = own_poisson_ratio(p.models[m].row))
+        result.own_poisson_ratios[p.experiment.models[m].label] = *own;
+    for (const Task& task : tasks) {
+      if (task.prepared != &p) continue;
+      append(task.part.runs, result.runs);
+      append(task.part.rows, result.rows);
+      append(task.part.references, result.references);
+      append(task.part.pictures, result.pictures);
+      append(task.part.lines, result.lines);
+      append(task.part.splits, result.splits);
+      append(task.part.deformations, result.deformations);
+    }
+    judge(result);
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+nlohmann::json host() {
+  utsname u{};
+  uname(&u);
+  std::string processor, line;
+  for (std::ifstream in("/proc/cpuinfo"); std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  return {{"system", fmt::format("{} {}", u.sysname, u.machine)},
+          {"processor", processor},
+          {"cores", std::thread::hardware_concurrency()}};
+}
+
+std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
+  std::vector<KnownQuantity> all;
+  for (const CaseResult& r : results) append(known_quantities(r), all);
+  return all;
+}
+
+nlohmann::json document(const std::vector<CaseResult>& results, const std::vector<KnownQuantity>& known) {
+  nlohmann::json cases = nlohmann::json::array();
+  for (const CaseResult& r : results) cases.push_back(to_json(r));
+  const std::string fem = fem::version();
+  return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", fem}}},
+          {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
+          {"host", host()},
+          {"cases", cases},
+          {"calibration", calibration_json(known)}};
+}
+
+/// Writes everything; true if every expectation holds and every case was compared.
+bool write_results(const std::vector<CaseResult>& results, const fs::path& out) {
+  const std::vector<KnownQuantity> known = known_quantities(results);
+  const nlohmann::json doc = document(results, known);
+  nlohmann::json pictures = nlohmann::json::array();
+  for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
+  write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+  write_file(out / "results.csv", to_csv(results));
+  write_report(out / "report.html", doc, pictures);
+  const Headline h = headline(doc);
+  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known), (out / "report.html").string());
+  return success(h);
+}
+
+/// @throws InputError if two cases would write the same files, or one no files.
+void check_names(const std::vector<fs::path>& cases) {
+  for (const fs::path& file : cases)
+    if (key_of(file).size() > longest_file_name)
+      throw InputError(shortened(fmt::format("{}: a name too long for the results' files (allowed: up to {} letters)",
+                                             key_of(file), longest_file_name)));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (file_name_key(key_of(cases[i])) == file_name_key(key_of(cases[j])))
+        throw InputError(fmt::format("{} and {} have the same name; rename one, or compare them one at a time",
+                                     cases[j].string(), cases[i].string()));
+}
+
+fs::path experiments_folder() { return data_folder("experiments", SPRINGPROOF_EXPERIMENTS_DIR); }
+
+}  // namespace
+
+std::string case_name(const fs::path& file) {
+  const fs::path relative = fs::proximate(fs::absolute(file), experiments_folder());
+  return *relative.begin() == ".." ? file.stem().string() : (relative.parent_path() / relative.stem()).string();
+}
+
+std::vector<fs::path> built_in_cases() { return toml_files<fs::recursive_directory_iterator>(experiments_folder()); }
+
+std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
+  std::vector<fs::path> cases;
+  for (const std::string& name : names) {
+    const fs::path built_in = experiments_folder() / name;
+    std::vector<fs::path> found;
+    std::string why;
+    for (const fs::path& path : {fs::path(name), built_in, fs::path(built_in.string() + ".toml")}) {
+      std::error_code error;
+      const fs::file_status status = fs::status(path, error);
+      if (fs::is_directory(status))
+        found = toml_files<fs::directory_iterator>(path);
+      else if (fs::exists(status))
+        found = {path};
+      else if (error && status.type() != fs::file_type::not_found && why.empty())
+        why = error.message() + "; ";  // a loop of links, too long a name
+      if (!found.empty()) break;
+    }
+    if (found.empty())
+      throw InputError(
+          shortened(fmt::format("{}: {}no such case file, and no folder with case files (*.toml); `springproof list` "
+                                "shows the built-in ones",
+                                name, why)));
+    for (const fs::path& file : found) {
+      std::error_code ignored;
+      if (std::none_of(cases.begin(), cases.end(),
+                       [&](const fs::path& c) { return c == file || fs::equivalent(c, file, ignored); }))
+        cases.push_back(file);
+    }
+  }
+  return cases;
+}
+
+int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  constexpr int most_jobs = 1024;
+  if (options.jobs > most_jobs)
+    throw InputError(fmt::format("--jobs: is {} (allowed: 0 to {})", options.jobs, most_jobs));
+  check_names(cases);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
+  if (interrupted) {
+    fmt::print(stderr, "interrupted before any part was run\n");
+    return 130;
+  }
+  require_writable(options.out);
+  const FolderLock lock(options.out);
+  std::vector<Task> tasks = make_tasks(prepared, options);
+  if (!fem::available()) fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
+  run_tasks(tasks, options);
+  if (interrupted) {
+    const auto done = std::count_if(tasks.begin(), tasks.end(), [](const Task& t) { return t.done; });
+    fmt::print(stderr,
+               "interrupted; {} of {} parts are kept in {}: the same command with --resume goes on from there\n", done,
+               tasks.size(), options.out.string());
+    return 130;
+  }
+  return write_results(collect(prepared, tasks), options.out) ? 0 : 1;
+}
+
+}  // namespace springproof

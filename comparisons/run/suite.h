@@ -1,0 +1,40 @@
+// Many cases: found, scheduled over a few workers, kept when interrupted, written out.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace springproof {
+
+struct SuiteOptions {
+  std::filesystem::path out = "springproof-report";
+  int jobs = 0;                        ///< parts at once; 0 = one per processor core
+  bool resume = false;                 ///< take finished parts from `out`
+  bool vtu = false;                    ///< write a VTU per run
+  bool quiet = false;                  ///< say nothing of what is under way
+  std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
+  int finer = 1;                       ///< reference grids with so many times the cells along each direction
+};
+
+/// Case files named by paths: files, folders (the *.toml right in them), or folders of the built-in experiments
+/// ("golec_2019", "golec_2019/compression").
+/// @throws InputError if a name leads nowhere.
+std::vector<std::filesystem::path> find_cases(const std::vector<std::string>& names);
+
+/// "golec_2019/compression" for a built-in case, the file's stem for others.
+std::string case_name(const std::filesystem::path& file);
+
+/// All built-in case files.
+std::vector<std::filesystem::path> built_in_cases();
+
+/// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out.
+/// What is under way goes to stderr (comparisons/run/status.h), before a run of more than a minute also how long it may
+/// take.
+/// @return 0: every expectation holds; 1: one does not, or cannot be judged, or a case had no reference, no result or
+/// nothing to compare; 130: interrupted (finished parts are kept).
+/// @throws InputError for unusable input or output folder, before anything is computed.
+int compare(const std::vector<std::filesystem::path>& cases, const SuiteOptions& options);
+
+}  // namespace springproof

@@ -1,0 +1,332 @@
+#include "comparisons/run/voxel_body.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "comparisons/judge/measures.h"
+#include "comparisons/run/reference_grids.h"
+#include "comparisons/run/voxel_reference.h"
+#include "meshes/locate/facet_tree.h"
+#include "meshes/locate/locate.h"
+#include "meshes/mesher/mesher.h"
+#include "meshes/patches/rule_region.h"
+#include "meshes/patches/select_patches.h"
+#include "meshes/volume.h"
+#include "meshes/voxels/voxelise.h"
+#include "problem/system/progress.h"
+
+namespace springproof {
+namespace {
+
+// Of the finest mesh: quadratic ones are 100,000 unknowns, some five seconds of one core.
+constexpr int finest_tetrahedra = 20000;
+constexpr double least_spread = 1e-6;  // of an area or a volume over the meshes that is said
+constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
+
+MeshRequest body_request(const PreparedCase& prepared) {
+  MeshRequest request;
+  request.file = prepared.geo;
+  request.size = prepared.experiment.body.size;
+  request.scale = prepared.experiment.body.scale;
+  return request;
+}
+
+/// For files in millimetres that are taken as metres; empty: there is no reason to think so.
+std::string scale_hint(const Mesh& mesh, const Body& body) {
+  constexpr double large = 10;  // [m]
+  const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
+  if (body.is_script() || body.scale != 1 || !(span > large)) return {};
+  return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+}
+
+/// Edges of a mesh over those of the finest one.
+double coarseness(const Mesh& mesh, const PreparedCase& prepared) {
+  return std::cbrt(prepared.uncut.back() / static_cast<double>(mesh.tetrahedra.size()));
+}
+
+void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
+  const Experiment& e = prepared.experiment;
+  request.edge = e.reference.edge;
+  request.tetrahedra = finest_tetrahedra;
+  if (!e.reference.elements.empty()) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
+  MeshedBody body = mesh_body(request);
+  prepared.notes = body.notes;
+  hint = scale_hint(body.mesh, e.body);
+  if (!hint.empty()) prepared.notes.push_back(hint);
+  body.coarser.push_back(std::move(body.mesh));
+  for (const Mesh& mesh : body.coarser) prepared.uncut.push_back(static_cast<int>(mesh.tetrahedra.size()));
+  for (Mesh& mesh : body.coarser) {
+    const std::vector<std::string> cuts = select_patches(e.patches, mesh, coarseness(mesh, prepared));
+    if (&mesh == &body.coarser.back()) prepared.notes.insert(prepared.notes.end(), cuts.begin(), cuts.end());
+    prepared.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
+  }
+}
+
+std::vector<double> voxel_edges(const Body& body, double volume) {
+  if (!body.voxel_edges.empty()) return body.voxel_edges;
+  std::vector<double> edges;
+  for (const int count : body.voxel_counts) edges.push_back(std::cbrt(volume / count));
+  return edges;
+}
+
+/// @throws std::invalid_argument, before the work, if the body holds more cubes than a lattice may have.
+void check_counts(const std::vector<double>& edges, double volume) {
+  constexpr double most_cubes = 4e6;
+  for (const double edge : edges)
+    if (const double cubes = volume / std::pow(edge, 3); !(cubes < 1.1 * most_cubes))
+      throw std::invalid_argument(
+          fmt::format("voxels: about {:.3g} cubes of {:.3g} m fill the body (allowed: up to {:.0g}; a lattice takes "
+                      "some 3 kB per cube); "
+                      "take larger voxels",
+                      cubes, edge, most_cubes));
+}
+
+/// @throws std::invalid_argument if the cubes fill more than twice or less than half of the body's volume.
+void compare_volumes(double cubes, double edge, double body, std::vector<std::string>& notes) {
+  const double share = cubes * std::pow(edge, 3) / body;
+  const std::string says =
+      fmt::format("{} cubes of {:.6g} m fill {:.4g} times the volume of the body", cubes, edge, share);
+  if (share > 2 || share < 0.5)
+    throw std::invalid_argument("voxels: " + says + " (allowed: 0.5 to 2); take smaller voxels");
+  if (std::abs(share - 1) > 0.1) notes.push_back(says + ": its thin parts are not resolved");
+}
+
+/// As fine as the lattices, for elements on tetrahedra beside the models.
+void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  if (elements_of(e, 'p').empty()) return;
+  for (const double edge : prepared.voxel_edges) {
+    request.edge = edge;
+    Mesh mesh = mesh_body(request).mesh;
+    select_patches(e.patches, mesh, coarseness(mesh, prepared));
+    prepared.fitted.push_back(std::make_shared<Mesh>(std::move(mesh)));
+  }
+}
+
+void cut_lattices(PreparedCase& prepared) {
+  Body& body = prepared.experiment.body;
+  const Mesh& true_body = *prepared.tetrahedra.back();
+  const auto region = std::make_shared<Region>(region_of(true_body));
+  body.size = region->upper - region->lower;
+  const std::vector<double> edges = voxel_edges(body, region->volume);
+  check_counts(edges, region->volume);
+  for (const double edge : edges) {
+    const VoxelGrid grid = voxel_grid(true_body, edge);
+    progress::detail(fmt::format("voxels of {:.4g} m", edge));
+    Voxels voxels = voxelise(grid, true_body);
+    for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
+    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);
+    body.cells.push_back(grid.cells);
+    prepared.voxel_edges.push_back(edge);
+    prepared.meshes.push_back(std::make_shared<Mesh>(std::move(voxels.mesh)));
+    prepared.regions.push_back(region);
+  }
+}
+
+/// Of a patch by a rule its share of each facet, cut through where the border runs; of another its facets.
+std::vector<FacetPart> parts_of(const Experiment& e, const Mesh& mesh, const std::string& name) {
+  const auto rule =
+      std::find_if(e.patches.begin(), e.patches.end(), [&](const PatchRule& r) { return r.name == name; });
+  if (rule != e.patches.end()) return parts_of(*rule, mesh);
+  const auto X = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
+  std::vector<FacetPart> parts;
+  for (const auto& f : patch(mesh, name).facets) {
+    const Vec3 a = X(f[0]), b = X(f[1]), c = X(f[2]);
+    parts.push_back({(b - a).cross(c - a) / 2, (a + b + c) / 3, {}});
+  }
+  return parts;
+}
+
+double area(const std::vector<FacetPart>& parts) {
+  double sum = 0;
+  for (const FacetPart& p : parts) sum += p.area.norm();
+  return sum;
+}
+
+Vec3 centroid(const std::vector<FacetPart>& parts) {
+  Vec3 sum = Vec3::Zero();
+  for (const FacetPart& p : parts) sum += p.area.norm() * p.centroid;
+  return sum / area(parts);
+}
+
+Wrench of_pressure(const std::vector<FacetPart>& parts, double pressure) {
+  Wrench wrench{Vec3::Zero(), Vec3::Zero(), centroid(parts)};
+  for (const FacetPart& p : parts) {
+    wrench.force -= pressure * p.area;
+    wrench.moment -= pressure * (p.centroid - wrench.about).cross(p.area);
+  }
+  return wrench;
+}
+
+Vec3 centroid(const Mesh& mesh) {
+  const Eigen::VectorXd volumes = nodal_volumes(mesh);
+  return mesh.nodes.transpose() * volumes / volumes.sum();
+}
+
+void set_wrenches(PreparedCase& prepared) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
+  const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
+  for (Load& load : prepared.experiment.loads) {
+    if (auto* t = std::get_if<Traction>(&load)) {
+      t->wrench = at_centroid(area(parts(t->on)) * t->traction, centroid(parts(t->on)));
+    } else if (auto* q = std::get_if<Pressure>(&load)) {
+      q->wrench = of_pressure(parts(q->on), q->pressure);
+    } else if (auto* f = std::get_if<PatchForce>(&load)) {
+      f->wrench = at_centroid(f->force, centroid(parts(f->on)));
+    } else if (auto* g = std::get_if<Gravity>(&load)) {
+      const double mass = prepared.experiment.materials.front().density * volume(body, body.nodes);
+      g->wrench = at_centroid(mass * g->acceleration, centroid(body));
+    }
+  }
+}
+
+/// How far a quantity of the finest mesh is from that of the next, relative; or, if it does not fall in order, from
+/// those of all.
+double spread(const PreparedCase& prepared, bool in_order, const std::function<double(const Mesh&)>& quantity) {
+  const auto& meshes = prepared.tetrahedra;
+  const double fine = quantity(*meshes.back());
+  double most = 0;
+  for (std::size_t i = in_order && meshes.size() > 2 ? meshes.size() - 2 : 0; i + 1 < meshes.size(); ++i)
+    most = std::max(most, std::abs(quantity(*meshes[i]) / fine - 1));
+  return most;
+}
+
+/// True if meshes of the body hold it by other facets each.
+bool has_ragged_border(const Experiment& e, const std::string& patch) {
+  return std::any_of(e.patches.begin(), e.patches.end(),
+                     [&](const PatchRule& r) { return r.name == patch && r.facing; });
+}
+
+/// What loads that go with an area or a volume leave open, as every mesh bears those of the finest; and supports with
+/// ragged borders.
+void set_load_spread(PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  for (const Load& load : e.loads) {
+    const std::string* on = patch_of(load);
+    const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load) ||
+                         (prescribes_displacement(load) && has_ragged_border(e, *on));
+    if (!by_area && !std::holds_alternative<Gravity>(load)) continue;
+    const double off = spread(prepared, !on || !has_ragged_border(e, *on), [&](const Mesh& m) {
+      return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes);
+    });
+    if (off <= least_spread) continue;
+    prepared.load_spread = std::max(prepared.load_spread, off);
+    prepared.notes.push_back(fmt::format("the meshes differ by {:.2g} % in {}: so much is added to the uncertainties",
+                                         100 * off,
+                                         on ? "the area of patch '" + *on + "'" : "their volume, and so the weight"));
+  }
+}
+
+/// Lattice nodes in the body are asked for themselves; those outside at the nearest place and behind it.
+void place_samples(PreparedCase& prepared) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  const std::vector<OuterFacet> facets = outer_facets(body);
+  const FacetTree tree(body, facets);
+  const Region& region = *prepared.regions.front();
+  std::vector<Vec3> points;
+  const auto ask = [&](const Vec3& p) {
+    points.push_back(p);
+    return static_cast<int>(points.size()) - 1;
+  };
+  for (const auto& mesh : prepared.meshes)
+    for (const auto& row : mesh->nodes.rowwise()) {
+      const Vec3 X = row.transpose();
+      if (region.inside(X)) {
+        prepared.body_samples.push_back({ask(X)});
+        continue;
+      }
+      const Vec3 nearest = tree.nearest(X).point, mirrored = 2 * nearest - X;
+      const int at = ask(nearest);
+      prepared.body_samples.push_back({at, region.inside(mirrored) ? ask(mirrored) : at});
+    }
+  prepared.body_points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    prepared.body_points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+}
+
+/// @throws InputError naming a probe that is further outside than half a cube: facets lie inside curved surfaces.
+void check_probes(const PreparedCase& prepared) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  const std::vector<OuterFacet> facets = outer_facets(body);
+  const FacetTree tree(body, facets);
+  const double slack = *std::min_element(prepared.voxel_edges.begin(), prepared.voxel_edges.end()) / 2;
+  for (const Probe& p : prepared.experiment.probes) {
+    const double distance = (tree.nearest(p.at).point - p.at).norm();
+    if (!prepared.regions.front()->inside(p.at) && distance > slack)
+      throw InputError(fmt::format(
+          "probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface",
+          p.name, p.at[0], p.at[1], p.at[2], distance));
+  }
+}
+
+void prepare_body(PreparedCase& prepared, std::string& hint) {
+  const Experiment& e = prepared.experiment;
+  const MeshRequest request = body_request(prepared);
+  mesh_the_body(request, prepared, hint);
+  std::vector<std::string> patches;
+  for (const Patch& p : prepared.tetrahedra.back()->patches) patches.push_back(p.name);
+  check_patches(e, patches);
+  cut_lattices(prepared);
+  mesh_like_lattices(request, prepared);
+  set_wrenches(prepared);
+  set_load_spread(prepared);
+  check_probes(prepared);
+  if (!e.reference.elements.empty()) place_samples(prepared);
+}
+
+}  // namespace
+
+void prepare_voxel_body(PreparedCase& prepared) {
+  std::string hint;
+  const auto with_hint = [&](const std::exception& e) {
+    return hint.empty() ? std::string(e.what()) : fmt::format("{}; {}", e.what(), hint);
+  };
+  try {
+    prepare_body(prepared, hint);
+    if (!hint.empty()) fmt::print(stderr, "note: {}: {}\n", prepared.experiment.file.string(), hint);
+  } catch (const InputError& e) {
+    if (hint.empty()) throw;
+    throw InputError(with_hint(e));
+  } catch (const std::invalid_argument& e) {
+    throw InputError(prepared.experiment.body.where, with_hint(e));
+  }
+}
+
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {
+  NodalVectors out(static_cast<Eigen::Index>(prepared.body_samples.size()), 3);
+  for (std::size_t n = 0; n < prepared.body_samples.size(); ++n) {
+    const BodySample& s = prepared.body_samples[n];
+    const auto row = static_cast<Eigen::Index>(n);
+    out.row(row) = s.within < 0 ? Eigen::RowVector3d(u.row(s.at)) : 2 * u.row(s.at) - u.row(s.within);
+  }
+  return out;
+}
+
+NodalVectors at_measured_points(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& displacement) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *prepared.meshes[lattice];
+  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // for a probe outside
+  const NodalVectors points = measured_points(prepared);
+  const Locator locator(mesh);
+  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Location at = locator(points.row(i).transpose());
+    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * displacement.row(mesh.hexahedra[at.cell][n]);
+  }
+  return out;
+}
+
+std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
+                                              std::vector<PatchReaction> reactions) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  for (PatchReaction& r : reactions)
+    r.torque += (centroid(own, patch(own, r.patch)) - centroid(body, patch(body, r.patch))).cross(r.force);
+  return reactions;
+}
+
+}  // namespace springproof

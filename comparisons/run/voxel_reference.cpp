@@ -1,0 +1,219 @@
+#include "comparisons/run/voxel_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "comparisons/judge/measures.h"
+#include "comparisons/run/voxel_body.h"
+
+namespace springproof {
+namespace {
+
+NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
+  NodalVectors both(a.rows() + b.rows(), 3);
+  both << a, b;
+  return both;
+}
+
+using Meshes = std::vector<std::shared_ptr<const Mesh>>;
+
+/// Each element on each mesh, the meshes of one element one after the other.
+std::vector<fem::Discretisation> grids_on(const Meshes& meshes, const std::vector<std::string>& elements) {
+  std::vector<fem::Discretisation> grids;
+  for (const std::string& element : elements)
+    for (int m = 0; m < static_cast<int>(meshes.size()); ++m)
+      grids.push_back({{static_cast<int>(meshes[m]->tetrahedra.size()), 0, 0}, element, 1.0, m, 0});
+  return grids;
+}
+
+std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                            const std::vector<fem::Discretisation>& grids, const Meshes& meshes) {
+  if (grids.empty()) return {};
+  const Experiment& e = prepared.experiment;
+  const NodalVectors measured = measured_points(prepared);
+  const bool stresses = wanted("stress", e.measures);
+  const fem::Request request{
+      e,    material, grids, stacked(prepared.body_points, measured), stresses ? probe_points(e) : NodalVectors(0, 3),
+      1e-8, meshes};
+  std::vector<fem::Solution> solutions = fem::solve(request);
+  for (fem::Solution& s : solutions) {
+    if (!s.ok) continue;
+    const Mesh& own = *meshes[s.grid.mesh];
+    s.reactions = about_true_patches(prepared, own, s.reactions);
+    s.displacement = stacked(at_lattice_nodes(prepared, s.displacement.topRows(prepared.body_points.rows())),
+                             s.displacement.bottomRows(measured.rows()));
+  }
+  return solutions;
+}
+
+/// On the cubes of one lattice: these elements, and for the parts of the error q2, and q2 on cubes cut into eight, if
+/// they are not too many.
+std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t lattice,
+                                       const IsotropicMaterial& material, const std::vector<std::string>& elements) {
+  const Experiment& e = prepared.experiment;
+  const auto& mesh = prepared.meshes[lattice];
+  const Cells& cells = e.body.cells[lattice];
+  if (mesh->hexahedra.size() > most_cubes) return {};
+  fem::Request request{e, material, {}, mesh->nodes, NodalVectors(0, 3), 1e-8, {mesh}};
+  for (const std::string& element : elements) request.grids.push_back({cells, element, 1.0, 0, 0});
+  if (!e.cost && mesh->hexahedra.size() <= most_refined_cubes) {
+    request.grids.push_back({cells, "q2", 1.0, 0, 0});
+    request.grids.push_back({{2 * cells[0], 2 * cells[1], 2 * cells[2]}, "q2", 1.0, 0, 1});
+  }
+  std::vector<fem::Solution> solutions = fem::solve(request);
+  const Eigen::Index nodes = first_node(prepared, prepared.meshes.size()), first = first_node(prepared, lattice);
+  for (fem::Solution& s : solutions) {
+    if (!s.ok) continue;
+    s.reactions = about_true_patches(prepared, *mesh, s.reactions);
+    const NodalVectors measured = at_measured_points(prepared, lattice, s.displacement);
+    NodalVectors all = NodalVectors::Zero(nodes + measured.rows(), 3);
+    all.middleRows(first, mesh->nodes.rows()) = s.displacement;
+    all.bottomRows(measured.rows()) = measured;
+    s.displacement = std::move(all);
+  }
+  return solutions;
+}
+
+/// Of reaction_error; nothing where no support is moved.
+std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const VoxelLimit& voxels,
+                                             const BodyLimit& body,
+                                             const std::vector<std::map<std::string, double>>& samples,
+                                             ErrorSplit split) {
+  const std::map<std::string, double> truth = values_of(body.scalars), limit = values_of(voxels.limits);
+  const std::vector<std::string> patches = comparable_moved_patches(prepared);
+  const double length = prepared.experiment.body.size.maxCoeff();
+  const auto distance = [&](const auto& a, const auto& b) {
+    return reaction_difference(a, b, body.scalars, patches, length).value_or(0);
+  };
+  if (samples.empty() || !reaction_difference(samples.front(), truth, body.scalars, patches, length)) return {};
+  split.measure = "reaction_error";
+  split.unit = unit_of(split.measure);
+  for (const auto& sample : samples) {
+    split.total += distance(sample, truth) / static_cast<double>(samples.size());
+    split.model_error += distance(sample, voxels.peer_values) / static_cast<double>(samples.size());
+  }
+  split.discretisation_error = distance(voxels.peer_values, limit);
+  split.geometry_error = distance(limit, truth);
+  split.body_uncertainty = distance(values_of(body.scalars, 1), truth);
+  split.voxel_uncertainty = distance(values_of(voxels.limits, 1), limit);
+  return split;
+}
+
+}  // namespace
+
+std::vector<std::string> elements_of(const Experiment& e, char shape) {
+  std::vector<std::string> elements;
+  if (!e.models.empty())
+    std::copy_if(e.elements.begin(), e.elements.end(), std::back_inserter(elements),
+                 [&](const std::string& name) { return name[0] == shape; });
+  return elements;
+}
+
+ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
+  ReferenceGrids out;
+  const Experiment& e = prepared.experiment;
+  std::vector<fem::Solution> solutions =
+      solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
+  auto at = solutions.begin();
+  for (const std::string& element : e.reference.elements) {
+    out.elements.push_back({element, {at, at + 3}});
+    at += 3;
+  }
+  if (e.models.empty()) return out;
+  const auto too_fine = [&](const Mesh& mesh, const std::string& element) {
+    return !small_enough(e, mesh, element[1] - '0');
+  };
+  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+    std::vector<std::string> on_cubes = elements_of(e, 'q');
+    std::erase_if(on_cubes, [&](const std::string& element) { return too_fine(*prepared.meshes[lattice], element); });
+    const std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material, on_cubes);
+    const auto refined = cubes.begin() + static_cast<std::ptrdiff_t>(std::min(on_cubes.size(), cubes.size()));
+    out.peers.emplace_back(cubes.begin(), refined);
+    out.refined.emplace_back(refined, cubes.end());
+  }
+  std::vector<fem::Discretisation> fitted = grids_on(prepared.fitted, elements_of(e, 'p'));
+  std::erase_if(fitted,
+                [&](const fem::Discretisation& grid) { return too_fine(*prepared.fitted[grid.mesh], grid.element); });
+  for (const fem::Solution& s : solve_tetrahedra(prepared, material, fitted, prepared.fitted))
+    out.peers[s.grid.mesh].push_back(s);
+  return out;
+} catch (const InputError&) {
+  throw;
+} catch (const std::runtime_error& e) {
+  ReferenceGrids none;
+  none.failure = e.what();
+  return none;
+}
+
+std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t lattice, const ReferenceGrids& grids) {
+  if (lattice >= grids.refined.size() || grids.refined[lattice].size() != 2) return {};
+  const std::vector<fem::Solution>& peers = grids.peers[lattice];
+  const auto q1 =
+      std::find_if(peers.begin(), peers.end(), [](const fem::Solution& s) { return s.grid.element == "q1"; });
+  const fem::Solution &h = grids.refined[lattice][0], &half = grids.refined[lattice][1];
+  if (q1 == peers.end() || !q1->ok || !h.ok || !half.ok) return {};
+  const fem::Solution& peer = *q1;
+  const NodalVectors u1 = at_lattice(prepared, lattice, h.displacement),
+                     u2 = at_lattice(prepared, lattice, half.displacement);
+  VoxelLimit out{at_lattice(prepared, lattice, peer.displacement),
+                 2 * u2 - u1,
+                 3 * (u2 - u1).rowwise().norm(),
+                 measures_of(prepared, peer),
+                 {}};
+  const auto coarse = measures_of(prepared, h), fine = measures_of(prepared, half);
+  for (const auto& [measure, value] : fine) out.limits[measure] = extrapolate_two(coarse.at(measure), value);
+  raise_to_usual(out.limits);
+  return out;
+}
+
+std::vector<ErrorSplit> split_error(const PreparedCase& prepared, std::size_t lattice, const VoxelLimit& voxels,
+                                    const BodyLimit& body, const std::vector<NodalVectors>& u,
+                                    const std::vector<std::map<std::string, double>>& values) {
+  const Experiment& e = prepared.experiment;
+  const double samples = static_cast<double>(u.size());
+  ErrorSplit blank;
+  blank.cells = e.body.cells[lattice];
+  blank.voxel_edge = prepared.voxel_edges[lattice];
+  std::vector<ErrorSplit> splits;
+
+  const Eigen::VectorXd weights = nodal_volumes(*prepared.meshes[lattice]);
+  const double size = weighted_norm(body.field.displacement, weights);
+  const auto distance = [&](const NodalVectors& a, const NodalVectors& b) {
+    return weighted_norm(a - b, weights) / size;
+  };
+  ErrorSplit field = blank;
+  field.measure = "displacement_error";
+  field.unit = unit_of(field.measure);
+  for (const NodalVectors& sample : u) {
+    field.total += distance(sample, body.field.displacement) / samples;
+    field.model_error += distance(sample, voxels.peer) / samples;
+  }
+  field.discretisation_error = distance(voxels.peer, voxels.limit);
+  field.geometry_error = distance(voxels.limit, body.field.displacement);
+  field.voxel_uncertainty = std::sqrt(weights.dot(voxels.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size;
+  field.body_uncertainty = body.field.uncertainty;
+  splits.push_back(field);
+
+  if (const auto s = split_of_reactions(prepared, voxels, body, values, blank)) splits.push_back(*s);
+
+  for (const auto& [measure, limit] : voxels.limits) {
+    if (!wanted(measure, e.measures) || !comparable(prepared, measure) || !body.scalars.contains(measure)) continue;
+    ErrorSplit s = blank;
+    s.measure = measure;
+    s.unit = unit_of(measure);
+    const ReferenceValue& truth = body.scalars.at(measure);
+    double mean = 0;
+    for (const auto& sample : values) mean += sample.at(measure) / samples;
+    s.total = mean - truth.value;
+    s.model_error = mean - voxels.peer_values.at(measure);
+    s.discretisation_error = voxels.peer_values.at(measure) - limit.value;
+    s.geometry_error = limit.value - truth.value;
+    s.voxel_uncertainty = limit.uncertainty;
+    s.body_uncertainty = truth.uncertainty;
+    splits.push_back(s);
+  }
+  return splits;
+}
+
+}  // namespace springproof

@@ -1,0 +1,74 @@
+// Bodies cut into cells, as callers see it: no gmsh in here.
+//
+// The work is done by the separate program `springproof-mesh` (beside the running executable, or named by
+// $SPRINGPROOF_MESH_PROGRAM), so that a mesher that crashes, hangs or is under another licence stays outside.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "meshes/mesh.h"
+#include "problem/case_file/experiment.h"
+
+namespace springproof {
+
+/// Finds the .geo file of a body: beside the case file, else among the built-in bodies (meshes/geo/).
+/// @throws InputError listing the built-in bodies; at another script where $SPRINGPROOF_NO_SCRIPTS is set.
+std::filesystem::path find_geo(const Body& body, const std::filesystem::path& case_file);
+
+/// What a .geo is to be cut into.
+struct MeshKind {
+  bool tetrahedra = false;    ///< else hexahedra
+  bool second_order = false;  ///< hexahedra whose edges follow a curved surface (Mesh::curved)
+};
+
+/// A body in a file:
+///   .geo                gmsh script with the parameters size_x size_y size_z [m] and `edge` [m] (tetrahedra), or nx ny
+///   nz
+///                       and tetrahedra = 0 or 1; physical surfaces name the patches
+///   .stl                closed surface; one patch, "surface"
+///   .msh                gmsh 2.2 or 4.1: hexahedra or tetrahedra, physical surfaces = patches (one without a name: its
+///                       number); as they are, or filled anew within their surface where tetrahedra are asked for;
+///                       without cells a closed surface, as .stl
+///   .step .stp .brep    solid; patches "surface_1", "surface_2", ...; STEP comes out in metres whatever its unit, a
+///                       .brep has no unit and is taken as metres
+struct MeshRequest {
+  std::filesystem::path file;
+  Vec3 size = Vec3::Zero();  ///< of a .geo [m]; zero: the script's own
+  Cells cells = {0, 0, 0};   ///< of a .geo cut into nx x ny x nz cells; zero: by `edge`
+  MeshKind kind{};
+  double edge = 0;                   ///< [m] > 0: tetrahedra with edges of about this length
+  double scale = 1;                  ///< multiplies the coordinates of the file
+  int tetrahedra = 0;                ///< > 0 and no edge: about so many tetrahedra
+  std::vector<double> coarser = {};  ///< factors > 1, falling: also meshes whose cells are larger by these (size_ratio)
+};
+
+struct MeshedBody {
+  Mesh mesh;
+  std::vector<std::string> notes;  ///< what was mended, what quality came out: for the report
+  double edge = 0;                 ///< that the tetrahedra were made with [m]; 0: the cells are the file's own
+  std::vector<Mesh> coarser;       ///< one per factor of the request
+};
+
+/// Ratios below it say nothing about a limit: meshes of a reference differ by more.
+inline constexpr double least_ratio = 1.2;
+
+/// Cell size of one mesh of a body over that of a finer one: the cube root of how many times more cells there are.
+double size_ratio(const Mesh& coarse, const Mesh& fine);
+
+/// Extensions of the files that can be read: ".geo", ...
+const std::vector<std::string>& mesh_file_extensions();
+
+/// Meshes a body under a time limit: 300 s, or $SPRINGPROOF_MESH_SECONDS.  Thread-safe.
+/// @throws InputError "FILE: ..." when the file cannot be meshed: unreadable, no body, several parts, mixed or inverted
+/// cells, no coarser meshes by least_ratio, a mesher that crashed or took too long.
+/// @throws std::runtime_error if the program cannot be run.
+MeshedBody mesh_body(const MeshRequest& request);
+
+/// Meshes a .geo with the parameters size_x size_y size_z [m], nx ny nz and tetrahedra (0 or 1); physical surfaces name
+/// the patches.  The grid is detected.
+/// @throws as mesh_body
+Mesh mesh_geo(const std::filesystem::path& geo, const Vec3& size, const Cells& cells, MeshKind kind = {});
+
+}  // namespace springproof

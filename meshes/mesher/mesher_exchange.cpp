@@ -1,0 +1,120 @@
+#include "meshes/mesher/mesher_exchange.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "meshes/mesh_json.h"
+
+namespace springproof {
+namespace {
+
+using nlohmann::json;
+
+json vec(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+Vec3 to_vec(const json& j) { return Vec3(j.at(0), j.at(1), j.at(2)); }
+
+/// Whether all are numbers of nodes.
+template <std::size_t n>
+bool within(const std::vector<std::array<int, n>>& tuples, Eigen::Index nodes) {
+  return std::all_of(tuples.begin(), tuples.end(), [&](const auto& tuple) {
+    return std::all_of(tuple.begin(), tuple.end(), [&](int node) { return node >= 0 && node < nodes; });
+  });
+}
+
+/// The fourth node of a triangle is -1.
+bool within(const Patch& patch, Eigen::Index nodes) {
+  return std::all_of(patch.facets.begin(), patch.facets.end(), [&](auto f) {
+    if (f[3] == -1) f[3] = f[0];
+    return within(std::vector{f}, nodes);
+  });
+}
+
+/// Whether each of `cells` hexahedra, which touch one another, has its place in the grid.
+bool fits(const Grid& grid, std::size_t cells) {
+  const auto inside = [&](const std::array<int, 3>& at) {
+    return std::equal(at.begin(), at.end(), grid.cells.begin(), [](int i, int n) { return i >= 0 && i < n; });
+  };
+  return grid.cell_index.size() == cells && std::all_of(grid.cell_index.begin(), grid.cell_index.end(), inside) &&
+         std::all_of(grid.cells.begin(), grid.cells.end(), [&](int n) { return std::size_t(n) <= cells; }) &&
+         grid.origin.allFinite() && grid.spacing.allFinite() && grid.spacing.minCoeff() > 0;
+}
+
+/// The mesh itself.
+/// @throws std::runtime_error if its numbers lead outside of it.
+Mesh sound(Mesh mesh) {
+  const Eigen::Index nodes = mesh.nodes.rows();
+  const std::size_t cells = mesh.hexahedra.size();
+  const bool facets_fit =
+      std::all_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch& p) { return within(p, nodes); });
+  if (cells + mesh.tetrahedra.size() == 0 || !mesh.nodes.allFinite() || !within(mesh.hexahedra, nodes) ||
+      !within(mesh.tetrahedra, nodes) || !facets_fit ||
+      (mesh.curved.rows() > 0 && static_cast<std::size_t>(mesh.curved.rows()) != 27 * cells) ||
+      (mesh.grid && !fits(*mesh.grid, cells)))
+    throw std::runtime_error("a mesh that does not hold together");
+  return mesh;
+}
+
+std::string cbor(const json& j) {
+  std::string bytes;
+  json::to_cbor(j, bytes);
+  return bytes;
+}
+
+}  // namespace
+
+std::string to_cbor(const MeshRequest& r) {
+  return cbor({{"file", r.file.string()},
+               {"size", vec(r.size)},
+               {"cells", r.cells},
+               {"tetrahedra", r.kind.tetrahedra},
+               {"second_order", r.kind.second_order},
+               {"edge", r.edge},
+               {"about", r.tetrahedra},
+               {"coarser", r.coarser},
+               {"scale", r.scale}});
+}
+
+MeshRequest mesh_request_from_cbor(const std::string& bytes) {
+  const json j = json::from_cbor(bytes);
+  MeshRequest r;
+  r.file = std::string(j.at("file"));
+  r.size = to_vec(j.at("size"));
+  r.cells = j.at("cells");
+  r.kind = {j.at("tetrahedra"), j.at("second_order")};
+  r.edge = j.at("edge");
+  r.tetrahedra = j.at("about");
+  r.coarser = j.at("coarser").get<std::vector<double>>();
+  r.scale = j.at("scale");
+  return r;
+}
+
+std::string to_cbor(const MeshedBody& body) {
+  json coarser = json::array();
+  for (const Mesh& mesh : body.coarser) coarser.push_back(to_json(mesh));
+  return cbor({{"mesh", to_json(body.mesh)}, {"notes", body.notes}, {"edge", body.edge}, {"coarser", coarser}});
+}
+
+std::string refusal_to_cbor(const std::string& message) { return cbor({{"refused", message}}); }
+
+MeshedBody answer_from_cbor(const std::string& bytes) try {
+  const json j = json::from_cbor(bytes);
+  if (j.contains("refused")) throw InputError(j.at("refused").get<std::string>());
+  MeshedBody body{sound(mesh_from_json(j.at("mesh"))), j.at("notes"), j.at("edge"), {}};
+  for (const json& mesh : j.at("coarser")) body.coarser.push_back(sound(mesh_from_json(mesh)));
+  return body;
+} catch (const InputError&) {
+  throw;
+} catch (const std::exception&) {  // the words of a JSON library are no help
+  throw std::runtime_error(
+      "the answer of springproof-mesh cannot be used (build springproof and springproof-mesh together)");
+}
+
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+}  // namespace springproof

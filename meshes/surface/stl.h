@@ -1,0 +1,22 @@
+// STL files, ASCII and binary.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "meshes/surface/surface.h"
+
+namespace springproof {
+
+/// The facets of an STL file as they stand in it: three points each, not welded (check_surface does), normals ignored,
+/// coordinates in the units of the file.  Several solids in one ASCII file are read as one surface.
+/// A file whose size is that of the count in bytes 80 to 83 is binary, whatever it begins with.
+/// @throws InputError with the file and the line and column (ASCII) or facet (binary, from 1): no file, empty, no STL,
+/// cut off, a count that
+///         is not that of the file's size, coordinates that are no finite numbers.
+Surface read_stl(const std::filesystem::path& file);
+
+/// As read_stl, from the file's bytes; `file` is used for messages.
+Surface parse_stl(std::string_view bytes, const std::filesystem::path& file);
+
+}  // namespace springproof

@@ -1,0 +1,35 @@
+#include "meshes/surface/surface.h"
+
+#include <Eigen/Geometry>
+#include <limits>
+
+namespace springproof {
+
+double volume(const Surface& surface) {
+  if (surface.triangles.empty()) return 0;
+  const Vec3 origin = surface.points[surface.triangles[0][0]];  // near the body: no cancellation far from zero
+  double six_volumes = 0;
+  for (const auto& [a, b, c] : surface.triangles)
+    six_volumes += (surface.points[a] - origin).dot((surface.points[b] - origin).cross(surface.points[c] - origin));
+  return six_volumes / 6;
+}
+
+double area(const Surface& surface) {
+  double two_areas = 0;
+  for (const auto& [a, b, c] : surface.triangles)
+    two_areas += (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm();
+  return two_areas / 2;
+}
+
+Box bounding_box(const Surface& surface) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box box = {Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (const auto& triangle : surface.triangles)
+    for (const int p : triangle) {
+      box.low = box.low.cwiseMin(surface.points[p]);
+      box.high = box.high.cwiseMax(surface.points[p]);
+    }
+  return box;
+}
+
+}  // namespace springproof

@@ -1,0 +1,36 @@
+// A body as a set of equal cubes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+/// The cubes that a body may take: cube (i,j,k) spans origin + edge * [i,i+1]x[j,j+1]x[k,k+1].
+struct VoxelGrid {
+  Vec3 origin = Vec3::Zero();  ///< [m]
+  double edge = 0;             ///< [m]
+  std::array<int, 3> cells = {0, 0, 0};
+};
+
+/// The smallest grid of cubes of that edge [m] that holds the body, centred on its bounding box.
+/// @throws std::invalid_argument if the body has no cells, or the edge is not positive or gives more than 10^9 cubes.
+VoxelGrid voxel_grid(const Mesh& body, double edge);
+
+struct Voxels {
+  Mesh mesh;                       ///< hexahedra, x fastest, and the nodes they use; the grid is set
+  std::vector<std::string> notes;  ///< what was left out, for the user
+};
+
+/// The cubes of the grid whose centres lie in the body.  Its surface are the outer facets of the mesh, quadrilaterals
+/// cut into two triangles; where it runs through centres, those at its low side in x, y and z are in and those at its
+/// high side are out. Each outer facet of the cubes gets the patches of the body's outer facet that is nearest to its
+/// middle (none, if that one has none). The cubes hang together by faces.  Others are left out, with a note, if they
+/// are at most 2 %.
+/// @throws std::invalid_argument if the body reaches out of the grid, no centre lies inside, or more than 2 % would be
+/// left out.
+Voxels voxelise(const VoxelGrid& grid, const Mesh& body);
+
+}  // namespace springproof

@@ -1,0 +1,98 @@
+#include "msm/algebra/block_matrix.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace springproof {
+
+BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& coupled) {
+  row_begin_.reserve(coupled.size() + 1);
+  for (const auto& row : coupled) {
+    column_.insert(column_.end(), row.begin(), row.end());
+    row_begin_.push_back(static_cast<int>(column_.size()));
+  }
+  blocks_.assign(column_.size(), Blocks::Zero());
+}
+
+void BlockMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Blocks::Zero()); }
+
+std::size_t BlockMatrix::find(int i, int j) const {
+  const auto first = column_.begin() + row_begin_[i], last = column_.begin() + row_begin_[i + 1];
+  const auto at = std::lower_bound(first, last, j);
+  assert(at != last && *at == j);
+  return static_cast<std::size_t>(at - column_.begin());
+}
+
+void BlockMatrix::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  y.resize(x.size());
+  const double* in = x.data();
+  for (int i = 0; i < nodes(); ++i) {
+    double s0 = 0, s1 = 0, s2 = 0;
+    for (int e = row_begin_[i]; e < row_begin_[i + 1]; ++e) {
+      const double* b = blocks_[e].data();
+      const double* v = in + 3 * column_[e];
+      s0 += b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
+      s1 += b[3] * v[0] + b[4] * v[1] + b[5] * v[2];
+      s2 += b[6] * v[0] + b[7] * v[1] + b[8] * v[2];
+    }
+    y[3 * i] = s0;
+    y[3 * i + 1] = s1;
+    y[3 * i + 2] = s2;
+  }
+}
+
+Eigen::VectorXd BlockMatrix::diagonal() const {
+  Eigen::VectorXd d(3 * nodes());
+  for (int i = 0; i < nodes(); ++i) d.segment<3>(3 * i) = blocks_[find(i, i)].diagonal();
+  return d;
+}
+
+Eigen::SparseMatrix<double> BlockMatrix::lower_triangle(const std::vector<int>& number, int unknowns) const {
+  // The pattern is symmetric, so row i of the upper triangle is column i of the lower.
+  Eigen::SparseMatrix<double> A(unknowns, unknowns);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(blocks_.size() * 5);
+  for (int i = 0; i < nodes(); ++i)
+    for (int e = row_begin_[i]; e < row_begin_[i + 1]; ++e)
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+          const int row = number[3 * i + a], column = number[3 * column_[e] + b];
+          if (column >= 0 && row >= column) entries.emplace_back(row, column, blocks_[e](a, b));
+        }
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+namespace {
+
+void sort_unique(std::vector<std::vector<int>>& rows) {
+  for (auto& row : rows) {
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> coupled_nodes(int nodes, const std::vector<Hexahedron>& cells) {
+  std::vector<std::vector<int>> coupled(nodes);
+  for (int i = 0; i < nodes; ++i) coupled[i].push_back(i);
+  for (const Hexahedron& cell : cells)
+    for (int a : cell) coupled[a].insert(coupled[a].end(), cell.begin(), cell.end());
+  sort_unique(coupled);
+  return coupled;
+}
+
+std::vector<std::vector<int>> coupled_nodes(const Network& network) {
+  auto coupled = coupled_nodes(network.nodes(), network.cells);
+  for (const Spring& s : network.springs) {
+    coupled[s.i].push_back(s.j);
+    coupled[s.j].push_back(s.i);
+  }
+  for (const auto& triangle : network.triangles)
+    for (int a : triangle) coupled[a].insert(coupled[a].end(), triangle.begin(), triangle.end());
+  sort_unique(coupled);
+  return coupled;
+}
+
+}  // namespace springproof

@@ -1,0 +1,53 @@
+// Sparse symmetric-pattern matrix of 3x3 blocks, one block row per node.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "msm/topology/network.h"
+
+namespace springproof {
+
+using Blocks = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+class BlockMatrix {
+ public:
+  BlockMatrix() = default;
+
+  /// Pattern: for each node the nodes it couples to, ascending, itself included.
+  explicit BlockMatrix(const std::vector<std::vector<int>>& coupled);
+
+  int nodes() const { return static_cast<int>(row_begin_.size()) - 1; }
+  std::size_t blocks() const { return blocks_.size(); }
+  void set_zero();
+
+  /// Adds to block (i, j), which must be in the pattern.
+  void add(int i, int j, const Eigen::Matrix3d& block) { blocks_[find(i, j)] += block; }
+
+  /// Block (i, j), which must be in the pattern.
+  const Blocks& at(int i, int j) const { return blocks_[find(i, j)]; }
+
+  /// y = A x (vectors of 3 n).
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+
+  /// Diagonal entries, 3 n.
+  Eigen::VectorXd diagonal() const;
+
+  /// The entries of the unknowns with number[i] >= 0, renumbered by it; lower triangle only.
+  Eigen::SparseMatrix<double> lower_triangle(const std::vector<int>& number, int unknowns) const;
+
+ private:
+  std::size_t find(int i, int j) const;
+
+  std::vector<int> row_begin_ = {0};
+  std::vector<int> column_;
+  std::vector<Blocks> blocks_;
+};
+
+/// For each node of a network the nodes that share a spring, a triangle or a cell with it, itself included, ascending.
+std::vector<std::vector<int>> coupled_nodes(const Network& network);
+
+/// The same for cells alone.
+std::vector<std::vector<int>> coupled_nodes(int nodes, const std::vector<Hexahedron>& cells);
+
+}  // namespace springproof

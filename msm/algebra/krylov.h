@@ -1,0 +1,27 @@
+// Krylov iterations on plain vectors.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+namespace springproof {
+
+using Operator = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>;  ///< y = A x
+
+struct KrylovResult {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0;              ///< |b - A x| / |b|, recomputed at the end
+  bool negative_curvature = false;  ///< CG met p . A p <= 0: A is not positive definite
+};
+
+/// Preconditioned conjugate gradients from x; A and the preconditioner symmetric positive definite.
+KrylovResult conjugate_gradients(const Operator& A, const Operator& precondition, const Eigen::VectorXd& b,
+                                 double tolerance, int max_iterations, Eigen::VectorXd& x);
+
+/// Right-preconditioned restarted GMRES from x.  It is flexible: the preconditioner may be inexact, in single precision
+/// or itself an iteration; what it gives is kept, rounded to single precision.
+KrylovResult gmres(const Operator& A, const Operator& precondition, const Eigen::VectorXd& b, double tolerance,
+                   int max_iterations, int restart, Eigen::VectorXd& x);
+
+}  // namespace springproof

@@ -1,0 +1,229 @@
+#include "msm/dynamics/dynamics.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "msm/dynamics/list_motion.h"
+#include "msm/dynamics/time_step.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof {
+namespace {
+
+double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
+  const double bound = safe_time_step(model, density, options.lagged);
+  const double dt = options.time_step.value_or(0.95 * bound);
+  if (!(dt > 0) || dt > bound)
+    throw InputError(
+        fmt::format("time_step_s: {:.6g} s is not safe for this model (allowed: 0 < time_step_s <= {:.6g} s, the bound "
+                    "of its springs and cells)",
+                    dt, bound));
+  if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
+  const double least = options.lagged ? lagged_damping(model, density, dt) : 0;
+  if (least > 0 && !(options.damping > least))
+    throw InputError(
+        fmt::format("damping_1_s: {:.6g} 1/s lets lagged dispersion grow (allowed: > {:.6g} 1/s at a step of {:.6g} s)",
+                    options.damping, least, dt));
+  return dt;
+}
+
+/// What moves the nodes.
+struct Motion {
+  virtual ~Motion() = default;
+  virtual void set_conditions(const BoundaryConditions& conditions) = 0;
+  virtual void move_supports() = 0;  ///< at once
+  virtual ForceNorms advance(long steps) = 0;
+  virtual NodalVectors positions() const = 0;
+  virtual NodalVectors velocities() const = 0;
+  virtual std::string description() const = 0;
+};
+
+/// Any model, by the plain force loops.
+class PlainMotion : public Motion {
+ public:
+  PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping,
+              bool lagged)
+      : model_(model),
+        dispersion_(lagged ? dispersion_of(model) : nullptr),
+        inverse_mass_(inverse_mass),
+        dt_(time_step),
+        damping_(damping),
+        x_(model.network.X),
+        v_(NodalVectors::Zero(x_.rows(), 3)) {}
+
+  void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
+
+  void move_supports() override {
+    for (Eigen::Index i = 0; i < x_.size(); ++i)
+      if (conditions_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
+  }
+
+  ForceNorms advance(long steps) override {
+    ForceNorms norms;
+    for (; steps > 0; --steps) norms = step();
+    return norms;
+  }
+
+  NodalVectors positions() const override { return x_; }
+  NodalVectors velocities() const override { return v_; }
+  std::string description() const override { return "plain loops"; }
+
+ private:
+  ForceNorms step() {
+    const NodalVectors f = forces_at_x();
+    double unbalanced = 0, support = 0;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      const double force = f.data()[i] + conditions_.external.data()[i];
+      (conditions_.fixed[i] ? support : unbalanced) += force * force;
+      if (conditions_.fixed[i]) continue;
+      double& speed = v_.data()[i];
+      speed = (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
+      x_.data()[i] += dt_ * speed;
+    }
+    move_supports();
+    return {std::sqrt(unbalanced), std::sqrt(support)};
+  }
+
+  /// Lagged: with the J that the nodes had at the step before.
+  NodalVectors forces_at_x() {
+    if (!dispersion_) return forces(model_, x_);
+    NodalVectors f = NodalVectors::Zero(x_.rows(), 3);
+    for (const ForceLaw& law : model_.laws)
+      if (!std::holds_alternative<MomentumDispersion>(law))
+        std::visit([&](const auto& l) { l.add_forces(model_.network, x_, f); }, law);
+    const Eigen::VectorXd J = dispersion_->inflow(model_.network, x_);
+    dispersion_->add_forces(model_.network, x_, J_.size() > 0 ? J_ : J, f);
+    J_ = J;
+    return f;
+  }
+
+  const MassSpringModel& model_;
+  const MomentumDispersion* dispersion_;  ///< nullptr: nothing lags
+  Eigen::VectorXd inverse_mass_, J_;
+  double dt_, damping_;
+  NodalVectors x_, v_;
+  BoundaryConditions conditions_;
+};
+
+/// Networks of springs, with or without momentum dispersion.
+template <class Real>
+class MotionOfList : public Motion {
+ public:
+  MotionOfList(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options)
+      : motion_(model, inverse_mass, options) {}
+
+  void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
+  void move_supports() override { motion_.place_prescribed(); }
+  ForceNorms advance(long steps) override { return motion_.advance(steps); }
+  NodalVectors positions() const override { return motion_.positions(); }
+  NodalVectors velocities() const override { return motion_.velocities(); }
+  std::string description() const override {
+    return fmt::format("list kernel, {}, {}, {}", sizeof(Real) == 4 ? "FP32" : "FP64", name_of(instruction_set()),
+                       motion_.threads() == 1 ? "1 thread" : fmt::format("{} threads", motion_.threads()));
+  }
+
+ private:
+  ListMotion<Real> motion_;
+};
+
+/// Lattices that have a kernel.
+class MotionOfLattice : public Motion {
+ public:
+  MotionOfLattice(const MassSpringModel& model, double density, double time_step, const DynamicsOptions& options)
+      : motion_(model, density, {.precision = options.precision, .threads = options.threads}),
+        dt_(time_step),
+        damping_(options.damping) {}
+
+  void set_conditions(const BoundaryConditions& conditions) override { motion_.set_conditions(conditions); }
+  void move_supports() override { motion_.move_supports(); }
+  ForceNorms advance(long steps) override { return motion_.advance(steps, dt_, damping_); }
+  NodalVectors positions() const override { return motion_.positions(); }
+  NodalVectors velocities() const override { return motion_.velocities(); }
+  std::string description() const override { return motion_.description(); }
+
+ private:
+  LatticeMotion motion_;
+  double dt_, damping_;
+};
+
+std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double dt,
+                                    const DynamicsOptions& options) {
+  if (!options.lagged && LatticeMotion::suits(model))
+    return std::make_unique<MotionOfLattice>(model, density, dt, options);
+  const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
+  if (!ListForces<double>::covers(model))
+    return std::make_unique<PlainMotion>(model, inverse_mass, dt, options.damping, options.lagged);
+  const ListMotionOptions of_list{
+      .time_step = dt, .damping = options.damping, .lagged = options.lagged, .threads = options.threads};
+  if (options.precision == Precision::float32)
+    return std::make_unique<MotionOfList<float>>(model, inverse_mass, of_list);
+  return std::make_unique<MotionOfList<double>>(model, inverse_mass, of_list);
+}
+
+constexpr long steps_between_looks = 10;  // at whether the nodes are at rest, or lost
+
+}  // namespace
+
+double lagged_damping(const MassSpringModel& model, double density, double time_step) {
+  return time_step * dispersion_frequency_squared(model, density);
+}
+
+DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
+                            const DynamicsOptions& options) {
+  const double start = cpu_seconds();
+  DynamicsResult result;
+  const double dt = result.time_step = checked_time_step(model, density, options);
+  const NodalVectors& X = model.network.X;
+  const std::unique_ptr<Motion> motion = make_motion(model, density, dt, options);
+  bool ramping = options.ramp > 0;
+  BoundaryConditions bc = load_path(ramping ? 0.0 : 1.0);
+  motion->set_conditions(bc);
+  motion->move_supports();
+  const long last = static_cast<long>(std::ceil(options.duration / dt));
+  Equilibrium& state = result.state;
+  bool at_rest = false;
+  while (result.steps < last && !at_rest) {
+    result.time = result.steps * dt;
+    if (ramping) {
+      const double factor = std::min(1.0, result.time / options.ramp);
+      bc = load_path(factor);
+      motion->set_conditions(bc);
+      ramping = factor < 1;
+    }
+    const long steps = ramping || options.after_step ? 1 : std::min(steps_between_looks, last - result.steps);
+    const ForceNorms norms = motion->advance(steps);
+    result.steps += steps;
+    if (options.after_step) options.after_step(result.steps * dt, motion->positions(), motion->velocities());
+    const double scale = std::max(norms.support, bc.external.norm());
+    state.residual = scale > 0 ? norms.unbalanced / scale : 0;
+    if (!std::isfinite(state.residual)) {
+      state.message = fmt::format("the motion diverged at t = {:.4g} s", result.steps * dt);
+      return result;
+    }
+    at_rest =
+        !ramping && options.rest_tolerance > 0 && state.residual < options.rest_tolerance &&
+        motion->velocities().norm() * options.damping * dt < options.rest_tolerance * (motion->positions() - X).norm();
+  }
+  const NodalVectors x = motion->positions(), v = motion->velocities();
+  result.time = result.steps * dt;
+  result.kinetic_energy = 0.5 * (v.rowwise().squaredNorm().array() * masses(model.network, density).array()).sum();
+  state.ok = options.rest_tolerance == 0 || at_rest;
+  if (!state.ok)
+    state.message = fmt::format("not at rest after {:.4g} s: unbalanced force {:.2e} of the supports'", result.time,
+                                state.residual);
+  state.displacement = x - X;
+  state.support = -forces(model, x) - bc.external;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (!bc.fixed[i]) state.support.data()[i] = 0;
+    state.unknowns += !bc.fixed[i];
+  }
+  state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s, {}", result.steps, dt, motion->description());
+  state.iterations = static_cast<int>(result.steps);
+  state.seconds = cpu_seconds() - start;
+  state.memory_MiB = peak_memory_MiB();
+  return result;
+}
+
+}  // namespace springproof

@@ -1,0 +1,441 @@
+#include "msm/dynamics/lattice_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+
+#include "msm/kernels/lattice_layout.h"
+#include "msm/kernels/workers.h"
+
+namespace springproof {
+namespace {
+
+constexpr std::size_t cache_line = 64;
+constexpr double far_away = 1e4;  // [edges] where places without a node are, so that no node is ever in the same place
+
+template <class Real>
+LatticeKernels<Real> kernels_for(InstructionSet set) {
+  const auto& usable = usable_instruction_sets();
+  if (std::find(usable.begin(), usable.end(), set) == usable.end())
+    throw std::invalid_argument("instruction set " + name_of(set) + " cannot be used here");
+  LatticeKernels<Real> kernels;
+#ifdef SPRINGPROOF_X86_KERNELS
+  if (set == InstructionSet::avx512)
+    avx512::get_lattice_kernels(kernels);
+  else if (set == InstructionSet::avx2)
+    avx2::get_lattice_kernels(kernels);
+  else
+#endif
+    portable::get_lattice_kernels(kernels);
+  return kernels;
+}
+
+/// Values on cache lines.
+template <class Real>
+class AlignedArray {
+ public:
+  AlignedArray() = default;
+  AlignedArray(std::size_t size, Real value)
+      : size_(size), values_(static_cast<Real*>(::operator new(size * sizeof(Real), alignment))) {
+    std::fill_n(values_.get(), size, value);
+  }
+  Real* data() const { return values_.get(); }
+  std::size_t bytes() const { return size_ * sizeof(Real); }
+
+ private:
+  static constexpr std::align_val_t alignment{cache_line};
+  struct Delete {
+    void operator()(Real* p) const { ::operator delete(p, alignment); }
+  };
+  std::size_t size_ = 0;
+  std::unique_ptr<Real, Delete> values_;
+};
+
+template <class Real>
+AlignedArray<Real> aligned_copy(const std::vector<double>& values) {
+  AlignedArray<Real> copy(values.size(), Real(0));
+  std::transform(values.begin(), values.end(), copy.data(), [](double v) { return static_cast<Real>(v); });
+  return copy;
+}
+
+/// First planes of slabs with equal numbers of blocks to compute, and the end.
+std::vector<int> split_planes(const LatticeLayout& l, int slabs) {
+  std::vector<double> work(l.nodes[2] + 1, 0.0);  // of the planes below
+  for (int z = 0; z < l.nodes[2]; ++z) {
+    work[z + 1] = work[z] + 1e-3;
+    for (int r = l.first_run[long(z) * l.nodes[1]]; r < l.first_run[long(z + 1) * l.nodes[1]]; ++r)
+      work[z + 1] += (l.runs[r].end - l.runs[r].begin) * (1.0 + __builtin_popcount(l.runs[r].springs));
+  }
+  std::vector<int> begin = {0};
+  for (int s = 1; s < slabs; ++s) {
+    const double share = work.back() * s / slabs;
+    const auto above = std::lower_bound(work.begin(), work.end(), share);
+    int z = static_cast<int>(above - work.begin());
+    if (z > 0 && share - work[z - 1] < work[z] - share) --z;
+    begin.push_back(std::clamp(z, begin.back() + 1, l.nodes[2] - (slabs - s)));
+  }
+  begin.push_back(l.nodes[2]);
+  return begin;
+}
+
+/// How far a slab has come, in steps; read by its neighbours.
+struct alignas(cache_line) Progress {
+  std::atomic<long> swept = 0;       ///< forces of all planes
+  std::atomic<long> first_done = 0;  ///< the first plane has moved
+};
+
+}  // namespace
+
+class LatticeMotion::Arrays {
+ public:
+  virtual ~Arrays() = default;
+  virtual void set_conditions(const BoundaryConditions& conditions) = 0;
+  virtual void move_supports() = 0;
+  virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;
+  virtual void read(int begin, int end, double* values) const = 0;
+  virtual void write(int begin, int end, const double* values) = 0;
+  virtual ForceNorms advance(long steps, double time_step, double damping) = 0;
+  virtual NodalVectors positions() const = 0;
+  virtual NodalVectors velocities() const = 0;
+  virtual NodalVectors forces() = 0;
+  virtual double bytes_per_node() const = 0;
+  virtual std::string description() const = 0;
+};
+
+template <class Real>
+class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
+ public:
+  ArraysOf(const MassSpringModel& model, double density, const LatticeMotionOptions& options)
+      : network_(model.network),
+        edge_(model.network.cell_edge),
+        density_(density),
+        instructions_(options.instructions),
+        kernels_(kernels_for<Real>(options.instructions)),
+        layout_(lattice_layout(model, kernels_.lanes, sizeof(Real))),
+        workers_(dispersion_of(model) ? 1 : std::clamp(options.threads, 1, layout_.nodes[2])),
+        progress_(workers_.count()) {
+    for (const ForceLaw& law : model.laws) {
+      if (const auto* volume = std::get_if<VolumeCorrection>(&law)) bounded_ = volume->form == VolumeEnergy::bounded;
+      if (const auto* hourglass = std::get_if<HourglassCorrection>(&law))
+        hourglass_ = scaled(hourglass->stiffness(edge_));
+    }
+    make_arrays();
+    if (const MomentumDispersion* dispersion = dispersion_of(model)) make_dispersion(*dispersion);
+    make_slabs();
+    BoundaryConditions none;
+    none.fixed.assign(3 * network_.nodes(), 0);
+    none.prescribed = none.external = NodalVectors::Zero(network_.nodes(), 3);
+    ArraysOf::set_conditions(none);
+  }
+
+  void set_conditions(const BoundaryConditions& conditions) override {
+    const int lanes = layout_.lanes, block_size = node_coefficients * lanes;
+    std::vector<double> all(std::size_t(layout_.rows()) * layout_.row_blocks * block_size, 0.0);
+    supports_.clear();
+    for (int n = 0; n < network_.nodes(); ++n) {
+      const int slot = layout_.slot[n];
+      double* block =
+          &all[std::size_t(layout_.block_of(slot)) * block_size + slot % layout_.plane % layout_.row % lanes];
+      for (int d = 0; d < 3; ++d) {
+        const int axis = layout_.axis[d];
+        const bool fixed = conditions.fixed[3 * n + axis];
+        block[d * lanes] = fixed ? 0 : 1 / (density_ * network_.volume[n] * edge_);
+        block[(3 + d) * lanes] = conditions.external(n, axis);
+        if (fixed) supports_.push_back({d, slot, static_cast<Real>(conditions.prescribed(n, axis) / edge_)});
+      }
+    }
+    CoefficientTable table(block_size);
+    for (std::size_t b = 0; b < node_entry_.size(); ++b) node_entry_[b] = table.entry(&all[b * block_size]);
+    nodes_ = aligned_copy<Real>(table.values());
+    supports_wait_ = true;
+  }
+
+  void move_supports() override {
+    for (const Support& s : supports_) u_[s.component][s.slot] = s.displacement;
+    supports_wait_ = false;
+  }
+
+  void set_state(const NodalVectors& x, const NodalVectors& v) override {
+    for (int n = 0; n < network_.nodes(); ++n)
+      for (int d = 0; d < 3; ++d) {
+        u_[d][layout_.slot[n]] = static_cast<Real>((x(n, layout_.axis[d]) - network_.X(n, layout_.axis[d])) / edge_);
+        v_[d][layout_.slot[n]] = static_cast<Real>(v(n, layout_.axis[d]) / edge_);
+      }
+  }
+
+  void read(int begin, int end, double* values) const override {
+    for (int n = begin; n < end; ++n, values += 6)
+      for (int d = 0; d < 3; ++d) {
+        values[layout_.axis[d]] = edge_ * u_[d][layout_.slot[n]];
+        values[3 + layout_.axis[d]] = edge_ * v_[d][layout_.slot[n]];
+      }
+  }
+
+  void write(int begin, int end, const double* values) override {
+    for (int n = begin; n < end; ++n, values += 6)
+      for (int d = 0; d < 3; ++d) {
+        u_[d][layout_.slot[n]] = static_cast<Real>(values[layout_.axis[d]] / edge_);
+        v_[d][layout_.slot[n]] = static_cast<Real>(values[3 + layout_.axis[d]] / edge_);
+      }
+  }
+
+  ForceNorms advance(long steps, double time_step, double damping) override {
+    ForceNorms norms;
+    if (steps > 0 && supports_wait_) {
+      norms = run(1, time_step, damping);
+      move_supports();
+      --steps;
+    }
+    return steps > 0 ? run(steps, time_step, damping) : norms;
+  }
+
+  NodalVectors positions() const override { return network_.X + edge_ * in_network_order(u_); }
+  NodalVectors velocities() const override { return edge_ * in_network_order(v_); }
+
+  NodalVectors forces() override {
+    AlignedArray<Real> stored(3 * layout_.size, Real(0));
+    std::array<Real*, 3> f;
+    LatticeStep<Real> step = {LatticeFinish::store_forces, 0, 1, {}};
+    for (int d = 0; d < 3; ++d) step.force[d] = f[d] = stored.data() + d * layout_.size;
+    run(1, step, step);
+    return in_network_order(f);
+  }
+
+  double bytes_per_node() const override {
+    std::size_t bytes = 4 * (layout_.slot.size() + layout_.spring_entry.size() + layout_.inflow_entry.size() +
+                             layout_.outflow_entry.size() + node_entry_.size()) +
+                        layout_.first_run.size() * sizeof(int) + layout_.runs.size() * sizeof(LatticeRun) +
+                        supports_.size() * sizeof(Support);
+    for (const auto* array : {&motion_, &rings_, &springs_, &nodes_, &inflow_, &outflow_, &J_, &inverse_lengths_})
+      bytes += array->bytes();
+    for (const auto& shared : shared_) bytes += shared.size() * sizeof shared[0];
+    return double(bytes) / network_.nodes();
+  }
+
+  std::string description() const override {
+    return fmt::format("lattice kernel {}, {} lanes of {} bits, {}", name_of(instructions_), layout_.lanes,
+                       8 * sizeof(Real),
+                       workers_.count() == 1 ? "1 thread" : fmt::format("{} threads", workers_.count()));
+  }
+
+ private:
+  struct Support {
+    int component, slot;
+    Real displacement;
+  };
+
+  LatticeHourglass<Real> scaled(const HourglassCorrection::Stiffness& k) const {
+    const auto real = [&](double value) {
+      return static_cast<Real>(value * edge_ / 8);
+    };  // patterns have entries +-1, not +-1/sqrt(8)
+    return {real(k.bending), real(k.coupling), real(k.torsion), real(k.torsion_coupling)};
+  }
+
+  void make_arrays() {
+    const std::size_t apart = layout_.size + 5 * cache_line / sizeof(Real);  // as with planes
+    const std::size_t each = (apart * sizeof(Real) + cache_line - 1) / cache_line * cache_line / sizeof(Real);
+    motion_ = AlignedArray<Real>(6 * each, Real(0));
+    for (int d = 0; d < 3; ++d) {
+      u_[d] = motion_.data() + 2 * d * each;
+      v_[d] = u_[d] + each;
+      std::fill_n(u_[d], layout_.size, static_cast<Real>(far_away));
+      for (int slot : layout_.slot) u_[d][slot] = 0;
+    }
+    springs_ = aligned_copy<Real>(layout_.springs);
+    layout_.springs = {};
+    node_entry_.resize(layout_.spring_entry.size());
+  }
+
+  void make_dispersion(const MomentumDispersion& law) {
+    inflow_ = aligned_copy<Real>(layout_.inflow);
+    outflow_ = aligned_copy<Real>(layout_.outflow);
+    layout_.inflow = layout_.outflow = {};
+    J_ = AlignedArray<Real>(layout_.row * layout_.rows() + layout_.lanes, Real(0));
+    std::vector<int> first(network_.nodes(), layout_.nodes[2]),
+        last(network_.nodes(), 0);  // planes of those that share a J
+    for (int n = 0; n < network_.nodes(); ++n) {
+      const int to = law.sink(network_, n);
+      for (int node : {n, to}) {
+        first[to] = std::min(first[to], plane_of(node));
+        last[to] = std::max(last[to], plane_of(node));
+      }
+    }
+    shared_.resize(layout_.nodes[2]);
+    for (int n = 0; n < network_.nodes(); ++n) {
+      const int to = law.sink(network_, n);
+      if (to != n) shared_[last[to]].push_back({place_of_J(n), place_of_J(to)});
+      inflow_ahead_ = std::max(inflow_ahead_, last[to] - first[to] + 1);
+    }
+    inverse_lengths_ =
+        AlignedArray<Real>(long(inflow_ahead_ + 1) * layout_.nodes[1] * lattice_directions * layout_.row, Real(0));
+  }
+
+  int plane_of(int node) const { return static_cast<int>(layout_.slot[node] / layout_.plane); }
+
+  std::size_t place_of_J(int node) const {
+    const long slot = layout_.slot[node], in_plane = slot % layout_.plane;
+    return slot / layout_.plane * layout_.nodes[1] * layout_.row + in_plane;
+  }
+
+  /// J of plane z and of those before it that waited for it; nodes that share one have the sum.
+  void find_inflow(const LatticeView<Real>& view, int z) {
+    const long plane = layout_.nodes[1] * layout_.row;
+    if (z == 0) std::fill_n(J_.data(), plane, Real(0));
+    if (z + 1 < layout_.nodes[2]) std::fill_n(J_.data() + (z + 1) * plane, plane, Real(0));
+    kernels_.inflow(view, z);
+    for (const auto& [from, to] : shared_[z]) J_.data()[to] += J_.data()[from];
+    for (const auto& [from, to] : shared_[z]) J_.data()[from] = J_.data()[to];
+  }
+
+  void make_slabs() {
+    const int slabs = workers_.count();
+    const std::vector<int> begin = split_planes(layout_, slabs);
+    const long ring = 3 * layout_.row * (layout_.nodes[1] + 2), first = 3 * layout_.row * layout_.nodes[1];
+    rings_ = AlignedArray<Real>(slabs == 1 ? ring : slabs * (2 * ring + first), Real(0));
+    Real* p = rings_.data();
+    for (int s = 0; s < slabs; ++s, p += 2 * ring + first)
+      for (int parity = 0; parity < 2; ++parity)
+        slabs_[parity].push_back(
+            {begin[s], begin[s + 1], slabs == 1 ? p : p + parity * ring, s == 0 ? nullptr : p + 2 * ring});
+  }
+
+  ForceNorms run(long steps, double time_step, double damping) {
+    const LatticeStep<Real> step = {
+        LatticeFinish::move, static_cast<Real>(time_step), static_cast<Real>(1 / (1 + damping * time_step)), {}};
+    LatticeStep<Real> last = step;
+    last.finish = LatticeFinish::move_and_measure;
+    return run(steps, step, last);
+  }
+
+  ForceNorms run(long steps, const LatticeStep<Real>& step, const LatticeStep<Real>& last) {
+    const bool own_outflow = !layout_.outflow_entry.empty();
+    const LatticeView<Real> view = {{u_[0], u_[1], u_[2]},
+                                    {v_[0], v_[1], v_[2]},
+                                    layout_.row,
+                                    layout_.plane,
+                                    layout_.nodes[1],
+                                    layout_.nodes[2],
+                                    layout_.row_blocks,
+                                    layout_.first_run.data(),
+                                    layout_.runs.data(),
+                                    layout_.spring_entry.data(),
+                                    springs_.data(),
+                                    node_entry_.data(),
+                                    nodes_.data(),
+                                    bounded_,
+                                    hourglass_,
+                                    J_.data(),
+                                    layout_.inflow_entry.data(),
+                                    inflow_.data(),
+                                    (own_outflow ? layout_.outflow_entry : layout_.inflow_entry).data(),
+                                    (own_outflow ? outflow_ : inflow_).data(),
+                                    static_cast<Real>(layout_.outflow_sign),
+                                    inverse_lengths_.data(),
+                                    inflow_ahead_ + 1};
+    std::vector<LatticeSums> sums(workers_.count(), {0, 0});
+    workers_.run([&](int worker) {
+      for (long n = 0; n < steps; ++n)
+        step_of_slab(worker, steps_done_ + n, view, n + 1 < steps ? step : last, sums[worker]);
+    });
+    steps_done_ += steps;
+    LatticeSums total = {0, 0};
+    for (const LatticeSums& s : sums) total = {total.free + s.free, total.fixed + s.fixed};
+    return {std::sqrt(total.free), std::sqrt(total.fixed)};
+  }
+
+  /// The slab above gives its first plane's positions before it moves, the slab below its forces on our first plane.
+  void step_of_slab(int s, long number, const LatticeView<Real>& view, const LatticeStep<Real>& step,
+                    LatticeSums& sums) {
+    if (view.J) return dispersed_step(view, step, sums);
+    const auto& slabs = slabs_[number % 2];
+    const LatticeSlab<Real>& slab = slabs[s];
+    if (s + 1 < workers_.count()) clear_end(slab);
+    kernels_.sweep(view, slab, slab.begin, slab.end - 1, step, sums);
+    if (s + 1 < workers_.count()) wait_until(progress_[s + 1].first_done, number);
+    kernels_.sweep(view, slab, slab.end - 1, slab.end, step, sums);
+    progress_[s].swept.store(number + 1, std::memory_order_release);
+    if (s == 0) return;
+    wait_until(progress_[s - 1].swept, number + 1);
+    kernels_.finish_first(view, slab, slabs[s - 1], step, sums);
+    progress_[s].first_done.store(number + 1, std::memory_order_release);
+  }
+
+  /// By its own thread: what another one writes has to come from the other's cache.
+  void clear_end(const LatticeSlab<Real>& slab) {
+    const long rows = layout_.nodes[1];
+    for (long row = (slab.end - slab.begin) * rows, end = row + rows; row < end; ++row)
+      std::fill_n(slab.ring + row % (rows + 2) * 3 * layout_.row, 3 * layout_.row, Real(0));
+  }
+
+  /// J is found some planes ahead of the forces, with positions that have not moved yet.
+  void dispersed_step(const LatticeView<Real>& view, const LatticeStep<Real>& step, LatticeSums& sums) {
+    int found = 0;
+    for (int z = 0; z < layout_.nodes[2]; ++z) {
+      for (; found <= std::min(z + inflow_ahead_, layout_.nodes[2] - 1); ++found) find_inflow(view, found);
+      kernels_.sweep(view, slabs_[0][0], z, z + 1, step, sums);
+    }
+  }
+
+  NodalVectors in_network_order(const std::array<Real*, 3>& arrays) const {
+    NodalVectors result(network_.nodes(), 3);
+    for (int n = 0; n < network_.nodes(); ++n)
+      for (int d = 0; d < 3; ++d) result(n, layout_.axis[d]) = static_cast<double>(arrays[d][layout_.slot[n]]);
+    return result;
+  }
+
+  const Network& network_;
+  double edge_, density_;
+  InstructionSet instructions_;
+  LatticeKernels<Real> kernels_;
+  LatticeLayout layout_;
+  bool bounded_ = false;
+  LatticeHourglass<Real> hourglass_ = {};
+  AlignedArray<Real> motion_, rings_, springs_, nodes_, inflow_, outflow_, J_, inverse_lengths_;
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>>
+      shared_;            ///< whose J another node has, by the last plane that adds to it
+  int inflow_ahead_ = 0;  ///< planes
+  std::array<Real*, 3> u_, v_;
+  std::vector<int> node_entry_;
+  std::vector<Support> supports_;
+  bool supports_wait_ = false;
+  std::vector<LatticeSlab<Real>> slabs_[2];
+  Workers workers_;
+  std::vector<Progress> progress_;
+  long steps_done_ = 0;
+};
+
+bool LatticeMotion::suits(const MassSpringModel& model) { return is_lattice_of_springs(model); }
+
+LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {
+  if (!suits(model))
+    throw std::invalid_argument(
+        "the lattice kernel is for cubic lattices of springs, with or without volume and hourglass correction or "
+        "momentum dispersion");
+  if (options.precision == Precision::float64)
+    arrays_ = std::make_unique<ArraysOf<double>>(model, density, options);
+  else
+    arrays_ = std::make_unique<ArraysOf<float>>(model, density, options);
+}
+
+LatticeMotion::LatticeMotion(LatticeMotion&&) noexcept = default;
+LatticeMotion& LatticeMotion::operator=(LatticeMotion&&) noexcept = default;
+LatticeMotion::~LatticeMotion() = default;
+
+void LatticeMotion::set_conditions(const BoundaryConditions& conditions) { arrays_->set_conditions(conditions); }
+void LatticeMotion::move_supports() { arrays_->move_supports(); }
+void LatticeMotion::set_state(const NodalVectors& x, const NodalVectors& v) { arrays_->set_state(x, v); }
+void LatticeMotion::read(int begin, int end, double* values) const { arrays_->read(begin, end, values); }
+void LatticeMotion::write(int begin, int end, const double* values) { arrays_->write(begin, end, values); }
+ForceNorms LatticeMotion::advance(long steps, double dt, double damping) {
+  return arrays_->advance(steps, dt, damping);
+}
+NodalVectors LatticeMotion::positions() const { return arrays_->positions(); }
+NodalVectors LatticeMotion::velocities() const { return arrays_->velocities(); }
+NodalVectors LatticeMotion::forces() { return arrays_->forces(); }
+double LatticeMotion::bytes_per_node() const { return arrays_->bytes_per_node(); }
+std::string LatticeMotion::description() const { return arrays_->description(); }
+
+}  // namespace springproof

@@ -1,0 +1,141 @@
+#include "msm/dynamics/list_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springproof {
+namespace {
+
+constexpr int gain = 3;  // of the four numbers of a node's external force
+
+/// More threads than this would wait for each other.
+int useful_threads(const Wavefront& wavefront, int wanted) {
+  return static_cast<int>(std::clamp(static_cast<long>(wanted), 1L, std::max(1L, wavefront.pieces() / wavefront.lag)));
+}
+
+}  // namespace
+
+template <class Real>
+ListMotion<Real>::ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass,
+                             const ListMotionOptions& options)
+    : forces_(model, options.instructions),
+      wavefront_(forces_.blocks()),
+      workers_(std::make_unique<Workers>(forces_.disperses() ? 1 : useful_threads(wavefront_, options.threads))),
+      X_(model.network.X),
+      options_(options),
+      decay_(1 / (1 + options.time_step * options.damping)) {
+  const std::vector<int>& order = forces_.blocks().order;
+  x_ = s_ = f_ = external_ = std::vector<Padded<Real>>(order.size(), Padded<Real>{});
+  for (std::size_t p = 0; p < order.size(); ++p) {
+    for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(X_(order[p], d));
+    external_[p].v[gain] = static_cast<Real>(options_.time_step * inverse_mass[order[p]] * decay_);
+  }
+}
+
+template <class Real>
+void ListMotion<Real>::load(const BoundaryConditions& conditions) {
+  const std::vector<int>& order = forces_.blocks().order;
+  held_.clear();
+  for (int p = 0; p < static_cast<int>(order.size()); ++p)
+    for (int d = 0; d < 3; ++d) {
+      const int n = order[p];
+      external_[p].v[d] = static_cast<Real>(conditions.external(n, d));
+      if (conditions.fixed[3 * n + d])
+        held_.push_back({p, d, static_cast<Real>(X_(n, d) + conditions.prescribed(n, d))});
+    }
+  moved_ = true;
+}
+
+template <class Real>
+void ListMotion<Real>::place_prescribed() {
+  for (const Held& h : held_) x_[h.place].v[h.component] = h.x;
+  moved_ = false;
+}
+
+/// Nodes that have all their forces.  Of those held the sum is made 0 before, so that they stay.
+template <class Real>
+typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bool last) {
+  Squares sum;
+  const auto below = [](const Held& h, int place) { return h.place < place; };
+  for (auto h = std::lower_bound(held_.begin(), held_.end(), begin, below); h != held_.end() && h->place < end; ++h) {
+    const Real external = external_[h->place].v[h->component];
+    Real& f = f_[h->place].v[h->component];
+    if (last) {
+      sum.support += double(f + external) * double(f + external);
+      f = -external;
+    }
+    s_[h->place].v[h->component] = last ? 0 : -external;
+  }
+  ListStep<Real> s;
+  s.nodes = end - begin;
+  s.dt = static_cast<Real>(options_.time_step);
+  s.decay = static_cast<Real>(decay_);
+  s.external = external_.data() + begin;
+  s.x = x_.data() + begin;
+  s.s = s_.data() + begin;
+  s.f = last ? f_.data() + begin : nullptr;
+  sum.unbalanced = forces_.kernels().step(s);
+  return sum;
+}
+
+template <class Real>
+typename ListMotion<Real>::Squares ListMotion<Real>::dispersed_step() {
+  forces_.add(x_.data(), f_.data(), options_.lagged);
+  return move(0, forces_.blocks().nodes(), true);
+}
+
+template <class Real>
+typename ListMotion<Real>::Squares ListMotion<Real>::run(long steps) {
+  Squares sum;
+  if (forces_.disperses()) {
+    for (; steps > 0; --steps) sum = dispersed_step();
+    return sum;
+  }
+  run_steps(wavefront_, steps, *workers_, [&](long step, long piece) {
+    const bool last = step == steps - 1;
+    forces_.add_springs(wavefront_.begin[piece], wavefront_.begin[piece + 1], x_.data(), last ? f_.data() : s_.data());
+    const Squares more = move(wavefront_.complete[piece], wavefront_.complete[piece + 1], last);
+    if (!last) return;  // the pieces of a step are one thread's
+    sum.unbalanced += more.unbalanced;
+    sum.support += more.support;
+  });
+  return sum;
+}
+
+template <class Real>
+ForceNorms ListMotion<Real>::advance(long steps) {
+  Squares sum;
+  if (steps > 0 && moved_) {
+    sum = run(1);
+    place_prescribed();
+    --steps;
+  }
+  if (steps > 0) sum = run(steps);
+  return {std::sqrt(sum.unbalanced), std::sqrt(sum.support)};
+}
+
+template <class Real>
+NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>& v) const {
+  NodalVectors out(X_.rows(), 3);
+  for (std::size_t p = 0; p < v.size(); ++p)
+    for (int d = 0; d < 3; ++d) out(forces_.blocks().order[p], d) = v[p].v[d];
+  return out;
+}
+
+template <class Real>
+NodalVectors ListMotion<Real>::positions() const {
+  return in_network_order(x_);
+}
+
+template <class Real>
+NodalVectors ListMotion<Real>::velocities() const {
+  std::vector<Padded<Real>> v = s_;
+  for (std::size_t p = 0; p < v.size(); ++p)
+    for (int d = 0; d < 3; ++d) v[p].v[d] *= external_[p].v[gain] / static_cast<Real>(decay_);
+  return in_network_order(v);
+}
+
+template class ListMotion<double>;
+template class ListMotion<float>;
+
+}  // namespace springproof

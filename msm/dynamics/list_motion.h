@@ -1,0 +1,63 @@
+// Explicit dynamics of networks without a lattice, by the list kernels.
+#pragma once
+
+#include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/wavefront.h"
+#include "msm/kernels/list_forces.h"
+
+namespace springproof {
+
+struct ListMotionOptions {
+  double time_step = 0;  ///< [s]
+  double damping = 0;    ///< [1/s]
+  bool lagged = false;   ///< nodes disperse the J of the step before
+  int threads = 1;  ///< of advance() by several steps; at most one per three layers or so of nodes; momentum dispersion
+                    ///< has one. Two gain little, if anything (docs/performance.md)
+  InstructionSet instructions = instruction_set();
+};
+
+/// A model in motion: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the order of the kernels.
+/// A node moves as soon as its last force is in, and the next step follows before the first is through (run_steps()).
+template <class Real>
+class ListMotion {
+ public:
+  ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options);
+
+  /// Loads from here on; prescribed unknowns are moved at the end of the next step.
+  void load(const BoundaryConditions& conditions);
+  void place_prescribed();  ///< moves them at once
+  /// @return the norms at the beginning of the last step.
+  ForceNorms advance(long steps);
+  NodalVectors positions() const;   ///< [m]
+  NodalVectors velocities() const;  ///< [m/s]
+  int threads() const { return workers_->count(); }
+
+ private:
+  struct Held {
+    int place, component;
+    Real x;  ///< prescribed [m]
+  };
+  struct Squares {
+    double unbalanced = 0, support = 0;  ///< [N^2]
+  };
+
+  Squares run(long steps);
+  Squares dispersed_step();
+  Squares move(int begin, int end, bool last);
+  NodalVectors in_network_order(const std::vector<Padded<Real>>& v) const;
+
+  ListForces<Real> forces_;
+  Wavefront wavefront_;
+  std::unique_ptr<Workers> workers_;
+  NodalVectors X_;
+  ListMotionOptions options_;
+  double decay_;
+  bool moved_ = false;
+  std::vector<Padded<Real>> x_, s_, f_, external_;
+  std::vector<Held> held_;  ///< by place
+};
+
+extern template class ListMotion<double>;
+extern template class ListMotion<float>;
+
+}  // namespace springproof

@@ -1,0 +1,96 @@
+#include "msm/dynamics/time_step.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "msm/multigrid/cell_stiffness.h"
+
+namespace springproof {
+namespace {
+
+using NodeBlocks = std::vector<Eigen::Matrix3d>;
+
+double largest_eigenvalue(const NodeBlocks& blocks) {
+  double largest = 0;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+  for (const Eigen::Matrix3d& b : blocks)
+    largest = std::max(largest, eigen.computeDirect(b, Eigen::EigenvaluesOnly).eigenvalues()[2]);
+  return largest;
+}
+
+/// Adds to each node's block what bounds springs of the given stiffness [N/m], over the masses.
+void add_springs(const Network& network, const Eigen::VectorXd& mass, const std::vector<double>& stiffness,
+                 NodeBlocks& blocks) {
+  for (std::size_t s = 0; s < stiffness.size(); ++s) {
+    const int i = network.master(network.springs[s].i), j = network.master(network.springs[s].j);
+    const Vec3 n = (network.X.row(network.springs[s].j) - network.X.row(network.springs[s].i)).transpose().normalized();
+    const Eigen::Matrix3d k = stiffness[s] * n * n.transpose();
+    const double both = 1 / std::sqrt(mass[i] * mass[j]);
+    blocks[i] += (1 / mass[i] + both) * k;
+    blocks[j] += (1 / mass[j] + both) * k;
+  }
+}
+
+/// The same for any law, by the norms of the blocks of its stiffness at rest.
+template <class Law>
+void add_norms(const Network& network, const Eigen::VectorXd& mass, const Law& law, NodeBlocks& blocks) {
+  const auto coupled = coupled_nodes(network);
+  BlockMatrix K(coupled);
+  law.add_tangent(network, network.X, K);
+  for (int i = 0; i < network.nodes(); ++i)
+    for (int j : coupled[i]) {
+      const double norm = K.at(i, j).norm() / std::sqrt(mass[network.master(i)] * mass[network.master(j)]);
+      blocks[network.master(i)] += norm * Eigen::Matrix3d::Identity();
+    }
+}
+
+Eigen::VectorXd checked_masses(const Network& network, double density) {
+  const Eigen::VectorXd mass = masses(network, density);
+  for (int n = 0; n < network.nodes(); ++n)
+    if (network.master(n) == n && !(mass[n] > 0))
+      throw std::invalid_argument("a node has no mass: explicit dynamics cannot move it");
+  return mass;
+}
+
+bool belongs_to_cells(const ForceLaw& law) { return traits(law).reach == Reach::cells; }
+
+double cell_frequency_squared(const MassSpringModel& model, double density) {
+  const CellStiffness s = cell_stiffness(model);
+  const Eigen::SelfAdjointEigenSolver<CellMatrix> eigen(s.total, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[23] / (density * s.volume / 8);
+}
+
+}  // namespace
+
+double safe_time_step(const MassSpringModel& model, double density, bool lagged) {
+  const Network& network = model.network;
+  const Eigen::VectorXd mass = checked_masses(network, density);
+  const bool cells = std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);
+  NodeBlocks blocks(network.nodes(), Eigen::Matrix3d::Zero());
+  for (const ForceLaw& law : model.laws) {
+    if (const auto* dispersion = std::get_if<MomentumDispersion>(&law))
+      add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
+    else if (cells)
+      continue;  // part of the cell's stiffness
+    else if (std::holds_alternative<Springs>(law)) {
+      std::vector<double> k;
+      for (const Spring& s : network.springs) k.push_back(s.stiffness);
+      add_springs(network, mass, k, blocks);
+    } else
+      std::visit([&](const auto& l) { add_norms(network, mass, l, blocks); }, law);
+  }
+  return 2 / std::sqrt(largest_eigenvalue(blocks) + (cells ? cell_frequency_squared(model, density) : 0));
+}
+
+double dispersion_frequency_squared(const MassSpringModel& model, double density) {
+  const MomentumDispersion* dispersion = dispersion_of(model);
+  if (!dispersion) return 0;
+  NodeBlocks blocks(model.network.nodes(), Eigen::Matrix3d::Zero());
+  add_springs(model.network, checked_masses(model.network, density), dispersion->stiffness_bound(model.network, false),
+              blocks);
+  return largest_eigenvalue(blocks);
+}
+
+}  // namespace springproof

@@ -1,0 +1,279 @@
+#include "msm/embedding/boundary.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "meshes/locate/locate.h"
+
+namespace springproof {
+namespace {
+
+/// Prescribes the load at the nodes that its patch holds; X their positions, `size` the body's.
+void prescribe(const Load& load, int number, const std::vector<int>& held, const NodalVectors& X, Kinematics kinematics,
+               double factor, BoundaryConditions& bc) {
+  const double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
+  for (int node : held) {
+    const PrescribedValue value = prescribed_displacement(load, X.row(node).transpose(), kinematics, factor);
+    for (int d = 0; d < 3; ++d) {
+      if (!value[d]) continue;
+      const int unknown = 3 * node + d;
+      if (bc.fixed[unknown] && std::abs(bc.prescribed(node, d) - *value[d]) > 1e-9 * size)
+        throw InputError(fmt::format(
+            "load {}: patch '{}' prescribes displacement {} = {:.6g} m at a node where load {} already prescribes "
+            "{:.6g} m",
+            number + 1, *patch_of(load), "xyz"[d], *value[d], bc.owner[unknown] + 1, bc.prescribed(node, d)));
+      if (!bc.fixed[unknown]) bc.owner[unknown] = number;
+      bc.fixed[unknown] = 1;
+      bc.prescribed(node, d) = *value[d];
+    }
+  }
+}
+
+void add_point_force(const PointForce& load, const Mesh& mesh, NodalVectors& external) {
+  const std::optional<Location> at = locate(mesh, load.at);
+  if (!at)
+    throw InputError(fmt::format(
+        "at_m: the point force at ({:.6g}, {:.6g}, {:.6g}) m lies outside the body (of voxels: outside its cubes, "
+        "which may end half a cube below the surface)",
+        load.at[0], load.at[1], load.at[2]));
+  for (int n = 0; n < 8; ++n) external.row(mesh.hexahedra[at->cell][n]) += at->shape[n] * load.force.transpose();
+}
+
+void add_uniform(const Mesh& mesh, const std::string& on, const Vec3& traction, bool is_total, NodalVectors& external) {
+  const Eigen::VectorXd area = nodal_areas(mesh, patch(mesh, on));
+  external += (is_total ? area / area.sum() : area) * traction.transpose();
+}
+
+/// Shares of a facet's pressure: integral of N_i * (area vector); by 2 x 2 Gauss points, which is exact.
+void add_facet_pressure(const Mesh& mesh, const std::array<int, 4>& facet, double pressure, NodalVectors& external) {
+  const auto X = [&](int i) -> Vec3 { return mesh.nodes.row(facet[i]).transpose(); };
+  if (facet[3] < 0) {
+    const Vec3 share = -pressure / 6 * (X(1) - X(0)).cross(X(2) - X(0));
+    for (int i = 0; i < 3; ++i) external.row(facet[i]) += share.transpose();
+    return;
+  }
+  const double gauss[2] = {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)};
+  for (const double s : gauss)
+    for (const double t : gauss) {
+      const Vec3 along_s = (1 - t) * (X(1) - X(0)) + t * (X(2) - X(3));
+      const Vec3 along_t = (1 - s) * (X(3) - X(0)) + s * (X(2) - X(1));
+      const Vec3 force = -pressure / 4 * along_s.cross(along_t);
+      const double shape[4] = {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
+      for (int i = 0; i < 4; ++i) external.row(facet[i]) += shape[i] * force.transpose();
+    }
+}
+
+void add_pressure(const Mesh& mesh, const std::string& on, double pressure, NodalVectors& external) {
+  for (const auto& facet : patch(mesh, on).facets) add_facet_pressure(mesh, facet, pressure, external);
+}
+
+BoundaryConditions nothing(Eigen::Index n) {
+  return {std::vector<char>(3 * n, 0), std::vector<int>(3 * n, -1), NodalVectors::Zero(n, 3), NodalVectors::Zero(n, 3)};
+}
+
+/// Does `act` for each load, naming the load in what goes wrong.
+template <class Action>
+void for_each(const std::vector<Load>& loads, const Action& act) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    try {
+      act(loads[i], static_cast<int>(i));
+    } catch (const std::invalid_argument& e) {
+      throw InputError(fmt::format("load {}: {}", i + 1, e.what()));
+    }
+  }
+}
+
+/// Adds to a load's nodal forces the rigid field over the nodes' areas or volumes that gives them the wrench it
+/// carries.
+void complete(const std::optional<Wrench>& wrench, double factor, const Mesh& mesh, const Eigen::VectorXd& weights,
+              NodalVectors& force) {
+  if (!wrench) return;
+  RegionMoments region;
+  Wrench missing{factor * wrench->force, factor * wrench->moment, wrench->about};
+  for (Eigen::Index n = 0; n < force.rows(); ++n) {
+    const Vec3 X = mesh.nodes.row(n).transpose(), f = force.row(n).transpose();
+    if (weights[n] > 0) region.add(weights[n], X);
+    missing.force -= f;
+    missing.moment -= (X - wrench->about).cross(f);
+  }
+  const RigidField field = rigid_field(region, missing);
+  for (Eigen::Index n = 0; n < force.rows(); ++n)
+    force.row(n) += weights[n] * field.at(mesh.nodes.row(n).transpose()).transpose();
+}
+
+/// Forces of one load on the mesh's nodes [N].
+NodalVectors forces_of(const Load& load, const Mesh& mesh, double density, double factor) {
+  NodalVectors force = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  if (const auto* t = std::get_if<Traction>(&load))
+    add_uniform(mesh, t->on, factor * t->traction, false, force);
+  else if (const auto* q = std::get_if<Pressure>(&load))
+    add_pressure(mesh, q->on, factor * q->pressure, force);
+  else if (const auto* f = std::get_if<PatchForce>(&load))
+    add_uniform(mesh, f->on, factor * f->force, true, force);
+  else if (const auto* g = std::get_if<Gravity>(&load))
+    force += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
+  else if (const auto* p = std::get_if<PointForce>(&load))
+    add_point_force({p->at, factor * p->force}, mesh, force);
+  if (const auto* wrench = wrench_of(load); wrench && *wrench)
+    complete(*wrench, factor, mesh,
+             patch_of(load) ? nodal_areas(mesh, patch(mesh, *patch_of(load))) : nodal_volumes(mesh), force);
+  return force;
+}
+
+/// Forces on the mesh's nodes [N].
+NodalVectors mesh_forces(const std::vector<Load>& loads, const Mesh& mesh, double density, double factor) {
+  NodalVectors external = NodalVectors::Zero(mesh.nodes.rows(), 3);
+  for_each(loads, [&](const Load& load, int number) {
+    if (std::holds_alternative<FieldBodyForce>(load))
+      throw InputError(fmt::format("load {}: body_force_of: the mass-spring models take no such load", number + 1));
+    if (!prescribes_displacement(load)) external += forces_of(load, mesh, density, factor);
+  });
+  return external;
+}
+
+}  // namespace
+
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
+                            double factor) {
+  BoundaryConditions bc = nothing(mesh.nodes.rows());
+  for_each(loads, [&](const Load& load, int number) {
+    if (prescribes_displacement(load))
+      prescribe(load, number, nodes_of(patch(mesh, *patch_of(load))), mesh.nodes, kinematics, factor, bc);
+  });
+  bc.external = mesh_forces(loads, mesh, density, factor);
+  return bc;
+}
+
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& embedding,
+                            const Network& network, double density, Kinematics kinematics, double factor) {
+  BoundaryConditions bc = nothing(network.nodes());
+  for_each(loads, [&](const Load& load, int number) {
+    if (!prescribes_displacement(load)) return;
+    const std::vector<int>& held = embedding.held.at(patch(mesh, *patch_of(load)).name);
+    if (held.empty())
+      throw std::invalid_argument(fmt::format(
+          "no node of the network is near enough to patch '{}' to be held; choose a larger grip", *patch_of(load)));
+    prescribe(load, number, held, network.X, kinematics, factor, bc);
+  });
+  bc.external = embedding.weights.transpose() * mesh_forces(loads, mesh, density, factor);
+  if (!network.triangles.empty())
+    for (int n = 0; n < network.nodes(); ++n) bc.fixed[3 * n + 2] = 1;
+  return bc;
+}
+
+namespace {
+
+using Motion = Eigen::Matrix<double, 6, 1>;
+
+/// The six rigid motions, translations then rotations about the middle over the size, at an unknown.
+struct RigidMotions {
+  const NodalVectors& X;
+  Vec3 middle = X.colwise().mean().transpose();
+  double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
+
+  Motion at(int unknown) const {
+    const Vec3 r = (X.row(unknown / 3).transpose() - middle) / size;
+    Motion motion = Motion::Zero();
+    motion[unknown % 3] = 1;
+    for (int axis = 0; axis < 3; ++axis) motion[3 + axis] = Vec3::Unit(axis).cross(r)[unknown % 3];
+    return motion;
+  }
+};
+
+/// The rigid motion that the fixed unknowns hold least; nothing if they hold all six.
+std::optional<Motion> free_motion(const BoundaryConditions& bc, const RigidMotions& rigid) {
+  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+  double count = 0;
+  for (int i = 0; i < static_cast<int>(bc.fixed.size()); ++i)
+    if (bc.fixed[i]) {
+      gram += rigid.at(i) * rigid.at(i).transpose();
+      ++count;
+    }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram);
+  if (count > 0 && eigen.eigenvalues()[0] > 1e-10 * count) return {};
+  return eigen.eigenvectors().col(0);
+}
+
+}  // namespace
+
+void require_supported(const BoundaryConditions& bc, const NodalVectors& X) {
+  const auto motion = free_motion(bc, {X});
+  if (!motion) return;
+  static const char* names[6] = {"translation along x", "translation along y", "translation along z",
+                                 "rotation about x",    "rotation about y",    "rotation about z"};
+  int dominant = 0;
+  motion->cwiseAbs().maxCoeff(&dominant);
+  const bool any = std::find(bc.fixed.begin(), bc.fixed.end(), 1) != bc.fixed.end();
+  throw InputError(fmt::format(
+      "the body is not held: the loads leave a rigid motion free ({}); prescribe displacements that prevent it",
+      any ? names[dominant] : "all six"));
+}
+
+void hold_free_motions(const NodalVectors& X, BoundaryConditions& bc) {
+  const RigidMotions rigid{X};
+  while (const auto motion = free_motion(bc, rigid)) {
+    int best = 0;
+    double most = -1;
+    for (int i = 0; i < static_cast<int>(bc.fixed.size()); ++i)
+      if (const double moved = std::abs(rigid.at(i).dot(*motion)); !bc.fixed[i] && moved > most + 1e-9) {
+        most = moved;
+        best = i;
+      }
+    bc.fixed[best] = 1;
+  }
+}
+
+std::set<std::string> patches_sharing_supports(const std::vector<Load>& loads, const Mesh& mesh,
+                                               Kinematics kinematics) {
+  std::set<std::string> sharing;
+  std::map<int, std::string> first;
+  for (const Load& load : loads) {
+    if (!prescribes_displacement(load)) continue;
+    const std::string& name = *patch_of(load);
+    for (int node : nodes_of(patch(mesh, name))) {
+      const PrescribedValue value = prescribed_displacement(load, mesh.nodes.row(node).transpose(), kinematics);
+      for (int d = 0; d < 3; ++d) {
+        if (!value[d]) continue;
+        const std::string& other = first.emplace(3 * node + d, name).first->second;
+        if (other != name) sharing.insert({name, other});
+      }
+    }
+  }
+  return sharing;
+}
+
+std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh, const NodalVectors& X,
+                                           const BoundaryConditions& bc, const NodalVectors& support,
+                                           const NodalVectors& displacement, Kinematics kinematics) {
+  std::vector<PatchReaction> reactions;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    if (!prescribes_displacement(loads[i])) continue;
+    const Patch& p = patch(mesh, *patch_of(loads[i]));
+    auto reaction =
+        std::find_if(reactions.begin(), reactions.end(), [&](const PatchReaction& r) { return r.patch == p.name; });
+    if (reaction == reactions.end()) {
+      reactions.push_back({p.name, Vec3::Zero(), Vec3::Zero()});
+      reaction = reactions.end() - 1;
+    }
+    const Vec3 centre = centroid(mesh, p);
+    for (int node = 0; node < X.rows(); ++node) {
+      Vec3 force = Vec3::Zero();
+      for (int d = 0; d < 3; ++d)
+        if (bc.owner[3 * node + d] == static_cast<int>(i)) force[d] = support(node, d);
+      if (force.isZero(0)) continue;
+      Vec3 arm = X.row(node).transpose() - centre;
+      if (kinematics == Kinematics::finite) arm += displacement.row(node).transpose();
+      reaction->force += force;
+      reaction->torque += arm.cross(force);
+    }
+  }
+  return reactions;
+}
+
+}  // namespace springproof

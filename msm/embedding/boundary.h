@@ -1,0 +1,54 @@
+// Loads carried over to the nodes of a network; what the supports then answer.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "meshes/field.h"
+#include "msm/embedding/embedding.h"
+#include "problem/case_file/experiment.h"
+
+namespace springproof {
+
+struct BoundaryConditions {
+  std::vector<char> fixed;  ///< per unknown 3 * node + axis: displacement prescribed
+  std::vector<int> owner;   ///< per unknown: number of the load that prescribes it, -1 = free
+  NodalVectors prescribed;  ///< displacement at the full load, zero where free [m]
+  NodalVectors external;    ///< nodal forces at the full load [N]
+};
+
+/// Transfers the loads to the mesh's nodes.  Tractions and pressure by the facets' shape functions, gravity by nodal
+/// mass, a point force by the shape functions of the cell that holds it: resultant and moment are kept.  A load that
+/// carries a wrench (of the true body, of which the mesh is only nearly one) gets that wrench.
+/// @throws InputError: a body force of an exact field, no such patch, a point force outside the body, two loads that
+/// prescribe different values at
+///   one node.
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
+                            double factor = 1.0);
+
+/// The same for a network in the mesh: forces pass through the embedding, so that resultant and moment are kept;
+/// supports hold the nodes that their patch holds, with the values at the nodes' own places.  The nodes of a planar
+/// network stay in their plane.
+/// @throws InputError also if a support finds no node to hold.
+BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& embedding,
+                            const Network& network, double density, Kinematics kinematics, double factor = 1.0);
+
+/// @throws InputError naming the free rigid motion if the fixed unknowns of nodes at X leave one.
+void require_supported(const BoundaryConditions& conditions, const NodalVectors& X);
+
+/// Fixes as few unknowns as hold the rigid motions that are left free, at zero displacement: nothing strains by it, and
+/// there is no force on them if the loads balance.
+void hold_free_motions(const NodalVectors& X, BoundaryConditions& conditions);
+
+/// Support forces and torques per patch with prescribed displacement, from the support force of each node at X [N].
+/// An unknown that two patches prescribe counts for the load named first.
+std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const Mesh& mesh, const NodalVectors& X,
+                                           const BoundaryConditions& conditions, const NodalVectors& support,
+                                           const NodalVectors& displacement, Kinematics kinematics);
+
+/// Patches that prescribe an unknown which another patch prescribes too (held edges in common): how the support force
+/// of such an unknown is shared between them is a convention, so their separate forces are no property of the solid.
+std::set<std::string> patches_sharing_supports(const std::vector<Load>& loads, const Mesh& mesh, Kinematics kinematics);
+
+}  // namespace springproof

@@ -1,0 +1,169 @@
+#include "msm/embedding/embedding.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "msm/topology/point_cells.h"
+
+namespace springproof {
+namespace {
+
+/// Nodes by place, to find those near one.
+struct Neighbourhood {
+  const NodalVectors& X;
+  double edge;
+  PointCells cells;
+
+  Neighbourhood(const NodalVectors& nodes, double cell_edge)
+      : X(nodes),
+        edge(cell_edge),
+        cells(nodes.colwise().minCoeff().transpose(),
+              nodes.colwise().maxCoeff().transpose() + Vec3::Constant(1e-9 * cell_edge), cell_edge, false) {
+    for (int n = 0; n < X.rows(); ++n) cells.add(X.row(n).transpose());
+  }
+
+  /// Nodes within `radius` of p, in order of number.
+  std::vector<int> near(const Vec3& p, double radius) const {
+    std::vector<int> found;
+    cells.any_near(
+        p,
+        [&](int n) {
+          if ((X.row(n).transpose() - p).norm() <= radius) found.push_back(n);
+          return false;
+        },
+        static_cast<int>(radius / edge) + 1);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+};
+
+std::vector<std::vector<int>> neighbours_of(const Network& network) {
+  std::vector<std::vector<int>> neighbours(network.nodes());
+  for (const Spring& s : network.springs) {
+    neighbours[s.i].push_back(s.j);
+    neighbours[s.j].push_back(s.i);
+  }
+  return neighbours;
+}
+
+/// Those of `nodes` (ascending) that hang together, by springs among them, with the one nearest to p: what lies across
+/// a gap in the body has no say at p.
+std::vector<int> hanging_together(const NodalVectors& X, const std::vector<std::vector<int>>& neighbours,
+                                  const std::vector<int>& nodes, const Vec3& p) {
+  if (nodes.empty()) return {};
+  const auto distance = [&](int n) { return (X.row(n).transpose() - p).squaredNorm(); };
+  std::vector<int> found = {
+      *std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) { return distance(a) < distance(b); })};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const int n : neighbours[found[i]])
+      if (std::binary_search(nodes.begin(), nodes.end(), n) && std::find(found.begin(), found.end(), n) == found.end())
+        found.push_back(n);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// Moving least squares weights of `nodes` for a field at p: sum = 1, sum weight X = p.  Nothing if the nodes do not
+/// span the directions that the whole network spans (`flat`: it lies in a plane z = const).
+std::optional<Eigen::VectorXd> least_squares(const NodalVectors& X, const std::vector<int>& nodes, const Vec3& p,
+                                             double radius, bool flat) {
+  const int terms = flat ? 3 : 4;
+  if (static_cast<int>(nodes.size()) < terms) return {};
+  Eigen::MatrixXd basis(nodes.size(), terms);
+  Eigen::VectorXd bell(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vec3 d = (X.row(nodes[i]).transpose() - p) / radius;
+    basis.row(static_cast<Eigen::Index>(i)) << 1, d.head(terms - 1).transpose();
+    const double r = std::min(d.norm(), 1.0);
+    bell[static_cast<Eigen::Index>(i)] = std::pow(1 - r * r, 3) + 1e-9;
+  }
+  const Eigen::MatrixXd moments = basis.transpose() * bell.asDiagonal() * basis;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(moments, Eigen::EigenvaluesOnly);
+  if (eigen.eigenvalues()[0] < 1e-3 * eigen.eigenvalues()[terms - 1]) return {};
+  return bell.cwiseProduct(basis * moments.ldlt().solve(Eigen::VectorXd::Unit(terms, 0)));
+}
+
+/// Distance from p to the triangle a b c.
+double distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto to_segment = [&](const Vec3& s, const Vec3& t) {
+    const Vec3 d = t - s;
+    return (p - s - std::clamp(d.dot(p - s) / d.squaredNorm(), 0.0, 1.0) * d).norm();
+  };
+  const Vec3 n = (b - a).cross(c - a).normalized(), q = p - n.dot(p - a) * n;
+  const bool inside =
+      n.dot((b - a).cross(q - a)) >= 0 && n.dot((c - b).cross(q - b)) >= 0 && n.dot((a - c).cross(q - c)) >= 0;
+  return inside ? std::abs(n.dot(p - a)) : std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+}
+
+/// Network nodes within `grip` of a patch, whose corners are at point(number).
+template <class Point>
+std::vector<int> held_by(const Patch& patch, const Point& point, const Network& network,
+                         const Neighbourhood& neighbourhood, double grip) {
+  std::vector<char> held(network.nodes(), 0);
+  for (const auto& facet : patch.facets) {
+    const int corners = facet[3] < 0 ? 3 : 4;
+    std::array<Vec3, 4> x;
+    Vec3 middle = Vec3::Zero();
+    for (int i = 0; i < corners; ++i) middle += (x[i] = point(facet[i])) / corners;
+    double radius = 0;
+    for (int i = 0; i < corners; ++i) radius = std::max(radius, (x[i] - middle).norm());
+    for (int n : neighbourhood.near(middle, radius + grip)) {
+      const Vec3 p = network.X.row(n).transpose();
+      if (distance(p, x[0], x[1], x[2]) <= grip || (corners == 4 && distance(p, x[2], x[3], x[0]) <= grip)) held[n] = 1;
+    }
+  }
+  std::vector<int> nodes;
+  for (int n = 0; n < network.nodes(); ++n)
+    if (held[n]) nodes.push_back(n);
+  return nodes;
+}
+
+}  // namespace
+
+Embedding nodes_of_mesh(const Mesh& mesh) {
+  Embedding e;
+  e.weights.resize(mesh.nodes.rows(), mesh.nodes.rows());
+  e.weights.setIdentity();
+  for (const Patch& p : mesh.patches) e.held[p.name] = nodes_of(p);
+  return e;
+}
+
+Embedding embed(const Mesh& mesh, const Network& network, double grip, const Region* region) {
+  const Vec3 extent = (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()).transpose();
+  const bool flat = extent[2] <= 1e-9 * extent.maxCoeff();
+  const double spacing =
+      flat ? std::sqrt(extent[0] * extent[1] / network.nodes()) : std::cbrt(network.volume.sum() / network.nodes());
+  const Neighbourhood neighbourhood(network.X, 1.5 * spacing);
+  const std::vector<std::vector<int>> neighbours = neighbours_of(network);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int m = 0; m < mesh.nodes.rows(); ++m) {
+    Vec3 p = mesh.nodes.row(m).transpose();
+    if (flat) p[2] = network.X(0, 2);
+    std::optional<Eigen::VectorXd> weight;
+    std::vector<int> nodes;
+    for (double radius = 1.6 * spacing; !weight; radius *= 1.2) {
+      if (radius > 100 * spacing + extent.norm()) throw std::invalid_argument("the network's nodes span no volume");
+      nodes = hanging_together(network.X, neighbours, neighbourhood.near(p, radius), p);
+      weight = least_squares(network.X, nodes, p, radius, flat);
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      entries.emplace_back(m, nodes[i], (*weight)[static_cast<Eigen::Index>(i)]);
+  }
+  Embedding e;
+  e.weights.resize(mesh.nodes.rows(), network.nodes());
+  e.weights.setFromTriplets(entries.begin(), entries.end());
+  const double slack = grip + 1e-9 * extent.maxCoeff();
+  const auto node = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
+  const auto surface_point = [&](int n) -> Vec3 { return region->surface_points[n]; };
+  for (const Patch& p : mesh.patches) e.held[p.name] = held_by(p, node, network, neighbourhood, slack);
+  if (region)
+    for (const Patch& p : region->patches) e.held[p.name] = held_by(p, surface_point, network, neighbourhood, slack);
+  return e;
+}
+
+}  // namespace springproof

@@ -1,0 +1,63 @@
+#include "msm/multigrid/cell_stiffness.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace springproof {
+namespace {
+
+MassSpringModel one_cell(const MassSpringModel& model) {
+  if (model.network.cells.empty()) throw std::invalid_argument("the network has no cells");
+  MassSpringModel cell;
+  for (const ForceLaw& law : model.laws)
+    if (traits(law).reach != Reach::second_neighbours) cell.laws.push_back(law);
+  cell.network.cell_edge = model.network.cell_edge;
+  cell.network.springs = model.network.cell_springs;
+  cell.network.X.resize(8, 3);
+  for (int n = 0; n < 8; ++n)
+    for (int d = 0; d < 3; ++d) cell.network.X(n, d) = model.network.cell_edge * hexahedron_corners[n][d];
+  cell.network.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  return cell;
+}
+
+CellMatrix dense(const Tangent& K) {
+  CellMatrix A;
+  Eigen::VectorXd column(24);
+  for (int i = 0; i < 24; ++i) {
+    K.multiply(Eigen::VectorXd::Unit(24, i), column);
+    A.col(i) = column;
+  }
+  return A;
+}
+
+}  // namespace
+
+bool consists_of_cells(const MassSpringModel& model) {
+  const auto in_cells = [](const ForceLaw& law) { return traits(law).reach != Reach::second_neighbours; };
+  return model.network.grid && !model.network.cells.empty() &&
+         std::all_of(model.laws.begin(), model.laws.end(), in_cells);
+}
+
+CellStiffness in_units(CellStiffness cell, double G, double edge) {
+  cell.total /= G * edge;
+  cell.without_volume /= G * edge;
+  cell.volume_gradient /= edge * edge;
+  cell.kappa /= G;
+  cell.volume /= edge * edge * edge;
+  return cell;
+}
+
+CellStiffness cell_stiffness(const MassSpringModel& model) {
+  const MassSpringModel cell = one_cell(model);
+  CellStiffness s;
+  s.total = dense(tangent(cell, cell.network.X));
+  s.volume = cell.network.cell_volume();
+  const MeanEdgeVolume v = mean_edge_volume(cell.network.cells[0], cell.network.X);
+  for (int n = 0; n < 8; ++n) s.volume_gradient.segment<3>(3 * n) = v.gradient.row(n).transpose();
+  for (const ForceLaw& law : model.laws)
+    if (const auto* correction = std::get_if<VolumeCorrection>(&law)) s.kappa += correction->kappa;
+  s.without_volume = s.total - s.kappa / s.volume * s.volume_gradient * s.volume_gradient.transpose();
+  return s;
+}
+
+}  // namespace springproof

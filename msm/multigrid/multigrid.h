@@ -1,0 +1,105 @@
+// Geometric multigrid on lattices: the displacement form, for Poisson's ratios away from 1/2.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "msm/algebra/direct_solver.h"
+#include "msm/algebra/krylov.h"
+#include "msm/multigrid/lattice_operator.h"
+#include "msm/multigrid/thin_parts.h"
+
+namespace springproof {
+
+/// Unknowns 3 * point + axis of a level that are fixed.
+std::vector<char> fixed_by_point(const LatticeLevel& level);
+
+/// Factors the matrix of the coarsest level.  Where it has lost the hold that the body has (a patch smaller than its
+/// cells), or if the lattice `may_float`, its rigid motions are anchored softly.
+/// @throws std::runtime_error if the body is not held, or the model has zero-energy modes.
+void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float, DirectSolver& coarsest);
+
+/// Adds the restriction of a finer field to a coarse one, component by component.
+void restrict_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, long fine_stride, const float* fine,
+                    float* field);
+/// The finer field that a coarse one interpolates to.
+void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, const float* field,
+                      long fine_stride, float* fine);
+
+/// Coefficients of step k = 1, 2, ... of Chebyshev iteration of the fourth kind, z = previous z + step D r.
+struct ChebyshevStep {
+  double previous, step;
+  ChebyshevStep(int k, double largest_eigenvalue)
+      : ChebyshevStep{k > 1 ? (2.0 * k - 3) / (2.0 * k + 1) : 0, (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue)} {
+  }
+  ChebyshevStep(double of_previous, double of_residual) : previous(of_previous), step(of_residual) {}
+};
+
+/// One level of the cycle for the displacement form: Chebyshev over Jacobi in single precision.
+struct SmoothingLevel {
+  /// `cell` in the level's axes and a unit in which its entries are of order one.
+  SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell);
+
+  void before_coarse(int degree);  ///< x = what smoothing makes of r; r becomes the residual, zero on fixed unknowns
+  void after_coarse(int degree);   ///< x, r on with z, the correction from the coarser level
+
+  /// Lanczos steps for largest_eigenvalue, at most `at_most`.
+  void bound_eigenvalues(double at_most);
+  void find_thin_parts(const CellMatrix& cell);
+
+  LatticeOperator<float> K;
+  Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns
+  Eigen::VectorXf r, z, x;           ///< nodal fields
+  double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
+  std::unique_ptr<ThinParts> thin;   ///< null: none
+  std::function<void(Eigen::VectorXf&)>
+      complete;  ///< gives a field what other processes know of it; empty: they know nothing
+
+ private:
+  void smooth(int first, int last);
+  void take_residual();
+};
+
+/// Largest eigenvalue of diag(K)^-1 K of one cell: a bound for every lattice of such cells.
+double largest_scaled_eigenvalue(const CellMatrix& cell);
+
+/// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; no matrix above the
+/// coarsest level.  The cycle works in single precision, what it preconditions in double.
+/// A lattice that `may_float` needs no hold of its own.
+/// Its smoother's eigenvalue bound comes from a few Lanczos steps on each level; it is at most the largest eigenvalue
+/// of diag(K_cell)^-1 K_cell, which bounds every lattice of such cells. Thin parts of the body
+/// (msm/multigrid/thin_parts.h) are corrected on every level beside the next coarser lattice. Vectors hold 3 values per
+/// node of the network.
+class Multigrid {
+ public:
+  Multigrid(LatticeLevels levels, const CellMatrix& cell, int smoothing_degree = 3, bool may_float = false);
+
+  /// u = K^-1 b on the free unknowns, 0 on the fixed.
+  KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u);
+  /// y = K x, all unknowns.
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y);
+  /// z = M^-1 r, symmetric positive definite.
+  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
+  double largest_diagonal() const { return largest_diagonal_; }
+
+  /// The finest level and the cycle on it, x of r, in units of the mean diagonal entry of the cell: for cycles that go
+  /// on above it.
+  SmoothingLevel& finest() { return levels_[0]; }
+  void cycle() { cycle(0); }
+
+ private:
+  void multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y);
+  void apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z);
+  void cycle(std::size_t l);
+
+  LatticeLevels lattice_;
+  double largest_diagonal_ = 0;
+  double unit_ = 1;  ///< 1 / that of the stiffness: the cycle works with entries of order one
+  int degree_;
+  std::vector<SmoothingLevel> levels_;
+  LatticeOperator<double> K_;
+  DirectSolver coarsest_;
+};
+
+}  // namespace springproof

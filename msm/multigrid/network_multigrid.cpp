@@ -1,0 +1,167 @@
+#include "msm/multigrid/network_multigrid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "msm/parameters/calibrate.h"
+#include "msm/topology/cubic_lattice.h"
+
+namespace springproof {
+namespace {
+
+constexpr double auxiliary_spacings = 1.75;  // cell edge over mean node distance: 1.5 to 2 differ little
+constexpr double largest_kappa = 8;          // times G: beyond it the lattice's own cycle suffers
+constexpr double smallest_fill = 0.1;
+
+using Index = std::array<int, 3>;
+
+/// The auxiliary lattice: its cells hold all nodes of the network.
+struct Auxiliary {
+  Network network;  ///< cells and grid only
+  std::vector<double> fill;
+  std::vector<int> cell_of;  ///< per node of the network above
+};
+
+Auxiliary auxiliary_lattice(const Network& above, double edge) {
+  const Vec3 lower = above.X.colwise().minCoeff().transpose(),
+             extent = above.X.colwise().maxCoeff().transpose() - lower;
+  Grid grid;
+  grid.spacing = edge * Vec3::Ones();
+  for (int d = 0; d < 3; ++d) grid.cells[d] = std::max(1, static_cast<int>(std::ceil(extent[d] / edge - 1e-9)));
+  for (int d = 0; d < 3; ++d) grid.origin[d] = lower[d] - (grid.cells[d] * edge - extent[d]) / 2;
+  Auxiliary aux;
+  std::vector<int> number(std::size_t(grid.cells[0]) * grid.cells[1] * grid.cells[2], -1);
+  for (int n = 0; n < above.nodes(); ++n) {
+    Index at;
+    for (int d = 0; d < 3; ++d)
+      at[d] = std::clamp(static_cast<int>((above.X(n, d) - grid.origin[d]) / edge), 0, grid.cells[d] - 1);
+    int& c = number[(std::size_t(at[2]) * grid.cells[1] + at[1]) * grid.cells[0] + at[0]];
+    if (c < 0) {
+      c = static_cast<int>(grid.cell_index.size());
+      grid.cell_index.push_back(at);
+      aux.fill.push_back(0);
+    }
+    aux.cell_of.push_back(c);
+    aux.fill[c] += above.volume[n] / (edge * edge * edge);
+  }
+  for (double& f : aux.fill) f = std::clamp(f, smallest_fill, 1.0);
+  std::vector<int> point(std::size_t(grid.cells[0] + 1) * (grid.cells[1] + 1) * (grid.cells[2] + 1), -1);
+  std::vector<Vec3> position;
+  for (const Index& at : grid.cell_index) {
+    Hexahedron cell;
+    for (int n = 0; n < 8; ++n) {
+      const auto& corner = hexahedron_corners[n];
+      const Index p = {at[0] + corner[0], at[1] + corner[1], at[2] + corner[2]};
+      int& i = point[(std::size_t(p[2]) * (grid.cells[1] + 1) + p[1]) * (grid.cells[0] + 1) + p[0]];
+      if (i < 0) {
+        i = static_cast<int>(position.size());
+        position.push_back(grid.origin + edge * Vec3(p[0], p[1], p[2]));
+      }
+      cell[n] = i;
+    }
+    aux.network.cells.push_back(cell);
+  }
+  aux.network.X.resize(static_cast<Eigen::Index>(position.size()), 3);
+  for (std::size_t i = 0; i < position.size(); ++i)
+    aux.network.X.row(static_cast<Eigen::Index>(i)) = position[i].transpose();
+  aux.network.cell_edge = edge;
+  aux.network.grid = std::move(grid);
+  return aux;
+}
+
+/// Trilinear weights from the lattice to the network's nodes.
+Passage passage(const Network& above, const Auxiliary& aux) {
+  Passage level;
+  level.points = aux.network.nodes();
+  level.weight_begin = {0};
+  for (int n = 0; n < above.nodes(); ++n) {
+    const Hexahedron& cell = aux.network.cells[aux.cell_of[n]];
+    const Vec3 xi = (above.X.row(n) - aux.network.X.row(cell[0])).transpose() / aux.network.cell_edge;
+    for (int c = 0; c < 8; ++c) {
+      double weight = 1;
+      for (int d = 0; d < 3; ++d) weight *= hexahedron_corners[c][d] ? xi[d] : 1 - xi[d];
+      if (weight < 1e-12) continue;
+      level.weight_point.push_back(cell[c]);
+      level.weight.push_back(weight);
+    }
+    level.weight_begin.push_back(static_cast<int>(level.weight_point.size()));
+  }
+  return level;
+}
+
+/// A lattice node is held where most of what it moves is held.
+void hold(const std::vector<char>& fixed, Passage& level) {
+  Eigen::VectorXd held = Eigen::VectorXd::Zero(3 * level.points), all = held;
+  for (std::size_t n = 0; n + 1 < level.weight_begin.size(); ++n)
+    for (int e = level.weight_begin[n]; e < level.weight_begin[n + 1]; ++e)
+      for (int d = 0; d < 3; ++d) {
+        all[3 * level.weight_point[e] + d] += level.weight[e];
+        if (fixed[3 * n + d]) held[3 * level.weight_point[e] + d] += level.weight[e];
+      }
+  level.fixed.resize(3 * level.points);
+  for (int i = 0; i < 3 * level.points; ++i) level.fixed[i] = held[i] >= 0.5 * all[i];
+}
+
+/// One HybMSS cell with the network's shear modulus and what dispersion adds to lambda.
+CellMatrix auxiliary_cell(const MassSpringModel& model, double edge) {
+  MassSpringModel cell;
+  cell.network = cubic_lattice(block_mesh(edge * Vec3::Ones(), {1, 1, 1}), isotropic_pattern(2));
+  const double G = affine_shear_modulus(model.network);
+  calibrate(G, cell.network);
+  const MomentumDispersion* dispersion = dispersion_of(model);
+  const double kappa = dispersion ? 2 * dispersion->q * 5 / 3 * G : 0;
+  cell.laws = {Springs{}, VolumeCorrection{std::min(kappa, largest_kappa * G)}};
+  return cell_stiffness(cell).total;
+}
+
+}  // namespace
+
+void Passage::prolongate(const Eigen::VectorXd& u_lattice, const std::vector<char>& node_fixed,
+                         Eigen::VectorXd& u) const {
+  const int nodes = static_cast<int>(weight_begin.size()) - 1;
+  u.setZero(3 * nodes);
+  for (int n = 0; n < nodes; ++n)
+    for (int e = weight_begin[n]; e < weight_begin[n + 1]; ++e)
+      u.segment<3>(3 * n) += weight[e] * u_lattice.segment<3>(3 * weight_point[e]);
+  for (std::size_t i = 0; i < node_fixed.size(); ++i)
+    if (node_fixed[i]) u[i] = 0;
+}
+
+void Passage::restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed,
+                          Eigen::VectorXd& r_lattice) const {
+  const int nodes = static_cast<int>(weight_begin.size()) - 1;
+  r_lattice.setZero(3 * points);
+  for (int n = 0; n < nodes; ++n) {
+    Vec3 value = r.segment<3>(3 * n);
+    for (int d = 0; d < 3; ++d)
+      if (node_fixed[3 * n + d]) value[d] = 0;
+    for (int e = weight_begin[n]; e < weight_begin[n + 1]; ++e)
+      r_lattice.segment<3>(3 * weight_point[e]) += weight[e] * value;
+  }
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (fixed[i]) r_lattice[i] = 0;
+}
+
+NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed,
+                                   const ListStiffness<double>* list)
+    : fixed_(fixed), smoother_(network_smoother(model, fixed, list)) {
+  const Network& network = model.network;
+  const double edge = network.grid && !network.cells.empty()
+                          ? 2 * network.cell_edge
+                          : auxiliary_spacings * std::cbrt(network.volume.sum() / network.nodes());
+  const Auxiliary aux = auxiliary_lattice(network, edge);
+  passage_ = passage(network, aux);
+  hold(fixed, passage_);
+  lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, passage_.fixed, 900, aux.fill),
+                                         auxiliary_cell(model, edge), 3, true);
+}
+
+void NetworkMultigrid::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
+  smoother_->before(b, residual_);
+  passage_.restrict_to(residual_, fixed_, coarse_r_);
+  lattice_->apply(coarse_r_, coarse_x_);
+  passage_.prolongate(coarse_x_, fixed_, correction_);
+  smoother_->after(correction_, x);
+}
+
+}  // namespace springproof

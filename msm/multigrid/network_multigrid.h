@@ -1,0 +1,46 @@
+// Multigrid for networks without cells of their own: the network above, an auxiliary lattice of HybMSS cells below.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "msm/laws/laws.h"
+#include "msm/multigrid/multigrid.h"
+#include "msm/multigrid/network_smoother.h"
+
+namespace springproof {
+
+/// How the displacements of a lattice pass to the nodes of a network among its points.
+struct Passage {
+  int points = 0;                 ///< of the lattice
+  std::vector<char> fixed;        ///< per unknown 3 * point + axis
+  std::vector<int> weight_begin;  ///< for each node, where its row starts; then the end
+  std::vector<int> weight_point;
+  std::vector<double> weight;  ///< trilinear
+
+  /// u = P u_lattice (fixed unknowns of either left out).
+  void prolongate(const Eigen::VectorXd& u_lattice, const std::vector<char>& node_fixed, Eigen::VectorXd& u) const;
+  /// r_lattice = P^T r.
+  void restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed, Eigen::VectorXd& r_lattice) const;
+};
+
+/// Symmetric cycle for the rest state of a conservative model: smoothing on the network itself, in between one V-cycle
+/// of a lattice with cells of `spacings` mean node distances that fills the same body, with the network's affine shear
+/// modulus and the bulk modulus that momentum dispersion adds.
+class NetworkMultigrid {
+ public:
+  /// `list`: the model's stiffness at rest, if ListStiffness covers it; null: smooths over the assembled tangent.
+  NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed, const ListStiffness<double>* list);
+
+  /// z = M^-1 r, symmetric positive definite; zero on the fixed unknowns.
+  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+
+ private:
+  std::vector<char> fixed_;
+  std::unique_ptr<NetworkSmoother> smoother_;
+  Passage passage_;  ///< from the auxiliary lattice to the network
+  std::unique_ptr<Multigrid> lattice_;
+  mutable Eigen::VectorXd residual_, coarse_r_, coarse_x_, correction_;
+};
+
+}  // namespace springproof

@@ -1,0 +1,157 @@
+// What a case file may choose of a model: one row per option.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "msm/parameters/model_table.h"
+#include "problem/case_file/nearest_name.h"
+
+namespace springproof {
+namespace {
+
+using Value = std::variant<bool, double, std::string>;
+
+/// An option, and how it is taken; the setter returns what is allowed if the value is not.
+struct Option {
+  const char* name;
+  std::function<std::optional<std::string>(const Value&, ModelParameters&)> set;
+};
+
+/// A name out of a list of names and what they stand for.
+template <class T>
+Option choice(const char* name, T ModelParameters::*member, std::vector<std::pair<std::string, T>> allowed) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const std::string* given = std::get_if<std::string>(&value);
+            std::vector<std::string> names;
+            for (const auto& [known, meaning] : allowed) {
+              if (given && *given == known) {
+                p.*member = meaning;
+                return {};
+              }
+              names.push_back('"' + known + '"');
+            }
+            return fmt::format("must be {}", fmt::join(names, " or "));
+          }};
+}
+
+std::optional<std::string> set_face_to_cube(const Value& value, ModelParameters& p) {
+  const double* A = std::get_if<double>(&value);
+  if (!A || !(*A >= 0)) return "must be a number >= 0";
+  if (!p.row.any_face_to_cube && *A != p.row.face_to_cube)
+    return fmt::format("is {} by definition of this model", p.row.face_to_cube);
+  p.face_to_cube = *A;
+  return {};
+}
+
+/// Yes or no.
+Option flag(const char* name, std::function<void(bool, ModelParameters&)> set) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const bool* on = std::get_if<bool>(&value);
+            if (!on) return "must be true or false";
+            set(*on, p);
+            return {};
+          }};
+}
+
+/// A number in a range, put where `set` says.
+Option number(const char* name, double low, double high, std::function<void(double, ModelParameters&)> set) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const double* given = std::get_if<double>(&value);
+            if (!given || !(*given >= low && *given <= high))
+              return fmt::format("must be a number, {:g} <= {} <= {:g}", low, name, high);
+            set(*given, p);
+            return {};
+          }};
+}
+
+/// A whole number from 1.
+Option whole(const char* name, double high, std::function<void(double, ModelParameters&)> set) {
+  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+            const double* given = std::get_if<double>(&value);
+            if (!given || !(*given >= 1 && *given <= high && *given == std::floor(*given)))
+              return fmt::format("must be a whole number, 1 <= {} <= {:g}", name, high);
+            set(*given, p);
+            return {};
+          }};
+}
+
+std::vector<Option> random_options() {
+  return {
+      number("min_length", 0.1, 0.95, [](double v, ModelParameters& p) { p.random.min_length = v; }),
+      number("max_length", 0.5, 4, [](double v, ModelParameters& p) { p.random.max_length = v; }),
+      number("springs_per_node", 4, 60, [](double v, ModelParameters& p) { p.random.springs_per_node = v; }),
+      number("stiffness_exponent", -4, 4, [](double v, ModelParameters& p) { p.random.stiffness_exponent = v; }),
+      number("nodes_per_m3", 1e-12, 1e24, [](double v, ModelParameters& p) { p.node_density = v; }),
+      whole("seed", 4294967295.0, [](double v, ModelParameters& p) { p.random.seed = static_cast<std::uint64_t>(v); }),
+      whole("seeds", 1000, [](double v, ModelParameters& p) { p.seeds = static_cast<int>(v); }),
+      {"surface",
+       [](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+         const std::string* given = std::get_if<std::string>(&value);
+         if (!given || (*given != "nodes" && *given != "cut")) return "must be \"nodes\" or \"cut\"";
+         p.random.surface_nodes = *given == "nodes";
+         return {};
+       }},
+      flag("windows", [](bool on, ModelParameters& p) { p.random.windows = on; })};
+}
+
+/// The options that a model has.
+std::vector<Option> options_of(const ModelRow& row) {
+  std::vector<Option> options = {flag("paper_e_form", [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
+  if (row.topology == Topology::cells || row.topology == Topology::centres)
+    options.push_back({"face_to_cube", set_face_to_cube});
+  if (row.topology == Topology::random) options = random_options();
+  options.push_back(flag("hold_rigid_motions", [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; }));
+  if (row.topology != Topology::cells)
+    options.push_back(number("grip", 0, 100, [](double v, ModelParameters& p) { p.grip = v; }));
+  if (row.extension == Extension::volume_correction)
+    options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
+                                           {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));
+  if (row.extension == Extension::momentum_dispersion)
+    options.push_back(choice<Dispersion>("dispersion", &ModelParameters::dispersion,
+                                         {{"symmetric", Dispersion::symmetric},
+                                          {"share_weighted", Dispersion::share_weighted},
+                                          {"published", Dispersion::published},
+                                          {"published_transposed", Dispersion::published_transposed}}));
+  if (row.extension == Extension::momentum_dispersion)
+    options.push_back(
+        choice<std::optional<bool>>("weights", &ModelParameters::exact_volumes, {{"volume", true}, {"kL", false}}));
+  if (row.topology == Topology::random)
+    options.push_back(
+        choice<bool>("calibration", &ModelParameters::homogenised, {{"homogenised", true}, {"affine", false}}));
+  return options;
+}
+
+[[noreturn]] void refuse_option(const ModelChoice& choice, const std::string& message) {
+  throw InputError(choice.where, fmt::format("models: {}: {}", choice.name, message));
+}
+
+}  // namespace
+
+ModelParameters resolve(const ModelChoice& choice) {
+  const auto& table = model_table();
+  const auto row = std::find_if(table.begin(), table.end(), [&](const ModelRow& r) { return r.name == choice.name; });
+  if (row == table.end()) {
+    std::vector<std::string> names;
+    for (const ModelRow& r : table) names.push_back(r.name);
+    throw InputError(choice.where, fmt::format("models: unknown model '{}' (allowed: {}){}", choice.name,
+                                               fmt::join(names, ", "), did_you_mean(choice.name, names)));
+  }
+  ModelParameters p;
+  p.row = *row;
+  p.face_to_cube = row->face_to_cube;
+  const std::vector<Option> options = options_of(*row);
+  std::vector<std::string> known;
+  for (const Option& option : options) known.emplace_back(option.name);
+  for (const auto& [key, value] : choice.options) {
+    const auto option = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.name == key; });
+    if (option == options.end())
+      refuse_option(choice, fmt::format("unknown option '{}' (allowed: {}){}", key, fmt::join(known, ", "),
+                                        did_you_mean(key, known)));
+    if (const auto allowed = option->set(value, p)) refuse_option(choice, fmt::format("{} {}", key, *allowed));
+  }
+  return p;
+}
+
+}  // namespace springproof

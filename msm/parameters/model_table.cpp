@@ -1,0 +1,50 @@
+#include "msm/parameters/model_table.h"
+
+#include <limits>
+
+namespace springproof {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+using enum Topology;
+using enum Extension;
+constexpr Calibration G = Calibration::shear_modulus, E = Calibration::youngs_modulus;
+
+// clang-format off
+const std::vector<ModelRow> table = {
+//  name              what                                                                     nodes      A         any A  extension          bending torsion calibrated to
+  {"msm_18",         "classic 18-spring lattice (edges, face diagonals); nu = 1/4 only",       cells,     infinity, false, none,                false, false, E},
+  {"msm_14",         "classic 14-spring lattice (edges, cube diagonals); nu = 1/4 only",       cells,     0,        false, none,                false, false, E},
+  {"msm_centred",    "18 springs per node, nodes in the middle of the cubes; nu = 1/4 only",   centres,   infinity, true,  none,                false, false, E},
+  {"msm_random",     "disordered network of springs; nu = 1/4 only",                           random,    0,        false, none,                false, false, E},
+  {"msm_hexagonal",  "triangular sheet in plane strain; nu = 1/4 (1/3 in the plane) only",     hexagonal, 0,        false, none,                false, false, E},
+  {"emsm",           "springs + momentum dispersion; Kot & Nagahashi (2015), as an energy",    cells,     infinity, true,  momentum_dispersion, false, false, G},
+  {"emsm_centred",   "eMSM with nodes in the middle of the cubes",                             centres,   infinity, true,  momentum_dispersion, false, false, G},
+  {"emsm_random",    "disordered eMSM",                                                        random,    0,        false, momentum_dispersion, false, false, G},
+  {"emsm_hexagonal", "triangular sheet with momentum dispersion, in plane strain",             hexagonal, 0,        false, momentum_dispersion, false, false, G},
+  {"kirkwood",       "triangular sheet with angular springs (Kirkwood), in plane strain",      hexagonal, 0,        false, angular_springs,     false, false, G},
+  {"hybmss",         "springs + volume correction; Golec et al. (2019)",                       cells,     2,        true,  volume_correction,   false, false, G},
+  {"hybmss_fd",      "HybMSS without face diagonals (A = 0): has zero-energy modes",           cells,     0,        false, volume_correction,   false, false, G},
+  {"hybmss_cf",      "HybMSS springs without the volume correction",                           cells,     2,        true,  none,                false, false, G},
+  {"hybmss_b",       "HybMSS + bending hourglass correction (linear kinematics)",              cells,     2,        true,  volume_correction,   true,  false, G},
+  {"hybmss_bt",      "HybMSS + bending and torsion hourglass correction (linear kinematics)",  cells,     2,        true,  volume_correction,   true,  true,  G},
+};
+// clang-format on
+
+}  // namespace
+
+const std::vector<ModelRow>& model_table() { return table; }
+
+std::optional<double> own_poisson_ratio(const ModelRow& row) {
+  return row.extension == none ? std::optional(0.25) : std::nullopt;
+}
+
+double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {
+  // Angular springs leave the planar bulk modulus lambda + G to the springs, which have twice their shear modulus for
+  // it.
+  if (p.has(angular_springs)) return (lame_lambda(material) + shear_modulus(material)) / 2;
+  const bool as_if_quarter = p.paper_e_form || p.row.calibration == Calibration::youngs_modulus;
+  return as_if_quarter ? 0.4 * material.youngs_modulus : shear_modulus(material);
+}
+
+}  // namespace springproof

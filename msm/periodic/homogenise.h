@@ -1,0 +1,56 @@
+// What an endless network of one periodic cell has for a stiffness: homogenisation with relaxed nodes.
+#pragma once
+
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+/// Makes the opposite faces of a network one: each node gets the first node that lies whole boxes away as its master
+/// (Network::image_of), and springs that become the same are merged, stiffnesses added.  The halves and quarters that a
+/// superposed lattice has on its faces so make full springs.  A box edge of 0: not periodic along that axis.
+/// @throws std::invalid_argument if no two nodes are a box edge apart along an axis.
+void make_periodic(const Vec3& box, Network& network);
+
+/// Effective stiffness and its isotropic part (Voigt's projection: the nearest isotropic tensor).
+struct Homogenised {
+  Eigen::Matrix<double, 6, 6> C;  ///< [Pa], Voigt's notation: xx yy zz yz zx xy, engineering shear strains
+  double bulk_modulus;            ///< [Pa]
+  double shear_modulus;           ///< [Pa]
+  double youngs_modulus;          ///< [Pa]
+  double poisson_ratio;
+  double anisotropy;  ///< |C - C_isotropic| / |C|, Kelvin's norm (that of the tensor)
+  double asymmetry;   ///< |C - C^T| / |C|; 0 if there is an energy
+  int iterations;     ///< of the linear solver, all strains together
+  double residual;    ///< largest |unbalanced force| / |force of the unrelaxed nodes|
+};
+
+/// The same in the plane of a planar network, per volume: plane stress if the volume shares are area times thickness.
+struct HomogenisedPlane {
+  Eigen::Matrix3d C;      ///< [Pa]; xx yy xy
+  double bulk_modulus;    ///< K_2D = lambda + mu [Pa]
+  double shear_modulus;   ///< [Pa]
+  double youngs_modulus;  ///< E_2D [Pa]; Kot et al. (2014), eq. (10)
+  double poisson_ratio;   ///< nu_2D
+  double anisotropy, asymmetry;
+  int iterations;
+  double residual;
+};
+
+struct HomogeniseOptions {
+  double tolerance = 1e-10;    ///< relative residual
+  int max_iterations = 20000;  ///< per strain
+};
+
+/// Linear response at rest of a network with periodic images.  Displacement eps X + w, w the same at a node and its
+/// images and in equilibrium for each of the six unit strains; C_ab V = (E_a X)^T K (E_b X + w_b), V the sum of the
+/// volume shares.  Symmetric models by conjugate gradients, the others by GMRES over their symmetric companion. Modes
+/// of zero energy do not hinder: no load works on them, and C does not depend on them.
+/// @throws std::invalid_argument if the network has no images; std::runtime_error if a mode of negative energy is met
+///   or the iteration does not converge.
+Homogenised homogenise(const MassSpringModel& model, const HomogeniseOptions& options = {});
+HomogenisedPlane homogenise_plane(const MassSpringModel& model, const HomogeniseOptions& options = {});
+
+/// The stiffness of an isotropic solid, in the notation of Homogenised::C.
+Eigen::Matrix<double, 6, 6> isotropic_stiffness(double bulk_modulus, double shear_modulus);
+
+}  // namespace springproof

@@ -1,0 +1,50 @@
+#include "msm/periodic/laws_of_model.h"
+
+#include <algorithm>
+
+#include "msm/laws/dispersion_weights.h"
+
+namespace springproof {
+namespace {
+
+AngularSprings angular(const Network& network, const IsotropicMaterial& material) {
+  const double lambda = lame_lambda(material), planar_nu = lambda / (lambda + 2 * shear_modulus(material));
+  double k = 0;  // of a spring inside: the boundary has halves
+  for (const Spring& s : network.springs) k = std::max(k, s.stiffness);
+  return {angular_stiffness(k, network.cell_edge, planar_nu)};
+}
+
+}  // namespace
+
+MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,
+                                  const NodalVectors& volume_gradient) {
+  MomentumDispersion law{calibration.q, p.dispersion, {}};
+  if (p.dispersion == Dispersion::share_weighted && p.row.topology == Topology::cells)
+    law.weight = spring_shares(network);
+  if (p.dispersion == Dispersion::symmetric && p.exact_volumes.value_or(false)) {
+    DispersionWeights exact = volume_weights(network, volume_gradient, calibration.spring_shear_modulus);
+    law.weight = std::move(exact.weight);
+    law.group = std::move(exact.group);
+  }
+  return law;
+}
+
+std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& network,
+                              const IsotropicMaterial& material, const BulkCalibration& calibration,
+                              const NodalVectors& volume_gradient) {
+  using enum Extension;
+  ModelParameters p = parameters;
+  std::vector<ForceLaw> laws = {Springs{}};
+  if (p.has(volume_correction)) laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
+  if (p.has(momentum_dispersion)) {
+    if (p.dispersion == Dispersion::symmetric) p.exact_volumes = exact_volumes(p, material);
+    laws.push_back(dispersion_law(p, network, calibration, volume_gradient));
+  }
+  if (p.has(angular_springs)) laws.push_back(angular(network, material));
+  if (p.row.bending_correction)
+    laws.push_back(
+        HourglassCorrection{shear_modulus(material), material.poisson_ratio, p.face_to_cube, p.row.torsion_correction});
+  return laws;
+}
+
+}  // namespace springproof

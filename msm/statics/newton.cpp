@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "meshes/volume.h"
+#include "msm/statics/equilibrium.h"
+#include "msm/statics/mixed_newton.h"
+#include "msm/statics/tangent_solver.h"
+#include "problem/system/progress.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof {
+namespace {
+
+Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data(), v.size()}; }
+
+constexpr int cholesky_limit = 3000;    // free unknowns; above it Krylov with the rest state's multigrid
+constexpr int dispersive_limit = 4000;  // the factors of momentum dispersion are several times as large
+
+/// One load step either lands on a stable state or says why not.
+enum class Outcome { accepted, unstable, inverted, not_converged };
+
+struct Newton {
+  const MassSpringModel& model;
+  const LoadPath& path;
+  const NewtonOptions& options;
+  const std::vector<char> fixed;
+  TangentSolver K;                     ///< tangent at the state taken over last
+  std::unique_ptr<MixedNewton> mixed;  ///< near nu = 1/2; null: the form without pressures
+  double stiffness = 0;                ///< largest diagonal entry at rest [N/m]
+  int iterations = 0;
+
+  Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
+      : model(m),
+        path(p),
+        options(o),
+        fixed(fixed_unknowns),
+        K(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit) {
+    if (K.unknowns() > cholesky_limit && MixedNewton::suits(m))
+      mixed = std::make_unique<MixedNewton>(m, fixed_unknowns);
+  }
+
+  /// Unbalanced force on free unknowns, relative to the forces that are in balance (or, for motions that need next
+  /// to none, a thousandth of stiffness times displacement).
+  double residual(const NodalVectors& x, const NodalVectors& external, Eigen::VectorXd& r) const {
+    r = flat(forces(model, x)) + flat(external);
+    double on_fixed = 0, on_free = 0;
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      (fixed[i] ? on_fixed : on_free) += r[i] * r[i];
+      if (fixed[i]) r[i] = 0;
+    }
+    const double floor = 1e-3 * stiffness * (x - model.network.X).cwiseAbs().maxCoeff();
+    const double scale = std::max({std::sqrt(on_fixed), external.norm(), floor});
+    return scale > 0 ? std::sqrt(on_free) / scale : std::sqrt(on_free);
+  }
+
+  /// du = K^-1 b; false if K is seen not to be positive definite.
+  bool solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& du) const {
+    return !K.solve(b, tolerance, 4000, du).negative_curvature;
+  }
+
+  double potential(const NodalVectors& x, const NodalVectors& external) const {
+    return energy(model, x) - (x - model.network.X).cwiseProduct(external).sum();
+  }
+
+  /// First guess: the linear response to the increment of everything prescribed.
+  NodalVectors predict(const NodalVectors& x, const BoundaryConditions& bc) const {
+    NodalVectors du = NodalVectors::Zero(x.rows(), 3);
+    for (Eigen::Index i = 0; i < du.size(); ++i)
+      if (fixed[i]) du.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i] - x.data()[i];
+    Eigen::VectorXd r, Kdu, correction;
+    K.multiply(flat(du), Kdu);
+    residual(x, bc.external, r);
+    solve(r - Kdu, 1e-3, correction);
+    return x + du + Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
+  }
+
+  /// Moves x along du by the largest of 1, 1/2, 1/4 ... that lowers the potential (or the residual, at round-off and
+  /// for forces without a potential).
+  bool line_search(const Eigen::VectorXd& r, double relative, const Eigen::VectorXd& du, const NodalVectors& external,
+                   NodalVectors& x) const {
+    const double start = potential(x, external), slope = -r.dot(du);
+    const bool has_potential = conservative(model);
+    const double noise = 1e-12 * (std::abs(start) + std::abs(slope));
+    for (double t = 1; t > 1e-4; t /= 2) {
+      const NodalVectors trial = x + t * Eigen::Map<const NodalVectors>(du.data(), x.rows(), 3);
+      const double now = potential(trial, external);
+      Eigen::VectorXd ignored;
+      const bool lower = has_potential && now <= start + 1e-4 * t * slope;
+      const bool at_noise = !has_potential || std::abs(now - start) <= noise;
+      if (std::isfinite(now) && (lower || (at_noise && residual(trial, external, ignored) < relative))) {
+        x = trial;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// What a state in balance is worth; x becomes it if it is accepted.
+  Outcome judge(const NodalVectors& trial, bool definite, NodalVectors& x) const {
+    if (!definite || !K.stable()) return Outcome::unstable;
+    if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}, {}}, trial) <= 0)
+      return Outcome::inverted;
+    x = trial;
+    return Outcome::accepted;
+  }
+
+  Outcome mixed_step(const BoundaryConditions& bc, NodalVectors& x, double& relative) {
+    NodalVectors trial = x;
+    const int before = mixed->iterations();
+    const bool balanced = mixed->step(bc, options.tolerance, options.max_iterations, trial);
+    iterations += mixed->iterations() - before;
+    if (!balanced) return Outcome::not_converged;
+    Eigen::VectorXd r;
+    relative = residual(trial, bc.external, r);
+    const bool definite = K.take(trial);
+    const Outcome outcome = judge(trial, definite, x);
+    if (outcome == Outcome::accepted) mixed->accept();
+    return outcome;
+  }
+
+  Outcome step(double factor_of_load, NodalVectors& x, double& relative) {
+    const BoundaryConditions bc = path(factor_of_load);
+    progress::detail([&] {
+      return fmt::format("{} unknowns, load step to {:.3g} %, {} Newton steps so far", K.unknowns(),
+                         100 * factor_of_load, iterations);
+    });
+    if (mixed) return mixed_step(bc, x, relative);
+    NodalVectors trial = predict(x, bc);
+    for (int i = 0; i < options.max_iterations; ++i) {
+      Eigen::VectorXd r, du;
+      relative = residual(trial, bc.external, r);
+      if (!std::isfinite(relative)) return Outcome::not_converged;
+      const bool definite = K.take(trial);
+      if (relative <= options.tolerance) return judge(trial, definite, x);
+      ++iterations;
+      progress::detail([&] {
+        return fmt::format("{} unknowns, load step to {:.3g} %, Newton step {}, residual {:.1e}", K.unknowns(),
+                           100 * factor_of_load, i + 1, relative);
+      });
+      if (!definite) return Outcome::unstable;
+      if (!solve(r, std::clamp(1e-2 * relative, 1e-8, 1e-3), du)) return Outcome::unstable;
+      if (!line_search(r, relative, du, bc.external, trial)) return Outcome::not_converged;
+    }
+    return Outcome::not_converged;
+  }
+};
+
+std::string describe(Outcome outcome, double reached) {
+  const char* why = outcome == Outcome::unstable
+                        ? "the tangent stiffness is no longer positive definite (limit point or buckling)"
+                    : outcome == Outcome::inverted ? "a cell is turned inside out"
+                                                   : "Newton's method does not converge";
+  return fmt::format("no stable equilibrium beyond {:.4g} of the load: {}", reached, why);
+}
+
+}  // namespace
+
+Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options) {
+  const double start = cpu_seconds();
+  const BoundaryConditions full = load_path(1.0);
+  Newton newton(model, load_path, options, full.fixed);
+  Equilibrium result;
+  result.load_reached = 0;
+  NodalVectors x = model.network.X;
+  int steps = 0;
+  if (model.small_displacements_only) {
+    result.message = "this model holds for linear kinematics only";
+  } else if (!newton.K.take(x)) {
+    result.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
+  } else {
+    newton.stiffness = newton.K.largest_diagonal();
+    double step = options.first_step;
+    while (result.load_reached < 1 && step >= options.smallest_step) {
+      const double next = std::min(1.0, result.load_reached + step);
+      const Outcome outcome = newton.step(next, x, result.residual);
+      if (outcome == Outcome::accepted) {
+        result.load_reached = next;
+        ++steps;
+        step *= 1.5;
+      } else {
+        newton.K.take(x);
+        step = std::min(step, next - result.load_reached) / 2;
+        result.message = describe(outcome, result.load_reached);
+      }
+    }
+  }
+  result.ok = result.load_reached >= 1;
+  if (result.ok) result.message.clear();
+  const BoundaryConditions reached = load_path(result.load_reached);
+  result.displacement = x - model.network.X;
+  result.support = -forces(model, x) - reached.external;
+  for (Eigen::Index i = 0; i < result.support.size(); ++i)
+    if (!full.fixed[i]) result.support.data()[i] = 0;
+  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K.name(),
+                              steps, steps == 1 ? "" : "s");
+  result.iterations = newton.iterations;
+  result.unknowns = newton.K.unknowns();
+  result.seconds = cpu_seconds() - start;
+  result.memory_MiB = peak_memory_MiB();
+  return result;
+}
+
+}  // namespace springproof

@@ -1,0 +1,41 @@
+#include "msm/topology/network.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace springproof {
+
+std::vector<Spring> merge_springs(std::vector<Spring> springs) {
+  int nodes = 0;
+  for (Spring& s : springs) {
+    if (s.i > s.j) std::swap(s.i, s.j);
+    nodes = std::max(nodes, s.i + 1);
+  }
+  // By first node in linear time; the few springs of a node by comparison.
+  std::vector<std::size_t> end(nodes + 1, 0);
+  for (const Spring& s : springs) ++end[s.i + 1];
+  for (int i = 0; i < nodes; ++i) end[i + 1] += end[i];
+  std::vector<Spring> sorted(springs.size());
+  for (const Spring& s : springs) sorted[end[s.i]++] = s;
+  springs.clear();
+  for (std::size_t begin = 0, i = 0; i < static_cast<std::size_t>(nodes); begin = end[i++]) {
+    std::stable_sort(sorted.begin() + begin, sorted.begin() + end[i],
+                     [](const Spring& a, const Spring& b) { return a.j < b.j; });
+    for (std::size_t s = begin; s < end[i]; ++s) {
+      if (s == begin || springs.back().j != sorted[s].j) {
+        springs.push_back(sorted[s]);
+        continue;
+      }
+      if (std::abs(springs.back().rest_length - sorted[s].rest_length) > 1e-9 * sorted[s].rest_length)
+        throw std::invalid_argument("springs between the same two nodes differ in rest length");
+      springs.back().stiffness += sorted[s].stiffness;
+    }
+  }
+  springs.shrink_to_fit();
+  return springs;
+}
+
+Eigen::VectorXd masses(const Network& network, double density) { return density * network.volume; }
+
+}  // namespace springproof

@@ -1,0 +1,43 @@
+// The network: point masses joined by springs, and the cells that the springs came from.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+/// Linear spring between nodes i < j: energy k/2 (L' - L)^2.
+struct Spring {
+  int i, j;
+  double stiffness;    ///< k [N/m]
+  double rest_length;  ///< L [m]
+};
+
+struct Network {
+  NodalVectors X;                    ///< rest positions [m], n x 3
+  std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
+  std::vector<Hexahedron> cells;     ///< cubic cells, empty for networks without
+  double cell_edge = 0;              ///< l [m] of the cells
+  std::vector<Spring> cell_springs;  ///< what one cell contributed: springs between its corners 0..7
+  Eigen::VectorXd volume;            ///< share of each node in the body [m^3]
+  std::optional<Grid> grid;          ///< the lattice of the cells
+  std::vector<int> image_of;         ///< per node the node it is a periodic image of (itself if none); empty: no images
+  std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
+
+  int nodes() const { return static_cast<int>(X.rows()); }
+  int master(int node) const { return image_of.empty() ? node : image_of[node]; }
+  double cell_volume() const { return cell_edge * cell_edge * cell_edge; }
+};
+
+/// Merges springs of the same pair by adding their stiffness (Kirchhoff's law, Golec et al. 2019, sec. 5.4) and
+/// sorts by (i, j).
+/// @throws std::invalid_argument if merged springs differ in rest length.
+std::vector<Spring> merge_springs(std::vector<Spring> springs);
+
+/// Mass of each node [kg]: rho times its volume share (rho V/8 per cell corner, Golec et al. 2019, sec. 5.4).
+Eigen::VectorXd masses(const Network& network, double density);
+
+}  // namespace springproof

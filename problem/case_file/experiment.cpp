@@ -1,0 +1,364 @@
+#include "problem/case_file/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string_view>
+
+#include "problem/case_file/experiment_parts.h"
+#include "problem/case_file/nearest_name.h"
+#include "problem/system/shortened.h"
+
+namespace springproof {
+namespace {
+
+constexpr Key document_schema[] = {{"cite", Presence::optional, ""},
+                                   {"what", Presence::optional, ""},
+                                   {"kinematics", Presence::optional, ""},
+                                   {"body", Presence::required, "a table [body] with geo, size_m, cells"},
+                                   {"patch", Presence::optional, ""},
+                                   {"material", Presence::required, "a table [material] with two moduli"},
+                                   {"load", Presence::required, "at least one [[load]]"},
+                                   {"compare", Presence::optional, ""},
+                                   {"section", Presence::optional, ""},
+                                   {"line", Presence::optional, ""},
+                                   {"probe", Presence::optional, ""},
+                                   {"reference", Presence::optional, ""},
+                                   {"expect", Presence::optional, ""},
+                                   {"published", Presence::optional, ""}};
+
+constexpr Key body_schema[] = {
+    {"geo", Presence::required,
+     "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .msh, .step or .brep file"},
+    {"size_m", Presence::optional, ""},
+    {"scale", Presence::optional, ""},
+    {"cells", Presence::optional, ""},
+    {"voxels", Presence::optional, ""},
+    {"voxel_edge_m", Presence::optional, ""}};
+
+constexpr Key material_schema[] = {
+    {"youngs_modulus_Pa", Presence::optional, ""}, {"poisson_ratio", Presence::optional, ""},
+    {"shear_modulus_Pa", Presence::optional, ""},  {"bulk_modulus_Pa", Presence::optional, ""},
+    {"lame_lambda_Pa", Presence::optional, ""},    {"density_kg_m3", Presence::optional, ""}};
+
+constexpr Key section_schema[] = {{"point_m", Presence::required, "[x, y, z]"},
+                                  {"normal", Presence::required, "[x, y, z]"}};
+constexpr Key probe_schema[] = {{"name", Presence::required, "a name"},
+                                {"at_m", Presence::required, "[x, y, z], a rest position"}};
+constexpr Key reference_schema[] = {{"cells", Presence::optional, ""},
+                                    {"elements", Presence::optional, ""},
+                                    {"grading", Presence::optional, ""},
+                                    {"edge_m", Presence::optional, ""},
+                                    {"smooth", Presence::optional, ""}};
+
+/// A modulus of the file and where it goes.
+struct ModulusKey {
+  const char* key;
+  std::optional<double> Moduli::*member;
+  Range range;
+};
+
+constexpr ModulusKey modulus_keys[] = {{"youngs_modulus_Pa", &Moduli::youngs_modulus, positive_number},
+                                       {"poisson_ratio", &Moduli::poisson_ratio, {"-1 < poisson_ratio < 0.5", -1, 0.5}},
+                                       {"shear_modulus_Pa", &Moduli::shear_modulus, positive_number},
+                                       {"bulk_modulus_Pa", &Moduli::bulk_modulus, positive_number},
+                                       {"lame_lambda_Pa", &Moduli::lame_lambda, any_number}};
+
+const std::vector<std::string> kinematics_names = {
+    "linear", "hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"};
+
+[[noreturn]] void missing(const TomlValue& table, const std::string& key, const std::string& allowed) {
+  refuse({table.node, table.key + "." + key, table.file}, "is missing", allowed);
+}
+
+std::vector<Cells> read_resolutions(const TomlValue& cells) {
+  const auto items = as_list(cells, "[nx, ny, nz] or a list of such, integers from 1 to 1000");
+  if (!items.front().node->is_array()) return {as_cells(cells)};
+  std::vector<Cells> resolutions;
+  for (const TomlValue& item : items) {
+    const Cells resolution = as_cells(item);
+    if (std::find(resolutions.begin(), resolutions.end(), resolution) != resolutions.end())
+      refuse(item, fmt::format("[{}] is named twice", fmt::join(resolution, ", ")), "each resolution once");
+    resolutions.push_back(resolution);
+  }
+  return resolutions;
+}
+
+template <class T>
+std::vector<T> read_each_once(const TomlValue& value, const Range& range) {
+  std::vector<T> numbers;
+  for (const TomlValue& item : one_or_several(value)) {
+    const T number = static_cast<T>(as_number(item, range));
+    if (std::find(numbers.begin(), numbers.end(), number) != numbers.end())
+      refuse(item, fmt::format("{} is named twice", number), "each once");
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+Body read_body(const TomlValue& value) {
+  const TomlTable table(value, body_schema);
+  Body body;
+  body.where = location_of(table.at("geo"));
+  body.geo = as_text(table.at("geo"));
+  const bool script = body.is_script();
+  if (const auto size = table.find("size_m")) {
+    if (!script) refuse(*size, "is a parameter of .geo scripts", "scale, to multiply the coordinates of a file");
+    // gmsh merges points that are 1e-8 apart.
+    body.size = as_vector(*size, {"a finite number > 0, from 1e-6 to 1e9 [m]", 1e-6, 1e9, true, true});
+  } else if (script) {
+    missing(value, "size_m", "[x, y, z], lengths > 0");
+  }
+  if (const auto scale = table.find("scale")) {
+    if (script) refuse(*scale, "is for files", "size_m, for .geo scripts");
+    body.scale = as_number(*scale, positive_number);
+  }
+  const auto cells = table.find("cells"), voxels = table.find("voxels"), edges = table.find("voxel_edge_m");
+  constexpr const char* fineness =
+      "one of cells = [nx, ny, nz] (bodies of hexahedra), voxels = 5000 (about so many cubes), voxel_edge_m = 0.01; "
+      "each may be a list";
+  const int said = cells.has_value() + voxels.has_value() + edges.has_value();
+  if (said == 0) missing(value, "cells", fineness);
+  if (said > 1) refuse(value, "says twice how fine the lattices are", fineness);
+  if (cells) body.cells = read_resolutions(*cells);
+  if (voxels)
+    body.voxel_counts = read_each_once<int>(*voxels, {"a number from 1 to 4e6, or a list of such", 1, 4e6, true, true});
+  if (edges) body.voxel_edges = read_each_once<double>(*edges, positive_number);
+  if (cells && !script) refuse(*cells, "is for bodies of hexahedra", "voxels or voxel_edge_m");
+  return body;
+}
+
+/// Two moduli, each a number or a list; a single number is held fixed while the other runs through its list,
+/// and two lists of the same length are read in pairs.
+std::vector<IsotropicMaterial> read_materials(const TomlValue& value) {
+  const TomlTable table(value, material_schema);
+  double density = 1000;
+  if (const auto given = table.find("density_kg_m3")) density = as_number(*given, positive_number);
+  std::vector<std::string> names;
+  std::vector<Moduli> solids(1);
+  for (const auto& [key, member, range] : modulus_keys) {
+    const auto given = table.find(key);
+    if (!given) continue;
+    names.emplace_back(key);
+    const auto items = one_or_several(*given);
+    if (solids.size() == 1) solids.resize(items.size(), solids.front());
+    if (items.size() != 1 && items.size() != solids.size())
+      refuse(*given, fmt::format("is a list of {}", items.size()),
+             fmt::format("a list of {}, as above", solids.size()));
+    for (std::size_t i = 0; i < solids.size(); ++i)
+      solids[i].*member = as_number(items[items.size() == 1 ? 0 : i], range);
+  }
+  if (names.size() != 2)
+    refuse(value,
+           fmt::format("has {} elastic moduli{}{}", names.size(), names.empty() ? "" : ": ", fmt::join(names, ", ")),
+           "exactly two of youngs_modulus_Pa, poisson_ratio, shear_modulus_Pa, bulk_modulus_Pa, lame_lambda_Pa");
+  std::vector<IsotropicMaterial> materials;
+  for (const Moduli& given : solids) {
+    try {
+      materials.push_back(material_from(given, density));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(location_of(value), fmt::format("material: {}", error.what()));
+    }
+    const double nu = materials.back().poisson_ratio;
+    for (std::size_t i = 0; i + 1 < materials.size(); ++i)
+      if (materials[i].poisson_ratio == nu)
+        refuse(value, fmt::format("has the Poisson's ratio {} twice", nu), "each Poisson's ratio once");
+  }
+  return materials;
+}
+
+std::vector<Probe> read_probes(const TomlTable& document) {
+  std::vector<Probe> probes;
+  for (const TomlValue& value : document.tables("probe")) {
+    const TomlTable table(value, probe_schema);
+    const Probe probe{as_text(table.at("name")), as_vector(table.at("at_m"))};
+    for (const Probe& other : probes)
+      if (other.name == probe.name)
+        refuse(table.at("name"), fmt::format("'{}' is the name of another probe", probe.name), "a name of its own");
+    probes.push_back(probe);
+  }
+  return probes;
+}
+
+Section read_section(const TomlValue& value) {
+  const TomlTable table(value, section_schema);
+  return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
+}
+
+ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
+  const TomlTable table(value, reference_schema);
+  ReferenceChoice reference;
+  if (voxels) reference.elements = {"p2"};
+  if (const auto edge = table.find("edge_m")) {
+    if (!voxels) refuse(*edge, "is for bodies of voxels", "cells, for bodies of hexahedra");
+    reference.edge = as_number(*edge, positive_number);
+  }
+  for (const char* key : {"cells", "grading"})
+    if (const auto given = table.find(key); given && voxels)
+      refuse(*given, "is for bodies of hexahedra", "edge_m, for bodies of voxels");
+  if (const auto cells = table.find("cells")) reference.cells = as_cells(*cells);
+  if (const auto elements = table.find("elements")) {
+    reference.elements.clear();
+    if (const auto* array = elements->node->as_array(); array && array->empty()) return reference;
+    reference.elements = read_elements(*elements, voxels ? std::vector<std::string>{"p2", "p1"} : element_names());
+  }
+  if (const auto grading = table.find("grading"))
+    reference.grading = as_number(*grading, {"a number from 1 to 3", 1, 3, true, true});
+  if (const auto smooth = table.find("smooth")) reference.smooth = as_flag(*smooth);
+  return reference;
+}
+
+/// A weight needs a mass.
+void require_density(const TomlTable& document, const Experiment& experiment) {
+  const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
+                                  [](const Load& load) { return std::holds_alternative<Gravity>(load); });
+  if (weighs && !TomlTable(document.at("material"), material_schema).find("density_kg_m3"))
+    missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
+}
+
+Experiment read_document(const TomlTable& document, Experiment experiment) {
+  if (const auto cite = document.find("cite")) experiment.cite = as_text(*cite);
+  if (const auto what = document.find("what")) experiment.what = as_text(*what);
+  if (const auto name = document.find("kinematics")) experiment.kinematics = as_choice(*name, kinematics_names);
+  experiment.body = read_body(document.at("body"));
+  experiment.patches = read_patch_rules(document);
+  if (!experiment.patches.empty() && !experiment.body.is_voxels())
+    throw InputError(experiment.patches.front().where,
+                     "patch: is for bodies of voxels (allowed for hexahedra: the physical surfaces of the .geo)");
+  experiment.materials = read_materials(document.at("material"));
+  for (const TomlValue& value : document.tables("load"))
+    for (const Load& load : read_load(value)) {
+      experiment.loads.push_back(load);
+      experiment.load_locations.push_back(location_of(value));
+    }
+  require_density(document, experiment);
+  if (const auto section = document.find("section")) experiment.section = read_section(*section);
+  experiment.probes = read_probes(document);
+  if (const auto reference = document.find("reference"))
+    experiment.reference = read_reference(*reference, experiment.body.is_voxels());
+  else if (experiment.body.is_voxels())
+    experiment.reference.elements = {"p2"};
+  settle_kelvin(experiment);
+  read_line(document, experiment);
+  read_compare(document, experiment);
+  check_loads(experiment);
+  if (experiment.reference.cells[0] > 0) check_reference_cells(document.at("reference"), experiment);
+  read_expectations(document, experiment);
+  read_published(document, experiment);
+  return experiment;
+}
+
+std::string located(const SourceLocation& where, const std::string& message) {
+  if (where.file.empty()) return message;
+  if (where.line == 0) return fmt::format("{}: {}", where.file, message);
+  return fmt::format("{}:{}:{}: {}", where.file, where.line, where.column, message);
+}
+
+}  // namespace
+
+std::vector<std::string> read_elements(const TomlValue& value, const std::vector<std::string>& allowed) {
+  std::vector<std::string> elements;
+  for (const TomlValue& item : as_list(value, "a list of elements: q1, q2, p1, p2")) {
+    const std::string element = as_choice(item, allowed);
+    if (std::find(elements.begin(), elements.end(), element) != elements.end())
+      refuse(item, fmt::format("'{}' is named twice", element), "each element once");
+    elements.push_back(element);
+  }
+  return elements;
+}
+
+std::string shortened(const std::string& message) {
+  constexpr std::size_t longest = 100, shown = 40;
+  const auto continues_letter = [&](std::size_t at) {
+    return (static_cast<unsigned char>(message[at]) & 0xc0) == 0x80;
+  };
+  std::string out;
+  for (std::size_t begin = 0, end; begin < message.size(); begin = end) {
+    end = std::min(message.find(' ', begin), message.size());
+    std::size_t cut = end;
+    if (end - begin > longest)
+      for (cut = begin + shown; cut > begin && continues_letter(cut);) --cut;
+    for (const char c : std::string_view(message).substr(begin, cut - begin))
+      out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    if (cut < end) out += fmt::format("... ({} letters)", end - begin);
+    if (end < message.size()) out += message[end++];
+  }
+  return out;
+}
+
+InputError::InputError(const SourceLocation& where, const std::string& message)
+    : std::runtime_error(located(where, shortened(message))) {}
+
+bool Body::is_script() const {
+  std::string extension = std::filesystem::path(geo).extension();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension != ".stl" && extension != ".msh" && extension != ".step" && extension != ".stp" &&
+         extension != ".brep";
+}
+
+std::vector<std::string> element_names() { return {"q1", "q2", "p1", "p2"}; }
+
+std::string to_string(Source source) {
+  switch (source) {
+    case Source::analytic:
+      return "analytic";
+    case Source::extrapolated_fem:
+      return "extrapolated FEM";
+    case Source::published:
+      return "published";
+    case Source::regression:
+      return "regression";
+  }
+  return "unknown";
+}
+
+Experiment parse_experiment(const std::string& text, const std::filesystem::path& file) {
+  Experiment experiment;
+  experiment.file = file;
+  experiment.name = file.stem().string();
+  experiment.folder = std::filesystem::absolute(file).parent_path().filename().string();
+  experiment.text = text;
+  require_bounded(text, file.string());
+  toml::table document;
+  try {
+    document = toml::parse(text, file.string());
+  } catch (const toml::parse_error& error) {
+    const auto begin = error.source().begin;
+    throw InputError({file.string(), static_cast<int>(begin.line), static_cast<int>(begin.column)},
+                     fmt::format("not valid TOML: {}", error.description()));
+  }
+  if (document.empty())
+    throw InputError({file.string(), 0, 0}, "the case file is empty (needed: [body], [material], [[load]])");
+  return read_document(TomlTable({&document, "", file.string()}, document_schema), std::move(experiment));
+}
+
+Experiment read_experiment(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  const SourceLocation where{file.string(), 0, 0};
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw InputError(where, "no such file");
+  if (fs::is_directory(status)) throw InputError(where, "is a directory (allowed: a case file, NAME.toml)");
+  if (!fs::is_regular_file(status)) throw InputError(where, "is no regular file (allowed: a case file, NAME.toml)");
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw InputError(where, "cannot be read");
+  return parse_experiment(text, file);
+}
+
+void check_patches(const Experiment& experiment, const std::vector<std::string>& patches) {
+  for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
+    const std::string* on = patch_of(experiment.loads[i]);
+    if (!on || std::find(patches.begin(), patches.end(), *on) != patches.end()) continue;
+    const SourceLocation where = i < experiment.load_locations.size() ? experiment.load_locations[i]
+                                                                      : SourceLocation{experiment.file.string(), 0, 0};
+    throw InputError(where, fmt::format("load.on: the body has no patch '{}' (allowed: {}){}", *on,
+                                        fmt::join(patches, ", "), did_you_mean(*on, patches)));
+  }
+}
+
+}  // namespace springproof

@@ -1,0 +1,159 @@
+// An experiment: body, material, loads, models, measures, published values, tolerances.  Read from TOML.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "problem/input_error.h"
+#include "problem/loads.h"
+#include "problem/material.h"
+#include "problem/patch_rule.h"
+
+namespace springproof {
+
+using Cells = std::array<int, 3>;
+
+/// A block is cut into `cells`; any other body into the cubes of a lattice whose centres it holds.
+struct Body {
+  std::string geo;           ///< file name: one of meshes/geo/, or a path relative to the case file
+  Vec3 size = Vec3::Zero();  ///< [m], parameters of a .geo; of voxels the box around the body, once it is known
+  std::vector<Cells> cells;  ///< resolutions of the mass-spring models, one or more; of voxels those of the box
+  SourceLocation where;      ///< of the key `geo`
+  std::vector<double> voxel_edges = {};  ///< [m]; empty: no voxels, or their counts are given
+  std::vector<int> voxel_counts = {};    ///< about so many cubes; empty: their edges are given
+  double scale = 1;                      ///< coordinates of a file are multiplied by it
+
+  bool is_script() const;  ///< a .geo, whose size is a parameter; else a file of a body as it is
+  bool is_voxels() const { return !voxel_edges.empty() || !voxel_counts.empty(); }
+  std::size_t resolutions() const { return std::max({cells.size(), voxel_edges.size(), voxel_counts.size()}); }
+};
+
+/// A model as named in the case file, with its options; what they mean is the model table's business (msm/models.h).
+struct ModelChoice {
+  std::string name;                                                        ///< row of the table, "hybmss"
+  std::map<std::string, std::variant<bool, double, std::string>> options;  ///< e.g. face_to_cube = 1.0
+  std::string label;                                                       ///< "hybmss" or "hybmss A=1 paper_e_form"
+  SourceLocation where;
+};
+
+struct Probe {
+  std::string name;
+  Vec3 at = Vec3::Zero();  ///< rest position [m]
+};
+
+/// Plane on which the mean distance between two deformed states is measured (Golec et al. 2019, sec. 6.2).
+struct Section {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+};
+
+/// Line along which strain and stress are held against Kelvin's solution (Kot et al. 2014, sec. 5.2).
+struct Line {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]
+  int points = 100;                             ///< point i of 1 ... points lies at from + (i / points) (to - from)
+  std::array<int, 2> middle = {15, 80};         ///< first and last of the points that deviations are the mean over
+};
+
+/// Place [m] of a point of the line, numbered from 1.
+Vec3 point_of(const Line& line, int number);
+
+/// How the finite element reference is computed.
+struct ReferenceChoice {
+  Cells cells = {0, 0, 0};  ///< finest of three grids; {0,0,0} = chosen from the body's cells
+  std::vector<std::string> elements = {
+      "q2"};             ///< each run on the three grids; the first is the reference; none: the case goes without
+  double grading = 1.5;  ///< exponent that draws elements towards the faces of the block; 1 = uniform
+  double edge = 0;       ///< [m] of the tetrahedra of a body of voxels, finest of three meshes; 0 = chosen
+  bool smooth = false;   ///< the exact solution has no singularity: the elements' own order may be trusted
+};
+
+/// Elements of the reference: hexahedra "q1", "q2", tetrahedra "p1", "p2".
+std::vector<std::string> element_names();
+
+enum class Source { analytic, extrapolated_fem, published, regression };
+std::string to_string(Source source);
+
+/// A value that must hold.  It becomes the verdict of the case.
+struct Expectation {
+  std::string model;  ///< label of a model in [compare], "fem" (the extrapolated reference), or
+                      ///< "fem_<element>": that element of [compare] at the models' resolutions, or the
+                      ///< limit of that element of [reference]
+  std::optional<double> poisson_ratio;  ///< empty: at every one
+  std::optional<Cells> cells;           ///< empty: at every resolution
+  std::string measure;                  ///< name of a measure, e.g. "volume_change", "force.z_max.magnitude"
+  Source source = Source::extrapolated_fem;
+  std::optional<double> value;     ///< empty: the extrapolated FEM value
+  double within = 0;               ///< tolerance, absolute, in the measure's unit
+  bool relative = false;           ///< `within_relative`: tolerance is a fraction of |value|
+  std::optional<double> at_least;  ///< instead of value and tolerance: passes when computed >= at_least
+  std::string where;               ///< "Table 3"
+  SourceLocation location;
+};
+
+/// A printed value shown beside ours, not gated.
+struct PublishedValue {
+  std::string model;
+  double poisson_ratio = 0;
+  std::optional<Cells> cells;
+  std::string measure;
+  double value = 0;
+  std::string where;   ///< "Table 3"
+  std::string remark;  ///< why it cannot be reproduced, where it cannot
+  SourceLocation location;
+};
+
+/// A case: one body, what is done to it, the materials and models it is run with, and what should come out.
+struct Experiment {
+  std::string name;    ///< the file's stem
+  std::string folder;  ///< name of the folder that holds it, e.g. "golec_2019"
+  std::filesystem::path file;
+  std::string cite;
+  std::string what;
+  std::string kinematics = "linear";  ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke",
+                                      ///< "neo_hooke_isochoric", "st_venant_kirchhoff"
+  Body body;
+  std::vector<PatchRule> patches;            ///< named by rules, besides those that the body brings
+  std::vector<IsotropicMaterial> materials;  ///< in the file's order, each Poisson's ratio once
+  std::vector<Load> loads;
+  std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
+  std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
+  std::vector<std::string> elements = {"q1"};  ///< finite elements compared beside the models, at the same resolutions
+  double most_unknowns = 0;  ///< runs of models and elements with about more than these are left out; 0: none
+  bool cost = false;         ///< the runs' times are compared: short ones are repeated, all stop at one residual
+                             ///< (problem/system/run_cost.h)
+  std::string exact;         ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
+  std::vector<std::string> measures;
+  std::vector<Probe> probes;
+  std::optional<Section> section;
+  std::optional<Line> line;
+  ReferenceChoice reference;
+  std::vector<Expectation> expectations;
+  std::vector<PublishedValue> published;
+  std::string text;  ///< the file as read
+
+  Kinematics model_kinematics() const { return kinematics == "linear" ? Kinematics::linear : Kinematics::finite; }
+};
+
+/// Reads a case file.
+/// @throws InputError with file, line, column, the key, what is allowed and the nearest known key.
+Experiment read_experiment(const std::filesystem::path& file);
+
+/// As read_experiment, from text; `file` is used for messages and relative paths.
+Experiment parse_experiment(const std::string& text, const std::filesystem::path& file);
+
+/// Kelvin's solution of the case's point force; empty: there is not exactly one point force, or several materials.
+std::optional<KelvinSolution> kelvin_of(const Experiment& experiment);
+
+/// @throws InputError at the load that acts on a patch that is not among `patches`, those of the body.
+void check_patches(const Experiment& experiment, const std::vector<std::string>& patches);
+
+/// The experiment as a TOML document that reads back to the same experiment.
+std::string to_toml(const Experiment& experiment);
+
+}  // namespace springproof

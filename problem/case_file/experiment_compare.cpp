@@ -1,0 +1,305 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "problem/case_file/experiment_parts.h"
+#include "problem/case_file/measures.h"
+#include "problem/case_file/nearest_name.h"
+#include "problem/exact_field.h"
+#include "problem/system/file_name.h"
+
+namespace springproof {
+namespace {
+
+constexpr Key compare_schema[] = {{"models", Presence::optional, ""},   {"measures", Presence::optional, ""},
+                                  {"elements", Presence::optional, ""}, {"most_unknowns", Presence::optional, ""},
+                                  {"cost", Presence::optional, ""},     {"exact", Presence::optional, ""}};
+
+constexpr Key expect_schema[] = {{"model", Presence::required, "a model of [compare], or fem, fem_q1, ..."},
+                                 {"poisson_ratio", Presence::optional, ""},
+                                 {"cells", Presence::optional, ""},
+                                 {"measure", Presence::required, "the name of a row"},
+                                 {"source", Presence::required, "analytic, extrapolated FEM, published, regression"},
+                                 {"value", Presence::optional, ""},
+                                 {"within", Presence::optional, ""},
+                                 {"within_relative", Presence::optional, ""},
+                                 {"at_least", Presence::optional, ""},
+                                 {"where", Presence::optional, ""}};
+
+constexpr Key published_schema[] = {{"model", Presence::required, "the name of a model"},
+                                    {"poisson_ratio", Presence::required, "one of the case's Poisson's ratios"},
+                                    {"cells", Presence::optional, ""},
+                                    {"measure", Presence::required, "the name of a row"},
+                                    {"value", Presence::required, "a finite number"},
+                                    {"where", Presence::required, "table or figure"},
+                                    {"remark", Presence::optional, ""}};
+
+bool is_fem(const std::string& model) {
+  const auto elements = element_names();
+  return model == "fem" ||
+         (model.starts_with("fem_") && std::find(elements.begin(), elements.end(), model.substr(4)) != elements.end());
+}
+
+/// Finite element results that a case has.
+std::vector<std::string> fem_names(const Experiment& experiment) {
+  std::vector<std::string> names = {"fem"};
+  const auto add = [&](const std::vector<std::string>& elements) {
+    for (const std::string& element : elements)
+      if (const std::string name = "fem_" + element; std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+  };
+  if (!experiment.models.empty()) add(experiment.elements);
+  add(experiment.reference.elements);
+  return names;
+}
+
+const std::vector<std::string> default_measures = {"displacement_error", "volume_change", "reaction"};
+
+std::string label_of(const ModelChoice& choice) {
+  std::string label = choice.name;
+  for (const auto& [name, value] : choice.options) {
+    if (const bool* flag = std::get_if<bool>(&value); flag && *flag) {
+      label += " " + name;
+      continue;
+    }
+    const std::string shown = name == "face_to_cube" ? "A" : name;
+    label += std::visit([&](const auto& v) { return fmt::format(" {}={}", shown, v); }, value);
+  }
+  return label;
+}
+
+std::variant<bool, double, std::string> read_option(const TomlValue& value) {
+  if (const auto* flag = value.node->as_boolean()) return flag->get();
+  if (value.node->is_string()) return as_text(value);
+  return as_number(value, Range{"true or false, a finite number, or a string"});
+}
+
+ModelChoice read_model(const TomlValue& value) {
+  ModelChoice choice;
+  choice.where = location_of(value);
+  const toml::table* table = value.node->as_table();
+  if (!table) {
+    choice.name = as_text(value);
+  } else {
+    // Options are the business of the table of models, so any key is taken here.
+    const toml::node* name = table->get("model");
+    if (!name) refuse({value.node, value.key + ".model", value.file}, "is missing", "the name of a model");
+    choice.name = as_text({name, value.key + ".model", value.file});
+    for (const auto& [key, node] : *table) {
+      const std::string option(key.str());
+      const TomlValue option_value{&node, value.key + "." + option, value.file};
+      if (option == "label")
+        choice.label = as_text(option_value);
+      else if (option != "model")
+        choice.options[option] = read_option(option_value);
+    }
+  }
+  if (choice.label.empty()) choice.label = label_of(choice);
+  return choice;
+}
+
+/// Labels are names of files too.
+void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others) {
+  const bool unseen = std::any_of(label.begin(), label.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+  if (unseen || label.size() > longest_file_name)
+    refuse(item, fmt::format("the label '{}' cannot name a file", label),
+           fmt::format("up to {} letters, no control characters", longest_file_name));
+  const std::string key = file_name_key(label);
+  if (is_fem(key)) refuse(item, fmt::format("the label '{}' is taken", label), "a label of its own for each model");
+  for (const ModelChoice& other : others) {
+    if (file_name_key(other.label) != key) continue;
+    const std::string same = other.label == label ? "" : fmt::format(" as the name of a file, by '{}'", other.label);
+    refuse(item, fmt::format("the label '{}' is taken{}", label, same), "a label of its own for each model");
+  }
+}
+
+/// An empty list is a case for the reference alone, which must then name its elements.
+std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& document) {
+  std::vector<ModelChoice> models;
+  if (const auto* array = value.node->as_array(); array && array->empty()) {
+    const auto reference = document.find("reference");
+    if (reference && reference->node->as_table()->contains("elements")) return models;
+    refuse(value, "is an empty list", "model names, or none where [reference] has elements = [\"q2\", ...]");
+  }
+  for (const TomlValue& item : as_list(value, "a list of model names and { model = \"...\" } tables")) {
+    const ModelChoice choice = read_model(item);
+    refuse_label(item, choice.label, models);
+    models.push_back(choice);
+  }
+  return models;
+}
+
+std::vector<std::string> read_measures(const TomlValue& value, const Experiment& experiment) {
+  std::vector<std::string> measures;
+  for (const TomlValue& item : as_list(value, "a list of measures")) {
+    const std::string measure = as_choice(item, measure_names());
+    if (std::find(measures.begin(), measures.end(), measure) != measures.end())
+      refuse(item, fmt::format("'{}' is named twice", measure), "each measure once");
+    if (measure.starts_with("section_") && !experiment.section)
+      refuse(item, fmt::format("'{}' needs a plane", measure), "with a [section] in the file");
+    if ((measure == "probe" || measure == "stress") && experiment.probes.empty())
+      refuse(item, fmt::format("'{}' needs points", measure), "with at least one [[probe]] in the file");
+    if (measure == "displacement_error_order" && experiment.exact.empty())
+      refuse(item, "'displacement_error_order' needs the solution", "with exact = \"...\" in [compare]");
+    if (measure == "reaction_error" && moved_patches(experiment).empty())
+      refuse(item, "'reaction_error' needs a support that is moved", "with a displacement or rotation other than zero");
+    if (measure == "line" && !experiment.line) refuse(item, "'line' needs one", "with a [line] in the file");
+    if (measure == "moduli" && !elongation_along_x(experiment))
+      refuse(item, "'moduli' needs a block stretched along x",
+             "with a load that prescribes x on x_min and another on x_max");
+    measures.push_back(measure);
+  }
+  return measures;
+}
+
+/// The material's own value, so that results can be found by comparing numbers.
+double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) {
+  const double nu = as_number(value);
+  std::vector<double> known;
+  for (const IsotropicMaterial& m : experiment.materials) {
+    if (std::abs(m.poisson_ratio - nu) <= 1e-9) return m.poisson_ratio;
+    known.push_back(m.poisson_ratio);
+  }
+  refuse(value, fmt::format("{} is not in the case", nu), fmt::format("{}", fmt::join(known, ", ")));
+}
+
+bool asks_for(const Experiment& experiment, const std::string& measure) {
+  return std::find(experiment.measures.begin(), experiment.measures.end(), measure) != experiment.measures.end();
+}
+
+/// Whether it is a row of mean_displacement.  Of which patch, the body will tell once it is meshed.
+bool is_mean_displacement(const std::string& row) {
+  const std::string patch = patch_of_mean_displacement(row);
+  const auto components = {".x", ".y", ".z", ".magnitude"};
+  return !patch.empty() &&
+         std::any_of(components.begin(), components.end(), [&](const char* c) { return row.ends_with(patch + c); });
+}
+
+std::string read_row_name(const TomlValue& value, const Experiment& experiment) {
+  if (const auto* text = value.node->as_string();
+      text && asks_for(experiment, "mean_displacement") && is_mean_displacement(text->get()))
+    return text->get();
+  std::vector<std::string> rows;
+  for (const std::string& measure : experiment.measures)
+    for (const std::string& row : rows_of_measure(measure, experiment)) rows.push_back(row);
+  return as_choice(value, rows);
+}
+
+std::string read_judged_model(const TomlValue& value, const Experiment& experiment) {
+  std::vector<std::string> labels;
+  for (const ModelChoice& m : experiment.models) labels.push_back(m.label);
+  for (const std::string& name : fem_names(experiment)) labels.push_back(name);
+  return as_choice(value, labels);
+}
+
+/// Resolution of a row.  A model of ours must run at it; the reference has grids of its own.
+Cells read_row_cells(const TomlValue& value, const std::string& model, const Experiment& experiment) {
+  const Cells cells = as_cells(value);
+  const auto& known = experiment.body.cells;
+  const bool not_known_yet = experiment.body.is_voxels();
+  if (is_fem(model) || not_known_yet || std::find(known.begin(), known.end(), cells) != known.end()) return cells;
+  std::vector<std::string> allowed;
+  for (const Cells& c : known) allowed.push_back(fmt::format("[{}]", fmt::join(c, ", ")));
+  refuse(value, fmt::format("[{}] is not in the case", fmt::join(cells, ", ")),
+         fmt::format("{}", fmt::join(allowed, ", ")));
+}
+
+Source read_source(const TomlValue& value) {
+  const std::vector<Source> sources = {Source::analytic, Source::extrapolated_fem, Source::published,
+                                       Source::regression};
+  std::vector<std::string> names;
+  for (const Source source : sources) names.push_back(to_string(source));
+  const std::string name = as_choice(value, names);
+  return sources[std::find(names.begin(), names.end(), name) - names.begin()];
+}
+
+void read_bound(const TomlTable& table, const TomlValue& bound, Expectation& expect) {
+  expect.at_least = as_number(bound);
+  for (const char* key : {"value", "within", "within_relative"})
+    if (const auto other = table.find(key))
+      refuse(*other, "stands beside at_least", "a value with a tolerance, or at_least");
+}
+
+void read_tolerance(const TomlTable& table, Expectation& expect) {
+  const auto absolute = table.find("within"), relative = table.find("within_relative");
+  if (absolute.has_value() == relative.has_value())
+    refuse(table.value(), absolute ? "has two tolerances" : "has no tolerance",
+           "exactly one of within, within_relative, at_least");
+  expect.relative = relative.has_value();
+  expect.within = as_number(relative ? *relative : *absolute, not_negative);
+  if (relative && expect.value == 0.0)
+    refuse(*relative, "is a fraction of a value that is 0", "within, the absolute tolerance");
+}
+
+Expectation read_expectation(const TomlValue& value, const Experiment& experiment) {
+  const TomlTable table(value, expect_schema);
+  Expectation expect;
+  expect.location = location_of(value);
+  expect.model = read_judged_model(table.at("model"), experiment);
+  if (const auto nu = table.find("poisson_ratio")) expect.poisson_ratio = read_poisson_ratio(*nu, experiment);
+  if (const auto cells = table.find("cells")) expect.cells = read_row_cells(*cells, expect.model, experiment);
+  expect.measure = read_row_name(table.at("measure"), experiment);
+  expect.source = read_source(table.at("source"));
+  if (expect.measure.starts_with("stress.") && !is_fem(expect.model))
+    refuse(table.at("measure"), fmt::format("'{}' is not known of '{}'", expect.measure, expect.model),
+           "a stress of the finite element results alone");
+  if (const auto bound = table.find("at_least")) {
+    read_bound(table, *bound, expect);
+  } else {
+    if (const auto number = table.find("value")) expect.value = as_number(*number);
+    if (!expect.value && expect.source != Source::extrapolated_fem)
+      refuse({value.node, value.key + ".value", value.file}, "is missing",
+             "a finite number; only source = \"extrapolated FEM\" goes without");
+    read_tolerance(table, expect);
+  }
+  if (const auto where = table.find("where")) expect.where = as_text(*where);
+  return expect;
+}
+
+void read_compare_table(const TomlValue& value, const TomlTable& document, Experiment& experiment) {
+  const TomlTable table(value, compare_schema);
+  if (const auto models = table.find("models")) experiment.models = read_models(*models, document);
+  if (const auto exact = table.find("exact")) {
+    experiment.exact = as_choice(*exact, exact_field_names());
+    if (!experiment.models.empty()) refuse(*exact, "stands beside models", "with models = []");
+  }
+  if (const auto measures = table.find("measures")) experiment.measures = read_measures(*measures, experiment);
+  if (const auto elements = table.find("elements")) experiment.elements = read_elements(*elements, element_names());
+  if (const auto most = table.find("most_unknowns")) experiment.most_unknowns = as_number(*most, positive_number);
+  if (const auto cost = table.find("cost")) experiment.cost = as_flag(*cost);
+}
+
+}  // namespace
+
+void read_compare(const TomlTable& document, Experiment& experiment) {
+  experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
+  experiment.measures = default_measures;
+  if (const auto value = document.find("compare")) read_compare_table(*value, document, experiment);
+  // Displacements alone cannot judge a body that its supports move.
+  if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
+    experiment.measures.emplace_back("reaction_error");
+}
+
+void read_expectations(const TomlTable& document, Experiment& experiment) {
+  for (const TomlValue& value : document.tables("expect"))
+    experiment.expectations.push_back(read_expectation(value, experiment));
+}
+
+void read_published(const TomlTable& document, Experiment& experiment) {
+  for (const TomlValue& value : document.tables("published")) {
+    const TomlTable table(value, published_schema);
+    PublishedValue printed;
+    printed.location = location_of(value);
+    printed.model = as_text(table.at("model"));
+    printed.poisson_ratio = read_poisson_ratio(table.at("poisson_ratio"), experiment);
+    if (const auto cells = table.find("cells")) printed.cells = as_cells(*cells);
+    printed.measure = read_row_name(table.at("measure"), experiment);
+    printed.value = as_number(table.at("value"));
+    printed.where = as_text(table.at("where"));
+    if (const auto remark = table.find("remark")) printed.remark = as_text(*remark);
+    experiment.published.push_back(printed);
+  }
+}
+
+}  // namespace springproof

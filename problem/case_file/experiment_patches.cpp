@@ -1,0 +1,78 @@
+#include "problem/patch_rule.h"
+
+#include <fmt/format.h>
+
+#include "problem/case_file/experiment_parts.h"
+
+namespace springproof {
+namespace {
+
+constexpr Key rule_schema[] = {{"name", Presence::required, "a name"},
+                               {"box_m", Presence::optional, ""},
+                               {"beyond", Presence::optional, ""},
+                               {"facing", Presence::optional, ""},
+                               {"near", Presence::optional, ""}};
+constexpr Key beyond_schema[] = {{"point_m", Presence::required, "[x, y, z], a point of the plane"},
+                                 {"normal", Presence::required, "[x, y, z], towards the facets that are meant"}};
+constexpr Key facing_schema[] = {{"direction", Presence::required, "[x, y, z]"},
+                                 {"within_deg", Presence::required, "an angle > 0 and <= 180"}};
+constexpr Key near_schema[] = {{"point_m", Presence::required, "[x, y, z]"},
+                               {"radius_m", Presence::required, "a length > 0"}};
+
+PatchRule::Box read_box(const TomlValue& value) {
+  const auto corners = as_list_of(2, value, "two corners, [[x, y, z], [x, y, z]]");
+  const PatchRule::Box box{as_vector(corners[0]), as_vector(corners[1])};
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(box.low[axis] < box.high[axis]))
+      refuse(corners[1],
+             fmt::format("has {} for {}, where the first corner has {}", box.high[axis], "xyz"[axis], box.low[axis]),
+             "the lower corner, then the higher one");
+  return box;
+}
+
+PatchRule::Beyond read_beyond(const TomlValue& value) {
+  const TomlTable table(value, beyond_schema);
+  return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
+}
+
+PatchRule::Facing read_facing(const TomlValue& value) {
+  const TomlTable table(value, facing_schema);
+  return {as_direction(table.at("direction")),
+          as_number(table.at("within_deg"), {"an angle > 0 and <= 180", 0, 180, false, true})};
+}
+
+PatchRule::Near read_near(const TomlValue& value) {
+  const TomlTable table(value, near_schema);
+  return {as_vector(table.at("point_m")), as_number(table.at("radius_m"), positive_number)};
+}
+
+PatchRule read_rule(const TomlValue& value) {
+  const TomlTable table(value, rule_schema);
+  PatchRule rule;
+  rule.where = location_of(value);
+  rule.name = as_text(table.at("name"));
+  if (const auto box = table.find("box_m")) rule.box = read_box(*box);
+  if (const auto beyond = table.find("beyond")) rule.beyond = read_beyond(*beyond);
+  if (const auto facing = table.find("facing")) rule.facing = read_facing(*facing);
+  if (const auto near = table.find("near")) rule.near = read_near(*near);
+  if (!rule.box && !rule.beyond && !rule.facing && !rule.near)
+    refuse(value, fmt::format("'{}' does not say where it lies", rule.name),
+           "one or more of box_m, beyond, facing, near");
+  return rule;
+}
+
+}  // namespace
+
+std::vector<PatchRule> read_patch_rules(const TomlTable& document) {
+  std::vector<PatchRule> rules;
+  for (const TomlValue& value : document.tables("patch")) {
+    rules.push_back(read_rule(value));
+    for (std::size_t i = 0; i + 1 < rules.size(); ++i)
+      if (rules[i].name == rules.back().name)
+        refuse(TomlTable(value, rule_schema).at("name"),
+               fmt::format("'{}' is the name of another patch", rules[i].name), "a name of its own");
+  }
+  return rules;
+}
+
+}  // namespace springproof

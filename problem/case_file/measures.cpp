@@ -1,0 +1,206 @@
+#include "problem/case_file/measures.h"
+
+#include <algorithm>
+#include <set>
+
+#include "problem/case_file/experiment.h"
+
+namespace springproof {
+namespace {
+
+void add_vector_rows(const std::string& prefix, std::vector<std::string>& rows) {
+  for (const char* component : {".x", ".y", ".z", ".magnitude"}) rows.push_back(prefix + component);
+}
+
+const std::string mean_displacement = "mean_displacement.";
+
+/// Whether the load prescribes a displacement other than zero.
+bool moves(const Load& load) {
+  if (const auto* p = std::get_if<PrescribedDisplacement>(&load))
+    return std::any_of(p->displacement.begin(), p->displacement.end(),
+                       [](const auto& u) { return u.value_or(0) != 0; });
+  if (const auto* a = std::get_if<PrescribedAffine>(&load)) return !a->gradient.isZero(0) || !a->offset.isZero(0);
+  if (const auto* r = std::get_if<PrescribedRotation>(&load)) return r->angle != 0;
+  return std::holds_alternative<PrescribedField>(load);
+}
+
+/// Patches of the loads that do this, in the file's order, each once.
+std::vector<std::string> patches_of(const Experiment& experiment, bool (*does)(const Load&)) {
+  std::vector<std::string> patches;
+  for (const Load& load : experiment.loads) {
+    if (!does(load)) continue;
+    const std::string& patch = *patch_of(load);
+    if (std::find(patches.begin(), patches.end(), patch) == patches.end()) patches.push_back(patch);
+  }
+  return patches;
+}
+
+std::vector<std::string> reaction_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const std::string& patch : supported_patches(experiment)) {
+    add_vector_rows("force." + patch, rows);
+    add_vector_rows("torque." + patch, rows);
+  }
+  return rows;
+}
+
+/// Those whose names the case file holds.
+std::vector<std::string> mean_displacement_rows(const Experiment& experiment) {
+  std::set<std::string> patches;
+  for (const Load& load : experiment.loads)
+    if (const std::string* on = patch_of(load)) patches.insert(*on);
+  for (const PatchRule& rule : experiment.patches) patches.insert(rule.name);
+  std::vector<std::string> rows;
+  for (const std::string& patch : patches) add_vector_rows(mean_displacement + patch, rows);
+  return rows;
+}
+
+std::vector<std::string> probe_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const Probe& probe : experiment.probes) add_vector_rows("displacement." + probe.name, rows);
+  return rows;
+}
+
+std::vector<std::string> stress_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const Probe& probe : experiment.probes)
+    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz"})
+      rows.push_back("stress." + probe.name + component);
+  return rows;
+}
+
+std::vector<std::string> network_rows(const Experiment&) {
+  return {"network.nodes", "network.springs", "network.springs_per_node", "network.mean_length",
+          "network.length_deviation"};
+}
+
+std::vector<std::string> moduli_rows(const Experiment&) {
+  return {"moduli.youngs_modulus",          "moduli.youngs_modulus_local",     "moduli.poisson_ratio",
+          "moduli.poisson_ratio_of_fields", "moduli.poisson_ratio_as_printed", "moduli.affine_youngs_modulus"};
+}
+
+std::vector<std::string> line_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const std::string field : {"line.strain", "line.stress"}) {
+    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz", ".all"}) rows.push_back(field + component);
+    if (experiment.body.resolutions() > 1) rows.push_back(field + ".order");
+  }
+  return rows;
+}
+
+using enum MeasureKind;
+
+// clang-format off
+const std::vector<Measure> table = {
+  {"displacement_error", distance, {{"displacement_error", "1"}}, "relative L2 difference to FEM over the nodes",
+   "displacement error", "|u − u_fem| in the L2 norm over the body, divided by |u_fem|"},
+  {"displacement_error_max", distance, {{"displacement_error_max", "1"}}, "largest difference over the largest displacement",
+   "largest displacement error", "largest |u − u_fem| over the nodes, divided by the largest |u_fem|"},
+  {"displacement_error_order", value, {{"displacement_error_order", "1"}},
+   "observed order of the displacement error, where the exact solution is known", "observed order of the displacement error", ""},
+  {"section_distance", distance, {{"section_distance", "m"}}, "mean distance to FEM on the plane [section] [m]",
+   "mean distance on the section", "mean |u − u_fem| over the nodes of the section"},
+  {"section_axis_distance", distance, {{"section_axis_distance", "m"}}, "the same per coordinate in the plane, (|dx| + |dy|)/2 [m]",
+   "mean distance per coordinate on the section", "mean |u − u_fem| per coordinate in the section, (|Δx| + |Δy|)/2"},
+  {"volume_change", value, {{"volume_change", "1"}}, "(V' - V)/V of the displaced body",
+   "volume change", "(V′ − V) / V of the deformed cells, exact; errors in percentage points"},
+  {"volume_change_magnitude", value, {{"volume_change_magnitude", "1"}}, "its absolute value, the papers' e",
+   "size of the volume change", "|V′ − V| / V, as the paper prints it; errors in percentage points"},
+  {"volume_change_first_order", value, {{"volume_change_first_order", "1"}}, "integral of div u over V",
+   "volume change, first order", "integral of div u over V; errors in percentage points"},
+  {"reaction", value, {{"force", "N"}, {"torque", "N m"}}, "force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m], where displacement is prescribed",
+   "", "", reaction_rows},
+  {"reaction_error", distance, {{"reaction_error", "1"}},
+   "largest relative error of force or torque on a moved support; always measured where one moves",
+   "reaction error of moved supports",
+   "|F − F_fem| / |F_fem| or |T − T_fem| / |T_fem|, the largest over the supports that are moved; those that vanish are left out"},
+  {"mean_displacement", value, {{"mean_displacement", "m"}},
+   "mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]", "", "", mean_displacement_rows},
+  {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
+  {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
+  {"moduli", value, {{"moduli", "1"}, {"moduli.youngs_modulus", "Pa"}, {"moduli.youngs_modulus_local", "Pa"}, {"moduli.affine_youngs_modulus", "Pa"}},
+   "E and nu of a block stretched along x, as the Kot papers measure them", "", "", moduli_rows},
+  {"network", value, {{"network", "1"}, {"network.mean_length", "m"}, {"network.length_deviation", "m"}},
+   "nodes, springs, springs per node, spring lengths [m]", "", "", network_rows},
+  {"line", deviation, {{"line", "1"}}, "strain and stress along [line] against Kelvin's solution", "", "", line_rows},
+};
+// clang-format on
+
+/// How much of a row's name a name of the table is; 0: nothing.
+std::size_t common(const std::string& row, const std::string& name) {
+  return row == name || row.starts_with(name + '.') ? name.size() : 0;
+}
+
+}  // namespace
+
+const std::vector<Measure>& measure_table() { return table; }
+
+const Measure* measure_of(const std::string& row) {
+  for (const Measure& measure : table)
+    for (const auto& [name, unit] : measure.units)
+      if (common(row, name) > 0) return &measure;
+  return nullptr;
+}
+
+std::string unit_of(const std::string& row) {
+  std::size_t longest = 0;
+  std::string found = "1";
+  if (const Measure* measure = measure_of(row))
+    for (const auto& [name, unit] : measure->units)
+      if (common(row, name) > longest) {
+        longest = common(row, name);
+        found = unit;
+      }
+  return found;
+}
+
+bool is_distance(const std::string& row) {
+  const Measure* measure = measure_of(row);
+  return measure && measure->kind == distance;
+}
+
+bool is_deviation(const std::string& row) {
+  const Measure* measure = measure_of(row);
+  return measure && measure->kind == deviation && !row.ends_with(".order");
+}
+
+bool wanted(const std::string& row, const std::vector<std::string>& measures) {
+  const Measure* measure = measure_of(row);
+  return measure && std::find(measures.begin(), measures.end(), measure->name) != measures.end();
+}
+
+std::vector<std::string> measure_names() {
+  std::vector<std::string> names;
+  for (const Measure& measure : table) names.push_back(measure.name);
+  return names;
+}
+
+std::vector<std::string> rows_of_measure(const std::string& name, const Experiment& experiment) {
+  for (const Measure& measure : table)
+    if (name == measure.name && measure.rows) return measure.rows(experiment);
+  return {name};
+}
+
+std::optional<double> elongation_along_x(const Experiment& experiment) {
+  std::optional<double> low, high;
+  for (const Load& load : experiment.loads)
+    if (const auto* p = std::get_if<PrescribedDisplacement>(&load)) {
+      if (p->on == "x_min") low = p->displacement[0];
+      if (p->on == "x_max") high = p->displacement[0];
+    }
+  if (!low || !high || *low == *high) return {};
+  return *high - *low;
+}
+
+std::vector<std::string> supported_patches(const Experiment& experiment) {
+  return patches_of(experiment, prescribes_displacement);
+}
+
+std::vector<std::string> moved_patches(const Experiment& experiment) { return patches_of(experiment, moves); }
+
+std::string patch_of_mean_displacement(const std::string& row) {
+  if (!row.starts_with(mean_displacement)) return "";
+  return row.substr(mean_displacement.size(), row.rfind('.') - mean_displacement.size());
+}
+
+}  // namespace springproof

@@ -1,0 +1,94 @@
+// Reading TOML with a schema: every unknown key, missing key, wrong type and value out of range becomes an
+// InputError that says where it stands and what is allowed.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "problem/case_file/experiment.h"
+
+namespace springproof {
+
+/// One node of the document with what an error message needs.
+struct TomlValue {
+  const toml::node* node;
+  std::string key;  ///< "material.poisson_ratio"
+  std::string file;
+};
+
+/// An interval of numbers; an end belongs to it where `low_in` or `high_in` says so.  Never holds inf or nan.
+struct Range {
+  const char* words;  ///< "> 0"
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_in = false;
+  bool high_in = false;
+
+  bool contains(double x) const { return (x > low || (low_in && x == low)) && (x < high || (high_in && x == high)); }
+};
+
+/// Numbers that are not 0 lie between these in size: squares and products of a few of them are numbers too.
+inline constexpr double smallest_number = 1e-30, largest_number = 1e30;
+
+inline constexpr Range any_number{"a finite number"};
+inline constexpr Range positive_number{"a finite number > 0", 0};
+inline constexpr Range not_negative{"a finite number >= 0", 0, std::numeric_limits<double>::infinity(), true};
+
+enum class Presence { optional, required };
+
+/// A line of a table's schema.
+struct Key {
+  const char* name;
+  Presence presence;
+  const char* words;  ///< what it holds, for the message when it is missing
+};
+
+/// @throws InputError "FILE:LINE:COLUMN: key: what is wrong (allowed: ...)"; `hint` follows, e.g. "; did you
+/// mean 'x'?".
+[[noreturn]] void refuse(const TomlValue& value, const std::string& what, const std::string& allowed,
+                         const std::string& hint = "");
+
+SourceLocation location_of(const TomlValue& value);
+
+/// Refuses what a parser would run out of stack or patience with: files beyond 4 MiB, keys of more than 16 parts,
+/// tables and lists more than 16 deep.
+/// @throws InputError
+void require_bounded(std::string_view text, const std::string& file);
+
+double as_number(const TomlValue& value, const Range& range = any_number);
+bool as_flag(const TomlValue& value);
+std::string as_text(const TomlValue& value);  ///< not empty
+std::string as_choice(const TomlValue& value, const std::vector<std::string>& names);
+std::vector<TomlValue> as_list(const TomlValue& value, const std::string& words);  ///< not empty
+std::vector<TomlValue> as_list_of(std::size_t count, const TomlValue& value, const std::string& words);
+Vec3 as_vector(const TomlValue& value, const Range& range = any_number);
+Vec3 as_direction(const TomlValue& value);  ///< not zero; returned with length 1
+Cells as_cells(const TomlValue& value);     ///< three integers 1..1000
+
+/// The value itself, or its items if it is a list: for keys that take one or several.
+std::vector<TomlValue> one_or_several(const TomlValue& value);
+
+/// A table whose keys have been held against a schema.
+class TomlTable {
+ public:
+  /// @throws InputError if the value is no table, has a key that the schema lacks or lacks a required one.
+  TomlTable(const TomlValue& value, std::span<const Key> schema);
+
+  std::optional<TomlValue> find(const std::string& key) const;
+  TomlValue at(const std::string& key) const;  ///< a key the schema requires
+  const TomlValue& value() const { return value_; }
+
+  /// The tables of [[key]], in order; none if the key is missing.
+  std::vector<TomlValue> tables(const std::string& key) const;
+
+ private:
+  TomlValue value_;
+};
+
+}  // namespace springproof

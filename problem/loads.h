@@ -1,0 +1,136 @@
+// What is done to the body: held, moved, turned, pulled.  Geometry appears only as patch names and points.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "problem/kelvin.h"
+#include "problem/vector.h"
+
+namespace springproof {
+
+/// Displacement given on a patch, component by component; an empty component is free.
+struct PrescribedDisplacement {
+  std::string on;                                     ///< patch name
+  std::array<std::optional<double>, 3> displacement;  ///< [m]
+};
+
+/// An affine displacement u = gradient * X + offset on a patch (the patch test).
+struct PrescribedAffine {
+  std::string on;
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();  ///< [1]
+  Vec3 offset = Vec3::Zero();                          ///< [m]
+};
+
+/// Rigid rotation of a patch about an axis.
+/// Under linear kinematics the rotation is the linearised one, u = angle * axis x (X - point).
+struct PrescribedRotation {
+  std::string on;
+  Vec3 point = Vec3::Zero();  ///< a point of the axis [m]
+  Vec3 axis = Vec3::UnitZ();  ///< direction, normalised by the reader
+  double angle = 0;           ///< [rad]
+};
+
+/// A named displacement field, prescribed on a patch (problem/exact_field.h); "kelvin": that of the case's point force.
+struct PrescribedField {
+  std::string on;
+  std::string field;
+  std::optional<KelvinSolution> kelvin = {};  ///< of the field "kelvin"
+};
+
+/// What a load comes to as a whole: force [N], and moment [N m] about a point [m].
+struct Wrench {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero(), about = Vec3::Zero();
+};
+
+// Loads below may carry the wrench that they have on the true body.  A discretisation, whose patches and volume are
+// only nearly the body's, then adds the field a + b x (X - c), over the patch's area or the volume, that gives it that
+// wrench exactly.
+
+/// Force per rest area, constant in direction (dead load) [Pa].
+struct Traction {
+  std::string on;
+  Vec3 traction = Vec3::Zero();
+  std::optional<Wrench> wrench = {};
+};
+
+/// Traction -pressure * outward rest normal (dead load) [Pa]; positive presses on the body.
+struct Pressure {
+  std::string on;
+  double pressure = 0;
+  std::optional<Wrench> wrench = {};
+};
+
+/// Total force [N], spread over the patch as a uniform traction.
+struct PatchForce {
+  std::string on;
+  Vec3 force = Vec3::Zero();
+  std::optional<Wrench> wrench = {};
+};
+
+/// Acceleration field acting on the whole body [m/s^2].
+struct Gravity {
+  Vec3 acceleration = Vec3::Zero();
+  std::optional<Wrench> wrench = {};
+};
+
+/// Force [N] at the rest point `at` [m]; spread over the corners of the element that holds the point.
+struct PointForce {
+  Vec3 at = Vec3::Zero();
+  Vec3 force = Vec3::Zero();
+};
+
+/// The body force that keeps a named displacement field in equilibrium (problem/exact_field.h); small strains.
+struct FieldBodyForce {
+  std::string field;
+};
+
+using Load = std::variant<PrescribedDisplacement, PrescribedAffine, PrescribedRotation, PrescribedField, Traction,
+                          Pressure, PatchForce, Gravity, PointForce, FieldBodyForce>;
+
+/// Name of the patch a load acts on; nullptr for gravity, point and body forces.
+const std::string* patch_of(const Load& load);
+
+/// The wrench that a load carries, or nullptr for the kinds that carry none.
+const std::optional<Wrench>* wrench_of(const Load& load);
+std::optional<Wrench>* wrench_of(Load& load);
+
+/// The field a + b x (X - c) of force per area or volume, by its moments over the region that it acts on.
+struct RigidField {
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero(), c = Vec3::Zero();
+
+  Vec3 at(const Vec3& X) const;
+};
+
+/// Sums over a region that tell which rigid field has a given wrench.
+struct RegionMoments {
+  double measure = 0;                                ///< area or volume
+  Vec3 first = Vec3::Zero();                         ///< integral of X
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  ///< integral of X X^T
+
+  void add(double weight, const Vec3& X);
+};
+
+/// The rigid field whose resultant over the region is the wrench.
+/// @throws std::invalid_argument if the region has no measure or is a line, and so bears no moment about itself.
+RigidField rigid_field(const RegionMoments& region, const Wrench& wrench);
+
+/// The wrench about another point.
+Wrench moved(const Wrench& wrench, const Vec3& about);
+
+/// True for the loads that prescribe displacement.
+bool prescribes_displacement(const Load& load);
+
+enum class Kinematics { linear, finite };
+
+using PrescribedValue = std::array<std::optional<double>, 3>;
+
+/// Displacement [m] that `load` prescribes at rest position X when a fraction `factor` of it is applied.
+/// Free components are empty; loads that prescribe none return three empty components.
+/// Rotations turn by factor * angle (finite) or are linearised (linear).
+PrescribedValue prescribed_displacement(const Load& load, const Vec3& X, Kinematics kinematics, double factor = 1.0);
+
+}  // namespace springproof

@@ -1,0 +1,262 @@
+#include "problem/system/child.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <sstream>
+#include <thread>
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The programs under way, for interrupt_children(): a list that grows and never shrinks, so that a signal handler may
+// walk it.
+struct Children {
+  std::array<std::atomic<pid_t>, 64> pids{};
+  std::atomic<Children*> next = nullptr;
+};
+Children children;
+std::atomic<unsigned> interrupts = 0;
+
+std::atomic<pid_t>& slot_for(pid_t child) {
+  for (Children* block = &children;; block = block->next) {
+    for (auto& pid : block->pids)
+      if (pid_t free = 0; pid.compare_exchange_strong(free, child)) return pid;
+    if (block->next) continue;
+    auto* more = new Children;
+    if (Children* none = nullptr; !block->next.compare_exchange_strong(none, more)) delete more;
+  }
+}
+
+class ChildSlot {
+ public:
+  explicit ChildSlot(pid_t child) : slot_(slot_for(child)) {}
+  ~ChildSlot() { slot_ = 0; }
+  ChildSlot(const ChildSlot&) = delete;
+  ChildSlot& operator=(const ChildSlot&) = delete;
+
+ private:
+  std::atomic<pid_t>& slot_;
+};
+
+// Between fork and exec only calls that a signal handler may make: other threads may hold any lock.
+[[noreturn]] void become(const Child& child, char** argv, pid_t parent) {
+  if (child.group) setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer of a caller that is gone
+  if (getppid() != parent) _exit(not_started);
+  const auto redirect = [](const fs::path& to, int stream) {
+    if (!to.empty()) dup2(open(to.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), stream);
+  };
+  if (!child.folder.empty() && chdir(child.folder.c_str()) != 0) _exit(not_started);
+  redirect(child.output, STDOUT_FILENO);
+  redirect(child.errors, STDERR_FILENO);
+  execv(child.program.c_str(), argv);
+  _exit(not_started);
+}
+
+pid_t start(const Child& child) {
+  std::vector<char*> argv = {const_cast<char*>(child.program.c_str())};
+  for (const std::string& a : child.arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  const pid_t parent = getpid(), pid = fork();
+  if (pid < 0)
+    throw std::runtime_error(fmt::format("cannot start {}: {}", child.program.string(), std::strerror(errno)));
+  if (pid == 0) become(child, argv.data(), parent);
+  return pid;
+}
+
+// Waits without reaping, so that its number is not another's while interrupt_children() may use it.
+bool has_ended(pid_t pid, bool wait) {
+  siginfo_t info{};
+  while (waitid(P_PID, pid, &info, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG)) < 0)
+    if (errno != EINTR) return true;
+  return info.si_pid == pid;
+}
+
+/// False: it had to be killed.
+bool wait_for(pid_t pid, const Child& child) {
+  if (!(child.time_limit > 0)) return has_ended(pid, true);
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  while (!has_ended(pid, false)) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (seconds > child.time_limit) {
+      if (child.group) kill(-pid, SIGKILL);
+      kill(pid, SIGKILL);
+      has_ended(pid, true);
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(seconds < 1 ? 1 : 10));
+  }
+  return true;
+}
+
+/// The folder that the running executable lies in.
+fs::path own_folder() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path();
+}
+
+}  // namespace
+
+namespace {
+
+constexpr std::string_view folder_prefix = "springproof-temporary-";  // no name that anybody gives a folder of results
+
+/// Where temporary folders are made.
+fs::path temporary_place() {
+  const char* given = std::getenv("TMPDIR");
+  return given && *given ? given : "/tmp";
+}
+
+[[noreturn]] void no_room(const fs::path& at, int error) {
+  throw NoRoom(fmt::format("TMPDIR: cannot write {}: {} (name a folder with room: TMPDIR=FOLDER springproof ...)",
+                           at.string(), std::strerror(error)));
+}
+
+/// The folder, locked as long as this process lives; -1: another one lives in it, or it is not ours.
+int lock_folder(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  struct stat owner {};
+  if (descriptor >= 0 && fstat(descriptor, &owner) == 0 && owner.st_uid == geteuid() &&
+      flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+    return descriptor;
+  if (descriptor >= 0) close(descriptor);
+  return -1;
+}
+
+}  // namespace
+
+// Folders named like ours that nobody holds.
+void remove_orphans() {
+  std::error_code error;
+  for (fs::directory_iterator entry(temporary_place(), error), end; !error && entry != end; entry.increment(error)) {
+    if (!entry->path().filename().string().starts_with(folder_prefix)) continue;
+    const int lock = lock_folder(entry->path());
+    if (lock < 0) continue;
+    std::error_code ignored;
+    fs::remove_all(entry->path(), ignored);
+    close(lock);
+  }
+}
+
+// It gets its name once it is locked, so that nobody takes it for an orphan.
+TemporaryFolder::TemporaryFolder() {
+  const fs::path place = temporary_place();
+  static std::once_flag first;
+  std::call_once(first, remove_orphans);
+  std::string name = (place / ".springproof-XXXXXX").string();
+  if (!mkdtemp(name.data())) no_room(name, errno);
+  lock_ = lock_folder(name);
+  path = place / fmt::format("{}{}-{}", folder_prefix, getpid(), name.substr(name.size() - 6));
+  if (std::rename(name.c_str(), path.c_str()) != 0) no_room(path, errno);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
+  if (lock_ >= 0) close(lock_);
+}
+
+void TemporaryFolder::require_room() const {
+  const fs::path trial = path / "trial";
+  std::ofstream out(trial, std::ios::binary);
+  out << std::string(1 << 16, 'x');
+  out.close();
+  const int error = errno;
+  if (!out) no_room(trial, error);
+  std::error_code ignored;
+  fs::remove(trial, ignored);
+}
+
+ChildEnd run_child(const Child& child) {
+  const unsigned before = interrupts;
+  const pid_t pid = start(child);
+  bool in_time;
+  {
+    const ChildSlot slot(pid);
+    if (interrupts != before) kill(pid, SIGTERM);  // the handler may not have seen it
+    in_time = wait_for(pid, child);
+  }
+  int status = 0;
+  rusage used{};
+  while (wait4(pid, &status, 0, &used) < 0)
+    if (errno != EINTR)
+      throw std::runtime_error(fmt::format("lost {}: {}", child.program.string(), std::strerror(errno)));
+  ChildEnd end;
+  end.kind = !in_time ? ChildEnd::out_of_time : WIFSIGNALED(status) ? ChildEnd::killed : ChildEnd::exited;
+  end.status = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+  end.seconds = double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  return end;
+}
+
+void interrupt_children() {
+  ++interrupts;
+  for (const Children* block = &children; block; block = block->next)
+    for (const auto& pid : block->pids)
+      if (const pid_t child = pid; child > 0) kill(child, SIGTERM);
+}
+
+bool children_interrupted() { return interrupts > 0; }
+
+std::string words_for(const ChildEnd& end, double time_limit) {
+  switch (end.kind) {
+    case ChildEnd::out_of_time:
+      return fmt::format("took longer than {:g} s and was ended", time_limit);
+    case ChildEnd::killed:
+      return fmt::format("was killed by signal {} ({})", end.status, strsignal(end.status));
+    default:
+      return end.status == not_started ? "could not be started" : fmt::format("failed with status {}", end.status);
+  }
+}
+
+fs::path find_program(const std::string& name, const char* variable) {
+  if (const char* given = std::getenv(variable); given && access(given, X_OK) == 0) return given;
+  const fs::path beside = own_folder() / name;
+  return access(beside.c_str(), X_OK) == 0 ? beside : fs::path();
+}
+
+fs::path data_folder(const std::string& name, const fs::path& source) {
+  const fs::path installed = own_folder().parent_path() / "share/springproof" / name;
+  std::error_code ignored;
+  return fs::is_directory(installed, ignored) ? installed : source;
+}
+
+fs::path program_on_path(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder.empty() ? "." : folder) / name;
+    std::error_code ignored;
+    if (fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0) return fs::absolute(file);
+  }
+  return {};
+}
+
+std::string version_of(const fs::path& program) {
+  if (program.empty()) return {};
+  const TemporaryFolder folder;
+  const fs::path output = folder.path / "output";
+  const bool ok = run_child({program, {"--version"}, {}, output, folder.path / "errors"}).ok();
+  return ok ? trimmed(text_of_file(output)) : std::string();
+}
+
+}  // namespace springproof

@@ -1,0 +1,40 @@
+#include "problem/system/files.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+namespace springproof {
+
+std::string text_of_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text;
+  for (char buffer[1 << 16]; in.read(buffer, sizeof buffer), in.gcount() > 0;) text.append(buffer, in.gcount());
+  return text;
+}
+
+std::string trimmed(std::string text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  return text;
+}
+
+void write_file(const std::filesystem::path& file, std::string_view bytes) {
+  std::filesystem::path partial = file;
+  partial += ".part";
+  std::ofstream out(partial, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  std::error_code error;
+  if (out) {
+    std::filesystem::rename(partial, file, error);
+    if (!error) return;
+  }
+  const std::string why = error ? error.message() : std::strerror(errno);
+  std::filesystem::remove(partial, error);
+  throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), why));
+}
+
+}  // namespace springproof

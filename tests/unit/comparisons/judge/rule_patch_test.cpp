@@ -1,0 +1,170 @@
+// Patches by rules: every discretisation has the rule's area and bears the rule's force.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "comparisons/run/reference_grids.h"
+#include "comparisons/run/voxel_reference.h"
+#include "meshes/patches/rule_region.h"
+#include "msm/embedding/boundary.h"
+
+namespace springproof {
+namespace {
+
+struct RuleCase {
+  const char* name;
+  const char* body;  ///< and size
+  const char* rule;
+  const char* load;
+  double area;  ///< [m^2]; 0: of a curved body, that of the finest mesh
+};
+void PrintTo(const RuleCase& c, std::ostream* out) { *out << c.name; }
+
+constexpr const char* cube = "geo = \"block.geo\"\nsize_m = [1, 1, 1]";
+constexpr const char* ball = "geo = \"sphere.geo\"\nsize_m = [1, 1, 1]";
+constexpr const char* rod = "geo = \"cylinder.geo\"\nsize_m = [1, 1, 1]";
+constexpr const char* bracket = "geo = \"l_bracket.geo\"\nsize_m = [1, 0.5, 1]";
+
+const RuleCase cases[] = {
+    {"pressure_on_a_box", cube, "box_m = [[0.34, 0.34, 0.9], [0.66, 0.66, 1.1]]", "pressure_Pa = 1000", 0.32 * 0.32},
+    {"traction_on_a_disc", cube, "near = { point_m = [0.5, 0.5, 1.2], radius_m = 0.15 }",
+     "traction_Pa = [300, 0, 1000]", M_PI * 0.15 * 0.15},
+    {"traction_beyond_a_plane", cube,
+     "beyond = { point_m = [0.5, 0.63, 0.5], normal = [0, 1, 0] }\nfacing = { direction = [0, 0, 1], within_deg = 5 }",
+     "traction_Pa = [300, 0, 1000]", 0.37},
+    {"pressure_on_a_part_of_a_disc", cube,
+     "near = { point_m = [0.5, 0.5, 1], radius_m = 0.2 }\nbox_m = [[0, 0.5, 0], [1, 1, 1]]", "pressure_Pa = 70",
+     M_PI * 0.02},
+    {"pressure_on_a_disc_of_a_rod", rod, "near = { point_m = [0.45, 0.5, 1], radius_m = 0.3 }", "pressure_Pa = 1000",
+     M_PI * 0.09},
+    {"traction_on_a_spot_of_a_bracket", bracket,
+     "near = { point_m = [0.8, 0.25, 0.15], radius_m = 0.1 }\nfacing = { direction = [0, 0, 1], within_deg = 20 }",
+     "traction_Pa = [0, 0, -900]", M_PI * 0.01},
+    {"pressure_on_a_cap", ball, "beyond = { point_m = [0.5, 0.5, 0.8], normal = [0, 0, 1] }", "pressure_Pa = 1000", 0},
+    {"traction_on_the_side_of_a_rod", rod, "near = { point_m = [1, 0.5, 0.5], radius_m = 0.25 }",
+     "traction_Pa = [300, 0, 1000]", 0},
+};
+
+Experiment experiment_of(const RuleCase& c, double edge, const char* reference) {
+  return parse_experiment(fmt::format(R"([body]
+{}
+voxels = 300
+[[patch]]
+name = "spot"
+{}
+[[patch]]
+name = "foot"
+beyond = {{ point_m = [0.5, 0.5, 0.23], normal = [0, 0, -1] }}
+[material]
+youngs_modulus_Pa = 1e6
+poisson_ratio = 0.3
+[[load]]
+on = "foot"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "spot"
+{}
+[compare]
+models = ["hybmss"]
+elements = ["q1", "p1"]
+[reference]
+edge_m = {}
+{}
+)",
+                                      c.body, c.rule, c.load, edge, reference),
+                          "rule.toml");
+}
+
+/// What the rule names of a mesh's own facets.
+double area_of(const PatchRule& rule, const Mesh& mesh) {
+  double sum = 0;
+  for (const FacetPart& p : parts_of(rule, mesh)) sum += p.area.norm();
+  return sum;
+}
+
+class RulePatches : public testing::TestWithParam<RuleCase> {};
+
+TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
+  const RuleCase& c = GetParam();
+  for (const double edge : {0.12, 0.09}) {
+    const PreparedCase prepared = prepare(experiment_of(c, edge, ""));
+    const double area = c.area > 0 ? c.area : area_of(prepared.experiment.patches[0], *prepared.tetrahedra.back());
+    const Load& load = prepared.experiment.loads[1];
+    Vec3 force = wrench_of(load)->value().force;
+    if (const auto* t = std::get_if<Traction>(&load)) {
+      EXPECT_LE((force - area * t->traction).norm(), 1e-6 * force.norm());
+    } else if (c.area > 0) {
+      EXPECT_NEAR(force.norm(), area * std::get<Pressure>(load).pressure, 1e-6 * force.norm());
+    }
+    std::vector<std::shared_ptr<const Mesh>> all = prepared.tetrahedra;
+    all.insert(all.end(), prepared.fitted.begin(), prepared.fitted.end());
+    ASSERT_EQ(all.size(), 4u);
+    for (const auto& mesh : all) {
+      const double own = nodal_areas(*mesh, patch(*mesh, "spot")).sum();
+      if (c.area > 0) {
+        EXPECT_NEAR(own, area, 1e-6 * area);
+      }
+      EXPECT_NEAR(own, area_of(prepared.experiment.patches[0], *mesh), 1e-4 * area);
+    }
+    all.push_back(prepared.meshes[0]);
+    for (const auto& mesh : all) {
+      const Vec3 borne = transfer({load}, *mesh, 1000, Kinematics::linear).external.colwise().sum().transpose();
+      EXPECT_LE((borne - force).norm(), 1e-10 * force.norm());
+    }
+  }
+}
+
+TEST_P(RulePatches, HoldTheRulesAreaOnEveryMesh) {
+  const PreparedCase prepared = prepare(experiment_of(GetParam(), 0.15, ""));
+  const auto held = [&](const Mesh& m) { return nodal_areas(m, patch(m, "foot")).sum(); };
+  for (const auto& mesh : prepared.tetrahedra) {
+    if (GetParam().body == cube) {
+      EXPECT_NEAR(held(*mesh), 1 + 4 * 0.23, 1e-9);
+    }
+    EXPECT_NEAR(held(*mesh), area_of(prepared.experiment.patches[1], *mesh), 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, RulePatches, testing::ValuesIn(cases),
+                         [](const auto& i) { return std::string(i.param.name); });
+
+TEST(RulePatchesOnCurvedBodies, SpreadOfTheAreaIsPartOfTheUncertainty) {
+  const PreparedCase cap = prepare(experiment_of(cases[6], 0.12, "")), box = prepare(experiment_of(cases[0], 0.12, ""));
+  const auto area = [&](int i) { return nodal_areas(*cap.tetrahedra[i], patch(*cap.tetrahedra[i], "spot")).sum(); };
+  EXPECT_NEAR(cap.load_spread, std::abs(area(1) / area(2) - 1), 1e-12);
+  EXPECT_GT(cap.load_spread, 1e-5);
+  const auto says = [](const PreparedCase& c) {
+    return std::any_of(c.notes.begin(), c.notes.end(), [](const std::string& n) {
+      return n.find("% in the area of patch 'spot'") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says(cap));
+  EXPECT_EQ(box.load_spread, 0);
+  EXPECT_FALSE(says(box));
+  ReferenceField field{
+      NodalVectors::Constant(2, 3, 2), 0.01, Eigen::Vector2d(0.1, 0.2), {}, "", Sequence::converging, {}};
+  widen(0.25, field);
+  EXPECT_NEAR(field.uncertainty, 0.26, 1e-15);
+  EXPECT_NEAR(field.nodal_uncertainty[1], 0.2 + 0.25 * std::sqrt(12), 1e-15);
+}
+
+TEST(RulePatchReactions, AreTheRulesForceInLinearAndQuadraticElementsAndOnCubes) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
+  for (const RuleCase& c : {cases[0], cases[1], cases[4]}) {
+    const PreparedCase prepared = prepare(experiment_of(c, 0.2, "elements = [\"p2\", \"p1\"]"));
+    const ReferenceGrids grids = solve_body_grids(prepared, prepared.experiment.materials[0]);
+    ASSERT_EQ(grids.failure, "");
+    const Vec3 force = wrench_of(prepared.experiment.loads[1])->value().force;
+    std::vector<fem::Solution> solutions = grids.peers[0];
+    for (const ElementGrids& e : grids.elements) solutions.insert(solutions.end(), e.grids.begin(), e.grids.end());
+    EXPECT_EQ(solutions.size(), 8u);
+    for (const fem::Solution& s : solutions) {
+      ASSERT_TRUE(s.ok) << s.message;
+      EXPECT_LE((s.reactions[0].force + force).norm(), 1e-6 * force.norm()) << c.name << " " << s.grid.element;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace springproof

@@ -1,0 +1,382 @@
+#include "comparisons/report/headline.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/sample_case.h"
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Point {
+  double nu;
+  int cells;
+  double error;
+};
+
+/// A case of one model with displacement errors alone.
+CaseResult with_errors(const std::string& name, const std::string& model, const std::vector<Point>& points) {
+  CaseResult c;
+  c.experiment.name = name;
+  c.experiment.models = {{model, {}, model, {}}};
+  for (const Point& p : points) {
+    const Cells cells = {p.cells, p.cells, p.cells};
+    c.runs.push_back({model, "msm", p.nu, cells, "linear", true, "", "", 1, 0, 0, 0});
+    c.rows.push_back({name, "linear", model, p.nu, cells, "displacement_error", p.error, "1", {}, 1e-4, p.error});
+  }
+  return c;
+}
+
+Headline headline_of(const std::vector<CaseResult>& cases) {
+  Json results = {{"cases", Json::array()}};
+  for (const auto& c : cases) results["cases"].push_back(to_json(c));
+  return headline(results);
+}
+
+TEST(Headline, TakesTheWorstOfAllCasesAtTheFinestCells) {
+  const Headline h = headline_of({with_errors("shear", "hybmss", {{0, 10, 0.5}, {0, 20, 0.002}, {0.4, 20, 0.003}}),
+                                  with_errors("torsion", "hybmss", {{0, 20, 0.001}, {0.4, 20, 0.0082}})});
+  ASSERT_EQ(h.models.size(), 1u);
+  EXPECT_EQ(h.models[0].sentence, "displacement within 0.82 % of FEM for ν from 0 to 0.4 (worst: torsion at ν = 0.4).");
+  EXPECT_EQ(h.answer,
+            "Of the spring models hybmss comes closest: its displacements stay within 0.82 % of finite "
+            "elements for ν "
+            "from 0 to 0.4, in 2 linear cases.");
+}
+
+TEST(Headline, TetrahedraAndLongPoissonsRatiosAreReadable) {
+  CaseResult c = with_errors("hand", "hybmss", {{0.4999750012499375, 10, 0.5}});
+  c.runs[0].ok = false;
+  c.runs[0].cells = {812, 0, 0};
+  c.rows[0].cells = {812, 0, 0};
+  c.rows.push_back(
+      {"hand", "linear", "hybmss", 0.4999750012499375, {100, 0, 0}, "displacement_error", 0.7, "1", {}, 1e-4, 0.7});
+  const Headline h = headline_of({c});
+  EXPECT_EQ(h.failed_runs.at(0), "hand: hybmss at ν = 0.499975, 812 tets: no reason given");
+  EXPECT_EQ(h.models[0].sentence, "displacement within 50 % of FEM at ν = 0.499975 (worst: hand at ν = 0.499975).")
+      << "the finer mesh counts";
+}
+
+TEST(Headline, ACaseWithoutModelsIsJudgedByItsExpectationsAlone) {
+  CaseResult c = with_errors("plate", "fem_p1", {{0, 10, 0.5}});
+  c.experiment.models.clear();
+  c.checks.push_back({"fem_p1",
+                      0,
+                      {10, 10, 10},
+                      "displacement_error_order",
+                      "1",
+                      "analytic",
+                      1.9,
+                      1.2,
+                      0,
+                      0.0,
+                      Verdict::fail,
+                      "",
+                      true});
+  const Headline h = headline_of({c});
+  EXPECT_TRUE(h.models.empty());
+  ASSERT_EQ(h.failed_checks.size(), 1u);
+  EXPECT_NE(h.failed_checks[0].find("computed 1.2, expected at least 1.9"), std::string::npos) << h.failed_checks[0];
+}
+
+TEST(Headline, SaysWhereATighterBoundHolds) {
+  const Headline h = headline_of({with_errors(
+      "shear", "msm", {{-0.2, 10, 0.2}, {0.2, 10, 0.009}, {0.25, 10, 0.001}, {0.3, 10, 0.011}, {0.4, 10, 0.01}})});
+  EXPECT_EQ(h.models[0].sentence,
+            "displacement within 20 % of FEM for ν from −0.2 to 0.4 (worst: shear at ν = −0.2); within 1 % "
+            "for ν from "
+            "0.2 to 0.25 and at ν = 0.4.");
+}
+
+TEST(Headline, SaysWhenTheErrorIsBelowTheUncertainty) {
+  const Headline h = headline_of({with_errors("shear", "hybmss", {{0.25, 10, 5e-5}})});
+  EXPECT_EQ(h.models[0].sentence,
+            "displacement within 0.005 % of FEM at ν = 0.25 (worst: shear at ν = 0.25, below the 0.01 % "
+            "uncertainty of "
+            "the reference).");
+}
+
+TEST(Headline, AModelThatRanInFewerCasesIsNotTheClosest) {
+  const Headline h =
+      headline_of({with_errors("shear", "emsm", {{0, 10, 0.02}}), with_errors("torsion", "emsm", {{0, 10, 0.02}}),
+                   with_errors("shear", "lucky", {{0, 10, 1e-3}})});
+  EXPECT_EQ(h.answer.find("Of the spring models emsm comes closest"), 0u) << h.answer;
+}
+
+TEST(Headline, FiniteElementsAreComparedButNeverTheClosest) {
+  CaseResult fem = with_errors("shear", "fem_q1", {{0, 10, 1e-3}});
+  fem.runs[0].kind = "fem";
+  const Headline h = headline_of({fem, with_errors("shear", "emsm", {{0, 10, 0.02}})});
+  ASSERT_EQ(h.models.size(), 2u);
+  EXPECT_EQ(h.models[0].model, "emsm");
+  EXPECT_TRUE(h.models[1].finite_elements);
+  EXPECT_NE(h.answer.find("emsm"), std::string::npos);
+}
+
+TEST(Headline, LargeDeformationIsKeptApart) {
+  CaseResult large = with_errors("torsion_45", "hybmss", {{0, 10, 0.3}});
+  large.experiment.kinematics = "hencky";
+  const Headline h = headline_of({large, with_errors("shear", "hybmss", {{0, 10, 0.002}})});
+  ASSERT_EQ(h.models.size(), 2u);
+  EXPECT_FALSE(h.models[0].large_deformation);
+  EXPECT_NE(h.models[0].sentence.find("within 0.2 %"), std::string::npos);
+  EXPECT_TRUE(h.models[1].large_deformation);
+  EXPECT_NE(h.models[1].sentence.find("within 30 %"), std::string::npos);
+  EXPECT_EQ(headline_of({large}).answer, "");
+}
+
+TEST(Headline, VolumeIsToldInPercentagePoints) {
+  CaseResult c = with_errors("shear", "hybmss", {{0, 10, 0.002}});
+  c.rows.push_back({"shear", "linear", "hybmss", 0, {10, 10, 10}, "volume_change", 0.05, "1", 0.0507, 1e-5, -0.0007});
+  EXPECT_NE(headline_of({c}).models[0].sentence.find("; volume change within 0.07 percentage points."),
+            std::string::npos);
+}
+
+TEST(Headline, CountsExpectationsAndListsWhatWentWrong) {
+  const Headline h = headline_of({sample_case()});
+  EXPECT_EQ(h.held, 1);
+  EXPECT_EQ(h.failed, 1);
+  ASSERT_EQ(h.failed_checks.size(), 1u);
+  EXPECT_EQ(h.failed_checks[0],
+            "compress: hybmss, displacement_error at ν = 0.4, 2×2×2 cells: computed 0.02, expected 0 ± 0.01 "
+            "(extrapolated FEM, sec. 6)");
+  ASSERT_EQ(h.failed_runs.size(), 1u);
+  EXPECT_EQ(h.failed_runs[0], "compress: emsm at ν = 0.4, 2×2×2 cells: diverged at load 0.3");
+  EXPECT_EQ(expectations_sentence(h), "1 of 2 expectations hold, 1 fails.");
+}
+
+TEST(Headline, AModelWithoutAnyResultIsSaidToHaveNone) {
+  const Headline h = headline_of({sample_case()});
+  ASSERT_EQ(h.models.size(), 2u);
+  EXPECT_EQ(h.models[1].model, "emsm");
+  EXPECT_EQ(h.models[1].sentence, "no displacement could be compared.");
+}
+
+// ---- which model comes closest
+
+void add_row(CaseResult& c, const std::string& model, double nu, const std::string& measure, double error,
+             double uncertainty) {
+  c.rows.push_back(
+      {c.experiment.name, "linear", model, nu, {10, 10, 10}, measure, error, "1", 0.0, uncertainty, error});
+}
+
+void add_split(CaseResult& c, const std::string& model, double nu, double total, double own) {
+  c.splits.push_back({model, nu, {10, 10, 10}, 0.01, "displacement_error", "1", total, own, 0.17, 0.35, 0.063, 0.02});
+}
+
+/// Several models at one Poisson's ratio: {name, displacement error}.
+CaseResult with_models(const std::string& name, double nu, double uncertainty,
+                       const std::vector<std::pair<std::string, double>>& models) {
+  CaseResult c;
+  c.experiment.name = name;
+  c.experiment.reference.elements = {"p2"};
+  c.experiment.materials = {{1e4, nu, 1000}};
+  for (const auto& [model, error] : models) {
+    c.experiment.models.push_back({model, {}, model, {}});
+    if (model.starts_with("msm_")) c.own_poisson_ratios[model] = 0.25;
+    c.runs.push_back({model, "msm", nu, {10, 10, 10}, "linear", true, "", "", 1, 0, 0, 0});
+    add_row(c, model, nu, "displacement_error", error, uncertainty);
+  }
+  c.references.push_back({nu, "displacement_error", "1", {}, {}, 1.5, 0, uncertainty, "Richardson, GCI", "p2"});
+  return c;
+}
+
+TEST(Headline, OfABodyOfVoxelsTheSpringsOwnPartDecides) {
+  CaseResult bunny = with_models("bunny", 0.45, 0.01, {{"emsm", 0.059}, {"hybmss_bt", 0.17}});
+  add_split(bunny, "emsm", 0.45, 0.059, 0.178);
+  add_split(bunny, "hybmss_bt", 0.45, 0.17, 0.016);
+  const Headline h = headline_of({bunny});
+  EXPECT_EQ(h.answer.find("Of the spring models hybmss_bt comes closest: its springs stay within 1.6 % of finite "
+                          "elements on the same cubes (17 % of "),
+            0u)
+      << h.answer;
+  EXPECT_NE(h.models[0].sentence.find("; its springs within 18 % of FEM on the same cubes"), std::string::npos)
+      << h.models[0].sentence;
+}
+
+TEST(Headline, AModelIsNotNamedOffItsOwnPoissonsRatio) {
+  const Headline h = headline_of({with_models("bunny", 0.45, 1e-4, {{"msm_18", 0.01}, {"emsm", 0.03}})});
+  EXPECT_EQ(h.answer.find("Of the spring models emsm comes closest"), 0u) << h.answer;
+  EXPECT_NE(h.models[0].sentence.find("; a solid of ν = 0.25 alone, which was not run."), std::string::npos)
+      << h.models[0].sentence;
+  const Headline own = headline_of({with_models("bunny", 0.25, 1e-4, {{"msm_18", 0.01}, {"emsm", 0.03}})});
+  EXPECT_EQ(own.answer.find("Of the spring models msm_18 comes closest"), 0u) << own.answer;
+  const Headline none = headline_of({with_models("bunny", 0.45, 1e-4, {{"msm_18", 0.01}})});
+  EXPECT_EQ(none.answer,
+            "No spring model was compared at a Poisson's ratio that it claims: msm_18 (a solid of ν = 0.25 alone).");
+}
+
+TEST(Headline, AClassicModelIsJudgedAtItsOwnRatioAmongOthers) {
+  CaseResult c = with_models("cube", 0.25, 1e-4, {{"msm_18", 0.01}, {"emsm", 0.03}});
+  add_row(c, "msm_18", 0.4, "displacement_error", 0.12, 1e-4);
+  add_row(c, "emsm", 0.4, "displacement_error", 0.03, 1e-4);
+  const Headline h = headline_of({c});
+  EXPECT_EQ(h.answer.find("Of the spring models emsm comes closest"), 0u)
+      << "it was compared more widely: " << h.answer;
+  EXPECT_NE(h.models[0].sentence.find("within 12 % of FEM"), std::string::npos);
+  EXPECT_NE(h.models[0].sentence.find("; a solid of ν = 0.25 alone, there within 1 %."), std::string::npos)
+      << h.models[0].sentence;
+}
+
+TEST(Headline, WithinTheReferencesUncertaintyModelsAreNotRanked) {
+  const Headline h =
+      headline_of({with_models("shear", 0.3, 0.02, {{"emsm", 0.05}, {"hybmss", 0.04}, {"kirkwood", 0.07}})});
+  EXPECT_EQ(h.answer,
+            "Of the spring models hybmss (4 %) and emsm (5 %) come closest and cannot be told apart: their largest "
+            "errors differ by no more than the "
+            "2 % that the reference is uncertain by, at ν = 0.3, in 1 linear case.");
+  EXPECT_EQ(h.doubt, "");
+  EXPECT_EQ(headline_of({with_models("shear", 0.3, 0.005, {{"emsm", 0.05}, {"hybmss", 0.04}})})
+                .answer.find("Of the spring models hybmss comes closest"),
+            0u);
+}
+
+TEST(Headline, ReactionsOfMovedSupportsCount) {
+  CaseResult bar = with_models("bar", 0.3, 1e-4, {{"emsm", 0.0005}, {"hybmss_bt", 0.001}});
+  add_row(bar, "emsm", 0.3, "reaction_error", 0.77, 1e-3);
+  add_row(bar, "hybmss_bt", 0.3, "reaction_error", 0.18, 1e-3);
+  const Headline h = headline_of({bar});
+  EXPECT_EQ(h.answer,
+            "Of the spring models hybmss_bt comes closest: its displacements stay within 0.1 % of finite elements, the "
+            "reactions of moved "
+            "supports within 18 % at ν = 0.3, in 1 linear case.");
+  EXPECT_EQ(
+      h.models[0].sentence,
+      "displacement within 0.05 % of FEM at ν = 0.3 (worst: bar at ν = 0.3); reactions of moved supports within 77 %.");
+}
+
+// ---- how sure the reference is
+
+TEST(Headline, AReferenceThatDoesNotConvergeIsSaidFirst) {
+  CaseResult bunny = with_models("bunny", 0.45, 0.063, {{"emsm", 0.3}, {"hybmss", 0.1}});
+  bunny.references[0].note = "not converging: finest grid, largest difference";
+  bunny.references[0].observed_order.reset();
+  const Headline h = headline_of({bunny});
+  EXPECT_EQ(h.doubt, "The reference does not converge (bunny at ν = 0.45): its displacement is uncertain by 6.3 %.");
+  EXPECT_EQ(terminal_text(h).find("\n" + h.doubt + " Of the spring models hybmss comes closest"), 0u)
+      << terminal_text(h);
+  bunny.references[0].note = "Richardson, GCI";
+  EXPECT_EQ(headline_of({bunny}).doubt,
+            "The reference is not sharp (bunny at ν = 0.45): its displacement is uncertain by 6.3 %.");
+  bunny.references[0].uncertainty = 0.049;
+  EXPECT_EQ(headline_of({bunny}).doubt, "");
+}
+
+// ---- linear theory
+
+TEST(Headline, LinearTheoryBeyondFivePerCentOrDegreesIsWarnedOf) {
+  CaseResult c = with_models("ear", 0.3, 1e-4, {{"emsm", 0.03}});
+  c.deformations = {{0.3, 0.02, 4.9}};
+  EXPECT_TRUE(headline_of({c}).warnings.empty());
+  EXPECT_EQ(headline_of({c}).deformations.at(0), "ear" + std::string(26, ' ') + "ν = 0.3: 2 %, 4.9°");
+  c.deformations.push_back({0.4, 0.03, 31});
+  EXPECT_EQ(headline_of({c}).warnings.at(0),
+            "ear: principal strains of 3 % and rotations of 31° are too large for linear theory (5 %, 5°); divide the "
+            "load by at least 6.2, or set "
+            "kinematics = \"hencky\" (or another finite-strain law)");
+  c.deformations = {{0.3, 0.12, 1}};
+  EXPECT_NE(headline_of({c}).warnings.at(0).find("divide the load by at least 2.4,"), std::string::npos);
+  EXPECT_NE(terminal_text(headline_of({c})).find("\nwarning: ear: principal strains of 12 %"), std::string::npos);
+  c.experiment.kinematics = "hencky";
+  EXPECT_TRUE(headline_of({c}).warnings.empty());
+}
+
+// ---- what is no success
+
+TEST(Headline, ACaseWithoutReferenceIsNoSuccess) {
+  CaseResult c = with_models("cube", 0.3, 1e-4, {{"emsm", 0.03}});
+  EXPECT_TRUE(success(headline_of({c})));
+  c.experiment.materials.push_back({1e4, 0.4, 1000});
+  c.runs.push_back({"fem_p2", "fem", 0.4, {812, 0, 0}, "linear", false, "out of memory", "", 0, 0, 0, 0});
+  const Headline h = headline_of({c});
+  EXPECT_FALSE(success(h));
+  EXPECT_EQ(h.failures, std::vector<std::string>{"cube at ν = 0.4: there is no reference: out of memory"});
+}
+
+TEST(Headline, ACaseWhoseModelsAllFailIsNoSuccess) {
+  CaseResult c = with_models("cube", 0.3, 1e-4, {{"emsm", 0.03}, {"hybmss", 0.1}});
+  c.rows.clear();
+  c.runs[0].ok = false;
+  const Headline half = headline_of({c});
+  EXPECT_EQ(
+      half.failures,
+      std::vector<std::string>{
+          "cube: nothing was compared: no measure of a model has a reference, an expectation or a published value"})
+      << "one ran, without rows";
+  c.runs[1].ok = false;
+  EXPECT_EQ(headline_of({c}).failures, std::vector<std::string>{"cube: no model has a result"});
+  EXPECT_FALSE(success(headline_of({c})));
+}
+
+TEST(Headline, NothingComparedIsNoSuccess) {
+  CaseResult c = with_models("cube", 0.3, 1e-4, {{"emsm", 0.03}});
+  c.experiment.reference.elements.clear();
+  c.references.clear();
+  c.rows.clear();
+  const Headline h = headline_of({c});
+  ASSERT_EQ(h.failures.size(), 1u);
+  EXPECT_EQ(h.failures[0].find("cube: nothing was compared, since the case asks for no reference"), 0u)
+      << h.failures[0];
+  EXPECT_NE(terminal_text(h).find("FAILED: cube: nothing was compared"), std::string::npos);
+  c.published.push_back({"emsm", 0.3, "moduli.poisson_ratio", "1", 0.3, 0.31, "Fig. 1", ""});
+  EXPECT_TRUE(success(headline_of({c})));
+}
+
+// ---- the terminal
+
+TEST(Headline, TheTerminalHasTheReportsGroups) {
+  CaseResult large = with_errors("torsion_45", "hybmss", {{0, 10, 0.3}});
+  large.experiment.kinematics = "hencky";
+  CaseResult linear = with_errors("shear", "hybmss", {{0, 10, 0.002}});
+  linear.runs.push_back({"fem_q1", "fem", 0, {10, 10, 10}, "linear", true, "", "", 1, 0, 0, 0});
+  add_row(linear, "fem_q1", 0, "displacement_error", 0.001, 1e-4);
+  const std::string text = terminal_text(headline_of({large, linear}));
+  const auto answer = text.find("Of the spring models hybmss comes closest"), first = text.find(linear_title),
+             second = text.find(large_title);
+  ASSERT_TRUE(answer < first && first < second && second != std::string::npos) << text;
+  EXPECT_LT(first, text.find("within 0.2 %", first));
+  EXPECT_LT(second, text.find("within 30 %"));
+  const auto fem = text.find("(finite elements, for comparison) displacement within 0.1 %");
+  EXPECT_TRUE(first < fem && fem < second) << text;
+}
+
+TEST(Headline, VerificationShowsValueTargetAndError) {
+  CaseResult c = with_errors("membrane", "fem_q2", {{0.3, 10, 0.5}});
+  c.experiment.models.clear();
+  c.experiment.reference.elements = {"q2"};
+  c.experiment.materials = {{1e4, 0.3, 1000}};
+  c.references.push_back({0.3, "displacement.C.y", "m", {}, {}, 1.5, 16.455, 0.018, "", "q2"});
+  c.checks.push_back({"fem",
+                      0.3,
+                      {10, 10, 10},
+                      "displacement.C.y",
+                      "m",
+                      "published",
+                      16.433,
+                      16.455,
+                      0.05,
+                      0.018,
+                      Verdict::pass,
+                      "Table 1",
+                      false});
+  const Headline h = headline_of({c});
+  ASSERT_EQ(h.verification.size(), 1u);
+  for (const char* part :
+       {"membrane ", "fem, displacement.C.y at ν = 0.3", "16.455 ± 0.018 m", "target 16.433", "+0.13 %", "pass"})
+    EXPECT_NE(h.verification[0].find(part), std::string::npos) << part << " in " << h.verification[0];
+  EXPECT_NE(terminal_text(h).find(h.verification[0]), std::string::npos);
+  EXPECT_TRUE(success(h));
+}
+
+TEST(Headline, NothingRunIsNothingSaid) {
+  const Headline h = headline(Json::object());
+  EXPECT_TRUE(h.models.empty());
+  EXPECT_EQ(h.answer, "");
+  EXPECT_EQ(expectations_sentence(h), "No expectations are stated.");
+}
+
+}  // namespace
+}  // namespace springproof

@@ -1,0 +1,549 @@
+#include "comparisons/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "comparisons/report/png_page.h"
+#include "support/sample_case.h"
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::json;
+
+Json document(const std::vector<CaseResult>& cases) {
+  Json out = {{"program", {{"name", "springproof"}, {"version", "0.1.0"}, {"libraries", "none"}}},
+              {"generated", "2026-01-01T00:00:00Z"},
+              {"host", {{"cores", 2}}},
+              {"cases", Json::array()}};
+  for (const auto& c : cases) out["cases"].push_back(to_json(c));
+  return out;
+}
+
+Json pictures(const std::vector<CaseResult>& cases) {
+  Json out = Json::array();
+  for (const auto& c : cases) out.push_back(pictures_to_json(c));
+  return out;
+}
+
+/// Everything a case file could use to break out of its place.
+CaseResult hostile_case() {
+  CaseResult c = sample_case();
+  c.experiment.what =
+      "</script><script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\"> & "
+      "@results@";
+  c.experiment.cite = "<!-- <script> --> \xff not UTF-8";
+  c.experiment.text = "what = '</script>'\n";
+  c.runs.back().message = "<b id=injected>1 < 2</b>";
+  c.checks[0].where = "</td></table><b id=injected>";
+  return c;
+}
+
+std::string slurp(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++n;
+  return n;
+}
+
+/// Text between `from` and the next `to`.
+std::string between(const std::string& text, const std::string& from, const std::string& to) {
+  const auto begin = text.find(from);
+  if (begin == std::string::npos) return "";
+  return text.substr(begin + from.size(), text.find(to, begin) - begin - from.size());
+}
+
+class Report : public testing::Test {
+ protected:
+  std::string write(const std::vector<CaseResult>& cases) {
+    write_report(file, document(cases), pictures(cases));
+    return slurp(file);
+  }
+  void TearDown() override { std::filesystem::remove(file); }
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) /
+      ("springproof_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".html");
+};
+
+TEST_F(Report, CarriesItsLibrariesOnce) {
+  const std::string page = write({sample_case()});
+  EXPECT_EQ(count(page, "Chart.js v3"), 1u);
+  EXPECT_EQ(count(page, "three.js authors"), 1u);
+  EXPECT_EQ(count(page, "exports.OrbitControls"), 1u);
+  EXPECT_GT(page.size(), 1'000'000u);
+  EXPECT_LT(page.size(), 1'500'000u);
+}
+
+TEST_F(Report, RefersToNothingOutside) {
+  const std::string page = write({hostile_case()});
+  const std::string markup =
+      std::regex_replace(page.substr(0, page.find("<script")), std::regex("<style>[^]*?</style>"), "");
+  EXPECT_EQ(markup.find("://"), std::string::npos) << "the markup names an address";
+  EXPECT_EQ(count(page, "<script src"), 0u);
+  EXPECT_EQ(between(page, "<style>", "</style>").find("url("), std::string::npos);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos) << "the browser is not told to refuse the network";
+}
+
+/// The rows of a case as they are in results.json, from the page's table of them.
+Json unpacked(Json rows) {
+  Json out = Json::array();
+  for (const Json& line : rows.at("values")) {
+    Json row = {{"case_name", "compress"}};
+    for (std::size_t i = 0; i < line.size(); ++i) row[rows.at("columns").at(i).get<std::string>()] = line.at(i);
+    out.push_back(row);
+  }
+  return out;
+}
+
+TEST_F(Report, HoldsTheDocumentsAsTheyWere) {
+  const std::vector<CaseResult> cases = {sample_case()};
+  const std::string page = write(cases);
+  Json held = Json::parse(between(page, "id=\"results-data\">", "</script>"));
+  held["cases"][0]["rows"] = unpacked(held["cases"][0]["rows"]);
+  EXPECT_EQ(held, document(cases));
+  EXPECT_EQ(Json::parse(between(page, "id=\"pictures-data\">", "</script>")), pictures(cases));
+}
+
+TEST_F(Report, TextCannotLeaveItsPlace) {
+  const std::string page = write({hostile_case()}), plain = write({sample_case()});
+  EXPECT_EQ(count(page, "</script"), count(plain, "</script"));
+  EXPECT_EQ(count(page, "<script"), count(plain, "<script"));
+  const Json data = Json::parse(between(page, "id=\"results-data\">", "</script>"));
+  EXPECT_EQ(data.at("cases").at(0).at("experiment").at("what"), hostile_case().experiment.what);
+  EXPECT_EQ(page.find("<b id=injected"), std::string::npos) << "in the head, which is written as HTML";
+}
+
+TEST_F(Report, TheVerdictNeedsNoScript) {
+  const std::string page = write({sample_case()});
+  const std::string head = page.substr(0, page.find("<script"));
+  EXPECT_NE(head.find("displacement within 2 % of FEM for ν from 0.25 to 0.4 (worst: compress at ν = 0.4)"),
+            std::string::npos);
+  EXPECT_NE(head.find("compress: emsm at ν = 0.4, 2×2×2 cells: diverged at load 0.3"), std::string::npos);
+  EXPECT_NE(head.find("1 hold"), std::string::npos);
+  EXPECT_NE(head.find("1 fail"), std::string::npos);
+}
+
+TEST_F(Report, AFolderThatIsNotThereIsAnError) {
+  EXPECT_THROW(write_report("no_such_folder/report.html", document({}), Json::array()), std::runtime_error);
+}
+
+// ---- in a browser, where there is one
+
+std::string output_of(const std::string& command) {
+  std::string out;
+  if (FILE* pipe = popen(command.c_str(), "r")) {
+    char buffer[4096];
+    while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
+    pclose(pipe);
+  }
+  return out;
+}
+
+class ReportInBrowser : public Report {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v chromium > /dev/null 2>&1") != 0) GTEST_SKIP() << "chromium is not installed";
+  }
+  void TearDown() override {
+    std::filesystem::remove_all(profile);
+    Report::TearDown();
+  }
+  /// The page as the browser holds it after the scripts have run, and its console.
+  std::string open(const std::vector<CaseResult>& cases, const std::string& fragment = "") {
+    write(cases);
+    return visit(fragment);
+  }
+  std::string visit(const std::string& fragment) {
+    return output_of(
+        "timeout 120 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+        "--enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking "
+        "--disable-component-update --disable-sync --enable-logging=stderr --virtual-time-budget=60000 "
+        "--window-size=1400,7500 --user-data-dir='" +
+        profile.string() + "' --dump-dom 'file://" + file.string() + fragment + "' 2>&1");
+  }
+  const std::filesystem::path profile = file.string() + ".profile";
+};
+
+void expect_no_complaint(const std::string& dom) {
+  ASSERT_NE(dom.find("</html>"), std::string::npos) << dom.substr(0, 2000);
+  EXPECT_EQ(dom.find("could not be drawn: "), dom.find("could not be drawn: ${")) << "a section was not drawn";
+  EXPECT_EQ(dom.find(":CONSOLE"), std::string::npos) << dom.substr(dom.find(":CONSOLE"), 300);
+}
+
+TEST_F(ReportInBrowser, ShowsTheCase) {
+  const std::string dom = open({sample_case()}, "#case-golec_2019-compress");
+  expect_no_complaint(dom);
+  const std::string body = dom.substr(dom.find("<main>"), dom.find("</main>") - dom.find("<main>"));
+  EXPECT_EQ(count(body, "<canvas"), 4u) << "three figures and the deformed shapes";
+  EXPECT_EQ(count(body, "class=\"panel\""), 3u) << "undeformed, FEM and hybmss";
+  EXPECT_NE(body.find("<td class=\"number tint2\">2.0 %<small>ν = 0.4</small>"), std::string::npos) << "table of cases";
+  EXPECT_NE(body.find("z_max: moved by -0.05 m in z"), std::string::npos) << "problem";
+  EXPECT_NE(body.find("<td class=\"number\">2.60</td>"), std::string::npos) << "observed order of the reference";
+  EXPECT_NE(body.find("<td class=\"number\">≤ 1 %</td>"), std::string::npos) << "expectation";
+  EXPECT_NE(body.find("force on z_min, magnitude [N]"), std::string::npos) << "results";
+  EXPECT_NE(body.find("Measures that vanish here or repeat another in size: 5"), std::string::npos)
+      << "both x components, z of z_min, magnitude and z of z_max";
+  EXPECT_NE(body.find("510.00<small>+2.0 %</small>"), std::string::npos) << "value and its error";
+  EXPECT_NE(body.find("explicit run, not settled"), std::string::npos) << "published value";
+}
+
+/// Springs that are cheaper to 3 %, and elements that alone reach 1 %.
+CaseResult timed_case() {
+  CaseResult c;
+  c.experiment = sample_experiment();
+  c.experiment.cost = true;
+  for (int n : {1, 2}) {
+    const double tenfold = n == 1 ? 1 : 10;
+    c.runs.push_back({"hybmss",
+                      "msm",
+                      0.25,
+                      {n, n, n},
+                      "linear",
+                      true,
+                      "",
+                      "CG",
+                      9,
+                      1e-9,
+                      0.0008 * tenfold,
+                      long(100 * tenfold),
+                      1,
+                      0.0002 * tenfold});
+    c.runs.push_back({"fem_q2",
+                      "fem",
+                      0.25,
+                      {n, n, n},
+                      "linear",
+                      true,
+                      "",
+                      "CG",
+                      9,
+                      1e-9,
+                      0.008 * tenfold,
+                      long(1000 * tenfold),
+                      1,
+                      0.002 * tenfold});
+    for (const auto& [model, error] : {std::pair("hybmss", 0.2), std::pair("fem_q2", 0.05)})
+      c.rows.push_back({"compress",
+                        "linear",
+                        model,
+                        0.25,
+                        {n, n, n},
+                        "displacement_error",
+                        error / tenfold,
+                        "1",
+                        {},
+                        0.001,
+                        error / tenfold});
+  }
+  return c;
+}
+
+TEST_F(ReportInBrowser, SetsErrorsAgainstCost) {
+  const std::string dom = open({timed_case()});
+  expect_no_complaint(dom);
+  const std::string part = dom.substr(dom.find("<section id=\"cost\">"),
+                                      dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  EXPECT_EQ(count(part, "<canvas"), 2u) << "against time, against unknowns";
+  // On straight lines in logarithms: 1 ms * 20/3 at 100 * 20/3 unknowns, and 10 ms * 5/3.
+  EXPECT_NE(part.find("hybmss</span><small>6.7 ms, 670 unknowns</small>"), std::string::npos) << "3 %";
+  EXPECT_NE(part.find("fem_q2: 17 ms, 1700 unknowns</small>"), std::string::npos) << "3 %, beside it";
+  EXPECT_NE(part.find("fem_q2</span><small>50 ms, 5000 unknowns</small><small>no springs do</small>"),
+            std::string::npos)
+      << "1 %";
+  EXPECT_NE(part.find("<td>–</td></tr>"), std::string::npos) << "0.3 %: no one does";
+}
+
+TEST_F(ReportInBrowser, SetsReactionsBesideDisplacementsWhereASupportMoves) {
+  CaseResult c = timed_case();
+  for (int n : {1, 2})
+    for (const auto& [model, error] : {std::pair("hybmss", 0.8), std::pair("fem_q2", 0.4)})
+      c.rows.push_back(
+          {"compress", "linear", model, 0.25, {n, n, n}, "reaction_error", error / n, "1", 0.0, 0.001, error / n});
+  const std::string dom = open({c});
+  expect_no_complaint(dom);
+  const std::string part = dom.substr(dom.find("<section id=\"cost\">"),
+                                      dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  EXPECT_NE(part.find("<small>displacement</small>"), std::string::npos);
+  EXPECT_NE(part.find("<small>reactions</small></td><td>0.25</td><td>–</td>"), std::string::npos)
+      << "20 % and 40 %: none to 10 %";
+  const std::string table = dom.substr(dom.find("<section id=\"cases\">"),
+                                       dom.find("<section id=\"poisson\">") - dom.find("<section id=\"cases\">"));
+  EXPECT_NE(table.find("<small>reactions 40 %</small>"), std::string::npos);
+}
+
+TEST_F(ReportInBrowser, NamesNoModelOffItsOwnPoissonsRatioAsCheapest) {
+  CaseResult c = timed_case();
+  c.own_poisson_ratios["hybmss"] = 0.3;
+  const std::string dom = open({c});
+  expect_no_complaint(dom);
+  const std::string part = dom.substr(dom.find("<section id=\"cost\">"),
+                                      dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  EXPECT_EQ(part.find("hybmss</span><small>6.7 ms"), std::string::npos);
+  EXPECT_NE(part.find("fem_q2</span><small>17 ms, 1700 unknowns</small><small>no springs do</small>"),
+            std::string::npos);
+}
+
+TEST_F(ReportInBrowser, StatesHowFarTheReferenceIsDeformed) {
+  CaseResult c = sample_case();
+  c.deformations = {{0.25, 0.02, 3.5}, {0.4, 0.08, 6.5}};
+  const std::string dom = open({c}, "#case-golec_2019-compress");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("<td class=\"number\">2.0 %</td><td class=\"number\">3.5°</td>"), std::string::npos);
+  EXPECT_NE(dom.find("<td class=\"number coarse\">8.0 %</td><td class=\"number coarse\">6.5°</td>"), std::string::npos);
+  EXPECT_NE(dom.find("<p class=\"amber\">compress: principal strains of 8 % and rotations of 6.5°"), std::string::npos);
+}
+
+TEST_F(ReportInBrowser, WithoutTimesThereIsNoCost) {
+  EXPECT_NE(open({sample_case()}).find("<section id=\"cost\" hidden"), std::string::npos);
+}
+
+/// The sample with a smooth surface, tetrahedra, and the parts of its errors.
+CaseResult embedded_case() {
+  CaseResult c = sample_case();
+  for (const char* model : {"fem", "hybmss"}) {
+    Picture p = sample_picture(model, 0.4);
+    p.surface = "smooth";
+    p.displacement = {0, 0, 0, 0.1f, 0, 0, 0.1f, 0.05f, 0, 0, 0, 0.02f};  // many colours
+    p.quads = {0, 1, 2, -1, 0, 2, 3, -1};
+    c.pictures.push_back(p);
+  }
+  c.rows.push_back(
+      {"compress", "linear", "fem_p1", 0.4, {812, 0, 0}, "displacement_error", 0.01, "1", {}, 0.001, 0.01});
+  return c;
+}
+
+Json some_splits() {
+  Json splits = Json::array();
+  for (double nu : {0.25, 0.4})
+    for (int n : {1, 2})
+      splits.push_back({{"model", "hybmss"},
+                        {"poisson_ratio", nu},
+                        {"cells", {n, n, n}},
+                        {"measure", "volume_change"},
+                        {"unit", "1"},
+                        {"total", 0.03 / n},
+                        {"model_error", -0.01 / n},
+                        {"discretisation_error", 0.025 / n},
+                        {"geometry_error", 0.015 / n},
+                        {"uncertainty", 0.001},
+                        {"voxel_edge_m", 1.0 / n}});
+  return splits;
+}
+
+class FiguresInBrowser : public ReportInBrowser {
+ protected:
+  /// The page of embedded_case() with the parts of its errors and a script that runs after its own.
+  std::string open_with(const std::string& script, const std::string& fragment = "") {
+    Json results = document({embedded_case()});
+    results["cases"][0]["splits"] = some_splits();
+    write_report(file, results, pictures({embedded_case()}));
+    std::string page = slurp(file);
+    page.insert(page.rfind("</body>"), "<script>" + script + "</script>");
+    std::ofstream(file, std::ios::binary) << page;
+    return visit(fragment);
+  }
+};
+
+// Colours of a canvas of the page, of any kind, as numbers; and what a test wants to say.
+const std::string tools = R"js(
+  const pixelsOf = canvas => {
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const ctx = copy.getContext('2d');
+    ctx.drawImage(canvas, 0, 0);
+    return new Uint32Array(ctx.getImageData(0, 0, copy.width, copy.height).data.buffer);
+  };
+  const coloursOf = canvas => canvas.width * canvas.height === 0 ? 0 : new Set(pixelsOf(canvas)).size;
+  const say = text => document.body.append(Object.assign(document.createElement('p'), {className: 'said', textContent: text}));
+)js";
+
+TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
+  const std::string dom = open_with(tools + R"js(
+    // Frames come when the machine has time for them, timers when the browser's own clock says so: look until all are drawn.
+    const look = left => {
+      const canvases = [...document.querySelectorAll('section:not([hidden]) canvas')];
+      if (left > 0 && canvases.some(canvas => coloursOf(canvas) <= 20)) return setTimeout(look, 100, left - 1);
+      for (const canvas of canvases) say(canvas.closest('section').id + (coloursOf(canvas) > 20 ? ' drawn' : ' blank'));
+    };
+    setTimeout(look, 1000, 500);
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_EQ(count(dom, "<p class=\"said\">poisson drawn"), 2u);
+  EXPECT_EQ(count(dom, "<p class=\"said\">convergence drawn"), 1u);
+  EXPECT_EQ(count(dom, "<p class=\"said\">splits drawn"), 2u) << "against nu, against the voxel edge";
+  EXPECT_EQ(count(dom, "<p class=\"said\">shapes drawn"), 1u);
+  EXPECT_EQ(count(dom, " blank</p>"), 0u);
+  EXPECT_EQ(count(dom, "<button type=\"button\" class=\"png\""), 6u) << "one per figure";
+  EXPECT_NE(dom.find("<option value=\"812 tets\">812 tets</option>"), std::string::npos);
+  EXPECT_NE(dom.find("the springs against finite elements (eight-node bricks) on the same voxels"), std::string::npos);
+  EXPECT_NE(dom.find("<b>1.5000</b>"), std::string::npos) << "total of the finer cells in percent, in the table";
+}
+
+TEST_F(FiguresInBrowser, OneDragTurnsAllBodies) {
+  const std::string dom = open_with(tools + R"js(
+    const viewer = document.querySelector('.viewer'), canvas = viewer.querySelector('canvas');
+    const panels = () => [...viewer.querySelectorAll('.panel')].map(panel => {
+      const all = viewer.getBoundingClientRect(), box = panel.getBoundingClientRect(), scale = canvas.width / all.width;
+      const copy = document.createElement('canvas');
+      [copy.width, copy.height] = [box.width * scale, (box.height - 46) * scale];
+      const ctx = copy.getContext('2d');
+      ctx.drawImage(canvas, -(box.left - all.left) * scale, -(box.top + 46 - all.top) * scale);
+      return ctx.getImageData(0, 0, copy.width, copy.height).data.join();
+    });
+    const mouse = (target, type, x) => target.dispatchEvent(new MouseEvent(type, {bubbles: true, button: 0, clientX: x, clientY: 300}));
+    setTimeout(() => {
+      const before = panels();
+      mouse(viewer, 'mousedown', 300);
+      mouse(document, 'mousemove', 380);
+      mouse(document, 'mouseup', 380);
+      setTimeout(() => panels().forEach((now, i) => say('panel ' + (now === before[i] ? 'still' : 'turned'))), 500);
+    }, 2000);
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_EQ(count(dom, "<p class=\"said\">panel turned"), 3u);
+  EXPECT_EQ(count(dom, "<p class=\"said\">panel still"), 0u);
+}
+
+TEST_F(FiguresInBrowser, PicturesShowEverySurfaceAndColouring) {
+  const PngPage page = png_page(open_with("", "#png=0&only=shapes"));
+  EXPECT_EQ(page.failed, std::vector<std::string>());
+  std::set<std::string> names;
+  for (const PngFile& f : page.files) {
+    names.insert(f.name);
+    EXPECT_GT(f.bytes.size(), 10'000u) << f.name;
+  }
+  std::set<std::string> expected;
+  for (const char* view : {"nu0.25", "nu0.4", "smooth-nu0.4"})
+    for (const char* colouring : {"displacement", "difference", "volume_change"})
+      expected.insert(std::string("golec_2019-compress-shapes-") + colouring + "-" + view + ".png");
+  EXPECT_EQ(names, expected);
+}
+
+TEST_F(FiguresInBrowser, PicturesShowThePartsOfTheErrors) {
+  const PngPage page = png_page(open_with("", "#png=0&only=split"));
+  EXPECT_EQ(page.failed, std::vector<std::string>());
+  std::set<std::string> names;
+  for (const PngFile& f : page.files) names.insert(f.name);
+  const std::string stem = "golec_2019-compress-split-";
+  EXPECT_EQ(names,
+            (std::set<std::string>{stem + "volume_change-hybmss.png", stem + "volume_change-nu0.25.png",
+                                   stem + "volume_change-nu0.4.png", stem + "edge-volume_change-hybmss-nu0.25.png",
+                                   stem + "edge-volume_change-hybmss-nu0.4.png"}));
+}
+
+TEST_F(ReportInBrowser, HostileTextIsOnlyText) {
+  const std::string dom = open({hostile_case()}, "#case-golec_2019-compress");
+  expect_no_complaint(dom);
+  EXPECT_EQ(dom.find("<title>owned"), std::string::npos);
+  EXPECT_EQ(dom.find("<img"), dom.find("<img src=x onerror=\\\"")) << "an element was made of text";
+  EXPECT_EQ(dom.find("<b id=\"injected\""), std::string::npos);
+}
+
+TEST_F(ReportInBrowser, NothingRunIsSaidSo) {
+  const std::string dom = open({});
+  expect_no_complaint(dom);
+  EXPECT_GE(count(dom, "No model was compared."), 3u);
+  EXPECT_NE(dom.find("No verification case was run."), std::string::npos);
+}
+
+/// A benchmark with two elements, and an order.
+CaseResult verification_case() {
+  CaseResult c;
+  c.experiment.name = "plate";
+  c.experiment.folder = "verification";
+  c.experiment.exact = "trigonometric";
+  c.experiment.body.geo = "block.geo";
+  c.experiment.body.size = {1, 1, 1};
+  c.experiment.body.cells = {{1, 1, 1}};
+  c.experiment.materials = {{1e4, 0.25, 1000}};
+  c.experiment.reference.elements = {"q2", "p1"};
+  c.experiment.measures = {"stress", "displacement_error"};
+  const std::vector<Cells> grids = {{4, 4, 4}, {8, 8, 8}, {16, 16, 16}};
+  for (const char* element : {"q2", "p1"}) {
+    c.references.push_back(
+        {0.25, "stress.D.yy", "Pa", grids, {-5e6, -5.3e6, -5.37e6}, 2.1, -5.39e6, 1e4, "Richardson", element});
+    c.references.push_back(
+        {0.25, "displacement_error", "1", grids, {0.08, 0.01, 0.00125}, 3.0, 0.00125, 0, "", element});
+    c.rows.push_back({"plate",
+                      "linear",
+                      std::string("fem_") + element,
+                      0.25,
+                      grids[2],
+                      "stress.D.yy",
+                      -5.37e6,
+                      "Pa",
+                      -5.38e6,
+                      {},
+                      1e4});
+  }
+  c.checks.push_back(
+      {"fem", 0.25, {1, 1, 1}, "stress.D.yy", "Pa", "published", -5.38e6, -5.39e6, 5.38e4, 1e4, Verdict::pass, "LE10"});
+  c.checks.push_back({"fem_q2",
+                      0.25,
+                      {1, 1, 1},
+                      "displacement_error_order",
+                      "1",
+                      "analytic",
+                      2.9,
+                      3.0,
+                      0,
+                      0.0,
+                      Verdict::pass,
+                      "theory",
+                      true});
+  c.pictures.push_back(sample_picture("fem", 0.25));
+  return c;
+}
+
+TEST_F(ReportInBrowser, ShowsTheVerificationOfTheReference) {
+  const std::string dom = open({sample_case(), verification_case()}, "#case-verification-plate");
+  expect_no_complaint(dom);
+  const auto start = dom.find("<section id=\"verification\">"), end = dom.find("<section id=\"pages\">");
+  const std::string section = dom.substr(start, end - start);
+  EXPECT_NE(section.find("stress at D, yy [Pa]"), std::string::npos);
+  EXPECT_NE(section.find("+0.19 %"), std::string::npos) << "limit against target";
+  EXPECT_NE(section.find("published, LE10"), std::string::npos);
+  EXPECT_EQ(count(section, "<td title=\"P1 tetrahedra\">P1</td>"), 1u) << "its order, which nothing is expected of";
+  EXPECT_NE(section.find("shown, not judged"), std::string::npos);
+  EXPECT_NE(section.find("<b>3.00</b>"), std::string::npos);
+  const std::string page = dom.substr(end);
+  EXPECT_NE(page.find("≥ 2.9"), std::string::npos);
+  const std::string cases = dom.substr(dom.find("<section id=\"cases\">"),
+                                       dom.find("<section id=\"poisson\">") - dom.find("<section id=\"cases\">"));
+  EXPECT_EQ(cases.find("case-verification-plate"), std::string::npos)
+      << "a case without models is no row of the models' table";
+}
+
+TEST_F(ReportInBrowser, VerificationAloneIsAReport) {
+  const std::string dom = open({verification_case()}, "#case-verification-plate");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("Orders of convergence"), std::string::npos);
+  EXPECT_EQ(count(dom, "class=\"panel\""), 2u) << "the body at rest and deformed";
+  for (const char* section : {"cases", "poisson", "convergence"})
+    EXPECT_NE(dom.find(std::string("<section id=\"") + section + "\" hidden"), std::string::npos)
+        << section << " has nothing to say";
+  EXPECT_EQ(dom.find("<section id=\"shapes\" hidden"), std::string::npos);
+}
+
+TEST_F(ReportInBrowser, CaseWithoutResultsIsShown) {
+  CaseResult c;
+  c.experiment = sample_experiment();
+  c.runs.push_back({"hybmss", "msm", 0.25, {2, 2, 2}, "linear", false, "singular", "CG", 0, 0, 0, 0});
+  const std::string dom = open({c}, "#case-golec_2019-compress");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("1 without result"), std::string::npos);
+  EXPECT_NE(dom.find("No run of this case gave a result."), std::string::npos);
+}
+
+}  // namespace
+}  // namespace springproof

@@ -1,0 +1,143 @@
+// What is said of a run under way: lines, times, what is left.
+#include "comparisons/run/status.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "comparisons/run/time_left.h"
+#include "meshes/mesh.h"
+
+namespace springproof {
+namespace {
+
+const Activity solving{"[3/8] beam  nu0.3", "finite elements 2 of 5, q2 on 12 x 12 x 12 cells",
+                       "46875 unknowns, iteration 12", 42, 21};
+const Activity waiting{"[4/8] cube  nu0.3", "hybmss on 10 x 10 x 10 cells", "", 3, 1};
+
+TEST(Status, TimesAreAsExactAsTheyAreWorth) {
+  EXPECT_EQ(time_words(0.4), "0 s");
+  EXPECT_EQ(time_words(99.4), "99 s");
+  EXPECT_EQ(time_words(99.6), "2 min");
+  EXPECT_EQ(time_words(59 * 60), "59 min");
+  EXPECT_EQ(time_words(3600 * 2 - 20), "2 h");
+  EXPECT_EQ(time_words(4700), "78 min");
+  EXPECT_EQ(time_words(7900), "2 h 10 min");
+}
+
+TEST(Status, LiveLineSaysPartPhaseDetailTimeAndWhatIsLeft) {
+  EXPECT_EQ(live_line({solving}, 130.0, 200),
+            "[3/8] beam  nu0.3: finite elements 2 of 5, q2 on 12 x 12 x 12 cells, 46875 unknowns, iteration 12, 42 s, "
+            "about 2 min left");
+  EXPECT_EQ(live_line({waiting}, {}, 200), "[4/8] cube  nu0.3: hybmss on 10 x 10 x 10 cells, 3 s");
+  EXPECT_EQ(live_line({}, 3.0, 200), "");
+}
+
+TEST(Status, SeveralPartsAreOneLine) {
+  const std::string line = live_line({solving, waiting, waiting}, 20.0, 200);
+  EXPECT_TRUE(line.starts_with("[3/8] beam")) << line;
+  EXPECT_TRUE(line.ends_with(", 42 s, about 20 s left (and 2 more)")) << line;
+}
+
+TEST(Status, LiveLineIsCutToTheTerminalButNotItsEnd) {
+  for (const std::size_t width : {40u, 60u, 80u}) {
+    const std::string line = live_line({solving}, 130.0, width);
+    EXPECT_EQ(line.size(), width);
+    EXPECT_TRUE(line.ends_with("..., 42 s, about 2 min left")) << line;
+  }
+  for (std::size_t width = 0; width < 40; ++width) EXPECT_LE(live_line({solving, waiting}, 130.0, width).size(), width);
+}
+
+TEST(Status, LettersOfSeveralBytesAreCutWhole) {
+  Activity greek = waiting;
+  greek.title = "\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb";
+  EXPECT_EQ(live_line({greek}, {}, 14), "\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb..., 3 s");
+}
+
+TEST(Status, PhaseLineSaysHowLongItHasTaken) {
+  EXPECT_EQ(phase_line(waiting, 600.0),
+            "  [4/8] cube  nu0.3: hybmss on 10 x 10 x 10 cells (1 s so far, about 10 min left)");
+}
+
+TEST(TimeLeft, StartsFromWhatIsExpected) {
+  const TimeLeft two_at_once({10, 20, 30}, 2);
+  EXPECT_DOUBLE_EQ(*two_at_once.at(0), 30);  // not less than the longest
+  const TimeLeft one_at_a_time({10, 20, 30}, 1);
+  EXPECT_DOUBLE_EQ(*one_at_a_time.at(0), 60);
+}
+
+TEST(TimeLeft, LearnsFromThePartsThatAreDone) {
+  TimeLeft left({10, 20, 30}, 1);
+  left.started(0, 0);
+  EXPECT_DOUBLE_EQ(*left.at(4), 56);
+  left.finished(0, 5);  // twice as fast as expected
+  EXPECT_DOUBLE_EQ(*left.at(5), 25);
+  left.started(1, 5);
+  EXPECT_DOUBLE_EQ(*left.at(6), 24);
+}
+
+TEST(TimeLeft, APartThatTakesLongerSlowsTheRest) {
+  TimeLeft left({10, 20}, 1);
+  left.started(0, 0);
+  EXPECT_DOUBLE_EQ(*left.at(30), 60);
+  left.finished(0, 30);
+  left.started(1, 30);
+  EXPECT_FALSE(left.at(90));
+}
+
+TEST(TimeLeft, WhatIsKeptFromBeforeTellsNothing) {
+  TimeLeft left({10, 20}, 1);
+  left.started(0, 0);
+  left.kept(0);
+  EXPECT_DOUBLE_EQ(*left.at(0), 20);
+}
+
+/// What the code above `scope` writes to standard error, which is no terminal here.
+template <class Scope>
+std::string errors_of(const Scope& scope) {
+  testing::internal::CaptureStderr();
+  scope();
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Status, IsSilentOnShortPhases) {
+  EXPECT_EQ(errors_of([] {
+              Status status;
+              const Status::Working working(status, "cube");
+              progress::phase("hybmss");
+              std::this_thread::sleep_for(std::chrono::milliseconds(500));
+            }),
+            "");
+}
+
+TEST(Status, PrintsWhatIsToStay) {
+  EXPECT_EQ(errors_of([] {
+              Status status(true);
+              status.print("done");
+            }),
+            "done\n");
+}
+
+PreparedCase block_case(int reference, double nu) {
+  PreparedCase prepared;
+  prepared.experiment.materials = {{1e4, nu, 1000}};
+  prepared.experiment.models = {{"hybmss", {}, "hybmss", {}}};
+  prepared.models = {resolve(prepared.experiment.models[0])};
+  prepared.meshes = {std::make_shared<Mesh>(block_mesh({1, 1, 1}, {4, 4, 4}))};
+  prepared.reference_cells = {reference, reference, reference};
+  return prepared;
+}
+
+TEST(ExpectedSeconds, GrowWithTheReferenceTheRatioAndTheStrain) {
+  const auto seconds = [](const PreparedCase& p) { return expected_seconds(p, p.experiment.materials[0]); };
+  PreparedCase fine = block_case(32, 0.3);
+  EXPECT_GT(seconds(fine), 5 * seconds(block_case(16, 0.3)));
+  EXPECT_GT(seconds(block_case(32, 0.499)), 2 * seconds(fine));
+  const double linear = seconds(fine);
+  fine.experiment.kinematics = "hencky";
+  EXPECT_GT(seconds(fine), 10 * linear);
+}
+
+}  // namespace
+}  // namespace springproof

@@ -1,0 +1,211 @@
+// A body of voxels: its loads are those of the true body, whatever carries them; what cannot be run is refused by name.
+#include "comparisons/run/voxel_body.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "meshes/volume.h"
+#include "msm/embedding/boundary.h"
+#include "support/voxel_case.h"
+
+namespace springproof {
+namespace {
+
+using namespace test;
+
+const PreparedCase& loaded_ball() {
+  static const PreparedCase ball = prepared_ball(300, every_load, "\"hybmss\"", "elements = []\nedge_m = 0.03");
+  return ball;
+}
+
+/// Of a load on the finest tetrahedra, by the middles of their facets and cells.
+Wrench wrench_on_the_body(const Load& load, const Mesh& body, const Vec3& about) {
+  Wrench w{Vec3::Zero(), Vec3::Zero(), about};
+  const auto add = [&](const Vec3& at, const Vec3& force) {
+    w.force += force;
+    w.moment += (at - about).cross(force);
+  };
+  const auto X = [&](int n) -> Vec3 { return body.nodes.row(n).transpose(); };
+  const auto each_facet = [&](const std::string& on, const auto& force) {
+    for (const auto& f : patch(body, on).facets) {
+      const Vec3 area = (X(f[1]) - X(f[0])).cross(X(f[2]) - X(f[0])) / 2;
+      add((X(f[0]) + X(f[1]) + X(f[2])) / 3, force(area));
+    }
+  };
+  if (const auto* t = std::get_if<Traction>(&load))
+    each_facet(t->on, [&](const Vec3& a) -> Vec3 { return a.norm() * t->traction; });
+  if (const auto* q = std::get_if<Pressure>(&load))
+    each_facet(q->on, [&](const Vec3& a) -> Vec3 { return -q->pressure * a; });
+  if (const auto* f = std::get_if<PatchForce>(&load)) {
+    double area = 0;
+    each_facet(f->on, [&](const Vec3& a) -> Vec3 {
+      area += a.norm();
+      return Vec3::Zero();
+    });
+    each_facet(f->on, [&](const Vec3& a) -> Vec3 { return a.norm() / area * f->force; });
+  }
+  if (const auto* g = std::get_if<Gravity>(&load)) {
+    const Eigen::VectorXd volumes = cell_volumes(body, body.nodes);
+    for (std::size_t c = 0; c < body.tetrahedra.size(); ++c) {
+      const auto& t = body.tetrahedra[c];
+      add((X(t[0]) + X(t[1]) + X(t[2]) + X(t[3])) / 4, 1000 * volumes[static_cast<Eigen::Index>(c)] * g->acceleration);
+    }
+  }
+  if (const auto* p = std::get_if<PointForce>(&load)) add(p->at, p->force);
+  return w;
+}
+
+void expect_wrench(const NodalVectors& force, const NodalVectors& X, const Wrench& expected) {
+  Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
+  for (Eigen::Index n = 0; n < force.rows(); ++n) {
+    const Vec3 f = force.row(n).transpose(), x = X.row(n).transpose();
+    total += f;
+    moment += (x - expected.about).cross(f);
+  }
+  const double size = 0.2;
+  EXPECT_LE((total - expected.force).norm(), 1e-12 * expected.force.norm());
+  EXPECT_LE((moment - expected.moment).norm(), 1e-12 * size * expected.force.norm());
+}
+
+class LoadsOfTheBall : public testing::TestWithParam<std::size_t> {
+ protected:
+  const PreparedCase& ball = loaded_ball();
+  const Load& load = ball.experiment.loads[1 + GetParam()];
+  const Mesh& voxels = *ball.meshes.front();
+  const Vec3 about{0.3, -0.1, 0.05};
+  const Wrench expected = wrench_on_the_body(load, *ball.tetrahedra.back(), about);
+};
+
+TEST_P(LoadsOfTheBall, AreThoseOfTheBodyOnVoxels) {
+  ASSERT_GT(expected.force.norm(), 1e-3);
+  expect_wrench(transfer({load}, voxels, 1000, Kinematics::linear).external, voxels.nodes, expected);
+}
+
+TEST_P(LoadsOfTheBall, AreThoseOfTheBodyInEveryModel) {
+  for (const ModelRow& row : model_table()) {
+    if (row.topology == Topology::hexagonal) continue;  // planar
+    SCOPED_TRACE(row.name);
+    ModelChoice choice;
+    choice.name = row.name;
+    const EmbeddedModel built = build_embedded(resolve(choice), voxels, {1e4, 0.25, 1000}, ball.regions.front().get());
+    const Network& network = built.model.network;
+    expect_wrench(transfer({load}, voxels, built.embedding, network, 1000, Kinematics::linear).external, network.X,
+                  expected);
+  }
+}
+
+const char* const load_names[] = {"traction", "pressure", "patch_force", "gravity", "point_force"};
+INSTANTIATE_TEST_SUITE_P(Kinds, LoadsOfTheBall, testing::Values(0, 1, 2, 3, 4),
+                         [](const auto& i) { return std::string(load_names[i.param]); });
+
+TEST(VoxelBody, PressureOnAClosedSurfacePushesNowhere) {
+  const PreparedCase ball = prepared_ball(100, "[[load]]\non = \"surface\"\npressure_Pa = 1000", "\"hybmss\"",
+                                          "elements = []\nedge_m = 0.03");
+  const NodalVectors f = transfer({ball.experiment.loads[1]}, *ball.meshes[0], 1000, Kinematics::linear).external;
+  EXPECT_LE(f.colwise().sum().norm(), 1e-12 * f.cwiseAbs().sum());
+  EXPECT_GT(f.cwiseAbs().sum(), 1000 * 4 * 0.01);
+}
+
+TEST(VoxelBody, LinearFieldsComeBackAtEveryLatticeNode) {
+  const PreparedCase ball = prepared_ball(120, "", "\"hybmss\"", "edge_m = 0.03");
+  Eigen::Matrix3d G;
+  G << 1, 2, -3, 4, -5, 6, 7, 8, 9;
+  const auto field = [&](const NodalVectors& X) -> NodalVectors {
+    return (X * G.transpose()).rowwise() + Eigen::RowVector3d(0.3, -2, 1);
+  };
+  NodalVectors nodes = ball.meshes[0]->nodes;
+  const NodalVectors u = at_lattice_nodes(ball, field(ball.body_points));
+  ASSERT_EQ(u.rows(), nodes.rows());
+  EXPECT_LE((u - field(nodes)).cwiseAbs().maxCoeff(), 1e-12);
+  const auto outside = std::count_if(ball.body_samples.begin(), ball.body_samples.end(),
+                                     [](const BodySample& s) { return s.within >= 0; });
+  EXPECT_GT(outside, nodes.rows() / 10);
+}
+
+TEST(VoxelBody, ProbesOnTheTrueSurfaceAreTaken) {
+  std::string text = ball_case(100, "", "\"hybmss\"", "elements = []\nedge_m = 0.03");
+  const std::string inside = "at_m = [0.1, 0.1, 0.19]";
+  for (const char* at : {"at_m = [0.1, 0.1, 0.2]", "at_m = [0.1577, 0.1577, 0.1577]", "at_m = [0.2, 0.1, 0.1]",
+                         "at_m = [0.0293, 0.1, 0.1707]"}) {
+    std::string other = text;
+    other.replace(other.find(inside), inside.size(), at);
+    EXPECT_NO_THROW(prepare(parse_experiment(other, "ball.toml"))) << at;
+  }
+}
+
+TEST(VoxelBody, ThinPartsAreSaidToBeLost) {
+  const auto notes = [](const std::string& voxels) {
+    std::string text = ball_case(100, "", "\"hybmss\"", "elements = []\nedge_m = 0.03");
+    text.replace(text.find("voxels = 100"), 12, voxels);
+    std::string all;
+    for (const std::string& note : prepare(parse_experiment(text, "ball.toml")).notes) all += note + "\n";
+    return all;
+  };
+  // 8 cubes of 0.1 m fill the box around the ball: 6 / pi = 1.91 times its volume (1 % more, as its facets lie inside).
+  EXPECT_NE(notes("voxel_edge_m = 0.1").find("8 cubes of 0.1 m fill 1.9"), std::string::npos)
+      << notes("voxel_edge_m = 0.1");
+  EXPECT_EQ(notes("voxels = 1000").find("cubes of"), std::string::npos) << notes("voxels = 1000");
+}
+
+TEST(VoxelBody, TorquesMoveToTheTruePatch) {
+  const PreparedCase& ball = loaded_ball();
+  const Mesh& voxels = *ball.meshes[0];
+  const Vec3 from = centroid(voxels, patch(voxels, "low")),
+             to = centroid(*ball.tetrahedra.back(), patch(*ball.tetrahedra.back(), "low"));
+  ASSERT_GT((from - to).norm(), 1e-4);
+  const Vec3 force(1, 2, 3), at(0.05, 0.1, 0.02);
+  const auto moved = about_true_patches(ball, voxels, {{"low", force, (at - from).cross(force)}});
+  EXPECT_LE((moved[0].torque - (at - to).cross(force)).norm(), 1e-15);
+  EXPECT_EQ(moved[0].force, force);
+}
+
+struct Mistake {
+  const char* name;
+  const char* of;  ///< in the good case
+  const char* to;
+  const char* says;  ///< from the start of the message; "*" stands for anything
+};
+void PrintTo(const Mistake& m, std::ostream* out) { *out << m.name; }
+
+class VoxelMistakes : public testing::TestWithParam<Mistake> {};
+
+TEST_P(VoxelMistakes, AreRefusedWithTheirPlace) {
+  std::string text = ball_case(100, "[[load]]\non = \"high\"\nforce_N = [0, 0, 1]", "\"hybmss\", \"emsm_random\"",
+                               "elements = []\nedge_m = 0.03");
+  const std::string of = GetParam().of;
+  ASSERT_NE(text.find(of), std::string::npos);
+  text.replace(text.find(of), of.size(), GetParam().to);
+  std::string said = "accepted";
+  try {
+    prepare(parse_experiment(text, "ball.toml"));
+  } catch (const InputError& e) {
+    said = e.what();
+  }
+  std::string says = GetParam().says;
+  EXPECT_EQ(said.find(says.substr(0, says.find('*'))), 0u) << said;
+  if (const auto star = says.find('*'); star != std::string::npos) {
+    EXPECT_NE(said.find(says.substr(star + 1)), std::string::npos) << said;
+  }
+}
+
+const Mistake mistakes[] = {
+    {"unknown_patch", "on = \"high\"", "on = \"hihg\"", "ball.toml:18:1: load.on: *'hihg'"},
+    {"rule_selects_nothing", "[0.1, 0.1, 0.15]", "[0.1, 0.1, 0.35]", "ball.toml:8:*selects no facet"},
+    {"rule_with_a_name_that_is_taken", "name = \"high\"", "name = \"surface\"", "ball.toml:8:*surface"},
+    {"voxels_too_coarse", "voxels = 100", "voxel_edge_m = 1",
+     "ball.toml:2:7: voxels: 1 cubes of 1 m fill *times the volume of the body"},
+    {"no_voxel", "voxels = 100", "voxels = 1", "ball.toml:*"},
+    {"own_file_is_missing", "geo = \"sphere.geo\"\nsize_m = [0.2, 0.2, 0.2]", "geo = \"mine.stl\"",
+     "ball.toml:2:*mine.stl"},
+    {"size_of_a_file", "geo = \"sphere.geo\"", "geo = \"mine.stl\"", "ball.toml:3:*body.size_m"},
+    {"probe_outside", "at_m = [0.1, 0.1, 0.19]", "at_m = [0.1, 0.1, 0.3]",
+     "ball.toml:*probe 'top': at_m: the point (0.1, 0.1, 0.3) m lies outside the body, 0.1 m from its surface"},
+    {"not_held", "displacement_m = [0, 0, 0]", "displacement_m = [\"free\", \"free\", 0]", "ball.toml:*not held"},
+    {"edge_too_long", "edge_m = 0.03", "edge_m = -3", "ball.toml:*edge_m"},
+};
+INSTANTIATE_TEST_SUITE_P(Cases, VoxelMistakes, testing::ValuesIn(mistakes),
+                         [](const auto& i) { return std::string(i.param.name); });
+
+}  // namespace
+}  // namespace springproof
