@@ -11,7 +11,7 @@ plan() {
   local springproof=build/release/springproof
   case $1 in
     B=build/release | "g++ "* | ./bar) echo run ;;
-    "$springproof list" | "$springproof material "* | "$springproof homogenise "* | "$springproof export "*) echo run ;;
+    "$springproof list" | "$springproof material "* | "$springproof homogenise "* | "$springproof export "* | "$springproof describe "*) echo run ;;
     "$springproof compare silicone-bar.toml "*) echo "run --poisson-ratio 0.25" ;;
     "$springproof compare liver.toml "*) echo "run --poisson-ratio 0.45" ;;
     ./quickstart.sh | "./quickstart.sh test") echo "check it installs, builds and runs everything" ;;
