@@ -7,8 +7,8 @@ fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$program" describe man >"$work/springproof.1" || fail "describe man: status $?"
-"$program" describe bash >"$work/springproof" || fail "describe bash: status $?"
+"$program" describe man >"$work/springproof.1" || { fail "describe man: status $?"; exit 1; }
+"$program" describe bash >"$work/springproof" || { fail "describe bash: status $?"; exit 1; }
 "$program" describe rtf >"$work/out" 2>&1; [ $? -eq 2 ] || fail "describe rtf is not refused"
 page=$(sed 's/\\-/-/g; s/\\f[A-Z]//g' "$work/springproof.1")
 # shellcheck source=/dev/null
