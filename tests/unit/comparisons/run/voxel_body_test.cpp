@@ -7,6 +7,7 @@
 
 #include "meshes/volume.h"
 #include "msm/embedding/boundary.h"
+#include "msm/models.h"
 #include "support/voxel_case.h"
 
 namespace springproof {
