@@ -2,8 +2,8 @@
 # Installs what is missing (Debian 12), builds, and runs the main job:   ./quickstart.sh
 # or the tests:                                                          ./quickstart.sh test
 # Arguments of `./quickstart.sh` are passed on to `springproof compare`, those of `./quickstart.sh test` to ctest; without
-# any the first runs three experiments of Golec et al. (2019) in the linear regime, and a rabbit, at four Poisson's ratios.  Repeating either command
-# only does what is still to be done.  Each step says in a few lines how far it is; all of what it prints is in build/log/.
+# any the first runs three experiments of Golec et al. (2019) in the linear regime, and a rabbit, at four Poisson's
+# ratios.  Repeating either command only does what is still to be done.  Each step says in a few lines how far it is; all of what it prints is in build/log/.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -62,6 +62,7 @@ build() {
   step build "building with $(nproc) processes" cmake --build build/release --target "$@"
 }
 
+[ "${1:-}" != test ] || packages+=(clang-format-14)  # of the test cli.format
 install_missing
 if [ "${1:-}" = test ]; then
   shift

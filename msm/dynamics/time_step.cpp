@@ -72,7 +72,7 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged)
   for (const ForceLaw& law : model.laws) {
     if (const auto* dispersion = std::get_if<MomentumDispersion>(&law))
       add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
-    else if (cells)
+    else if (belongs_to_cells(law) || (cells && std::holds_alternative<Springs>(law)))
       continue;  // part of the cell's stiffness
     else if (std::holds_alternative<Springs>(law)) {
       std::vector<double> k;
