@@ -8,7 +8,7 @@
 
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 #include "problem/exact_field.h"
 
 namespace springproof::fem {

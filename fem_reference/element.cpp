@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::fem {
 

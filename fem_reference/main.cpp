@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/bench.h"
+#include "fem_reference/case_request.h"
 #include "fem_reference/element.h"
 #include "fem_reference/exchange.h"
 #include "fem_reference/plain_words.h"
@@ -38,39 +39,36 @@ void mesh_into(GridProblem& problem, const Request& request, const Discretisatio
     problem.refinements = grid.refinements;
     return;
   }
-  const Body& body = request.experiment.body;
-  const std::filesystem::path geo = find_geo(body, request.experiment.file);
   if (element.tetrahedra) {
-    problem.coarse = mesh_geo(geo, body.size, grid.cells, {.tetrahedra = true});
+    problem.coarse = mesh_geo(request.geo, request.size, grid.cells, {.tetrahedra = true});
     return;
   }
   Cells coarse = grid.cells;
   problem.refinements = halve(coarse);
-  problem.coarse = mesh_geo(geo, body.size, coarse);
+  problem.coarse = mesh_geo(request.geo, request.size, coarse);
   if (problem.coarse.grid) {
     problem.place =
         graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(), grid.grading);
     return;
   }
   problem.refinements = 0;
-  problem.coarse = mesh_geo(geo, body.size, grid.cells, {.second_order = true});
+  problem.coarse = mesh_geo(request.geo, request.size, grid.cells, {.second_order = true});
 }
 
 Solution solve_one(const Request& request, const Discretisation& grid, Method method) {
-  const Experiment& experiment = request.experiment;
   GridProblem problem;
   problem.method = method;
   mesh_into(problem, request, grid);
-  problem.law = experiment.kinematics;
+  problem.law = request.law;
   problem.material = request.material;
-  problem.loads = experiment.loads;
+  problem.loads = request.loads;
   problem.points = request.points;
   problem.stress_points = request.stress_points;
   problem.tolerance = request.tolerance;
-  problem.own_memory = experiment.cost;
+  problem.own_memory = request.cost;
   Solution solution = solve_grid(problem);
   solution.grid = grid;
-  if (!experiment.cost || !solution.ok) return solution;
+  if (!request.cost || !solution.ok) return solution;
   problem.points.resize(0, 3);
   problem.stress_points.resize(0, 3);
   solution.times = least_times(solution.times, [&] { return solve_grid(problem).times; });
@@ -105,7 +103,7 @@ std::vector<Solution> solve_all(const Request& request, Method method = Method::
       if (!all_failed()) throw;
       Solution failed;
       failed.grid = grid;
-      failed.law = request.experiment.kinematics;
+      failed.law = request.law;
       failed.message = plain_words(e.what());
       solutions.push_back(failed);
     }
@@ -124,7 +122,7 @@ void answer_request(const std::string& request_file, const std::string& answer_f
   });
 }
 
-void print(const Request& request, const Solution& s, int digits) {
+void print(const std::vector<Probe>& probes, const Solution& s, int digits) {
   const auto& [nx, ny, nz] = s.grid.cells;
   fmt::print("{} x {} x {} cells, grading {}, {} degrees of freedom\n", nx, ny, nz, s.grid.grading,
              s.degrees_of_freedom);
@@ -139,10 +137,10 @@ void print(const Request& request, const Solution& s, int digits) {
   for (const PatchReaction& r : s.reactions)
     fmt::print("  reaction on {:<9} force [N] {}   torque [N m] {}\n", r.patch, vector(r.force), vector(r.torque));
   for (Eigen::Index p = 0; p < s.displacement.rows(); ++p)
-    fmt::print("  {:<21} {} m\n", request.experiment.probes[p].name, vector(s.displacement.row(p)));
+    fmt::print("  {:<21} {} m\n", probes[p].name, vector(s.displacement.row(p)));
   for (Eigen::Index p = 0; p < s.stress.rows(); ++p) {
     const auto stress = s.stress.row(p);
-    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", request.experiment.probes[p].name,
+    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", probes[p].name,
                number(stress[0]), number(stress[1]), number(stress[2]), number(stress[3]), number(stress[4]),
                number(stress[5]));
   }
@@ -159,33 +157,31 @@ struct Options {
 };
 
 bool solve_case(const Options& options) {
-  Request request;
-  request.experiment = read_experiment(options.case_file);
-  request.tolerance = options.tolerance;
-  if (request.experiment.body.is_voxels())
+  const Experiment experiment = read_experiment(options.case_file);
+  if (experiment.body.is_voxels())
     throw InputError(fmt::format(
         "{}: body.voxels: this program alone solves bodies with cells along their axes; bodies of voxels and the "
         "tetrahedra fitted to them come from `springproof compare`",
         options.case_file));
   Discretisation grid = options.grid;
-  grid.cells = request.experiment.body.cells.front();
+  grid.cells = experiment.body.cells.front();
   if (!options.cells.empty()) std::copy_n(options.cells.begin(), 3, grid.cells.begin());
-  request.grids = {grid};
-  request.points.resize(request.experiment.probes.size(), 3);
-  for (std::size_t p = 0; p < request.experiment.probes.size(); ++p)
-    request.points.row(p) = request.experiment.probes[p].at;
-  request.stress_points = request.points;
-  bool ok = true;
-  std::vector<IsotropicMaterial> materials = request.experiment.materials;
+  NodalVectors points(experiment.probes.size(), 3);
+  for (Eigen::Index p = 0; p < points.rows(); ++p) points.row(p) = experiment.probes[p].at;
+  std::vector<IsotropicMaterial> materials = experiment.materials;
   if (!std::isnan(options.poisson_ratio)) {
     materials.resize(1);
     materials[0].poisson_ratio = options.poisson_ratio;
   }
+  bool ok = true;
   for (const IsotropicMaterial& material : materials) {
-    request.material = material;
-    fmt::print("{}, Poisson's ratio {}: ", request.experiment.name, material.poisson_ratio);
+    Request request = request_of(experiment, material);
+    request.grids = {grid};
+    request.points = request.stress_points = points;
+    request.tolerance = options.tolerance;
+    fmt::print("{}, Poisson's ratio {}: ", experiment.name, material.poisson_ratio);
     for (const Solution& s : solve_all(request, options.method)) {
-      print(request, s, options.digits);
+      print(experiment.probes, s, options.digits);
       ok = ok && s.ok;
     }
   }

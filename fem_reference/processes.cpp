@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::fem {
 

@@ -58,7 +58,7 @@ std::vector<Solution> read_answer(const fs::path& answer, const Request& request
   }
   throw std::runtime_error(
       fmt::format("{}: the answer of springproof-fem ({}) {} (build springproof and springproof-fem together)",
-                  request.experiment.file.string(), program().string(), why));
+                  request.name, program().string(), why));
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ std::vector<Solution> solve(const Request& request) {
   const std::string last_words = plain_words(text_of_file(errors));
   if (end.kind == ChildEnd::exited && end.status == exit_status_input_error) throw InputError(last_words);
   if (!end.ok())
-    throw std::runtime_error(fmt::format("{}: springproof-fem {}{}{}", request.experiment.file.string(), words_for(end),
+    throw std::runtime_error(fmt::format("{}: springproof-fem {}{}{}", request.name, words_for(end),
                                          last_words.empty() ? "" : ": ", last_words));
   std::vector<Solution> solutions = read_answer(answer, request);
   for (Solution& s : solutions) s.message = plain_words(s.message);

@@ -4,12 +4,14 @@
 // program that does not need FEM pays nothing for it, and a failing reference cannot take its caller down.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "meshes/field.h"
-#include "problem/case_file/experiment.h"
+#include "problem/loads.h"
+#include "problem/material.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof::fem {
@@ -17,7 +19,7 @@ namespace springproof::fem {
 /// One discretisation of the body.
 struct Discretisation {
   Cells cells;                 ///< nx, ny, nz of the .geo: cells along each side of a block
-  std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra): problem/case_file/experiment.h
+  std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra)
   double grading = 1.0;        ///< draws the cells of a block towards its faces (fem::graded), exponent; 1 = uniform
   int mesh = -1;               ///< number in Request::meshes that takes the place of the .geo; -1: none
   int refinements = 0;         ///< of that mesh's hexahedra: each is cut into 8 this many times
@@ -27,14 +29,19 @@ struct Discretisation {
 using Stresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 struct Request {
-  Experiment experiment;       ///< geometry, loads, kinematics or law
-  IsotropicMaterial material;  ///< the one to solve for
+  std::string name;           ///< of the case, in messages
+  std::filesystem::path geo;  ///< gmsh script of the body, for grids that are no given mesh
+  Vec3 size = Vec3::Zero();   ///< its parameters [m]
+  std::string law = "linear";  ///< or a law of finite strain (fem_reference/laws.h)
+  IsotropicMaterial material;
+  std::vector<Load> loads;
   std::vector<Discretisation> grids;
   NodalVectors points;  ///< rest positions at which the displacement is wanted, n x 3 [m]; of a given mesh also
                         ///< outside, where the displacement of the nearest place is continued linearly
   NodalVectors stress_points = NodalVectors(0, 3);       ///< rest positions at which the stress is wanted, m x 3 [m]
   double tolerance = 1e-9;                               ///< relative residual of the linear solves
-  std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the experiment's .geo
+  std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the .geo
+  bool cost = false;                                     ///< measure times and memory for comparison (RunTimes)
 };
 
 /// The answer on one grid.

@@ -13,7 +13,7 @@
 
 #include "fem_reference/processes.h"
 #include "meshes/locate/tetrahedron_locator.h"
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::fem {
 namespace {

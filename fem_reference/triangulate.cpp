@@ -15,7 +15,7 @@
 
 #include "fem_reference/processes.h"
 #include "meshes/volume.h"
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::fem {
 namespace {

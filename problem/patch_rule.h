@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "problem/input_error.h"
+#include "problem/system/input_error.h"
 #include "problem/vector.h"
 
 namespace springproof {

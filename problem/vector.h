@@ -1,7 +1,8 @@
-// The two array types every module shares.
+// The array types every module shares.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 namespace springproof {
 
@@ -10,5 +11,8 @@ using Vec3 = Eigen::Vector3d;
 
 /// One row per node: positions [m], displacements [m] or forces [N], shape n x 3, x y z contiguous.
 using NodalVectors = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// Numbers of cells along x, y and z.
+using Cells = std::array<int, 3>;
 
 }  // namespace springproof

@@ -15,7 +15,7 @@
 #include "comparisons/bench/table.h"
 #include "comparisons/report/results.h"
 #include "msm/kernels/instruction_set.h"
-#include "problem/input_error.h"
+#include "problem/system/input_error.h"
 #include "problem/system/files.h"
 
 namespace {

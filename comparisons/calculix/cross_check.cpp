@@ -13,7 +13,7 @@
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/status.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/case_request.h"
 #include "meshes/mesher/mesher.h"
 
 namespace springproof {
@@ -184,7 +184,8 @@ std::optional<Opinion> ask_fem(const Question& q, Status& status) {
   const NodalVectors probes = probe_points(q.experiment());
   NodalVectors points(nodes.rows() + probes.rows(), 3);
   points << nodes, probes;
-  fem::Request request{q.experiment(), q.material, {}, points, NodalVectors(0, 3), 1e-8};
+  fem::Request request = request_of(q.experiment(), q.material);
+  request.points = points;
   for (const Cells& cells : three_grids(q.prepared.reference_cells)) {
     request.grids.emplace_back().cells = cells;  // Q2
     request.grids.back().grading = q.experiment().reference.grading;

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "meshes/locate/locate.h"
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::calculix {
 namespace {

@@ -9,7 +9,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/case_run.h"
 #include "problem/case_file/measures.h"
-#include "problem/case_file/nearest_name.h"
+#include "problem/system/nearest_name.h"
 
 namespace springproof {
 

@@ -7,7 +7,7 @@
 
 #include <cerrno>
 
-#include "problem/input_error.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 

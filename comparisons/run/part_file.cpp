@@ -8,18 +8,7 @@
 #include "comparisons/run/checksum.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"
-
-namespace nlohmann {
-
-template <class T>
-struct adl_serializer<std::optional<T>> {
-  static void to_json(json& j, const std::optional<T>& value) { value ? j = *value : j = nullptr; }
-  static void from_json(const json& j, std::optional<T>& value) {
-    value = j.is_null() ? std::optional<T>() : std::optional<T>(j.get<T>());
-  }
-};
-
-}  // namespace nlohmann
+#include "problem/system/json.h"
 
 namespace springproof {
 

@@ -9,6 +9,7 @@
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/voxel_reference.h"
+#include "fem_reference/case_request.h"
 #include "problem/case_file/measures.h"
 #include "problem/exact_field.h"
 #include "problem/system/child.h"
@@ -187,9 +188,9 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   const Experiment& experiment = prepared.experiment;
   if (experiment.body.is_voxels()) return solve_body_grids(prepared, material);
   const bool stresses = wanted("stress", experiment.measures);
-  fem::Request request{
-      experiment, material, {}, sample_points(prepared), stresses ? probe_points(experiment) : NodalVectors(0, 3),
-      1e-8};
+  fem::Request request = request_of(experiment, material);
+  request.points = sample_points(prepared);
+  if (stresses) request.stress_points = probe_points(experiment);
   for (const std::string& element : experiment.reference.elements)
     add_reference_grids(prepared, element, experiment.reference.grading, request);
   const std::size_t references = request.grids.size();

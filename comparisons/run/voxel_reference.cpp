@@ -5,6 +5,7 @@
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/voxel_body.h"
+#include "fem_reference/case_request.h"
 
 namespace springproof {
 namespace {
@@ -32,9 +33,11 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   const Experiment& e = prepared.experiment;
   const NodalVectors measured = measured_points(prepared);
   const bool stresses = wanted("stress", e.measures);
-  const fem::Request request{
-      e,    material, grids, stacked(prepared.body_points, measured), stresses ? probe_points(e) : NodalVectors(0, 3),
-      1e-8, meshes};
+  fem::Request request = request_of(e, material);
+  request.grids = grids;
+  request.points = stacked(prepared.body_points, measured);
+  if (stresses) request.stress_points = probe_points(e);
+  request.meshes = meshes;
   std::vector<fem::Solution> solutions = fem::solve(request);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
@@ -54,7 +57,9 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t
   const auto& mesh = prepared.meshes[lattice];
   const Cells& cells = e.body.cells[lattice];
   if (mesh->hexahedra.size() > most_cubes) return {};
-  fem::Request request{e, material, {}, mesh->nodes, NodalVectors(0, 3), 1e-8, {mesh}};
+  fem::Request request = request_of(e, material);
+  request.points = mesh->nodes;
+  request.meshes = {mesh};
   for (const std::string& element : elements) request.grids.push_back({cells, element, 1.0, 0, 0});
   if (!e.cost && mesh->hexahedra.size() <= most_refined_cubes) {
     request.grids.push_back({cells, "q2", 1.0, 0, 0});

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 

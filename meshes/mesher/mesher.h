@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "meshes/mesh.h"
-#include "problem/case_file/experiment.h"
+#include "problem/body.h"
 
 namespace springproof {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "meshes/surface/surface_cgal.h"
 #include "meshes/surface/surface_repair.h"
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {

@@ -7,7 +7,8 @@
 
 #include "meshes/field.h"
 #include "msm/embedding/embedding.h"
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
+#include "problem/loads.h"
 
 namespace springproof {
 

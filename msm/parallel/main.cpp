@@ -12,7 +12,7 @@
 #include "msm/models.h"
 #include "msm/parallel/slab_multigrid.h"
 #include "problem/case_file/experiment.h"
-#include "problem/input_error.h"
+#include "problem/system/input_error.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {

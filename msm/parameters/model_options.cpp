@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "msm/parameters/model_table.h"
-#include "problem/case_file/nearest_name.h"
+#include "problem/system/nearest_name.h"
 
 namespace springproof {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "problem/case_file/experiment_parts.h"
-#include "problem/case_file/nearest_name.h"
+#include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
 
 namespace springproof {
@@ -251,12 +251,6 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   return experiment;
 }
 
-std::string located(const SourceLocation& where, const std::string& message) {
-  if (where.file.empty()) return message;
-  if (where.line == 0) return fmt::format("{}: {}", where.file, message);
-  return fmt::format("{}:{}:{}: {}", where.file, where.line, where.column, message);
-}
-
 }  // namespace
 
 std::vector<std::string> read_elements(const TomlValue& value, const std::vector<std::string>& allowed) {
@@ -268,36 +262,6 @@ std::vector<std::string> read_elements(const TomlValue& value, const std::vector
     elements.push_back(element);
   }
   return elements;
-}
-
-std::string shortened(const std::string& message) {
-  constexpr std::size_t longest = 100, shown = 40;
-  const auto continues_letter = [&](std::size_t at) {
-    return (static_cast<unsigned char>(message[at]) & 0xc0) == 0x80;
-  };
-  std::string out;
-  for (std::size_t begin = 0, end; begin < message.size(); begin = end) {
-    end = std::min(message.find(' ', begin), message.size());
-    std::size_t cut = end;
-    if (end - begin > longest)
-      for (cut = begin + shown; cut > begin && continues_letter(cut);) --cut;
-    for (const char c : std::string_view(message).substr(begin, cut - begin))
-      out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    if (cut < end) out += fmt::format("... ({} letters)", end - begin);
-    if (end < message.size()) out += message[end++];
-  }
-  return out;
-}
-
-InputError::InputError(const SourceLocation& where, const std::string& message)
-    : std::runtime_error(located(where, shortened(message))) {}
-
-bool Body::is_script() const {
-  std::string extension = std::filesystem::path(geo).extension();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension != ".stl" && extension != ".msh" && extension != ".step" && extension != ".stp" &&
-         extension != ".brep";
 }
 
 std::vector<std::string> element_names() { return {"q1", "q2", "p1", "p2"}; }

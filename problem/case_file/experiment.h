@@ -1,46 +1,20 @@
 // An experiment: body, material, loads, models, measures, published values, tolerances.  Read from TOML.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "problem/input_error.h"
+#include "problem/body.h"
+#include "problem/system/input_error.h"
 #include "problem/loads.h"
 #include "problem/material.h"
+#include "problem/model_choice.h"
 #include "problem/patch_rule.h"
 
 namespace springproof {
-
-using Cells = std::array<int, 3>;
-
-/// A block is cut into `cells`; any other body into the cubes of a lattice whose centres it holds.
-struct Body {
-  std::string geo;           ///< file name: one of meshes/geo/, or a path relative to the case file
-  Vec3 size = Vec3::Zero();  ///< [m], parameters of a .geo; of voxels the box around the body, once it is known
-  std::vector<Cells> cells;  ///< resolutions of the mass-spring models, one or more; of voxels those of the box
-  SourceLocation where;      ///< of the key `geo`
-  std::vector<double> voxel_edges = {};  ///< [m]; empty: no voxels, or their counts are given
-  std::vector<int> voxel_counts = {};    ///< about so many cubes; empty: their edges are given
-  double scale = 1;                      ///< coordinates of a file are multiplied by it
-
-  bool is_script() const;  ///< a .geo, whose size is a parameter; else a file of a body as it is
-  bool is_voxels() const { return !voxel_edges.empty() || !voxel_counts.empty(); }
-  std::size_t resolutions() const { return std::max({cells.size(), voxel_edges.size(), voxel_counts.size()}); }
-};
-
-/// A model as named in the case file, with its options; what they mean is the model table's business (msm/models.h).
-struct ModelChoice {
-  std::string name;                                                        ///< row of the table, "hybmss"
-  std::map<std::string, std::variant<bool, double, std::string>> options;  ///< e.g. face_to_cube = 1.0
-  std::string label;                                                       ///< "hybmss" or "hybmss A=1 paper_e_form"
-  SourceLocation where;
-};
 
 struct Probe {
   std::string name;
@@ -152,8 +126,5 @@ std::optional<KelvinSolution> kelvin_of(const Experiment& experiment);
 
 /// @throws InputError at the load that acts on a patch that is not among `patches`, those of the body.
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches);
-
-/// The experiment as a TOML document that reads back to the same experiment.
-std::string to_toml(const Experiment& experiment);
 
 }  // namespace springproof

@@ -5,7 +5,7 @@
 
 #include "problem/case_file/experiment_parts.h"
 #include "problem/case_file/measures.h"
-#include "problem/case_file/nearest_name.h"
+#include "problem/system/nearest_name.h"
 #include "problem/exact_field.h"
 #include "problem/system/file_name.h"
 

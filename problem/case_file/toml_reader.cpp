@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "problem/case_file/nearest_name.h"
+#include "problem/system/nearest_name.h"
 
 namespace springproof {
 namespace {

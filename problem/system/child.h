@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "problem/input_error.h"
+#include "problem/system/input_error.h"
 #include "problem/system/files.h"
 
 namespace springproof {

@@ -4,7 +4,7 @@
 #include "fuzz/reader.h"
 #include "meshes/surface/stl.h"
 #include "meshes/surface/surface_check.h"
-#include "problem/input_error.h"
+#include "problem/system/input_error.h"
 
 namespace {
 

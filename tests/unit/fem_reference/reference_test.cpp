@@ -9,6 +9,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "fem_reference/case_request.h"
 #include "fem_reference/exchange.h"
 #include "fem_reference/solve_grid.h"
 #include "problem/system/child.h"
@@ -41,9 +42,8 @@ measures = ["volume_change"]
 }
 
 fem::Request request(const std::string& patch = "z_max") {
-  fem::Request request;
-  request.experiment = parse_experiment(squeezed_cube(patch), "cube.toml");
-  request.material = request.experiment.materials.front();
+  const Experiment experiment = parse_experiment(squeezed_cube(patch), "cube.toml");
+  fem::Request request = request_of(experiment, experiment.materials.front());
   request.grids = {{{4, 4, 4}, "q2", 1.0}, {{6, 6, 6}, "q1", 1.5}};
   request.points = Eigen::RowVector3d(1, 2, 3);
   return request;
@@ -61,7 +61,7 @@ TEST(FemReference, AnswersAsTheSolverInThisProcess) {
   problem.place = fem::graded(Vec3::Zero(), Vec3(5, 5, 5), 1.5);
   problem.degree = 1;
   problem.material = request().material;
-  problem.loads = request().experiment.loads;
+  problem.loads = request().loads;
   problem.points = request().points;
   const fem::Solution here = fem::solve_grid(problem), &there = solutions[1];
   ASSERT_TRUE(there.ok) << there.message;

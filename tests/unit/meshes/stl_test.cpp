@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 #include "support/surfaces.h"
 
 namespace springproof {

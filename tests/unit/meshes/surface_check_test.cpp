@@ -16,7 +16,7 @@
 #include "meshes/surface/surface_cgal.h"
 #include "meshes/surface/surface_repair.h"
 #include "meshes/surface/surface_topology.h"
-#include "problem/case_file/experiment.h"
+#include "problem/system/input_error.h"
 #include "support/broken_stl.h"
 #include "support/surfaces.h"
 #include "support/tolerances.h"

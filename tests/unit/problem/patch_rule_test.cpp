@@ -49,11 +49,6 @@ TEST(PatchRules, AreRead) {
   EXPECT_TRUE(e.patches[1].near && !e.patches[1].box && !e.patches[1].beyond && !e.patches[1].facing);
 }
 
-TEST(PatchRules, ReadBackAsWritten) {
-  const Experiment e = parse_experiment(patch_case, "case.toml");
-  test::expect_same(e, parse_experiment(to_toml(e), "case.toml"));
-}
-
 TEST(PatchRules, AreForBodiesOfVoxels) {
   EXPECT_EQ(message_of(std::string(test::small_case) +
                        "[[patch]]\nname = \"low\"\nfacing = { direction = [0, 0, -1], within_deg = 10 }\n")

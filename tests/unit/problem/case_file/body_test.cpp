@@ -46,14 +46,6 @@ TEST(VoxelBody, ItsReferenceIsOfQuadraticTetrahedra) {
   EXPECT_EQ(r.edge, 0.02);
 }
 
-TEST(VoxelBody, IsWrittenAsItIsRead) {
-  for (const char* body : {"geo = \"a.stl\"\nscale = 0.001\nvoxels = [700, 5000]",
-                           "geo = \"rabbit.geo\"\nsize_m = [1, 2, 3]\nvoxel_edge_m = [0.1, 0.05]"}) {
-    const Experiment e = parse_experiment(case_with(body, "[reference]\nedge_m = 0.02\n"), "case.toml");
-    test::expect_same(parse_experiment(to_toml(e), "case.toml"), e);
-  }
-}
-
 TEST(VoxelBody, MistakesAreRefused) {
   struct Mistake {
     std::string body, says;

@@ -65,15 +65,6 @@ TEST(LineCase, IsRead) {
   for (int d = 0; d < 3; ++d) EXPECT_DOUBLE_EQ(*u[d], 0.5 * kelvin_displacement(*kelvin_of(e), X)[d]);
 }
 
-TEST(LineCase, ReadsBackAsWritten) {
-  const Experiment e = parse_experiment(line_case, "case.toml");
-  const Experiment back = parse_experiment(to_toml(e), "case.toml");
-  test::expect_same(e, back);
-  EXPECT_EQ(back.line->points, e.line->points);
-  EXPECT_EQ(back.line->middle, e.line->middle);
-  EXPECT_EQ(back.line->to, e.line->to);
-}
-
 TEST(LineCase, RowsHaveOrdersWhereThereAreSeveralLattices) {
   const Experiment one = parse_experiment(line_case, "case.toml");
   const Experiment two = parse_experiment(edited("voxel_edge_m = 0.25", "cells = [[8, 8, 8], [4, 4, 4]]"), "case.toml");

@@ -1,0 +1,20 @@
+// A mass-spring model as a user names it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+
+#include "problem/system/input_error.h"
+
+namespace springproof {
+
+/// A model as named in the case file, with its options; what they mean is the model table's business (msm/models.h).
+struct ModelChoice {
+  std::string name;                                                        ///< row of the table, "hybmss"
+  std::map<std::string, std::variant<bool, double, std::string>> options;  ///< e.g. face_to_cube = 1.0
+  std::string label;                                                       ///< "hybmss" or "hybmss A=1 paper_e_form"
+  SourceLocation where;
+};
+
+}  // namespace springproof
