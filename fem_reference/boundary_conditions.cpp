@@ -8,8 +8,8 @@
 
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
-#include "problem/system/input_error.h"
 #include "problem/exact_field.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::fem {
 namespace {

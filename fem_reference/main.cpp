@@ -140,9 +140,8 @@ void print(const std::vector<Probe>& probes, const Solution& s, int digits) {
     fmt::print("  {:<21} {} m\n", probes[p].name, vector(s.displacement.row(p)));
   for (Eigen::Index p = 0; p < s.stress.rows(); ++p) {
     const auto stress = s.stress.row(p);
-    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", probes[p].name,
-               number(stress[0]), number(stress[1]), number(stress[2]), number(stress[3]), number(stress[4]),
-               number(stress[5]));
+    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", probes[p].name, number(stress[0]),
+               number(stress[1]), number(stress[2]), number(stress[3]), number(stress[4]), number(stress[5]));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "meshes/field.h"
 #include "problem/loads.h"
 #include "problem/material.h"
+#include "problem/system/input_error.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof::fem {
@@ -29,9 +30,9 @@ struct Discretisation {
 using Stresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 struct Request {
-  std::string name;           ///< of the case, in messages
-  std::filesystem::path geo;  ///< gmsh script of the body, for grids that are no given mesh
-  Vec3 size = Vec3::Zero();   ///< its parameters [m]
+  std::string name;            ///< of the case, in messages
+  std::filesystem::path geo;   ///< gmsh script of the body, for grids that are no given mesh
+  Vec3 size = Vec3::Zero();    ///< its parameters [m]
   std::string law = "linear";  ///< or a law of finite strain (fem_reference/laws.h)
   IsotropicMaterial material;
   std::vector<Load> loads;

@@ -13,6 +13,7 @@
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
 #include "fem_reference/triangulate.h"
+#include "problem/system/input_error.h"
 #include "problem/system/progress.h"
 
 namespace springproof::fem {

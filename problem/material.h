@@ -1,6 +1,8 @@
 // The isotropic linear-elastic material: what the user knows about it, in any two moduli.
 #pragma once
 
+#include <cmath>
+
 #include <optional>
 
 namespace springproof {
@@ -40,5 +42,8 @@ IsotropicMaterial material_from(const Moduli& given, double density = 1000.0);
 
 /// @throws std::invalid_argument unless E > 0, -1 < nu < 1/2, rho > 0, all finite.
 void check(const IsotropicMaterial& m);
+
+/// Whether two Poisson's ratios, of which a file may name either, are meant to be one: to 1e-9.
+inline bool same_poisson_ratio(double a, double b) { return std::abs(a - b) < 1e-9; }
 
 }  // namespace springproof

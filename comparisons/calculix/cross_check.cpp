@@ -170,7 +170,7 @@ std::optional<Opinion> ask_calculix(const Question& q, Status& status) {
 /// Round-off of our solver: its tolerance times the forces and displacements at work.
 Noise our_noise(const Question& q, const Answer& finest) {
   constexpr double relative = 1e-7;
-  const double size = q.experiment().body.size.norm(), u = finest.displacement.rowwise().norm().maxCoeff();
+  const double size = q.prepared.size.norm(), u = finest.displacement.rowwise().norm().maxCoeff();
   double force = 0;
   for (const auto& [name, value] : finest.values) {
     if (name.starts_with("force.")) force = std::max(force, std::abs(value));
@@ -184,7 +184,7 @@ std::optional<Opinion> ask_fem(const Question& q, Status& status) {
   const NodalVectors probes = probe_points(q.experiment());
   NodalVectors points(nodes.rows() + probes.rows(), 3);
   points << nodes, probes;
-  fem::Request request = request_of(q.experiment(), q.material);
+  fem::Request request = fem::request_of(q.experiment(), q.material);
   request.points = points;
   for (const Cells& cells : three_grids(q.prepared.reference_cells)) {
     request.grids.emplace_back().cells = cells;  // Q2
@@ -316,7 +316,7 @@ SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& c
 const IsotropicMaterial& material_of(const Experiment& experiment, std::optional<double> poisson_ratio) {
   std::vector<double> known;
   for (const IsotropicMaterial& m : experiment.materials) {
-    if (!poisson_ratio || std::abs(m.poisson_ratio - *poisson_ratio) < 1e-12) return m;
+    if (!poisson_ratio || same_poisson_ratio(m.poisson_ratio, *poisson_ratio)) return m;
     known.push_back(m.poisson_ratio);
   }
   throw InputError(

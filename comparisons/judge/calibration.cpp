@@ -130,7 +130,7 @@ std::vector<KnownQuantity> known_quantities(const CaseResult& result) {
   for (const KnownLine& line : read_table(file))
     for (const ReferenceRecord& r : result.references) {
       if (line.case_name != e.name || line.element != r.element || line.measure != r.measure ||
-          std::abs(line.poisson_ratio - r.poisson_ratio) > 1e-9)
+          !same_poisson_ratio(line.poisson_ratio, r.poisson_ratio))
         continue;
       if (line.uncertainty > largest_known_uncertainty * std::max(r.uncertainty, std::abs(r.value - line.value)))
         continue;

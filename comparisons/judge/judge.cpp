@@ -11,19 +11,16 @@ namespace {
 // A reference may be at most this uncertain, as a fraction of the tolerance it decides.
 constexpr double largest_uncertainty_fraction = 0.25;
 
-bool same(double a, double b) { return std::abs(a - b) < 1e-9; }
-
-const Row* find_row(const CaseResult& result, const std::string& model, double nu, const Cells& cells,
-                    const std::string& measure) {
+const Row* find_row(const CaseResult& result, const RunKey& key, const std::string& measure) {
   for (const Row& row : result.rows)
-    if (row.model == model && same(row.poisson_ratio, nu) && row.cells == cells && row.measure == measure) return &row;
+    if (same_run(row, key) && row.measure == measure) return &row;
   return nullptr;
 }
 
 const ReferenceRecord* find_reference(const CaseResult& result, const std::string& element, double nu,
                                       const std::string& measure) {
   for (const ReferenceRecord& r : result.references)
-    if (r.element == element && same(r.poisson_ratio, nu) && r.measure == measure) return &r;
+    if (r.element == element && same_poisson_ratio(r.poisson_ratio, nu) && r.measure == measure) return &r;
   return nullptr;
 }
 
@@ -46,10 +43,8 @@ void decide(const Expectation& e, bool any_reference, Check& check) {
   }
 }
 
-Check judge_one(const CaseResult& result, const Expectation& e, double nu, const Cells& cells) {
-  Check check{e.model,
-              nu,
-              cells,
+Check judge_one(const CaseResult& result, const Expectation& e, const RunKey& key) {
+  Check check{key,
               e.measure,
               unit_of(e.measure),
               to_string(e.source),
@@ -61,11 +56,11 @@ Check judge_one(const CaseResult& result, const Expectation& e, double nu, const
               e.where,
               e.at_least.has_value()};
   if (const auto element = reference_element(result.experiment, e.model)) {
-    if (const ReferenceRecord* r = find_reference(result, *element, nu, e.measure)) {
+    if (const ReferenceRecord* r = find_reference(result, *element, key.poisson_ratio, e.measure)) {
       check.computed = r->value;
       check.reference_uncertainty = r->uncertainty;
     }
-  } else if (const Row* row = find_row(result, e.model, nu, cells, e.measure)) {
+  } else if (const Row* row = find_row(result, key, e.measure)) {
     check.computed = row->value;
     if (e.source == Source::extrapolated_fem || is_distance(e.measure)) {
       check.reference_uncertainty = row->reference_uncertainty;
@@ -73,8 +68,9 @@ Check judge_one(const CaseResult& result, const Expectation& e, double nu, const
     }
   }
   check.within = e.relative ? e.within * std::abs(check.expected) : e.within;
-  const bool any_reference = std::any_of(result.references.begin(), result.references.end(),
-                                         [&](const ReferenceRecord& r) { return same(r.poisson_ratio, nu); });
+  const bool any_reference =
+      std::any_of(result.references.begin(), result.references.end(),
+                  [&](const ReferenceRecord& r) { return same_poisson_ratio(r.poisson_ratio, key.poisson_ratio); });
   decide(e, any_reference, check);
   return check;
 }
@@ -96,18 +92,17 @@ void judge(CaseResult& result) {
   const Experiment& experiment = result.experiment;
   for (const Expectation& e : experiment.expectations)
     for (const IsotropicMaterial& material : experiment.materials) {
-      if (e.poisson_ratio && !same(*e.poisson_ratio, material.poisson_ratio)) continue;
+      if (e.poisson_ratio && !same_poisson_ratio(*e.poisson_ratio, material.poisson_ratio)) continue;
       const std::vector<Cells> everywhere = reference_element(experiment, e.model)
-                                                ? std::vector<Cells>{experiment.body.cells.front()}
+                                                ? std::vector<Cells>{result.cells.front()}
                                             : e.cells ? std::vector<Cells>{*e.cells}
-                                                      : experiment.body.cells;
+                                                      : result.cells;
       for (const Cells& cells : everywhere)
-        result.checks.push_back(judge_one(result, e, material.poisson_ratio, cells));
+        result.checks.push_back(judge_one(result, e, {e.model, material.poisson_ratio, cells}));
     }
   for (const PublishedValue& p : experiment.published) {
     PublishedRow row{p.model, p.poisson_ratio, p.measure, unit_of(p.measure), p.value, {}, p.where, p.remark};
-    const Row* ours =
-        find_row(result, p.model, p.poisson_ratio, p.cells.value_or(experiment.body.cells.front()), p.measure);
+    const Row* ours = find_row(result, {p.model, p.poisson_ratio, p.cells.value_or(result.cells.front())}, p.measure);
     if (ours) row.computed = ours->value;
     if (const auto element = reference_element(experiment, p.model))
       if (const ReferenceRecord* r = find_reference(result, *element, p.poisson_ratio, p.measure))

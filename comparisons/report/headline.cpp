@@ -89,7 +89,7 @@ const std::pair<const double, Worst>& largest(const ByNu& errors) {
 ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
   ByNu out = by_nu;
   if (errors.own_nu)
-    std::erase_if(out, [&](const auto& entry) { return std::abs(entry.first - *errors.own_nu) > 1e-9; });
+    std::erase_if(out, [&](const auto& entry) { return !same_poisson_ratio(entry.first, *errors.own_nu); });
   return out;
 }
 

@@ -58,9 +58,8 @@ void add_facets(const std::vector<Facet>& facets, const NodalVectors& points, Pi
 
 }  // namespace
 
-Picture picture(const std::string& model, double poisson_ratio, const Cells& cells, const Field& field,
-                const NodalVectors* truth) {
-  Picture p{model, poisson_ratio, cells, {}, {}, {}, {}, {}, "cells"};
+Picture picture(const RunKey& key, const Field& field, const NodalVectors* truth) {
+  Picture p{key, {}, {}, {}, {}, {}, "cells"};
   const Eigen::VectorXd volume_change = nodal_volume_change(field);
   add_facets(surface_of(*field.mesh), field.mesh->nodes, p, [&](int n) {
     append(field.displacement.row(n), p.displacement);
@@ -70,9 +69,8 @@ Picture picture(const std::string& model, double poisson_ratio, const Cells& cel
   return p;
 }
 
-Picture smooth_picture(const std::string& model, double poisson_ratio, const Cells& cells, const Field& field,
-                       const Mesh& body, const NodalVectors* truth) {
-  Picture p{model, poisson_ratio, cells, {}, {}, {}, {}, {}, "smooth"};
+Picture smooth_picture(const RunKey& key, const Field& field, const Mesh& body, const NodalVectors* truth) {
+  Picture p{key, {}, {}, {}, {}, {}, "smooth"};
   const Eigen::VectorXd volume_change = nodal_volume_change(field);
   Locator locator(*field.mesh);
   add_facets(surface_of(body), body.nodes, p, [&](int n) {

@@ -240,7 +240,8 @@ Json list(const std::vector<T>& items) {
   return out;
 }
 
-Json json_of(const Experiment& e) {
+Json json_of(const CaseResult& result) {
+  const Experiment& e = result.experiment;
   Json poisson_ratios = Json::array(), loads = Json::array();
   for (const auto& m : e.materials) poisson_ratios.push_back(number(m.poisson_ratio));
   for (const auto& load : e.loads) loads.push_back(describe(load));
@@ -251,7 +252,7 @@ Json json_of(const Experiment& e) {
       {"what", e.what},
       {"kinematics", e.kinematics},
       {"body",
-       {{"geo", e.body.geo}, {"size", vector(e.body.size)}, {"cells", e.body.cells}, {"voxels", e.body.is_voxels()}}},
+       {{"geo", e.body.geo}, {"size", vector(result.size)}, {"cells", result.cells}, {"voxels", e.body.is_voxels()}}},
       {"materials", list(e.materials)},
       {"poisson_ratios", poisson_ratios},
       {"loads", loads},
@@ -367,6 +368,10 @@ std::string to_string(Verdict verdict) {
   throw std::invalid_argument("no such verdict");
 }
 
+bool same_run(const RunKey& a, const RunKey& b) {
+  return a.model == b.model && same_poisson_ratio(a.poisson_ratio, b.poisson_ratio) && a.cells == b.cells;
+}
+
 bool is_tetrahedra(const Cells& cells) { return cells[0] > 0 && cells[1] == 0 && cells[2] == 0; }
 
 std::string cells_text(const Cells& cells, std::string_view times) {
@@ -382,7 +387,7 @@ std::string describe(const Load& load) {
 }
 
 Json to_json(const CaseResult& result) {
-  Json experiment = json_of(result.experiment);
+  Json experiment = json_of(result);
   for (Json& model : experiment["models"]) {
     const auto own = result.own_poisson_ratios.find(model["label"]);
     model["own_poisson_ratio"] = own == result.own_poisson_ratios.end() ? Json(nullptr) : number(own->second);

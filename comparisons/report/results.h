@@ -13,14 +13,21 @@
 
 namespace springproof {
 
-/// One number of one model: a line of results.csv.
-struct Row {
-  std::string case_name;
-  std::string kinematics;  ///< "linear", "finite" (springs) or the FEM's law
-  std::string model;       ///< "hybmss", "fem_q1", ...
+/// What was run: the key of a result within its case.
+struct RunKey {
+  std::string model;  ///< "hybmss", "fem_q1", ...; of a picture "fem" is the reference sampled at the same nodes
   double poisson_ratio = 0;
   Cells cells = {0, 0, 0};
-  std::string measure;  ///< "displacement_error", "volume_change", "force.z_max.z", ...
+};
+
+/// Of one model at one Poisson's ratio and resolution.
+bool same_run(const RunKey& a, const RunKey& b);
+
+/// One number of one model: a line of results.csv.
+struct Row : RunKey {
+  std::string case_name;
+  std::string kinematics;  ///< "linear", "finite" (springs) or the FEM's law
+  std::string measure;     ///< "displacement_error", "volume_change", "force.z_max.z", ...
   double value = 0;
   std::string unit;
   std::optional<double> reference;
@@ -31,11 +38,8 @@ struct Row {
 };
 
 /// One run of one solver.
-struct Run {
-  std::string model;
+struct Run : RunKey {
   std::string kind;  ///< "msm" or "fem"
-  double poisson_ratio = 0;
-  Cells cells = {0, 0, 0};
   std::string kinematics;
   bool ok = false;
   std::string message;  ///< why there is no result, with the load reached
@@ -69,10 +73,7 @@ enum class Verdict { pass, fail, reference_too_coarse, no_reference, no_result }
 std::string to_string(Verdict verdict);
 
 /// One [[expect]] judged.
-struct Check {
-  std::string model;
-  double poisson_ratio = 0;
-  Cells cells = {0, 0, 0};
+struct Check : RunKey {
   std::string measure;
   std::string unit;
   std::string source;  ///< "analytic", "extrapolated FEM", "published", "regression"
@@ -99,10 +100,7 @@ struct PublishedRow {
 
 /// Where a model's difference from the body-fitted reference comes from, on a body of voxels.  Of a scalar measure the
 /// three parts add up to the total; of displacement_error each is the norm of its own field, over the reference's norm.
-struct ErrorSplit {
-  std::string model;
-  double poisson_ratio = 0;
-  Cells cells = {0, 0, 0};
+struct ErrorSplit : RunKey {
   double voxel_edge = 0;  ///< [m]
   std::string measure;
   std::string unit;
@@ -115,10 +113,7 @@ struct ErrorSplit {
 };
 
 /// The deformed surface of one run, for the report's 3D view.
-struct Picture {
-  std::string model;  ///< "fem" is the reference sampled at the same nodes
-  double poisson_ratio = 0;
-  Cells cells = {0, 0, 0};
+struct Picture : RunKey {
   std::vector<float> rest;           ///< surface nodes, xyz xyz ... [m]
   std::vector<float> displacement;   ///< same length [m]
   std::vector<float> difference;     ///< |u - u_fem| per surface node [m]; empty for "fem"
@@ -131,10 +126,7 @@ struct Picture {
 using LineTensors = std::vector<double>;
 
 /// Strain and stress of one model along the case's line; of several networks, of the first.
-struct LineRecord {
-  std::string model;
-  double poisson_ratio = 0;
-  Cells cells = {0, 0, 0};
+struct LineRecord : RunKey {
   int first = 0, last = 0;                 ///< of the points, from 1, that deviations are the mean over
   std::vector<double> distance;            ///< of each point from the line's start [m]
   LineTensors strain;                      ///< [1]
@@ -149,19 +141,25 @@ struct Deformation {
   double rotation_deg = 0;
 };
 
-struct CaseResult {
-  Experiment experiment;
-  std::map<std::string, double>
-      own_poisson_ratios;  ///< of the models, by label, that are solids of one Poisson's ratio only
+/// What the runs of a case give, at one Poisson's ratio or at all.
+struct Part {
   std::vector<Run> runs;
   std::vector<Row> rows;
   std::vector<ReferenceRecord> references;
-  std::vector<Check> checks;
-  std::vector<PublishedRow> published;
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
   std::vector<ErrorSplit> splits;
   std::vector<Deformation> deformations;
+};
+
+struct CaseResult : Part {
+  Experiment experiment;     ///< as read
+  Vec3 size = Vec3::Zero();  ///< of the body [m]; of a body of voxels that of the box around it
+  std::vector<Cells> cells;  ///< of its lattices
+  std::map<std::string, double>
+      own_poisson_ratios;  ///< of the models, by label, that are solids of one Poisson's ratio only
+  std::vector<Check> checks;
+  std::vector<PublishedRow> published;
   std::vector<std::string> notes;  ///< what was mended or left out of the body
 };
 

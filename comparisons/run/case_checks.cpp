@@ -7,7 +7,6 @@
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
-#include "comparisons/run/case_run.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/nearest_name.h"
 

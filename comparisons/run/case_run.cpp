@@ -62,13 +62,16 @@ struct PartRun {
   std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
 
   const Experiment& experiment() const { return prepared.experiment; }
+  const Mesh& mesh(std::size_t lattice) const { return *prepared.lattices[lattice].mesh; }
+  RunKey key(const std::string& model, const Cells& cells) const { return {model, material.poisson_ratio, cells}; }
+  RunKey key(const std::string& model, std::size_t lattice) const {
+    return key(model, prepared.lattices[lattice].cells);
+  }
 };
 
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
-  return {model,
+  return {run.key(model, s.grid.cells),
           "fem",
-          run.material.poisson_ratio,
-          s.grid.cells,
           s.law.empty() ? run.experiment().kinematics : s.law,
           s.ok,
           s.message,
@@ -85,9 +88,9 @@ Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model
 void run_fem(PartRun& run) {
   run.grids = solve_grids(run.prepared, run.material);
   if (run.grids.elements.empty())
-    run.part.runs.push_back({"fem_" + run.experiment().reference.elements.front(), "fem", run.material.poisson_ratio,
-                             run.prepared.reference_cells, run.experiment().kinematics, false, run.grids.failure, "", 0,
-                             0, 0, 0, 0});
+    run.part.runs.push_back(
+        {run.key("fem_" + run.experiment().reference.elements.front(), run.prepared.reference_cells), "fem",
+         run.experiment().kinematics, false, run.grids.failure, "", 0, 0, 0, 0, 0});
   for (const ElementGrids& e : run.grids.elements)
     for (const fem::Solution& s : e.grids) run.part.runs.push_back(fem_run(run, s, "fem_" + e.element));
   for (const auto& on_cubes : run.grids.refined)
@@ -105,15 +108,16 @@ void record_elements(PartRun& run) {
 
 /// The first element's fields as the reference of the lattices; with an exact field, that field.
 void build_reference(PartRun& run) {
-  run.reference.assign(run.prepared.meshes.size(), {});
-  run.voxels.assign(run.prepared.meshes.size(), {});
+  run.reference.assign(run.prepared.lattices.size(), {});
+  run.voxels.assign(run.prepared.lattices.size(), {});
   if (run.grids.elements.empty() || !complete(run.grids.elements.front())) return;
   const ElementGrids& first = run.grids.elements.front();
   const std::map<std::string, ReferenceValue> scalars = limits_of(run.prepared, first);
-  for (std::size_t i = 0; i < run.prepared.meshes.size(); ++i) {
-    const Mesh& mesh = *run.prepared.meshes[i];
+  for (std::size_t i = 0; i < run.prepared.lattices.size(); ++i) {
+    const Lattice& lattice = run.prepared.lattices[i];
+    const Mesh& mesh = *lattice.mesh;
     std::vector<NodalVectors> fields;
-    for (const fem::Solution& s : first.grids) fields.push_back(at_lattice(run.prepared, i, s.displacement));
+    for (const fem::Solution& s : first.grids) fields.push_back(at_nodes(lattice, s.displacement));
     run.reference[i] =
         Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), doubt_of(scalars)), scalars};
     widen(run.prepared.load_spread, run.reference[i]->field);
@@ -142,9 +146,11 @@ void build_reference(PartRun& run) {
 
 /// Which lattice has the most cells.
 std::size_t finest_lattice(const PreparedCase& prepared) {
-  const auto& meshes = prepared.meshes;
-  const auto finer = [](const auto& a, const auto& b) { return a->hexahedra.size() < b->hexahedra.size(); };
-  return static_cast<std::size_t>(std::max_element(meshes.begin(), meshes.end(), finer) - meshes.begin());
+  const auto& all = prepared.lattices;
+  const auto finer = [](const Lattice& a, const Lattice& b) {
+    return a.mesh->hexahedra.size() < b.mesh->hexahedra.size();
+  };
+  return static_cast<std::size_t>(std::max_element(all.begin(), all.end(), finer) - all.begin());
 }
 
 /// How far the reference is deformed, on the finest lattice.
@@ -152,14 +158,14 @@ void measure_deformation(PartRun& run) {
   const std::size_t finest = finest_lattice(run.prepared);
   if (!run.reference[finest]) return;
   const NodalVectors& u = run.reference[finest]->field.displacement;
-  const DeformationSize size = deformation_size(*run.prepared.meshes[finest], u, run.experiment().model_kinematics());
+  const DeformationSize size = deformation_size(run.mesh(finest), u, run.experiment().model_kinematics());
   run.part.deformations.push_back(
       {run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi});
 }
 
 /// Distances from the reference field [their units].
 std::map<std::string, double> distances(const PartRun& run, std::size_t lattice, const NodalVectors& u) {
-  const Mesh& mesh = *run.prepared.meshes[lattice];
+  const Mesh& mesh = run.mesh(lattice);
   const NodalVectors& v = run.reference[lattice]->field.displacement;
   std::map<std::string, double> out = {{"displacement_error", displacement_error(u, v, nodal_volumes(mesh))},
                                        {"displacement_error_max", displacement_error_max(u, v)}};
@@ -212,19 +218,7 @@ void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<st
 void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
               const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
   const auto& reference = run.reference[lattice];
-  const Row blank{run.experiment().name,
-                  kinematics,
-                  model,
-                  run.material.poisson_ratio,
-                  run.experiment().body.cells[lattice],
-                  "",
-                  0,
-                  "",
-                  {},
-                  {},
-                  {},
-                  1,
-                  {}};
+  const Row blank{run.key(model, lattice), run.experiment().name, kinematics, "", 0, "", {}, {}, {}, 1, {}};
   for (const std::string& measure : measures_in(scalars)) {
     if (!wanted(measure, run.experiment().measures)) continue;
     Row row = blank;
@@ -257,26 +251,23 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
   const auto& reference = run.reference[lattice];
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
-  const Cells& cells = run.experiment().body.cells[lattice];
+  const RunKey key = run.key(model, lattice);
   if (lattice == 0) {
     const NodalVectors* difference_to = model == "fem" ? nullptr : truth;
-    run.part.pictures.push_back(picture(model, run.material.poisson_ratio, cells, field, difference_to));
+    run.part.pictures.push_back(picture(key, field, difference_to));
     if (run.experiment().body.is_voxels())
-      run.part.pictures.push_back(smooth_picture(model, run.material.poisson_ratio, cells, field,
-                                                 *run.prepared.tetrahedra.back(), difference_to));
+      run.part.pictures.push_back(smooth_picture(key, field, *run.prepared.tetrahedra.back(), difference_to));
   }
   if (run.vtu_folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
   const std::string name =
-      fmt::format("{}_nu{}_{}x{}x{}.vtu", file_name(model), run.material.poisson_ratio, cells[0], cells[1], cells[2]);
+      fmt::format("{}_nu{}_{}.vtu", file_name(model), key.poisson_ratio, fmt::join(key.cells, "x"));
   write_vtu(run.vtu_folder / name, field, extra);
 }
 
 void add_line(PartRun& run, std::size_t lattice, const std::string& model, LineRecord line) {
-  line.model = model;
-  line.poisson_ratio = run.material.poisson_ratio;
-  line.cells = run.experiment().body.cells[lattice];
+  static_cast<RunKey&>(line) = run.key(model, lattice);
   run.part.lines.push_back(std::move(line));
 }
 
@@ -285,26 +276,23 @@ void add_splits(PartRun& run, std::size_t lattice, const std::string& model, con
   const auto& reference = run.reference[lattice];
   const auto& voxels = run.voxels[lattice];
   if (!reference || !voxels) return;
-  for (ErrorSplit& split :
-       split_error(run.prepared, lattice, *voxels, {reference->field, reference->scalars}, u, scalars)) {
-    split.model = model;
-    split.poisson_ratio = run.material.poisson_ratio;
+  for (ErrorSplit& split : split_error(run.prepared, run.prepared.lattices[lattice], run.key(model, lattice), *voxels,
+                                       {reference->field, reference->scalars}, u, scalars))
     run.part.splits.push_back(std::move(split));
-  }
 }
 
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const std::string kind = e.model_kinematics() == Kinematics::linear ? "linear" : "finite";
-  const std::vector<ModelSample> samples = run_samples(run.prepared, lattice, number, run.material);
+  const std::vector<ModelSample> samples =
+      run_samples(run.prepared, run.prepared.lattices[lattice], number, run.material);
   std::vector<NodalVectors> fields;
   std::vector<std::map<std::string, double>> scalars;
   for (const ModelSample& sample : samples) {
     const Equilibrium& s = sample.state;
-    run.part.runs.push_back({label, "msm", run.material.poisson_ratio, e.body.cells[lattice], kind, s.ok, s.message,
-                             s.solver, s.iterations, s.residual, sample.times.solve, s.unknowns, s.memory_MiB,
-                             sample.times.set_up});
+    run.part.runs.push_back({run.key(label, lattice), "msm", kind, s.ok, s.message, s.solver, s.iterations, s.residual,
+                             sample.times.solve, s.unknowns, s.memory_MiB, sample.times.set_up});
     if (!s.ok) continue;
     if (fields.empty()) {
       save(run, lattice, label, sample.field);
@@ -327,12 +315,15 @@ EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& par
 }
 
 /// Builds the model and puts the loads on it, for what may be wrong with either.
-void try_model(const Experiment& experiment, const ModelChoice& choice, const ModelParameters& parameters,
-               const Mesh& mesh, const Region* region) try {
-  const auto [model, embedding] = build_chosen(choice, parameters, mesh, experiment.materials.front(), region);
+void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number) try {
+  const Experiment& experiment = prepared.experiment;
+  const ModelParameters& parameters = prepared.models[number];
+  const Mesh& mesh = *lattice.mesh;
+  const auto [model, embedding] =
+      build_chosen(experiment.models[number], parameters, mesh, experiment.materials.front(), lattice.region.get());
   if (parameters.row.topology == Topology::cells) return;
   const BoundaryConditions bc =
-      transfer(experiment.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
+      transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
   if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
 } catch (const InputError&) {
   throw;
@@ -341,30 +332,28 @@ void try_model(const Experiment& experiment, const ModelChoice& choice, const Mo
 }
 
 /// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.
-std::vector<Load> lattice_loads(const Experiment& experiment) {
+std::vector<Load> lattice_loads(const PreparedCase& prepared) {
   std::vector<Load> loads;
-  for (const Load& load : experiment.loads)
+  for (const Load& load : prepared.loads)
     if (!std::holds_alternative<FieldBodyForce>(load)) loads.push_back(load);
   return loads;
 }
 
-void check_fineness(const Experiment& e) {
-  for (const Cells& c : e.body.cells)
-    if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
-      throw InputError(
-          e.body.where,
-          fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
-                      c[0], c[1], c[2], total, largest_lattice));
+/// @throws InputError for a lattice that no workstation holds.
+void check_fineness(const Body& body, const Cells& c) {
+  if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
+    throw InputError(
+        body.where,
+        fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
+                    c[0], c[1], c[2], total, largest_lattice));
 }
 
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   prepared.reference_cells = reference_cells(e);
-  check_fineness(e);
-  for (const Cells& cells : e.body.cells) {
-    prepared.meshes.push_back(std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells)));
-    prepared.regions.push_back(nullptr);
-  }
+  for (const Cells& cells : e.body.cells) check_fineness(e.body, cells);
+  for (const Cells& cells : e.body.cells)
+    add_lattice({cells, std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells))}, prepared);
 }
 
 /// The patches of the body itself, where their mean displacement is measured.
@@ -372,23 +361,23 @@ void sample_patches(PreparedCase& prepared) {
   if (!wanted("mean_displacement", prepared.experiment.measures)) return;
   const bool voxels = prepared.experiment.body.is_voxels();
   prepared.patch_samples =
-      samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.meshes[finest_lattice(prepared)]);
+      samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
 }
 
 /// Tries what the case asks for on one lattice.
-void try_lattice(PreparedCase& prepared, std::size_t lattice) {
+void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   const Experiment& e = prepared.experiment;
-  const Mesh& mesh = *prepared.meshes[lattice];
+  const Mesh& mesh = *lattice.mesh;
   std::vector<std::string> patches;
   for (const Patch& p : mesh.patches) patches.push_back(p.name);
   check_patches(e, patches);
   check_mean_displacements(e, patches);
-  prepared.sharing = patches_sharing_supports(e.loads, mesh, e.model_kinematics());
+  prepared.sharing = patches_sharing_supports(prepared.loads, mesh, e.model_kinematics());
   if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
-    require_supported(transfer(lattice_loads(e), mesh, 1000, e.model_kinematics()), mesh.nodes);
+    require_supported(transfer(lattice_loads(prepared), mesh, 1000, e.model_kinematics()), mesh.nodes);
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    if (const ModelParameters& p = prepared.models[m]; p.row.topology == Topology::cells || lattice == 0)
-      try_model(e, e.models[m], p, mesh, prepared.regions[lattice].get());
+    if (prepared.models[m].row.topology == Topology::cells || &lattice == &prepared.lattices.front())
+      try_model(prepared, lattice, m);
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);
   at_measured_points(prepared, lattice, u);
@@ -396,9 +385,9 @@ void try_lattice(PreparedCase& prepared, std::size_t lattice) {
 
 /// The finite elements' results at the nodes of one lattice.
 void add_fem(PartRun& run, std::size_t lattice) {
-  const PreparedCase& prepared = run.prepared;
+  const Lattice& here = run.prepared.lattices[lattice];
   if (run.reference[lattice]) {
-    Field field = sampled_field(prepared, lattice, run.grids.elements.front().grids.back());
+    Field field = sampled_field(here, run.grids.elements.front().grids.back());
     field.displacement = run.reference[lattice]->field.displacement;
     save(run, lattice, "fem", field);
   }
@@ -406,35 +395,31 @@ void add_fem(PartRun& run, std::size_t lattice) {
   for (const fem::Solution& s : run.grids.peers[lattice]) {
     const std::string name = "fem_" + s.grid.element;
     run.part.runs.push_back(fem_run(run, s, name));
-    run.part.runs.back().cells = prepared.experiment.body.cells[lattice];
+    run.part.runs.back().cells = here.cells;
     if (!s.ok) continue;
-    add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_lattice(prepared, lattice, s.displacement)},
-             {measures_of(prepared, s)});
-    save(run, lattice, name, sampled_field(prepared, lattice, s));
+    add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)},
+             {measures_of(run.prepared, s)});
+    save(run, lattice, name, sampled_field(here, s));
   }
 }
 
 }  // namespace
 
-bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree) {
-  const double unknowns = 3.0 * static_cast<double>(mesh.nodes.rows()) * degree * degree * degree;
-  return experiment.most_unknowns == 0 || unknowns <= experiment.most_unknowns;
-}
-
 PreparedCase prepare(const Experiment& experiment) try {
   PreparedCase prepared;
   prepared.experiment = experiment;
+  prepared.loads = experiment.loads;
+  prepared.size = experiment.body.size;
   check_expectations(experiment);
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   check_kinematics(experiment, prepared.models);
   prepared.geo = find_geo(experiment.body, experiment.file);
   progress::phase("cutting the body");
   experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
-  check_fineness(prepared.experiment);
+  for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);
   sample_patches(prepared);
-  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
-    progress::phase(
-        fmt::format("trying loads and models on {} cells", cells_text(prepared.experiment.body.cells[lattice], " x ")));
+  for (const Lattice& lattice : prepared.lattices) {
+    progress::phase(fmt::format("trying loads and models on {} cells", cells_text(lattice.cells, " x ")));
     try_lattice(prepared, lattice);
   }
   return prepared;
@@ -454,9 +439,9 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
   record_elements(run);
   build_reference(run);
   measure_deformation(run);
-  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+  for (std::size_t lattice = 0; lattice < prepared.lattices.size(); ++lattice) {
     add_fem(run, lattice);
-    if (!small_enough(prepared.experiment, *prepared.meshes[lattice])) continue;
+    if (!small_enough(prepared.experiment, run.mesh(lattice))) continue;
     for (std::size_t m = 0; m < prepared.models.size(); ++m) run_model(run, lattice, m);
   }
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);

@@ -33,11 +33,11 @@ void add_network(const Network& network, std::map<std::string, double>& out) {
 }
 
 /// The papers' moduli of a block stretched along x; lengths of the local fields as the network's spacing asks.
-void add_moduli(const Experiment& e, const MassSpringModel& model, const NodalVectors& u,
+void add_moduli(const PreparedCase& prepared, const MassSpringModel& model, const NodalVectors& u,
                 std::map<std::string, double>& out) {
-  const StretchedBlock block{Vec3::Zero(), e.body.size, *elongation_along_x(e)};
+  const StretchedBlock block{Vec3::Zero(), prepared.size, *elongation_along_x(prepared.experiment)};
   const double spacing = std::cbrt(model.network.volume.sum() / model.network.nodes());
-  const double width = std::min(e.body.size[1], e.body.size[2]);
+  const double width = std::min(prepared.size[1], prepared.size[2]);
   const BlockModuli m = measure_block(model, u, block, std::min(2.5 * spacing, 0.45 * width));
   out["moduli.youngs_modulus"] = m.youngs_modulus_nominal;
   out["moduli.youngs_modulus_local"] = m.youngs_modulus_local;
@@ -55,16 +55,16 @@ struct Solved {
   RunTimes times;
 };
 
-Solved solve_network(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                      const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
   const Kinematics kinematics = e.model_kinematics();
-  const Mesh& mesh = *prepared.meshes[lattice];
+  const Mesh& mesh = *lattice.mesh;
   const double start = cpu_seconds();
-  Solved s{build_embedded(parameters, mesh, material, prepared.regions[lattice].get()), {}, {}, {}};
+  Solved s{build_embedded(parameters, mesh, material, lattice.region.get()), {}, {}, {}};
   const LoadPath path = [&](double factor) {
     BoundaryConditions bc =
-        transfer(e.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
+        transfer(prepared.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
     if (parameters.hold_rigid_motions) hold_free_motions(s.built.model.network.X, bc);
     return bc;
   };
@@ -79,9 +79,9 @@ Solved solve_network(const PreparedCase& prepared, std::size_t lattice, const Mo
 }
 
 /// With times worth comparing, and the memory of this run alone.
-Solved solve_and_count(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+Solved solve_and_count(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material) {
-  if (lattice == 0)
+  if (&lattice == &prepared.lattices.front())
     solve_network(prepared, lattice, parameters, material);  // what is kept from run to run is not counted
   const MemoryGrowth memory;
   Solved s = solve_network(prepared, lattice, parameters, material);
@@ -92,10 +92,10 @@ Solved solve_and_count(const PreparedCase& prepared, std::size_t lattice, const 
 }
 
 /// One network of the model, solved and measured.
-ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const ModelParameters& parameters,
+ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
-  const auto& mesh = prepared.meshes[lattice];
+  const auto& mesh = lattice.mesh;
   const auto solve = e.cost ? solve_and_count : solve_network;
   const auto [built, conditions, state, times] = solve(prepared, lattice, parameters, material);
   const Network& network = built.model.network;
@@ -103,7 +103,8 @@ ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const 
   sample.state = state;
   sample.times = times;
   if (!sample.state.ok) return sample;
-  sample.field = to_field(sample.state, mesh, built.embedding, network, e.loads, conditions, e.model_kinematics());
+  sample.field =
+      to_field(sample.state, mesh, built.embedding, network, prepared.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
   sample.scalars =
       field_measures(prepared, sample.field, at_measured_points(prepared, lattice, sample.field.displacement));
@@ -112,20 +113,19 @@ ModelSample run_sample(const PreparedCase& prepared, std::size_t lattice, const 
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);
     sample.scalars.merge(line_deviations(*sample.line));
   }
-  if (asked(e, "moduli")) add_moduli(e, built.model, sample.state.displacement, sample.scalars);
+  if (asked(e, "moduli")) add_moduli(prepared, built.model, sample.state.displacement, sample.scalars);
   return sample;
 }
 
 }  // namespace
 
-std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number,
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material) {
   std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
     progress::phase(
-        fmt::format("{} on {} cells{}", prepared.experiment.models[number].label,
-                    cells_text(prepared.experiment.body.cells[lattice], " x "),
+        fmt::format("{} on {} cells{}", prepared.experiment.models[number].label, cells_text(lattice.cells, " x "),
                     parameters.seeds > 1 ? fmt::format(", network {} of {}", seed + 1, parameters.seeds) : ""));
     try {
       samples.push_back(run_sample(prepared, lattice, parameters, material));

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/run/case_run.h"
+#include "comparisons/report/results.h"
+#include "comparisons/run/prepared_case.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/system/run_cost.h"
 
@@ -21,8 +22,8 @@ struct ModelSample {
   std::optional<LineRecord> line;         ///< where the case has one
 };
 
-/// Solves model `number` of the case on lattice `lattice`; one sample per seed.
-std::vector<ModelSample> run_samples(const PreparedCase& prepared, std::size_t lattice, std::size_t number,
+/// Solves model `number` of the case on a lattice; one sample per seed.
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material);
 
 }  // namespace springproof

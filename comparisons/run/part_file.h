@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "comparisons/run/case_run.h"
+#include "comparisons/report/results.h"
 
 namespace springproof {
 

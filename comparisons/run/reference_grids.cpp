@@ -20,14 +20,9 @@ namespace {
 /// All points at which the displacement is wanted: the nodes of every lattice, then the measured points.
 NodalVectors sample_points(const PreparedCase& prepared) {
   const NodalVectors measured = measured_points(prepared);
-  Eigen::Index count = measured.rows();
-  for (const auto& mesh : prepared.meshes) count += mesh->nodes.rows();
-  NodalVectors points(count, 3);
-  Eigen::Index at = 0;
-  for (const auto& mesh : prepared.meshes) {
-    points.middleRows(at, mesh->nodes.rows()) = mesh->nodes;
-    at += mesh->nodes.rows();
-  }
+  NodalVectors points(prepared.nodes() + measured.rows(), 3);
+  for (const Lattice& lattice : prepared.lattices)
+    points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
   points.bottomRows(measured.rows()) = measured;
   return points;
 }
@@ -120,11 +115,12 @@ double scale_of(const std::string& measure, const std::map<std::string, double>&
 }
 
 std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double nu, const ElementGrids& e) {
+  const Lattice& lattice = prepared.lattices.front();
   const NodalVectors truth = exact_at_nodes(prepared);
-  const Eigen::VectorXd weights = nodal_volumes(*prepared.meshes.front());
+  const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
   std::vector<double> errors;
   for (const fem::Solution& s : e.grids)
-    errors.push_back(displacement_error(at_lattice(prepared, 0, s.displacement), truth, weights));
+    errors.push_back(displacement_error(at_nodes(lattice, s.displacement), truth, weights));
   const double coarse = std::log2(errors[0] / errors[1]), fine = std::log2(errors[1] / errors[2]);
   const std::string note = "against the exact field '" + prepared.experiment.exact + "', finest grid";
   return {{nu, "displacement_error", "1", {}, errors, fine, errors[2], 0, note, e.element},
@@ -145,7 +141,7 @@ std::optional<double> target(const Experiment& experiment, const ReferenceRecord
   if (r.measure == "displacement_error") return 0;
   for (const Expectation& e : experiment.expectations)
     if (e.value && e.measure == r.measure && reference_element(experiment, e.model) == r.element &&
-        (!e.poisson_ratio || std::abs(*e.poisson_ratio - r.poisson_ratio) < 1e-9))
+        (!e.poisson_ratio || same_poisson_ratio(*e.poisson_ratio, r.poisson_ratio)))
       return e.value;
   return {};
 }
@@ -188,7 +184,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   const Experiment& experiment = prepared.experiment;
   if (experiment.body.is_voxels()) return solve_body_grids(prepared, material);
   const bool stresses = wanted("stress", experiment.measures);
-  fem::Request request = request_of(experiment, material);
+  fem::Request request = fem::request_of(experiment, material);
   request.points = sample_points(prepared);
   if (stresses) request.stress_points = probe_points(experiment);
   for (const std::string& element : experiment.reference.elements)
@@ -196,10 +192,10 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   const std::size_t references = request.grids.size();
   std::vector<std::size_t> lattices;
   if (!experiment.models.empty())
-    for (std::size_t i = 0; i < prepared.meshes.size(); ++i)
+    for (std::size_t i = 0; i < prepared.lattices.size(); ++i)
       for (const std::string& element : experiment.elements)
-        if (small_enough(experiment, *prepared.meshes[i], element[1] - '0')) {
-          request.grids.push_back({experiment.body.cells[i], element, 1.0});
+        if (small_enough(experiment, *prepared.lattices[i].mesh, element[1] - '0')) {
+          request.grids.push_back({prepared.lattices[i].cells, element, 1.0});
           lattices.push_back(i);
         }
   try {
@@ -211,7 +207,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
       at += 3;
     }
     fall_back(prepared, request, out.elements);
-    out.peers.resize(prepared.meshes.size());
+    out.peers.resize(prepared.lattices.size());
     for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;
   } catch (const NoRoom&) {  // no fault of the case
@@ -221,26 +217,18 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   }
 }
 
-Eigen::Index first_node(const PreparedCase& prepared, std::size_t lattice) {
-  Eigen::Index at = 0;
-  for (std::size_t i = 0; i < lattice; ++i) at += prepared.meshes[i]->nodes.rows();
-  return at;
+NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples) {
+  return samples.middleRows(lattice.first_node, lattice.mesh->nodes.rows());
 }
 
-NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples) {
-  return samples.middleRows(first_node(prepared, lattice), prepared.meshes[lattice]->nodes.rows());
-}
-
-Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem::Solution& s) {
-  return {prepared.meshes[lattice], at_lattice(prepared, lattice, s.displacement), s.reactions, s.volume_change,
-          s.volume_change_first_order};
+Field sampled_field(const Lattice& lattice, const fem::Solution& s) {
+  return {lattice.mesh, at_nodes(lattice, s.displacement), s.reactions, s.volume_change, s.volume_change_first_order};
 }
 
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
-  const Eigen::Index nodes = first_node(prepared, prepared.meshes.size());
-  auto values =
-      field_measures(prepared, sampled_field(prepared, 0, s), s.displacement.bottomRows(s.displacement.rows() - nodes));
+  auto values = field_measures(prepared, sampled_field(prepared.lattices.front(), s),
+                               s.displacement.bottomRows(s.displacement.rows() - prepared.nodes()));
   if (s.stress.rows() == static_cast<Eigen::Index>(probes.size())) values.merge(stress_measures(probes, s.stress));
   return values;
 }
@@ -254,12 +242,12 @@ bool comparable(const PreparedCase& prepared, const std::string& measure) {
 std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
                                      const std::map<std::string, ReferenceValue>& truth) {
   return reaction_difference(values, values_of(truth), truth, comparable_moved_patches(prepared),
-                             prepared.experiment.body.size.maxCoeff());
+                             prepared.size.maxCoeff());
 }
 
 NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   if (prepared.experiment.exact.empty()) return NodalVectors(0, 3);
-  NodalVectors u = prepared.meshes.front()->nodes;
+  NodalVectors u = prepared.lattices.front().mesh->nodes;
   for (Eigen::Index n = 0; n < u.rows(); ++n)
     u.row(n) = exact_displacement(prepared.experiment.exact, Vec3(u.row(n).transpose())).transpose();
   return u;
@@ -294,7 +282,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
   const Experiment& experiment = prepared.experiment;
   std::map<std::string, ReferenceValue> limits;
   for (const auto& [measure, fine] : values[2]) {
-    const double scale = scale_of(measure, values[2], experiment.body.size.norm(), largest_displacement);
+    const double scale = scale_of(measure, values[2], prepared.size.norm(), largest_displacement);
     ReferenceValue& limit = limits[measure];
     limit = extrapolate({values[0].at(measure), values[1].at(measure), fine}, solver_noise * scale,
                         trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
@@ -342,11 +330,9 @@ std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<Referen
   for (const ReferenceRecord& r : records)
     for (std::size_t i = 0; i < r.values.size(); ++i) {
       if (!std::isfinite(r.values[i])) continue;
-      Row row{experiment.name,
+      Row row{{"fem_" + r.element, r.poisson_ratio, r.cells[i]},
+              experiment.name,
               experiment.kinematics,
-              "fem_" + r.element,
-              r.poisson_ratio,
-              r.cells[i],
               r.measure,
               r.values[i],
               r.unit,

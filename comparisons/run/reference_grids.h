@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "comparisons/judge/reference_value.h"
-#include "comparisons/run/case_run.h"
+#include "comparisons/report/results.h"
+#include "comparisons/run/prepared_case.h"
 #include "fem_reference/reference.h"
 
 namespace springproof {
@@ -37,14 +38,10 @@ struct ReferenceGrids {
 /// program dies of is alone in that.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
-/// Row of Solution::displacement that the nodes of a lattice begin at; of the one past the last, that of the measured
-/// points.
-Eigen::Index first_node(const PreparedCase& prepared, std::size_t lattice);
-
 /// The part of Solution::displacement that belongs to the nodes of one lattice.
-NodalVectors at_lattice(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& samples);
+NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples);
 
-Field sampled_field(const PreparedCase& prepared, std::size_t lattice, const fem::Solution& s);
+Field sampled_field(const Lattice& lattice, const fem::Solution& s);
 
 /// Every scalar measure of one solution, stresses among them.
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);

@@ -124,7 +124,7 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
 Experiment only(const std::vector<double>& wanted, Experiment e) {
   if (wanted.empty()) return e;
   const auto left_out = [&](double nu) {
-    return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return std::abs(w - nu) < 1e-12; });
+    return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return same_poisson_ratio(w, nu); });
   };
   std::string has;
   for (const IsotropicMaterial& m : e.materials) has += fmt::format("{}{}", has.empty() ? "" : ", ", m.poisson_ratio);
@@ -257,25 +257,29 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+void append(const Part& from, Part& to) {
+  append(from.runs, to.runs);
+  append(from.rows, to.rows);
+  append(from.references, to.references);
+  append(from.pictures, to.pictures);
+  append(from.lines, to.lines);
+  append(from.splits, to.splits);
+  append(from.deformations, to.deformations);
+}
+
 std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const std::vector<Task>& tasks) {
   std::vector<CaseResult> results;
   for (const PreparedCase& p : prepared) {
     CaseResult result;
     result.experiment = p.experiment;
+    result.size = p.size;
+    for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
     result.notes = p.notes;
     for (std::size_t m = 0; m < p.models.size(); ++m)
       if (const auto own = own_poisson_ratio(p.models[m].row))
         result.own_poisson_ratios[p.experiment.models[m].label] = *own;
-    for (const Task& task : tasks) {
-      if (task.prepared != &p) continue;
-      append(task.part.runs, result.runs);
-      append(task.part.rows, result.rows);
-      append(task.part.references, result.references);
-      append(task.part.pictures, result.pictures);
-      append(task.part.lines, result.lines);
-      append(task.part.splits, result.splits);
-      append(task.part.deformations, result.deformations);
-    }
+    for (const Task& task : tasks)
+      if (task.prepared == &p) append(task.part, result);
     judge(result);
     results.push_back(std::move(result));
   }

@@ -41,9 +41,10 @@ double block_seconds(const PreparedCase& prepared) {
       total += seconds_of(element, unknowns(cells, degree_of(element)));
     }
   if (e.models.empty()) return total;
-  for (const auto& mesh : prepared.meshes)
+  for (const Lattice& lattice : prepared.lattices)
     for (const std::string& element : e.elements)
-      if (small_enough(e, *mesh, degree_of(element))) total += seconds_of(element, unknowns(*mesh, degree_of(element)));
+      if (small_enough(e, *lattice.mesh, degree_of(element)))
+        total += seconds_of(element, unknowns(*lattice.mesh, degree_of(element)));
   return total;
 }
 
@@ -53,14 +54,16 @@ double voxel_seconds(const PreparedCase& prepared) {
   for (const std::string& element : e.reference.elements)
     for (const auto& mesh : prepared.tetrahedra) total += with_matrices * unknowns(*mesh, degree_of(element));
   if (e.reference.elements.empty() || e.models.empty()) return total;
-  for (const auto& mesh : prepared.meshes) {
+  for (const Lattice& lattice : prepared.lattices) {
+    const Mesh* mesh = lattice.mesh.get();
+    if (lattice.tetrahedra)
+      for (const std::string& element : elements_of(e, 'p'))
+        total += with_matrices * unknowns(*lattice.tetrahedra, degree_of(element));
     if (mesh->hexahedra.size() > most_cubes) continue;
     for (const std::string& element : elements_of(e, 'q'))
       if (small_enough(e, *mesh, degree_of(element))) total += with_matrices * unknowns(*mesh, degree_of(element));
     if (!e.cost && mesh->hexahedra.size() <= most_refined_cubes) total += with_matrices * 9 * unknowns(*mesh, 2);
   }
-  for (const auto& mesh : prepared.fitted)
-    for (const std::string& element : elements_of(e, 'p')) total += with_matrices * unknowns(*mesh, degree_of(element));
   return total;
 }
 
@@ -69,9 +72,9 @@ double voxel_seconds(const PreparedCase& prepared) {
 double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
   double total = e.body.is_voxels() ? voxel_seconds(prepared) : block_seconds(prepared);
-  for (const auto& mesh : prepared.meshes)
-    if (small_enough(e, *mesh))
-      for (const ModelParameters& model : prepared.models) total += springs * model.seeds * unknowns(*mesh, 1);
+  for (const Lattice& lattice : prepared.lattices)
+    if (small_enough(e, *lattice.mesh))
+      for (const ModelParameters& model : prepared.models) total += springs * model.seeds * unknowns(*lattice.mesh, 1);
   const double incompressible = material.poisson_ratio > pressures_above ? with_pressures : 1;
   return start_up + total * incompressible * (e.model_kinematics() == Kinematics::finite ? large_strain : 1);
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "comparisons/run/case_run.h"
+#include "comparisons/run/prepared_case.h"
 
 namespace springproof {
 

@@ -99,20 +99,19 @@ void compare_volumes(double cubes, double edge, double body, std::vector<std::st
 void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   if (elements_of(e, 'p').empty()) return;
-  for (const double edge : prepared.voxel_edges) {
-    request.edge = edge;
+  for (Lattice& lattice : prepared.lattices) {
+    request.edge = lattice.voxel_edge;
     Mesh mesh = mesh_body(request).mesh;
     select_patches(e.patches, mesh, coarseness(mesh, prepared));
-    prepared.fitted.push_back(std::make_shared<Mesh>(std::move(mesh)));
+    lattice.tetrahedra = std::make_shared<Mesh>(std::move(mesh));
   }
 }
 
 void cut_lattices(PreparedCase& prepared) {
-  Body& body = prepared.experiment.body;
   const Mesh& true_body = *prepared.tetrahedra.back();
   const auto region = std::make_shared<Region>(region_of(true_body));
-  body.size = region->upper - region->lower;
-  const std::vector<double> edges = voxel_edges(body, region->volume);
+  prepared.size = region->upper - region->lower;
+  const std::vector<double> edges = voxel_edges(prepared.experiment.body, region->volume);
   check_counts(edges, region->volume);
   for (const double edge : edges) {
     const VoxelGrid grid = voxel_grid(true_body, edge);
@@ -120,10 +119,7 @@ void cut_lattices(PreparedCase& prepared) {
     Voxels voxels = voxelise(grid, true_body);
     for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
     compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);
-    body.cells.push_back(grid.cells);
-    prepared.voxel_edges.push_back(edge);
-    prepared.meshes.push_back(std::make_shared<Mesh>(std::move(voxels.mesh)));
-    prepared.regions.push_back(region);
+    add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), edge, region}, prepared);
   }
 }
 
@@ -171,7 +167,7 @@ void set_wrenches(PreparedCase& prepared) {
   const Mesh& body = *prepared.tetrahedra.back();
   const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
   const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
-  for (Load& load : prepared.experiment.loads) {
+  for (Load& load : prepared.loads) {
     if (auto* t = std::get_if<Traction>(&load)) {
       t->wrench = at_centroid(area(parts(t->on)) * t->traction, centroid(parts(t->on)));
     } else if (auto* q = std::get_if<Pressure>(&load)) {
@@ -227,14 +223,14 @@ void place_samples(PreparedCase& prepared) {
   const Mesh& body = *prepared.tetrahedra.back();
   const std::vector<OuterFacet> facets = outer_facets(body);
   const FacetTree tree(body, facets);
-  const Region& region = *prepared.regions.front();
+  const Region& region = *prepared.lattices.front().region;
   std::vector<Vec3> points;
   const auto ask = [&](const Vec3& p) {
     points.push_back(p);
     return static_cast<int>(points.size()) - 1;
   };
-  for (const auto& mesh : prepared.meshes)
-    for (const auto& row : mesh->nodes.rowwise()) {
+  for (const Lattice& lattice : prepared.lattices)
+    for (const auto& row : lattice.mesh->nodes.rowwise()) {
       const Vec3 X = row.transpose();
       if (region.inside(X)) {
         prepared.body_samples.push_back({ask(X)});
@@ -254,10 +250,11 @@ void check_probes(const PreparedCase& prepared) {
   const Mesh& body = *prepared.tetrahedra.back();
   const std::vector<OuterFacet> facets = outer_facets(body);
   const FacetTree tree(body, facets);
-  const double slack = *std::min_element(prepared.voxel_edges.begin(), prepared.voxel_edges.end()) / 2;
+  const auto finer = [](const Lattice& a, const Lattice& b) { return a.voxel_edge < b.voxel_edge; };
+  const double slack = std::min_element(prepared.lattices.begin(), prepared.lattices.end(), finer)->voxel_edge / 2;
   for (const Probe& p : prepared.experiment.probes) {
     const double distance = (tree.nearest(p.at).point - p.at).norm();
-    if (!prepared.regions.front()->inside(p.at) && distance > slack)
+    if (!prepared.lattices.front().region->inside(p.at) && distance > slack)
       throw InputError(fmt::format(
           "probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface",
           p.name, p.at[0], p.at[1], p.at[2], distance));
@@ -307,9 +304,10 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
   return out;
 }
 
-NodalVectors at_measured_points(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& displacement) {
+NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice,
+                                const NodalVectors& displacement) {
   const Experiment& e = prepared.experiment;
-  const Mesh& mesh = *prepared.meshes[lattice];
+  const Mesh& mesh = *lattice.mesh;
   if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // for a probe outside
   const NodalVectors points = measured_points(prepared);
   const Locator locator(mesh);

@@ -1,7 +1,7 @@
 // Any closed body: tetrahedra for the finite elements, cubes cut out of it for the lattices.
 #pragma once
 
-#include "comparisons/run/case_run.h"
+#include "comparisons/run/prepared_case.h"
 #include "meshes/field.h"
 
 namespace springproof {
@@ -17,7 +17,7 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
 /// Displacement at the measured points (comparisons/run/reference_grids.h) from that of a lattice's nodes.  A point of
 /// a patch, and in a body of voxels a probe, may lie beyond the cells: it takes what the nearest one continues to.
 /// @throws InputError naming a probe outside the body.
-NodalVectors at_measured_points(const PreparedCase& prepared, std::size_t lattice, const NodalVectors& displacement);
+NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
 
 /// Torques as of forces about the rest centroids of the true body's patches instead of those of `own`.
 std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,

@@ -33,7 +33,8 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   const Experiment& e = prepared.experiment;
   const NodalVectors measured = measured_points(prepared);
   const bool stresses = wanted("stress", e.measures);
-  fem::Request request = request_of(e, material);
+  fem::Request request = fem::request_of(e, material);
+  request.loads = prepared.loads;
   request.grids = grids;
   request.points = stacked(prepared.body_points, measured);
   if (stresses) request.stress_points = probe_points(e);
@@ -51,13 +52,14 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
 
 /// On the cubes of one lattice: these elements, and for the parts of the error q2, and q2 on cubes cut into eight, if
 /// they are not too many.
-std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t lattice,
+std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Lattice& lattice,
                                        const IsotropicMaterial& material, const std::vector<std::string>& elements) {
   const Experiment& e = prepared.experiment;
-  const auto& mesh = prepared.meshes[lattice];
-  const Cells& cells = e.body.cells[lattice];
+  const auto& mesh = lattice.mesh;
+  const Cells& cells = lattice.cells;
   if (mesh->hexahedra.size() > most_cubes) return {};
-  fem::Request request = request_of(e, material);
+  fem::Request request = fem::request_of(e, material);
+  request.loads = prepared.loads;
   request.points = mesh->nodes;
   request.meshes = {mesh};
   for (const std::string& element : elements) request.grids.push_back({cells, element, 1.0, 0, 0});
@@ -66,13 +68,12 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, std::size_t
     request.grids.push_back({{2 * cells[0], 2 * cells[1], 2 * cells[2]}, "q2", 1.0, 0, 1});
   }
   std::vector<fem::Solution> solutions = fem::solve(request);
-  const Eigen::Index nodes = first_node(prepared, prepared.meshes.size()), first = first_node(prepared, lattice);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     s.reactions = about_true_patches(prepared, *mesh, s.reactions);
     const NodalVectors measured = at_measured_points(prepared, lattice, s.displacement);
-    NodalVectors all = NodalVectors::Zero(nodes + measured.rows(), 3);
-    all.middleRows(first, mesh->nodes.rows()) = s.displacement;
+    NodalVectors all = NodalVectors::Zero(prepared.nodes() + measured.rows(), 3);
+    all.middleRows(lattice.first_node, mesh->nodes.rows()) = s.displacement;
     all.bottomRows(measured.rows()) = measured;
     s.displacement = std::move(all);
   }
@@ -86,7 +87,7 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
                                              ErrorSplit split) {
   const std::map<std::string, double> truth = values_of(body.scalars), limit = values_of(voxels.limits);
   const std::vector<std::string> patches = comparable_moved_patches(prepared);
-  const double length = prepared.experiment.body.size.maxCoeff();
+  const double length = prepared.size.maxCoeff();
   const auto distance = [&](const auto& a, const auto& b) {
     return reaction_difference(a, b, body.scalars, patches, length).value_or(0);
   };
@@ -129,18 +130,19 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
   const auto too_fine = [&](const Mesh& mesh, const std::string& element) {
     return !small_enough(e, mesh, element[1] - '0');
   };
-  for (std::size_t lattice = 0; lattice < prepared.meshes.size(); ++lattice) {
+  Meshes fitted;
+  for (const Lattice& lattice : prepared.lattices) {
+    if (lattice.tetrahedra) fitted.push_back(lattice.tetrahedra);
     std::vector<std::string> on_cubes = elements_of(e, 'q');
-    std::erase_if(on_cubes, [&](const std::string& element) { return too_fine(*prepared.meshes[lattice], element); });
+    std::erase_if(on_cubes, [&](const std::string& element) { return too_fine(*lattice.mesh, element); });
     const std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material, on_cubes);
     const auto refined = cubes.begin() + static_cast<std::ptrdiff_t>(std::min(on_cubes.size(), cubes.size()));
     out.peers.emplace_back(cubes.begin(), refined);
     out.refined.emplace_back(refined, cubes.end());
   }
-  std::vector<fem::Discretisation> fitted = grids_on(prepared.fitted, elements_of(e, 'p'));
-  std::erase_if(fitted,
-                [&](const fem::Discretisation& grid) { return too_fine(*prepared.fitted[grid.mesh], grid.element); });
-  for (const fem::Solution& s : solve_tetrahedra(prepared, material, fitted, prepared.fitted))
+  std::vector<fem::Discretisation> on_fitted = grids_on(fitted, elements_of(e, 'p'));
+  std::erase_if(on_fitted, [&](const fem::Discretisation& grid) { return too_fine(*fitted[grid.mesh], grid.element); });
+  for (const fem::Solution& s : solve_tetrahedra(prepared, material, on_fitted, fitted))
     out.peers[s.grid.mesh].push_back(s);
   return out;
 } catch (const InputError&) {
@@ -151,17 +153,17 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
   return none;
 }
 
-std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t lattice, const ReferenceGrids& grids) {
-  if (lattice >= grids.refined.size() || grids.refined[lattice].size() != 2) return {};
-  const std::vector<fem::Solution>& peers = grids.peers[lattice];
+std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t number, const ReferenceGrids& grids) {
+  if (number >= grids.refined.size() || grids.refined[number].size() != 2) return {};
+  const Lattice& lattice = prepared.lattices[number];
+  const std::vector<fem::Solution>& peers = grids.peers[number];
   const auto q1 =
       std::find_if(peers.begin(), peers.end(), [](const fem::Solution& s) { return s.grid.element == "q1"; });
-  const fem::Solution &h = grids.refined[lattice][0], &half = grids.refined[lattice][1];
+  const fem::Solution &h = grids.refined[number][0], &half = grids.refined[number][1];
   if (q1 == peers.end() || !q1->ok || !h.ok || !half.ok) return {};
   const fem::Solution& peer = *q1;
-  const NodalVectors u1 = at_lattice(prepared, lattice, h.displacement),
-                     u2 = at_lattice(prepared, lattice, half.displacement);
-  VoxelLimit out{at_lattice(prepared, lattice, peer.displacement),
+  const NodalVectors u1 = at_nodes(lattice, h.displacement), u2 = at_nodes(lattice, half.displacement);
+  VoxelLimit out{at_nodes(lattice, peer.displacement),
                  2 * u2 - u1,
                  3 * (u2 - u1).rowwise().norm(),
                  measures_of(prepared, peer),
@@ -172,17 +174,17 @@ std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t 
   return out;
 }
 
-std::vector<ErrorSplit> split_error(const PreparedCase& prepared, std::size_t lattice, const VoxelLimit& voxels,
-                                    const BodyLimit& body, const std::vector<NodalVectors>& u,
+std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice& lattice, const RunKey& key,
+                                    const VoxelLimit& voxels, const BodyLimit& body, const std::vector<NodalVectors>& u,
                                     const std::vector<std::map<std::string, double>>& values) {
   const Experiment& e = prepared.experiment;
   const double samples = static_cast<double>(u.size());
   ErrorSplit blank;
-  blank.cells = e.body.cells[lattice];
-  blank.voxel_edge = prepared.voxel_edges[lattice];
+  static_cast<RunKey&>(blank) = key;
+  blank.voxel_edge = lattice.voxel_edge;
   std::vector<ErrorSplit> splits;
 
-  const Eigen::VectorXd weights = nodal_volumes(*prepared.meshes[lattice]);
+  const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
   const double size = weighted_norm(body.field.displacement, weights);
   const auto distance = [&](const NodalVectors& a, const NodalVectors& b) {
     return weighted_norm(a - b, weights) / size;

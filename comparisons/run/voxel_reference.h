@@ -37,8 +37,8 @@ struct BodyLimit {
 };
 
 /// Where the difference of one model from the body-fitted limit comes from; `u` and `values` one per sample.
-std::vector<ErrorSplit> split_error(const PreparedCase& prepared, std::size_t lattice, const VoxelLimit& voxels,
-                                    const BodyLimit& body, const std::vector<NodalVectors>& u,
+std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice& lattice, const RunKey& key,
+                                    const VoxelLimit& voxels, const BodyLimit& body, const std::vector<NodalVectors>& u,
                                     const std::vector<std::map<std::string, double>>& values);
 
 }  // namespace springproof

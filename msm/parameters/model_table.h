@@ -7,6 +7,7 @@
 
 #include "msm/laws/laws.h"
 #include "msm/topology/random_network.h"
+#include "problem/material.h"
 #include "problem/model_choice.h"
 
 namespace springproof {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "problem/system/input_error.h"
 #include "problem/system/files.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 

@@ -14,8 +14,6 @@ inline Experiment sample_experiment() {
   e.cite = "Golec et al. (2019), Table 3";
   e.what = "A cube compressed between two plates.";
   e.body.geo = "block.geo";
-  e.body.size = {1, 1, 1};
-  e.body.cells = {{1, 1, 1}, {2, 2, 2}};
   e.materials = {{1e4, 0.25, 1000}, {1e4, 0.4, 1000}};
   e.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PrescribedDisplacement{"z_max", {0.0, 0.0, -0.05}}};
   e.models = {{"hybmss", {{"face_to_cube", 1.0}}, "hybmss", {}}};
@@ -42,21 +40,25 @@ inline Picture sample_picture(const std::string& model, double poisson_ratio) {
 inline CaseResult sample_case() {
   CaseResult c;
   c.experiment = sample_experiment();
+  c.size = {1, 1, 1};
+  c.cells = {{1, 1, 1}, {2, 2, 2}};
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (double nu : {0.25, 0.4}) {
     for (int n : {1, 2}) {
       const Cells cells = {n, n, n};
       const double error = (nu == 0.25 ? 0.01 : 0.04) / n;
-      c.runs.push_back({"hybmss", "msm", nu, cells, "linear", true, "", "CG + multigrid", 12, 1e-11, 0.5, 81});
-      c.rows.push_back({"compress", "linear", "hybmss", nu, cells, "displacement_error", error, "1", {}, 0.001, error});
-      c.rows.push_back({"compress", "linear", "hybmss", nu, cells, "volume_change", -0.025, "1", -0.026, 1e-4, 0.001});
+      c.runs.push_back({{"hybmss", nu, cells}, "msm", "linear", true, "", "CG + multigrid", 12, 1e-11, 0.5, 81});
+      c.rows.push_back(
+          {{"hybmss", nu, cells}, "compress", "linear", "displacement_error", error, "1", {}, 0.001, error});
+      c.rows.push_back(
+          {{"hybmss", nu, cells}, "compress", "linear", "volume_change", -0.025, "1", -0.026, 1e-4, 0.001});
       for (const char* plate : {"z_min", "z_max"}) {
         const std::string force = std::string("force.") + plate;
         const double sign = force == "force.z_min" ? 1 : -1;
-        c.rows.push_back({"compress", "linear", "hybmss", nu, cells, force + ".magnitude", 510, "N", 500, 1, 10});
-        c.rows.push_back({"compress", "linear", "hybmss", nu, cells, force + ".x", 1e-9, "N", 2e-9, 1e-6, -1e-9});
+        c.rows.push_back({{"hybmss", nu, cells}, "compress", "linear", force + ".magnitude", 510, "N", 500, 1, 10});
+        c.rows.push_back({{"hybmss", nu, cells}, "compress", "linear", force + ".x", 1e-9, "N", 2e-9, 1e-6, -1e-9});
         c.rows.push_back(
-            {"compress", "linear", "hybmss", nu, cells, force + ".z", sign * 510, "N", sign * 500, 1, sign * 10});
+            {{"hybmss", nu, cells}, "compress", "linear", force + ".z", sign * 510, "N", sign * 500, 1, sign * 10});
       }
     }
     c.references.push_back({nu,
@@ -72,7 +74,7 @@ inline CaseResult sample_case() {
     c.pictures.push_back(sample_picture("fem", nu));
   }
   c.runs.push_back(
-      {"emsm", "msm", 0.4, {2, 2, 2}, "linear", false, "diverged at load 0.3", "BiCGStab", 7, none, 0.1, 81});
+      {{"emsm", 0.4, {2, 2, 2}}, "msm", "linear", false, "diverged at load 0.3", "BiCGStab", 7, none, 0.1, 81});
   c.checks.push_back({"hybmss",
                       0.25,
                       {2, 2, 2},

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "comparisons/run/case_run.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_reference.h"
 #include "meshes/patches/rule_region.h"
@@ -90,7 +91,7 @@ TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
   for (const double edge : {0.12, 0.09}) {
     const PreparedCase prepared = prepare(experiment_of(c, edge, ""));
     const double area = c.area > 0 ? c.area : area_of(prepared.experiment.patches[0], *prepared.tetrahedra.back());
-    const Load& load = prepared.experiment.loads[1];
+    const Load& load = prepared.loads[1];
     Vec3 force = wrench_of(load)->value().force;
     if (const auto* t = std::get_if<Traction>(&load)) {
       EXPECT_LE((force - area * t->traction).norm(), 1e-6 * force.norm());
@@ -98,7 +99,8 @@ TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
       EXPECT_NEAR(force.norm(), area * std::get<Pressure>(load).pressure, 1e-6 * force.norm());
     }
     std::vector<std::shared_ptr<const Mesh>> all = prepared.tetrahedra;
-    all.insert(all.end(), prepared.fitted.begin(), prepared.fitted.end());
+    for (const Lattice& lattice : prepared.lattices)
+      if (lattice.tetrahedra) all.push_back(lattice.tetrahedra);
     ASSERT_EQ(all.size(), 4u);
     for (const auto& mesh : all) {
       const double own = nodal_areas(*mesh, patch(*mesh, "spot")).sum();
@@ -107,7 +109,7 @@ TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
       }
       EXPECT_NEAR(own, area_of(prepared.experiment.patches[0], *mesh), 1e-4 * area);
     }
-    all.push_back(prepared.meshes[0]);
+    all.push_back(prepared.lattices[0].mesh);
     for (const auto& mesh : all) {
       const Vec3 borne = transfer({load}, *mesh, 1000, Kinematics::linear).external.colwise().sum().transpose();
       EXPECT_LE((borne - force).norm(), 1e-10 * force.norm());
@@ -155,7 +157,7 @@ TEST(RulePatchReactions, AreTheRulesForceInLinearAndQuadraticElementsAndOnCubes)
     const PreparedCase prepared = prepare(experiment_of(c, 0.2, "elements = [\"p2\", \"p1\"]"));
     const ReferenceGrids grids = solve_body_grids(prepared, prepared.experiment.materials[0]);
     ASSERT_EQ(grids.failure, "");
-    const Vec3 force = wrench_of(prepared.experiment.loads[1])->value().force;
+    const Vec3 force = wrench_of(prepared.loads[1])->value().force;
     std::vector<fem::Solution> solutions = grids.peers[0];
     for (const ElementGrids& e : grids.elements) solutions.insert(solutions.end(), e.grids.begin(), e.grids.end());
     EXPECT_EQ(solutions.size(), 8u);

@@ -24,8 +24,8 @@ CaseResult with_errors(const std::string& name, const std::string& model, const 
   c.experiment.models = {{model, {}, model, {}}};
   for (const Point& p : points) {
     const Cells cells = {p.cells, p.cells, p.cells};
-    c.runs.push_back({model, "msm", p.nu, cells, "linear", true, "", "", 1, 0, 0, 0});
-    c.rows.push_back({name, "linear", model, p.nu, cells, "displacement_error", p.error, "1", {}, 1e-4, p.error});
+    c.runs.push_back({{model, p.nu, cells}, "msm", "linear", true, "", "", 1, 0, 0, 0});
+    c.rows.push_back({{model, p.nu, cells}, name, "linear", "displacement_error", p.error, "1", {}, 1e-4, p.error});
   }
   return c;
 }
@@ -53,7 +53,7 @@ TEST(Headline, TetrahedraAndLongPoissonsRatiosAreReadable) {
   c.runs[0].cells = {812, 0, 0};
   c.rows[0].cells = {812, 0, 0};
   c.rows.push_back(
-      {"hand", "linear", "hybmss", 0.4999750012499375, {100, 0, 0}, "displacement_error", 0.7, "1", {}, 1e-4, 0.7});
+      {{"hybmss", 0.4999750012499375, {100, 0, 0}}, "hand", "linear", "displacement_error", 0.7, "1", {}, 1e-4, 0.7});
   const Headline h = headline_of({c});
   EXPECT_EQ(h.failed_runs.at(0), "hand: hybmss at ν = 0.499975, 812 tets: no reason given");
   EXPECT_EQ(h.models[0].sentence, "displacement within 50 % of FEM at ν = 0.499975 (worst: hand at ν = 0.499975).")
@@ -130,7 +130,7 @@ TEST(Headline, LargeDeformationIsKeptApart) {
 
 TEST(Headline, VolumeIsToldInPercentagePoints) {
   CaseResult c = with_errors("shear", "hybmss", {{0, 10, 0.002}});
-  c.rows.push_back({"shear", "linear", "hybmss", 0, {10, 10, 10}, "volume_change", 0.05, "1", 0.0507, 1e-5, -0.0007});
+  c.rows.push_back({{"hybmss", 0, {10, 10, 10}}, "shear", "linear", "volume_change", 0.05, "1", 0.0507, 1e-5, -0.0007});
   EXPECT_NE(headline_of({c}).models[0].sentence.find("; volume change within 0.07 percentage points."),
             std::string::npos);
 }
@@ -160,11 +160,11 @@ TEST(Headline, AModelWithoutAnyResultIsSaidToHaveNone) {
 void add_row(CaseResult& c, const std::string& model, double nu, const std::string& measure, double error,
              double uncertainty) {
   c.rows.push_back(
-      {c.experiment.name, "linear", model, nu, {10, 10, 10}, measure, error, "1", 0.0, uncertainty, error});
+      {{model, nu, {10, 10, 10}}, c.experiment.name, "linear", measure, error, "1", 0.0, uncertainty, error});
 }
 
 void add_split(CaseResult& c, const std::string& model, double nu, double total, double own) {
-  c.splits.push_back({model, nu, {10, 10, 10}, 0.01, "displacement_error", "1", total, own, 0.17, 0.35, 0.063, 0.02});
+  c.splits.push_back({{model, nu, {10, 10, 10}}, 0.01, "displacement_error", "1", total, own, 0.17, 0.35, 0.063, 0.02});
 }
 
 /// Several models at one Poisson's ratio: {name, displacement error}.
@@ -177,7 +177,7 @@ CaseResult with_models(const std::string& name, double nu, double uncertainty,
   for (const auto& [model, error] : models) {
     c.experiment.models.push_back({model, {}, model, {}});
     if (model.starts_with("msm_")) c.own_poisson_ratios[model] = 0.25;
-    c.runs.push_back({model, "msm", nu, {10, 10, 10}, "linear", true, "", "", 1, 0, 0, 0});
+    c.runs.push_back({{model, nu, {10, 10, 10}}, "msm", "linear", true, "", "", 1, 0, 0, 0});
     add_row(c, model, nu, "displacement_error", error, uncertainty);
   }
   c.references.push_back({nu, "displacement_error", "1", {}, {}, 1.5, 0, uncertainty, "Richardson, GCI", "p2"});
@@ -290,7 +290,7 @@ TEST(Headline, ACaseWithoutReferenceIsNoSuccess) {
   CaseResult c = with_models("cube", 0.3, 1e-4, {{"emsm", 0.03}});
   EXPECT_TRUE(success(headline_of({c})));
   c.experiment.materials.push_back({1e4, 0.4, 1000});
-  c.runs.push_back({"fem_p2", "fem", 0.4, {812, 0, 0}, "linear", false, "out of memory", "", 0, 0, 0, 0});
+  c.runs.push_back({{"fem_p2", 0.4, {812, 0, 0}}, "fem", "linear", false, "out of memory", "", 0, 0, 0, 0});
   const Headline h = headline_of({c});
   EXPECT_FALSE(success(h));
   EXPECT_EQ(h.failures, std::vector<std::string>{"cube at ν = 0.4: there is no reference: out of memory"});
@@ -331,7 +331,7 @@ TEST(Headline, TheTerminalHasTheReportsGroups) {
   CaseResult large = with_errors("torsion_45", "hybmss", {{0, 10, 0.3}});
   large.experiment.kinematics = "hencky";
   CaseResult linear = with_errors("shear", "hybmss", {{0, 10, 0.002}});
-  linear.runs.push_back({"fem_q1", "fem", 0, {10, 10, 10}, "linear", true, "", "", 1, 0, 0, 0});
+  linear.runs.push_back({{"fem_q1", 0, {10, 10, 10}}, "fem", "linear", true, "", "", 1, 0, 0, 0});
   add_row(linear, "fem_q1", 0, "displacement_error", 0.001, 1e-4);
   const std::string text = terminal_text(headline_of({large, linear}));
   const auto answer = text.find("Of the spring models hybmss comes closest"), first = text.find(linear_title),

@@ -37,7 +37,7 @@ TEST(Picture, VolumeChangeOfAnAffineFieldIsItsDeterminant) {
   const Eigen::Matrix3d A = some_gradient();
   const double expected = (Eigen::Matrix3d::Identity() + A).determinant() - 1;
   for (const Mesh& mesh : {block_mesh({1, 2, 3}, {2, 2, 2}), corner_tetrahedron(1.5)}) {
-    const Picture p = picture("m", 0.25, {2, 2, 2}, field_on(mesh, A), nullptr);
+    const Picture p = picture({"m", 0.25, {2, 2, 2}}, field_on(mesh, A), nullptr);
     ASSERT_EQ(3 * p.volume_change.size(), p.rest.size());
     for (float change : p.volume_change) EXPECT_NEAR(change, expected, 1e-6);
     EXPECT_TRUE(p.difference.empty());
@@ -49,17 +49,17 @@ TEST(Picture, VolumeChangeIsTheMeanOverTheCellsAtANode) {
   Field f = field_on(block_mesh({2, 1, 1}, {2, 1, 1}), Eigen::Matrix3d::Zero());
   for (Eigen::Index n = 0; n < f.displacement.rows(); ++n)
     if (f.mesh->nodes(n, 0) > 1.5) f.displacement(n, 0) = 0.4;  // the right cell grows by 40 %
-  const Picture p = picture("m", 0.25, {2, 1, 1}, f, nullptr);
+  const Picture p = picture({"m", 0.25, {2, 1, 1}}, f, nullptr);
   ASSERT_EQ(p.volume_change.size(), 12u);
   for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(p.volume_change[i], 0.2 * p.rest[3 * i], 1e-6) << "0, 20 and 40 %";
 }
 
 TEST(Picture, FacetsAreQuadsOfHexahedraAndTrianglesOfTetrahedra) {
   const Picture hexahedra =
-      picture("m", 0.25, {2, 2, 2}, field_on(block_mesh({1, 1, 1}, {2, 2, 2}), some_gradient()), nullptr);
+      picture({"m", 0.25, {2, 2, 2}}, field_on(block_mesh({1, 1, 1}, {2, 2, 2}), some_gradient()), nullptr);
   EXPECT_EQ(hexahedra.quads.size(), 4u * 24);
   EXPECT_EQ(hexahedra.rest.size(), 3u * 26);
-  const Picture tetrahedra = picture("m", 0.25, {1, 0, 0}, field_on(corner_tetrahedron(1), some_gradient()), nullptr);
+  const Picture tetrahedra = picture({"m", 0.25, {1, 0, 0}}, field_on(corner_tetrahedron(1), some_gradient()), nullptr);
   ASSERT_EQ(tetrahedra.quads.size(), 16u);
   for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(tetrahedra.quads[i] == -1, i % 4 == 3) << i;
 }
@@ -69,7 +69,7 @@ TEST(SmoothPicture, LinearFieldIsExactInsideAndOutsideTheVoxels) {
   const Mesh voxels = block_mesh({1, 1, 1}, {4, 4, 4}),
              body = corner_tetrahedron(1.1);  // corners 0.1 beyond the voxels
   const NodalVectors truth = voxels.nodes * (0.5 * A).transpose();
-  const Picture p = smooth_picture("m", 0.25, {4, 4, 4}, field_on(voxels, A), body, &truth);
+  const Picture p = smooth_picture({"m", 0.25, {4, 4, 4}}, field_on(voxels, A), body, &truth);
   EXPECT_EQ(p.surface, "smooth");
   ASSERT_EQ(p.rest.size(), 12u);
   ASSERT_EQ(p.difference.size(), 4u);

@@ -206,10 +206,8 @@ CaseResult timed_case() {
   c.experiment.cost = true;
   for (int n : {1, 2}) {
     const double tenfold = n == 1 ? 1 : 10;
-    c.runs.push_back({"hybmss",
+    c.runs.push_back({{"hybmss", 0.25, {n, n, n}},
                       "msm",
-                      0.25,
-                      {n, n, n},
                       "linear",
                       true,
                       "",
@@ -220,10 +218,8 @@ CaseResult timed_case() {
                       long(100 * tenfold),
                       1,
                       0.0002 * tenfold});
-    c.runs.push_back({"fem_q2",
+    c.runs.push_back({{"fem_q2", 0.25, {n, n, n}},
                       "fem",
-                      0.25,
-                      {n, n, n},
                       "linear",
                       true,
                       "",
@@ -235,11 +231,9 @@ CaseResult timed_case() {
                       1,
                       0.002 * tenfold});
     for (const auto& [model, error] : {std::pair("hybmss", 0.2), std::pair("fem_q2", 0.05)})
-      c.rows.push_back({"compress",
+      c.rows.push_back({{model, 0.25, {n, n, n}},
+                        "compress",
                         "linear",
-                        model,
-                        0.25,
-                        {n, n, n},
                         "displacement_error",
                         error / tenfold,
                         "1",
@@ -270,7 +264,7 @@ TEST_F(ReportInBrowser, SetsReactionsBesideDisplacementsWhereASupportMoves) {
   for (int n : {1, 2})
     for (const auto& [model, error] : {std::pair("hybmss", 0.8), std::pair("fem_q2", 0.4)})
       c.rows.push_back(
-          {"compress", "linear", model, 0.25, {n, n, n}, "reaction_error", error / n, "1", 0.0, 0.001, error / n});
+          {{model, 0.25, {n, n, n}}, "compress", "linear", "reaction_error", error / n, "1", 0.0, 0.001, error / n});
   const std::string dom = open({c});
   expect_no_complaint(dom);
   const std::string part = dom.substr(dom.find("<section id=\"cost\">"),
@@ -320,7 +314,7 @@ CaseResult embedded_case() {
     c.pictures.push_back(p);
   }
   c.rows.push_back(
-      {"compress", "linear", "fem_p1", 0.4, {812, 0, 0}, "displacement_error", 0.01, "1", {}, 0.001, 0.01});
+      {{"fem_p1", 0.4, {812, 0, 0}}, "compress", "linear", "displacement_error", 0.01, "1", {}, 0.001, 0.01});
   return c;
 }
 
@@ -465,8 +459,8 @@ CaseResult verification_case() {
   c.experiment.folder = "verification";
   c.experiment.exact = "trigonometric";
   c.experiment.body.geo = "block.geo";
-  c.experiment.body.size = {1, 1, 1};
-  c.experiment.body.cells = {{1, 1, 1}};
+  c.size = {1, 1, 1};
+  c.cells = {{1, 1, 1}};
   c.experiment.materials = {{1e4, 0.25, 1000}};
   c.experiment.reference.elements = {"q2", "p1"};
   c.experiment.measures = {"stress", "displacement_error"};
@@ -476,11 +470,9 @@ CaseResult verification_case() {
         {0.25, "stress.D.yy", "Pa", grids, {-5e6, -5.3e6, -5.37e6}, 2.1, -5.39e6, 1e4, "Richardson", element});
     c.references.push_back(
         {0.25, "displacement_error", "1", grids, {0.08, 0.01, 0.00125}, 3.0, 0.00125, 0, "", element});
-    c.rows.push_back({"plate",
+    c.rows.push_back({{std::string("fem_") + element, 0.25, grids[2]},
+                      "plate",
                       "linear",
-                      std::string("fem_") + element,
-                      0.25,
-                      grids[2],
                       "stress.D.yy",
                       -5.37e6,
                       "Pa",
@@ -540,7 +532,7 @@ TEST_F(ReportInBrowser, VerificationAloneIsAReport) {
 TEST_F(ReportInBrowser, CaseWithoutResultsIsShown) {
   CaseResult c;
   c.experiment = sample_experiment();
-  c.runs.push_back({"hybmss", "msm", 0.25, {2, 2, 2}, "linear", false, "singular", "CG", 0, 0, 0, 0});
+  c.runs.push_back({{"hybmss", 0.25, {2, 2, 2}}, "msm", "linear", false, "singular", "CG", 0, 0, 0, 0});
   const std::string dom = open({c}, "#case-golec_2019-compress");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("1 without result"), std::string::npos);

@@ -49,13 +49,11 @@ TEST(Measures, InterpolationIsExactForTrilinearFields) {
 
 CaseResult one_row(double value, double reference, double uncertainty) {
   CaseResult result;
-  result.experiment.body.cells = {{4, 4, 4}};
+  result.cells = {{4, 4, 4}};
   result.experiment.materials = {{1e4, 0.25, 1000}};
-  result.rows = {{"case",
+  result.rows = {{{"hybmss", 0.25, {4, 4, 4}},
+                  "case",
                   "linear",
-                  "hybmss",
-                  0.25,
-                  {4, 4, 4},
                   "volume_change",
                   value,
                   "1",
@@ -96,7 +94,7 @@ TEST(Judge, DecidesByToleranceAndByTheReferencesUncertainty) {
 /// The reference alone, with the limits of two elements.
 CaseResult two_elements() {
   CaseResult result;
-  result.experiment.body.cells = {{4, 4, 4}};
+  result.cells = {{4, 4, 4}};
   result.experiment.materials = {{1e4, 0.25, 1000}};
   result.experiment.reference.elements = {"q2", "p1"};
   for (const auto& [element, limit] : {std::pair("q2", 1.0), std::pair("p1", 0.8)})
@@ -145,9 +143,9 @@ TEST(Judge, ALowerBoundHasNoTolerance) {
 TEST(PartFile, ComesBackWholeOrNotAtAll) {
   const auto file = std::filesystem::temp_directory_path() / "springproof_part_test.cbor";
   Part part;
-  part.runs = {{"hybmss", "msm", 0.25, {1, 2, 3}, "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99, 12.5, 0.25}};
+  part.runs = {{{"hybmss", 0.25, {1, 2, 3}}, "msm", "linear", false, "why not", "CG", 7, 1e-11, 0.5, 99, 12.5, 0.25}};
   part.rows = one_row(0.1, 0.2, 0.003).rows;
-  part.rows.push_back({"case", "linear", "fem", 0.25, {4, 4, 4}, "volume_change", 0.1, "1", {}, {}, {}});
+  part.rows.push_back({{"fem", 0.25, {4, 4, 4}}, "case", "linear", "volume_change", 0.1, "1", {}, {}, {}});
   part.references = {{0.25, "volume_change", "1", {{1, 1, 1}}, {0.1, 0.2}, {}, 0.2, 0.1, "note", "p1"}};
   part.pictures = {{"fem", 0.25, {4, 4, 4}, {0, 1, 2}, {3, 4, 5}, {}, {0, 0, 0, 0}, {}, "cells"}};
   save_part(file, "stamp", part);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "comparisons/run/case_run.h"
 #include "problem/exact_field.h"
 #include "problem/system/child.h"
 
@@ -19,13 +20,12 @@ PreparedCase prepared_block(const std::string& exact) {
   PreparedCase prepared;
   Experiment& e = prepared.experiment;
   e.name = "plate";
-  e.body.size = Vec3::Ones();
-  e.body.cells = {{3, 3, 3}};
   e.materials = {{1e4, 0.25, 1000}};
   e.exact = exact;
   e.measures = {"displacement_error", "displacement_error_order", "probe", "stress"};
   e.probes = {{"D", {1, 1, 1}}};
-  prepared.meshes = {std::make_shared<Mesh>(block_mesh({1, 1, 1}, {3, 3, 3}))};
+  prepared.size = Vec3::Ones();
+  add_lattice({{3, 3, 3}, std::make_shared<Mesh>(block_mesh({1, 1, 1}, {3, 3, 3}))}, prepared);
   prepared.reference_cells = {16, 16, 16};
   return prepared;
 }
@@ -33,7 +33,7 @@ PreparedCase prepared_block(const std::string& exact) {
 /// The trigonometric field with an error of h^order, and a stress that tends to -1 Pa.
 ElementGrids grids_of_order(const PreparedCase& prepared, double order) {
   ElementGrids e{"p1", {}};
-  const NodalVectors& nodes = prepared.meshes.front()->nodes;
+  const NodalVectors& nodes = prepared.lattices.front().mesh->nodes;
   for (int n : {4, 8, 16}) {
     fem::Solution s;
     s.ok = true;

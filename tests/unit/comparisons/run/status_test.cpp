@@ -124,7 +124,7 @@ PreparedCase block_case(int reference, double nu) {
   prepared.experiment.materials = {{1e4, nu, 1000}};
   prepared.experiment.models = {{"hybmss", {}, "hybmss", {}}};
   prepared.models = {resolve(prepared.experiment.models[0])};
-  prepared.meshes = {std::make_shared<Mesh>(block_mesh({1, 1, 1}, {4, 4, 4}))};
+  add_lattice({{4, 4, 4}, std::make_shared<Mesh>(block_mesh({1, 1, 1}, {4, 4, 4}))}, prepared);
   prepared.reference_cells = {reference, reference, reference};
   return prepared;
 }

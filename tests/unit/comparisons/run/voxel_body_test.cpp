@@ -72,8 +72,8 @@ void expect_wrench(const NodalVectors& force, const NodalVectors& X, const Wrenc
 class LoadsOfTheBall : public testing::TestWithParam<std::size_t> {
  protected:
   const PreparedCase& ball = loaded_ball();
-  const Load& load = ball.experiment.loads[1 + GetParam()];
-  const Mesh& voxels = *ball.meshes.front();
+  const Load& load = ball.loads[1 + GetParam()];
+  const Mesh& voxels = *ball.lattices.front().mesh;
   const Vec3 about{0.3, -0.1, 0.05};
   const Wrench expected = wrench_on_the_body(load, *ball.tetrahedra.back(), about);
 };
@@ -89,7 +89,8 @@ TEST_P(LoadsOfTheBall, AreThoseOfTheBodyInEveryModel) {
     SCOPED_TRACE(row.name);
     ModelChoice choice;
     choice.name = row.name;
-    const EmbeddedModel built = build_embedded(resolve(choice), voxels, {1e4, 0.25, 1000}, ball.regions.front().get());
+    const EmbeddedModel built =
+        build_embedded(resolve(choice), voxels, {1e4, 0.25, 1000}, ball.lattices.front().region.get());
     const Network& network = built.model.network;
     expect_wrench(transfer({load}, voxels, built.embedding, network, 1000, Kinematics::linear).external, network.X,
                   expected);
@@ -103,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, LoadsOfTheBall, testing::Values(0, 1, 2, 3, 4),
 TEST(VoxelBody, PressureOnAClosedSurfacePushesNowhere) {
   const PreparedCase ball = prepared_ball(100, "[[load]]\non = \"surface\"\npressure_Pa = 1000", "\"hybmss\"",
                                           "elements = []\nedge_m = 0.03");
-  const NodalVectors f = transfer({ball.experiment.loads[1]}, *ball.meshes[0], 1000, Kinematics::linear).external;
+  const NodalVectors f = transfer({ball.loads[1]}, *ball.lattices[0].mesh, 1000, Kinematics::linear).external;
   EXPECT_LE(f.colwise().sum().norm(), 1e-12 * f.cwiseAbs().sum());
   EXPECT_GT(f.cwiseAbs().sum(), 1000 * 4 * 0.01);
 }
@@ -115,7 +116,7 @@ TEST(VoxelBody, LinearFieldsComeBackAtEveryLatticeNode) {
   const auto field = [&](const NodalVectors& X) -> NodalVectors {
     return (X * G.transpose()).rowwise() + Eigen::RowVector3d(0.3, -2, 1);
   };
-  NodalVectors nodes = ball.meshes[0]->nodes;
+  NodalVectors nodes = ball.lattices[0].mesh->nodes;
   const NodalVectors u = at_lattice_nodes(ball, field(ball.body_points));
   ASSERT_EQ(u.rows(), nodes.rows());
   EXPECT_LE((u - field(nodes)).cwiseAbs().maxCoeff(), 1e-12);
@@ -151,7 +152,7 @@ TEST(VoxelBody, ThinPartsAreSaidToBeLost) {
 
 TEST(VoxelBody, TorquesMoveToTheTruePatch) {
   const PreparedCase& ball = loaded_ball();
-  const Mesh& voxels = *ball.meshes[0];
+  const Mesh& voxels = *ball.lattices[0].mesh;
   const Vec3 from = centroid(voxels, patch(voxels, "low")),
              to = centroid(*ball.tetrahedra.back(), patch(*ball.tetrahedra.back(), "low"));
   ASSERT_GT((from - to).norm(), 1e-4);

@@ -34,7 +34,7 @@ const PreparedCase& ball() {
 Wrench total_load() {
   const Mesh& body = *ball().tetrahedra.back();
   Wrench total{Vec3::Zero(), Vec3::Zero(), centroid(body, patch(body, "low"))};
-  for (const Load& load : ball().experiment.loads) {
+  for (const Load& load : ball().loads) {
     Wrench w;
     if (const auto* carried = wrench_of(load))
       w = moved(carried->value(), total.about);
@@ -107,12 +107,12 @@ TEST_F(VoxelReference, ElementsBesideTheModelsRunAtTheirResolutions) {
   text.replace(text.find("voxels = 100"), 12, "voxels = [100, 200]");
   text.replace(text.find("[compare]\n"), 10, "[compare]\ncost = true\nelements = [\"p1\", \"q1\", \"p2\"]\n");
   const PreparedCase prepared = prepare(parse_experiment(text, "ball.toml"));
-  ASSERT_EQ(prepared.fitted.size(), 2u);
-  EXPECT_GT(prepared.fitted[1]->tetrahedra.size(), prepared.fitted[0]->tetrahedra.size());
+  ASSERT_EQ(prepared.lattices.size(), 2u);
+  EXPECT_GT(prepared.lattices[1].tetrahedra->tetrahedra.size(), prepared.lattices[0].tetrahedra->tetrahedra.size());
   const Part part = run_part(prepared, 0, {});
-  const std::vector<Cells>& cells = prepared.experiment.body.cells;
   for (const char* model : {"hybmss", "fem_p1", "fem_q1", "fem_p2"})
-    for (const Cells& c : cells) {
+    for (const Lattice& lattice : prepared.lattices) {
+      const Cells& c = lattice.cells;
       SCOPED_TRACE(std::string(model) + " " + cells_text(c));
       const auto row = std::find_if(part.rows.begin(), part.rows.end(), [&](const Row& r) {
         return r.model == model && r.cells == c && r.measure == "displacement_error";
@@ -139,9 +139,9 @@ TEST_F(VoxelReference, AStiffMotionIsTheSameInTetrahedraAndCubes) {
   Eigen::Matrix3d G;
   G << 0, -0.2, 0.1, 0.2, 0, 0.3, -0.1, -0.3, 0;
   const NodalVectors exact =
-      (prepared.meshes[0]->nodes * G.transpose()).rowwise() + Eigen::RowVector3d(0.01, 0.02, 0.03);
+      (prepared.lattices[0].mesh->nodes * G.transpose()).rowwise() + Eigen::RowVector3d(0.01, 0.02, 0.03);
   const auto error = [&](const fem::Solution& s) {
-    return (at_lattice(prepared, 0, s.displacement) - exact).cwiseAbs().maxCoeff();
+    return (at_nodes(prepared.lattices[0], s.displacement) - exact).cwiseAbs().maxCoeff();
   };
   for (const fem::Solution& s : grids.elements.at(0).grids) EXPECT_LE(error(s), 1e-7 * 0.1) << s.grid.cells[0];
   EXPECT_LE(error(grids.peers.at(0).at(0)), 1e-7 * 0.1);
