@@ -7,7 +7,8 @@ springproof_uses_headers(bench headers_with_json)
 target_link_libraries(bench PUBLIC report msm fem_reference meshes PRIVATE fmt::fmt nlohmann_json::nlohmann_json Threads::Threads springproof_warnings)
 
 add_executable(springproof-bench bench/main.cpp)
-target_link_libraries(springproof-bench PRIVATE bench CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json springproof_warnings)
+springproof_command_line(springproof-bench)
+target_link_libraries(springproof-bench PRIVATE bench)
 add_dependencies(springproof-bench springproof-mesh)
 target_compile_definitions(springproof-bench PRIVATE SPRINGPROOF_VERSION="${PROJECT_VERSION}")
 

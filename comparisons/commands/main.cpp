@@ -13,6 +13,7 @@
 #include "comparisons/commands/material_command.h"
 #include "comparisons/commands/pictures_command.h"
 #include "comparisons/commands/versions.h"
+#include "comparisons/run/find_cases.h"
 #include "comparisons/run/suite.h"
 #include "fem_reference/reference.h"
 #include "msm/parameters/model_table.h"

@@ -29,78 +29,6 @@ Json numbers(const std::vector<double>& xs) {
 
 Json vector(const Vec3& v) { return numbers({v.x(), v.y(), v.z()}); }
 
-// ---- loads as sentences
-
-std::string text(const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
-
-std::string components(const std::vector<std::string>& axes) {
-  if (axes.size() < 2) return axes.empty() ? "" : axes[0];
-  const std::vector<std::string> head(axes.begin(), axes.end() - 1);
-  return fmt::format("{} and {}", fmt::join(head, ", "), axes.back());
-}
-
-std::string sentence(const PrescribedDisplacement& load) {
-  std::vector<std::string> held, moved, free;
-  for (int c = 0; c < 3; ++c) {
-    const std::string axis(1, "xyz"[c]);
-    const auto& u = load.displacement[c];
-    if (!u) {
-      free.push_back(axis);
-    } else if (*u == 0) {
-      held.push_back(axis);
-    } else {
-      moved.push_back(fmt::format("by {:.6g} m in {}", *u, axis));
-    }
-  }
-  std::vector<std::string> parts;
-  if (!moved.empty()) parts.push_back("moved " + components(moved));
-  if (held.size() == 3) {
-    parts.push_back("held");
-  } else if (!held.empty()) {
-    parts.push_back("held in " + components(held));
-  }
-  if (!free.empty()) parts.push_back("free in " + components(free));
-  return fmt::format("{}: {}", load.on, fmt::join(parts, ", "));
-}
-
-std::string sentence(const PrescribedAffine& load) {
-  const auto& A = load.gradient;
-  return fmt::format("{}: moved by u = A X + b with the rows of A {} {} {} and b = {} m", load.on,
-                     text(A.row(0).transpose()), text(A.row(1).transpose()), text(A.row(2).transpose()),
-                     text(load.offset));
-}
-
-std::string sentence(const PrescribedRotation& load) {
-  return fmt::format("{}: turned by {:.6g} degrees about the axis {} through {} m", load.on,
-                     load.angle * 180 / std::numbers::pi, text(load.axis), text(load.point));
-}
-
-std::string sentence(const PrescribedField& load) {
-  return fmt::format("{}: moved by the exact field '{}'", load.on, load.field);
-}
-
-std::string sentence(const FieldBodyForce& load) {
-  return fmt::format("whole body: the body force of the exact field '{}'", load.field);
-}
-
-std::string sentence(const Pressure& load) { return fmt::format("{}: pressed by {:.6g} Pa", load.on, load.pressure); }
-
-std::string sentence(const Traction& load) {
-  return fmt::format("{}: loaded by a traction of {} Pa", load.on, text(load.traction));
-}
-
-std::string sentence(const PatchForce& load) {
-  return fmt::format("{}: loaded by a total force of {} N", load.on, text(load.force));
-}
-
-std::string sentence(const Gravity& load) {
-  return fmt::format("whole body: gravity of {} m/s²", text(load.acceleration));
-}
-
-std::string sentence(const PointForce& load) {
-  return fmt::format("point {} m: loaded by a force of {} N", text(load.at), text(load.force));
-}
-
 // ---- the parts of a case
 
 Json json_of(const IsotropicMaterial& m) {
@@ -274,68 +202,6 @@ Json json_of(const CaseResult& result) {
       {"text", e.text}};
 }
 
-// ---- pictures
-
-template <class T>
-void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
-  for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-}
-
-constexpr long not_finite = -32768;
-
-std::string base64_floats(const std::vector<float>& values) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(4 * values.size());
-  for (float value : values) {
-    std::uint32_t bits;
-    static_assert(sizeof bits == sizeof value);
-    std::memcpy(&bits, &value, sizeof bits);
-    append_little_endian(bits, bytes);
-  }
-  return base64(bytes.data(), bytes.size());
-}
-
-/// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough to look at.
-Json shorts_json(const std::vector<float>& values) {
-  double largest = 0;
-  for (float value : values)
-    if (std::isfinite(value)) largest = std::max<double>(largest, std::abs(value));
-  const double scale = largest > 0 ? largest / 32767 : 1;
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(2 * values.size());
-  for (float value : values) {
-    const long steps = std::isfinite(value) ? std::lround(value / scale) : not_finite;
-    append_little_endian(static_cast<std::uint16_t>(steps), bytes);
-  }
-  return {{"scale", scale}, {"base64", base64(bytes.data(), bytes.size())}};
-}
-
-/// Triangles (fourth number -1) repeat their last corner.
-Json quads_json(const std::vector<int>& quads, std::size_t nodes) {
-  const bool small = nodes <= 65536;
-  std::vector<std::uint8_t> bytes;
-  for (std::size_t i = 0; i < quads.size(); ++i) {
-    const int node = i % 4 == 3 && quads[i] < 0 ? quads[i - 1] : quads[i];
-    if (node < 0 || static_cast<std::size_t>(node) >= nodes)
-      throw std::invalid_argument(fmt::format("picture: facet names node {} of {}", node, nodes));
-    if (small)
-      append_little_endian(static_cast<std::uint16_t>(node), bytes);
-    else
-      append_little_endian(static_cast<std::uint32_t>(node), bytes);
-  }
-  return {{"type", small ? "uint16" : "uint32"}, {"base64", base64(bytes.data(), bytes.size())}};
-}
-
-void check_sizes(const Picture& p) {
-  const auto nodes = p.rest.size() / 3;
-  if (p.rest.size() % 3 != 0 || p.displacement.size() != p.rest.size() || p.quads.size() % 4 != 0 ||
-      (!p.difference.empty() && p.difference.size() != nodes) ||
-      (!p.volume_change.empty() && p.volume_change.size() != nodes))
-    throw std::invalid_argument(fmt::format(
-        "picture of {}: {} rest, {} displacement, {} difference, {} volume changes, {} facet numbers", p.model,
-        p.rest.size(), p.displacement.size(), p.difference.size(), p.volume_change.size(), p.quads.size()));
-}
-
 // ---- CSV
 
 std::string quoted(const std::string& field) {
@@ -382,10 +248,6 @@ double cell_count(const Cells& cells) {
   return is_tetrahedra(cells) ? cells[0] : double(cells[0]) * cells[1] * cells[2];
 }
 
-std::string describe(const Load& load) {
-  return std::visit([](const auto& l) { return sentence(l); }, load);
-}
-
 Json to_json(const CaseResult& result) {
   Json experiment = json_of(result);
   for (Json& model : experiment["models"]) {
@@ -402,32 +264,6 @@ Json to_json(const CaseResult& result) {
           {"splits", list(result.splits)},
           {"deformations", list(result.deformations)},
           {"notes", result.notes}};
-}
-
-Json pictures_to_json(const CaseResult& result) {
-  Json meshes = Json::array(), pictures = Json::array();
-  std::vector<const Picture*> owners;  // one per entry of meshes
-  for (const Picture& p : result.pictures) {
-    check_sizes(p);
-    std::size_t mesh = 0;
-    while (mesh < owners.size() && (owners[mesh]->rest != p.rest || owners[mesh]->quads != p.quads)) ++mesh;
-    if (mesh == owners.size()) {
-      owners.push_back(&p);
-      meshes.push_back({{"rest", base64_floats(p.rest)}, {"quads", quads_json(p.quads, p.rest.size() / 3)}});
-    }
-    pictures.push_back({{"model", p.model},
-                        {"poisson_ratio", number(p.poisson_ratio)},
-                        {"cells", p.cells},
-                        {"surface", p.surface},
-                        {"mesh", mesh},
-                        {"displacement", shorts_json(p.displacement)},
-                        {"difference", shorts_json(p.difference)},
-                        {"volume_change", shorts_json(p.volume_change)}});
-  }
-  return {{"case", result.experiment.name},
-          {"folder", result.experiment.folder},
-          {"meshes", meshes},
-          {"pictures", pictures}};
 }
 
 std::string to_csv(const std::vector<CaseResult>& results) {

@@ -8,9 +8,6 @@
 
 namespace springproof {
 
-/// @throws InputError for everything a user can get wrong, before any long work starts.
-PreparedCase prepare(const Experiment& experiment);
-
 /// Runs everything for experiment.materials[material]; writes one VTU per run into `vtu_folder` (empty: none).
 /// A solver that finds no result leaves a Run with ok = false and no rows.
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder);

@@ -24,6 +24,7 @@
 #include "comparisons/report/report.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/checksum.h"
+#include "comparisons/run/find_cases.h"
 #include "comparisons/run/folder_lock.h"
 #include "comparisons/run/part_file.h"
 #include "comparisons/run/status.h"
@@ -45,17 +46,6 @@ std::atomic<bool> interrupted = false;
 void on_interrupt(int) {
   interrupted = true;
   fem::interrupt();
-}
-
-template <class Iterator>
-std::vector<fs::path> toml_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (entry->path().extension() == ".toml") files.push_back(entry->path());
-  if (error) throw InputError(shortened(fmt::format("{}: cannot be read: {}", folder.string(), error.message())));
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 /// The case's name as a file name.
@@ -344,48 +334,7 @@ void check_names(const std::vector<fs::path>& cases) {
                                      cases[j].string(), cases[i].string()));
 }
 
-fs::path experiments_folder() { return data_folder("experiments", SPRINGPROOF_EXPERIMENTS_DIR); }
-
 }  // namespace
-
-std::string case_name(const fs::path& file) {
-  const fs::path relative = fs::proximate(fs::absolute(file), experiments_folder());
-  return *relative.begin() == ".." ? file.stem().string() : (relative.parent_path() / relative.stem()).string();
-}
-
-std::vector<fs::path> built_in_cases() { return toml_files<fs::recursive_directory_iterator>(experiments_folder()); }
-
-std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
-  std::vector<fs::path> cases;
-  for (const std::string& name : names) {
-    const fs::path built_in = experiments_folder() / name;
-    std::vector<fs::path> found;
-    std::string why;
-    for (const fs::path& path : {fs::path(name), built_in, fs::path(built_in.string() + ".toml")}) {
-      std::error_code error;
-      const fs::file_status status = fs::status(path, error);
-      if (fs::is_directory(status))
-        found = toml_files<fs::directory_iterator>(path);
-      else if (fs::exists(status))
-        found = {path};
-      else if (error && status.type() != fs::file_type::not_found && why.empty())
-        why = error.message() + "; ";  // a loop of links, too long a name
-      if (!found.empty()) break;
-    }
-    if (found.empty())
-      throw InputError(
-          shortened(fmt::format("{}: {}no such case file, and no folder with case files (*.toml); `springproof list` "
-                                "shows the built-in ones",
-                                name, why)));
-    for (const fs::path& file : found) {
-      std::error_code ignored;
-      if (std::none_of(cases.begin(), cases.end(),
-                       [&](const fs::path& c) { return c == file || fs::equivalent(c, file, ignored); }))
-        cases.push_back(file);
-    }
-  }
-  return cases;
-}
 
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);

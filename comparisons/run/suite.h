@@ -1,9 +1,8 @@
-// Many cases: found, scheduled over a few workers, kept when interrupted, written out.
+// Many cases: scheduled over a few workers, kept when interrupted, written out.
 #pragma once
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
 #include <vector>
 
 namespace springproof {
@@ -17,17 +16,6 @@ struct SuiteOptions {
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
   int finer = 1;                       ///< reference grids with so many times the cells along each direction
 };
-
-/// Case files named by paths: files, folders (the *.toml right in them), or folders of the built-in experiments
-/// ("golec_2019", "golec_2019/compression").
-/// @throws InputError if a name leads nowhere.
-std::vector<std::filesystem::path> find_cases(const std::vector<std::string>& names);
-
-/// "golec_2019/compression" for a built-in case, the file's stem for others.
-std::string case_name(const std::filesystem::path& file);
-
-/// All built-in case files.
-std::vector<std::filesystem::path> built_in_cases();
 
 /// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out.
 /// What is under way goes to stderr (comparisons/run/status.h), before a run of more than a minute also how long it may

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "msm/algebra/eigenvalues.h"
 #include "msm/multigrid/cell_stiffness.h"
 
 namespace springproof {
@@ -58,8 +59,7 @@ bool belongs_to_cells(const ForceLaw& law) { return traits(law).reach == Reach::
 
 double cell_frequency_squared(const MassSpringModel& model, double density) {
   const CellStiffness s = cell_stiffness(model);
-  const Eigen::SelfAdjointEigenSolver<CellMatrix> eigen(s.total, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues()[23] / (density * s.volume / 8);
+  return symmetric_eigenvalues(s.total)[23] / (density * s.volume / 8);
 }
 
 }  // namespace

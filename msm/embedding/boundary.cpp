@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "meshes/locate/locate.h"
+#include "msm/algebra/eigenvalues.h"
 
 namespace springproof {
 namespace {
@@ -195,9 +196,9 @@ std::optional<Motion> free_motion(const BoundaryConditions& bc, const RigidMotio
       gram += rigid.at(i) * rigid.at(i).transpose();
       ++count;
     }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram);
-  if (count > 0 && eigen.eigenvalues()[0] > 1e-10 * count) return {};
-  return eigen.eigenvectors().col(0);
+  const Eigenpairs eigen = symmetric_eigenpairs(gram);
+  if (count > 0 && eigen.values[0] > 1e-10 * count) return {};
+  return eigen.vectors.col(0);
 }
 
 }  // namespace

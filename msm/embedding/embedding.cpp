@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "msm/algebra/eigenvalues.h"
 #include "msm/topology/point_cells.h"
 
 namespace springproof {
@@ -83,8 +84,8 @@ std::optional<Eigen::VectorXd> least_squares(const NodalVectors& X, const std::v
     bell[static_cast<Eigen::Index>(i)] = std::pow(1 - r * r, 3) + 1e-9;
   }
   const Eigen::MatrixXd moments = basis.transpose() * bell.asDiagonal() * basis;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(moments, Eigen::EigenvaluesOnly);
-  if (eigen.eigenvalues()[0] < 1e-3 * eigen.eigenvalues()[terms - 1]) return {};
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(moments);
+  if (eigenvalues[0] < 1e-3 * eigenvalues[terms - 1]) return {};
   return bell.cwiseProduct(basis * moments.ldlt().solve(Eigen::VectorXd::Unit(terms, 0)));
 }
 

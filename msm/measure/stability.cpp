@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "msm/algebra/eigenvalues.h"
 #include "msm/models.h"
 #include "msm/periodic/bulk_calibration.h"
 
@@ -68,11 +69,9 @@ BlockStability block_stability(const ModelParameters& parameters, const Isotropi
   const int axes = planar ? 2 : 3;
   for (Eigen::Index i = 0; i < K.rows(); ++i)
     for (Eigen::Index j = 0; j < K.cols(); ++j) K(i, j) /= std::sqrt(mass[i / axes] * mass[j / axes]);
-  Eigen::VectorXcd values =
-      s.asymmetry < 1e-13 ? Eigen::VectorXcd(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly)
-                                                 .eigenvalues()
-                                                 .cast<std::complex<double>>())
-                          : Eigen::VectorXcd(K.eigenvalues());
+  Eigen::VectorXcd values = s.asymmetry < 1e-13
+                                ? Eigen::VectorXcd(symmetric_eigenvalues(K).cast<std::complex<double>>())
+                                : Eigen::VectorXcd(K.eigenvalues());
   const double largest = values.cwiseAbs().maxCoeff();
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
   for (Eigen::Index i = planar ? 3 : 6; i < values.size(); ++i) {

@@ -1,9 +1,10 @@
 #include "msm/multigrid/multigrid.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
+
+#include "msm/algebra/eigenvalues.h"
 
 namespace springproof {
 namespace {
@@ -32,8 +33,7 @@ bool holds_rigid_motions(const LatticeLevel& level) {
     motion << Vec3::Unit(a), x.cross(Vec3::Unit(a));
     sum += motion * motion.transpose();
   }
-  const Eigen::Matrix<double, 6, 1> found =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(sum, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd found = symmetric_eigenvalues(sum);
   return found[0] > 1e-12 * found[5];
 }
 
@@ -42,7 +42,7 @@ bool holds_rigid_motions(const LatticeLevel& level) {
 double largest_scaled_eigenvalue(const CellMatrix& cell) {
   const CellVector root = cell.diagonal().cwiseSqrt().cwiseInverse();
   const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<CellMatrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[23];
+  return symmetric_eigenvalues(scaled)[23];
 }
 
 std::vector<char> fixed_by_point(const LatticeLevel& level) {
@@ -145,10 +145,9 @@ void SmoothingLevel::bound_eigenvalues(double at_most) {
     if (!(beta[k] > 1e-6)) return void(largest_eigenvalue = at_most);
     v = w / static_cast<float>(beta[k]);
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-  ritz.computeFromTridiagonal(alpha, beta.head(lanczos_steps - 1));
-  const double residual = beta[lanczos_steps - 1] * std::abs(ritz.eigenvectors()(lanczos_steps - 1, lanczos_steps - 1));
-  largest_eigenvalue = std::min(at_most, ritz.eigenvalues()[lanczos_steps - 1] + residual);
+  const Eigenpairs ritz = tridiagonal_eigenpairs(alpha, beta.head(lanczos_steps - 1));
+  const double residual = beta[lanczos_steps - 1] * std::abs(ritz.vectors(lanczos_steps - 1, lanczos_steps - 1));
+  largest_eigenvalue = std::min(at_most, ritz.values[lanczos_steps - 1] + residual);
   r.setZero();
   z.setZero();
 }

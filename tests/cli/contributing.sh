@@ -45,4 +45,23 @@ if "$compiler" "${flags[@]}" bar.cpp model_table.cpp "${libraries[@]}" -o bar; t
 else
   fail "msm/parameters/model_table.cpp does not compile with the new row"
 fi
+
+# A measure: the row and the line of the page, compiled into springproof, and expected of the new case.
+snippet() { awk -v wanted="$1" '/^```cpp$/ { n++; getline; if (n == wanted) { print; exit } }' "$page"; }
+awk -v row="$(snippet 2)" '{ print } /^const std::vector<Measure> table = \{/ { print row }' "$source/problem/case_file/measures.cpp" >table.cpp
+awk -v line="$(snippet 3)" '{ print } /out = \{\{"volume_change"/ { print line }' "$source/comparisons/judge/measures.cpp" >judge.cpp
+link=$(ninja -C "$binary" -t commands springproof | tail -1)
+flags=(-std=c++20 -O0 -DFMT_SHARED -I"$binary/arrows/comparisons" -I"$binary/arrows/fem_reference" "${flags[@]:2}")
+if "$compiler" "${flags[@]}" -c table.cpp -o table.o && "$compiler" "${flags[@]}" -c judge.cpp -o judge.o &&
+   (cd "$binary" && bash -c "${link/ -o springproof / $work/table.o $work/judge.o -o $work/bin/springproof }"); then
+  case=share/springproof/experiments/bodies/wedge.toml
+  sed -i 's/measures = \[/measures = ["volume_ratio", /' "$case"
+  printf '[[expect]]\nmodel = "hybmss"\nmeasure = "volume_ratio"\nsource = "analytic"\nvalue = 1\nwithin = 0.01\n' >>"$case"
+  bin/springproof list | grep -q '^  volume_ratio ' || fail "the new measure is not listed"
+  bin/springproof compare bodies/wedge --out measured >log 2>&1 || fail "the case with the new measure: status $?: $(cat log)"
+  grep -q '^2 of 2 expectations hold' log || fail "the new measure is not judged: $(cat log)"
+  grep -q ',volume_ratio,0.99' measured/results.csv || grep -q ',volume_ratio,1' measured/results.csv || fail "no row of the new measure"
+else
+  fail "springproof does not build with the new measure"
+fi
 exit $((failures > 0))

@@ -32,18 +32,14 @@ std::string with_true_checksum(std::string_view bytes) {
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   return fuzz::write_seed([](const char* file) {
     Part part;
-    part.runs.push_back({.model = "hybmss", .kind = "msm", .cells = {2, 2, 2}, .ok = true});
-    part.rows.push_back({.case_name = "case",
-                         .model = "hybmss",
-                         .cells = {2, 2, 2},
-                         .measure = "volume_change",
-                         .value = 0.1,
-                         .error = 0.01});
+    const RunKey key{"hybmss", 0.25, {2, 2, 2}};
+    part.runs.push_back({key, "msm", "linear", true});
+    part.rows.push_back({key, "case", "linear", "volume_change", 0.1, "1", {}, {}, 0.01});
     part.references.push_back(
         {.measure = "volume_change", .cells = {{1, 1, 1}, {2, 2, 2}}, .values = {1, 2}, .observed_order = 2});
-    part.pictures.push_back({.model = "fem", .rest = {0, 0, 0}, .displacement = {0, 0, 1}, .quads = {0, 0, 0, -1}});
-    part.lines.push_back({.model = "hybmss", .distance = {0.5}, .strain = {1, 2, 3, 4, 5, 6}});
-    part.splits.push_back({.model = "hybmss", .measure = "volume_change", .total = 1});
+    part.pictures.push_back({key, {0, 0, 0}, {0, 0, 1}, {}, {0, 0, 0, -1}});
+    part.lines.push_back({key, 1, 1, {0.5}, {1, 2, 3, 4, 5, 6}});
+    part.splits.push_back({key, 0.1, "volume_change", "1", 1});
     save_part(file, stamp, part);
   });
 }

@@ -1,0 +1,106 @@
+// Pictures as JSON: what the report's 3D view reads.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "comparisons/report/results.h"
+#include "problem/system/encoding.h"
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+template <class T>
+void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
+  for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+}
+
+constexpr long not_finite = -32768;
+
+std::string base64_floats(const std::vector<float>& values) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(4 * values.size());
+  for (float value : values) {
+    std::uint32_t bits;
+    static_assert(sizeof bits == sizeof value);
+    std::memcpy(&bits, &value, sizeof bits);
+    append_little_endian(bits, bytes);
+  }
+  return base64(bytes.data(), bytes.size());
+}
+
+/// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough to look at.
+Json shorts_json(const std::vector<float>& values) {
+  double largest = 0;
+  for (float value : values)
+    if (std::isfinite(value)) largest = std::max<double>(largest, std::abs(value));
+  const double scale = largest > 0 ? largest / 32767 : 1;
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(2 * values.size());
+  for (float value : values) {
+    const long steps = std::isfinite(value) ? std::lround(value / scale) : not_finite;
+    append_little_endian(static_cast<std::uint16_t>(steps), bytes);
+  }
+  return {{"scale", scale}, {"base64", base64(bytes.data(), bytes.size())}};
+}
+
+/// Triangles (fourth number -1) repeat their last corner.
+Json quads_json(const std::vector<int>& quads, std::size_t nodes) {
+  const bool small = nodes <= 65536;
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    const int node = i % 4 == 3 && quads[i] < 0 ? quads[i - 1] : quads[i];
+    if (node < 0 || static_cast<std::size_t>(node) >= nodes)
+      throw std::invalid_argument(fmt::format("picture: facet names node {} of {}", node, nodes));
+    if (small)
+      append_little_endian(static_cast<std::uint16_t>(node), bytes);
+    else
+      append_little_endian(static_cast<std::uint32_t>(node), bytes);
+  }
+  return {{"type", small ? "uint16" : "uint32"}, {"base64", base64(bytes.data(), bytes.size())}};
+}
+
+void check_sizes(const Picture& p) {
+  const auto nodes = p.rest.size() / 3;
+  if (p.rest.size() % 3 != 0 || p.displacement.size() != p.rest.size() || p.quads.size() % 4 != 0 ||
+      (!p.difference.empty() && p.difference.size() != nodes) ||
+      (!p.volume_change.empty() && p.volume_change.size() != nodes))
+    throw std::invalid_argument(fmt::format(
+        "picture of {}: {} rest, {} displacement, {} difference, {} volume changes, {} facet numbers", p.model,
+        p.rest.size(), p.displacement.size(), p.difference.size(), p.volume_change.size(), p.quads.size()));
+}
+
+}  // namespace
+
+Json pictures_to_json(const CaseResult& result) {
+  Json meshes = Json::array(), pictures = Json::array();
+  std::vector<const Picture*> owners;  // one per entry of meshes
+  for (const Picture& p : result.pictures) {
+    check_sizes(p);
+    std::size_t mesh = 0;
+    while (mesh < owners.size() && (owners[mesh]->rest != p.rest || owners[mesh]->quads != p.quads)) ++mesh;
+    if (mesh == owners.size()) {
+      owners.push_back(&p);
+      meshes.push_back({{"rest", base64_floats(p.rest)}, {"quads", quads_json(p.quads, p.rest.size() / 3)}});
+    }
+    pictures.push_back({{"model", p.model},
+                        {"poisson_ratio", number(p.poisson_ratio)},
+                        {"cells", p.cells},
+                        {"surface", p.surface},
+                        {"mesh", mesh},
+                        {"displacement", shorts_json(p.displacement)},
+                        {"difference", shorts_json(p.difference)},
+                        {"volume_change", shorts_json(p.volume_change)}});
+  }
+  return {{"case", result.experiment.name},
+          {"folder", result.experiment.folder},
+          {"meshes", meshes},
+          {"pictures", pictures}};
+}
+
+}  // namespace springproof
