@@ -15,8 +15,8 @@
 #include "comparisons/bench/table.h"
 #include "comparisons/report/results.h"
 #include "msm/kernels/instruction_set.h"
-#include "problem/system/input_error.h"
 #include "problem/system/files.h"
+#include "problem/system/input_error.h"
 
 namespace {
 

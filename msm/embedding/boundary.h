@@ -7,8 +7,8 @@
 
 #include "meshes/field.h"
 #include "msm/embedding/embedding.h"
-#include "problem/system/input_error.h"
 #include "problem/loads.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "problem/body.h"
-#include "problem/system/input_error.h"
 #include "problem/loads.h"
 #include "problem/material.h"
 #include "problem/model_choice.h"
 #include "problem/patch_rule.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 
