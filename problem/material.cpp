@@ -90,11 +90,6 @@ double kappa(const IsotropicMaterial& m) {
   return shear_modulus(m) * (4 * nu - 1) / (1 - 2 * nu);
 }
 
-double p_wave_modulus(const IsotropicMaterial& m) {
-  const double nu = m.poisson_ratio;
-  return m.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
-}
-
 IsotropicMaterial material_from(const Moduli& given, double density) {
   const auto names = checked_names(given);
   if (names.size() != 2) {

@@ -22,8 +22,6 @@ double lame_lambda(const IsotropicMaterial& m);    ///< lambda = E nu / ((1 + nu
 /// zero at nu = 1/4, negative below.  Golec et al. (2019), eqs. (5.4)-(5.5).
 double kappa(const IsotropicMaterial& m);
 
-double p_wave_modulus(const IsotropicMaterial& m);  ///< M = lambda + 2 G [Pa]
-
 /// Any subset of the moduli of an isotropic solid [Pa, nu in 1].
 struct Moduli {
   std::optional<double> youngs_modulus;

@@ -109,6 +109,110 @@ void print(const DispersionFacts& f, const ModelParameters& p, const IsotropicMa
           : "no flutter");
 }
 
+/// Everything that is said of a material in a model.
+struct MaterialFacts {
+  const IsotropicMaterial& m;
+  const ModelParameters& p;
+  double l;  ///< edge of the cells [m]
+  MassSpringModel model = build_model(p, sample_mesh(p.row, l), m);
+  bool lattice = p.row.topology == Topology::cells;
+  std::array<double, 3> k = lattice_constants(model);
+  double time_step = safe_time_step(model, m.density);
+  MeasuredModuli measured = measure_moduli(p, m);
+  bool has_limits = lattice && !p.has(Extension::momentum_dispersion);
+  StrainLimits limits =
+      has_limits ? strain_limits(p, m)
+                 : StrainLimits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  DispersionFacts dispersion = facts_of(p, m, model, l);
+  double correction = p.has(Extension::volume_correction) ? kappa(m) : 0.0;
+
+  double corner_mass() const { return m.density * l * l * l / 8; }
+};
+
+nlohmann::json moduli_json(double E, double nu, double G) {
+  return {{"youngs_modulus_Pa", E}, {"poisson_ratio", nu}, {"shear_modulus_Pa", G}};
+}
+
+nlohmann::json json_of(const MaterialFacts& f) {
+  const auto limit = [](double strain) {
+    return std::isfinite(strain) ? nlohmann::json(strain) : nlohmann::json(nullptr);
+  };
+  const ModelParameters& p = f.p;
+  nlohmann::json material = moduli_json(f.m.youngs_modulus, f.m.poisson_ratio, shear_modulus(f.m));
+  material.update(
+      {{"bulk_modulus_Pa", bulk_modulus(f.m)}, {"lame_lambda_Pa", lame_lambda(f.m)}, {"density_kg_m3", f.m.density}});
+  nlohmann::json out = {
+      {"material", material},
+      {"model",
+       {{"name", p.row.name},
+        {"face_to_cube", std::isinf(p.face_to_cube) ? nlohmann::json("infinity") : nlohmann::json(p.face_to_cube)},
+        {"cell_size_m", f.l}}},
+      {"springs", {{"k_e_N_m", f.k[0]}, {"k_f_N_m", f.k[1]}, {"k_c_N_m", f.k[2]}}},
+      {"kappa_Pa", f.correction},
+      {"corner_mass_kg", f.corner_mass()},
+      {"safe_time_step_s", f.time_step},
+      {"tension_limit_strain", {{"bounded", limit(f.limits.bounded_energy)}, {"paper", limit(f.limits.paper_energy)}}},
+      {"measured", moduli_json(f.measured.youngs_modulus, f.measured.poisson_ratio, f.measured.shear_modulus)}};
+  if (!f.lattice) out.erase("springs");
+  out.update(json_of(f.dispersion, p, f.m));
+  return out;
+}
+
+void print_model(const MaterialFacts& f) {
+  const IsotropicMaterial& m = f.m;
+  fmt::print(
+      "material   E = {:.6g} Pa   nu = {:.6g}   G = {:.6g} Pa   K = {:.6g} Pa   lambda = {:.6g} Pa   rho = {:.6g} "
+      "kg/m^3\n",
+      m.youngs_modulus, m.poisson_ratio, shear_modulus(m), bulk_modulus(m), lame_lambda(m), m.density);
+  const bool has_face_to_cube = f.lattice || f.p.row.topology == Topology::centres;
+  fmt::print("model      {}: {}{}   cell edge l = {:.6g} m\n\n", f.p.row.name, f.p.row.what,
+             has_face_to_cube ? fmt::format("   A = {:g}", f.p.face_to_cube) : "", f.l);
+}
+
+void print_springs(const MaterialFacts& f) {
+  fmt::print("springs inside the lattice (a free edge has 1/4, a surface edge or face diagonal 1/2 of it)\n");
+  const char* names[] = {"k_e  cell edge    ", "k_f  face diagonal", "k_c  cube diagonal"};
+  for (int i = 0; i < 3; ++i)
+    fmt::print("  {}   {:>14.6g} N/m   rest length {:.6g} m\n", names[i], f.k[i], f.l * std::sqrt(i + 1.0));
+}
+
+void print_limits(const MaterialFacts& f) {
+  if (f.lattice) {
+    fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", f.correction,
+               f.p.has(Extension::volume_correction) ? "" : "    (this model has none)");
+    fmt::print("mass per cell corner   {:>14.6g} kg\n", f.corner_mass());
+  }
+  fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", f.time_step,
+             f.has_limits ? "any mesh of these cells" : "a block of 5 cells; safe_time_step() knows each network's");
+  const auto strain = [](double limit) {
+    return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %");
+  };
+  if (f.has_limits)
+    fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n",
+               strain(f.limits.bounded_energy), strain(f.limits.paper_energy));
+}
+
+void print_measured(const MaterialFacts& f) {
+  const IsotropicMaterial& m = f.m;
+  fmt::print("\nmeasured back from {}\n", f.lattice                                 ? "a block of 4 x 4 x 4 cells"
+                                          : f.p.row.topology == Topology::hexagonal ? "a sheet of 4 rows"
+                                                                                    : "an endless sample");
+  fmt::print("  E  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.youngs_modulus,
+             f.measured.youngs_modulus / m.youngs_modulus - 1);
+  fmt::print("  nu = {:.8g}   ({:+.2e})\n", f.measured.poisson_ratio, f.measured.poisson_ratio - m.poisson_ratio);
+  fmt::print("  G  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.shear_modulus,
+             f.measured.shear_modulus / shear_modulus(m) - 1);
+}
+
+void print_warnings(const ModelParameters& p, const IsotropicMaterial& m) {
+  if (p.has(Extension::none) && !same_poisson_ratio(m.poisson_ratio, 0.25))
+    fmt::print("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss or emsm for nu = {:g}\n",
+               m.poisson_ratio);
+  if (p.row.topology == Topology::cells && p.face_to_cube < 0.2)
+    fmt::print("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");
+  if (p.paper_e_form) fmt::print("\nwarning: paper_e_form is right for nu = 1/4 only\n");
+}
+
 }  // namespace
 
 void MaterialCommand::add_options(CLI::App& command) {
@@ -142,92 +246,17 @@ int MaterialCommand::run() const {
   if (weights_) choice.options["weights"] = *weights_;
   if (springs_per_node_) choice.options["springs_per_node"] = *springs_per_node_;
   const ModelParameters p = resolve(choice);
-  const double l = cell_size_;
-  const MassSpringModel model = build_model(p, sample_mesh(p.row, l), m);
-  const bool lattice = p.row.topology == Topology::cells;
-  const std::array<double, 3> k = lattice_constants(model);
-  const double time_step = safe_time_step(model, m.density);
-  const MeasuredModuli measured = measure_moduli(p, m);
-  const bool has_limits = lattice && !p.has(Extension::momentum_dispersion);
-  const StrainLimits limits =
-      has_limits ? strain_limits(p, m)
-                 : StrainLimits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  const DispersionFacts facts = facts_of(p, m, model, l);
-  const double correction = p.has(Extension::volume_correction) ? kappa(m) : 0.0;
-
+  const MaterialFacts facts{m, p, cell_size_};
   if (json_) {
-    const auto limit = [](double strain) {
-      return std::isfinite(strain) ? nlohmann::json(strain) : nlohmann::json(nullptr);
-    };
-    nlohmann::json out = {
-        {"material",
-         {{"youngs_modulus_Pa", m.youngs_modulus},
-          {"poisson_ratio", m.poisson_ratio},
-          {"shear_modulus_Pa", shear_modulus(m)},
-          {"bulk_modulus_Pa", bulk_modulus(m)},
-          {"lame_lambda_Pa", lame_lambda(m)},
-          {"density_kg_m3", m.density}}},
-        {"model",
-         {{"name", p.row.name},
-          {"face_to_cube", std::isinf(p.face_to_cube) ? nlohmann::json("infinity") : nlohmann::json(p.face_to_cube)},
-          {"cell_size_m", l}}},
-        {"springs", {{"k_e_N_m", k[0]}, {"k_f_N_m", k[1]}, {"k_c_N_m", k[2]}}},
-        {"kappa_Pa", correction},
-        {"corner_mass_kg", m.density * l * l * l / 8},
-        {"safe_time_step_s", time_step},
-        {"tension_limit_strain", {{"bounded", limit(limits.bounded_energy)}, {"paper", limit(limits.paper_energy)}}},
-        {"measured",
-         {{"youngs_modulus_Pa", measured.youngs_modulus},
-          {"poisson_ratio", measured.poisson_ratio},
-          {"shear_modulus_Pa", measured.shear_modulus}}}};
-    if (!lattice) out.erase("springs");
-    out.update(json_of(facts, p, m));
-    fmt::print("{}\n", out.dump(2));
+    fmt::print("{}\n", json_of(facts).dump(2));
     return 0;
   }
-  const auto strain = [](double limit) {
-    return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %");
-  };
-  fmt::print(
-      "material   E = {:.6g} Pa   nu = {:.6g}   G = {:.6g} Pa   K = {:.6g} Pa   lambda = {:.6g} Pa   rho = {:.6g} "
-      "kg/m^3\n",
-      m.youngs_modulus, m.poisson_ratio, shear_modulus(m), bulk_modulus(m), lame_lambda(m), m.density);
-  fmt::print("model      {}: {}{}   cell edge l = {:.6g} m\n\n", p.row.name, p.row.what,
-             p.row.topology == Topology::cells || p.row.topology == Topology::centres
-                 ? fmt::format("   A = {:g}", p.face_to_cube)
-                 : "",
-             l);
-  if (lattice) {
-    fmt::print("springs inside the lattice (a free edge has 1/4, a surface edge or face diagonal 1/2 of it)\n");
-    fmt::print("  k_e  cell edge       {:>14.6g} N/m   rest length {:.6g} m\n", k[0], l);
-    fmt::print("  k_f  face diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[1], l * std::sqrt(2.0));
-    fmt::print("  k_c  cube diagonal   {:>14.6g} N/m   rest length {:.6g} m\n", k[2], l * std::sqrt(3.0));
-  }
-  print(facts, p, m);
-  if (lattice) {
-    fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", correction,
-               p.has(Extension::volume_correction) ? "" : "    (this model has none)");
-    fmt::print("mass per cell corner   {:>14.6g} kg\n", m.density * l * l * l / 8);
-  }
-  fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", time_step,
-             has_limits ? "any mesh of these cells" : "a block of 5 cells; safe_time_step() knows each network's");
-  if (has_limits)
-    fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n",
-               strain(limits.bounded_energy), strain(limits.paper_energy));
-  fmt::print("\nmeasured back from {}\n", lattice                                 ? "a block of 4 x 4 x 4 cells"
-                                          : p.row.topology == Topology::hexagonal ? "a sheet of 4 rows"
-                                                                                  : "an endless sample");
-  fmt::print("  E  = {:.8g} Pa   ({:+.2e} relative)\n", measured.youngs_modulus,
-             measured.youngs_modulus / m.youngs_modulus - 1);
-  fmt::print("  nu = {:.8g}   ({:+.2e})\n", measured.poisson_ratio, measured.poisson_ratio - m.poisson_ratio);
-  fmt::print("  G  = {:.8g} Pa   ({:+.2e} relative)\n", measured.shear_modulus,
-             measured.shear_modulus / shear_modulus(m) - 1);
-  if (p.has(Extension::none) && std::abs(m.poisson_ratio - 0.25) > 1e-12)
-    fmt::print("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss or emsm for nu = {:g}\n",
-               m.poisson_ratio);
-  if (lattice && p.face_to_cube < 0.2)
-    fmt::print("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");
-  if (p.paper_e_form) fmt::print("\nwarning: paper_e_form is right for nu = 1/4 only\n");
+  print_model(facts);
+  if (facts.lattice) print_springs(facts);
+  print(facts.dispersion, p, m);
+  print_limits(facts);
+  print_measured(facts);
+  print_warnings(p, m);
   return 0;
 }
 

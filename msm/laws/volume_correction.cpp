@@ -86,11 +86,4 @@ void add_volume_curvature(const Hexahedron& cell, const MeanEdgeVolume& v, doubl
     }
 }
 
-double min_cell_volume_ratio(const Network& network, const NodalVectors& x) {
-  double smallest = network.cells.empty() ? 1.0 : std::numeric_limits<double>::infinity();
-  for (const Hexahedron& cell : network.cells)
-    smallest = std::min(smallest, mean_edge_volume(cell, x).value / network.cell_volume());
-  return smallest;
-}
-
 }  // namespace springproof

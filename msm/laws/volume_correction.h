@@ -43,7 +43,4 @@ VolumeDensity volume_density(VolumeEnergy form, double J);
 /// K += pressure d2V'/dx2 of one cell [N/m].
 void add_volume_curvature(const Hexahedron& cell, const MeanEdgeVolume& volume, double pressure, BlockMatrix& K);
 
-/// Smallest V'/V over the cells; <= 0: a cell is inverted.  1 for networks without cells.
-double min_cell_volume_ratio(const Network& network, const NodalVectors& x);
-
 }  // namespace springproof

@@ -15,44 +15,35 @@
 namespace springproof {
 namespace {
 
-constexpr Key document_schema[] = {{"cite", Presence::optional, ""},
-                                   {"what", Presence::optional, ""},
-                                   {"kinematics", Presence::optional, ""},
-                                   {"body", Presence::required, "a table [body] with geo, size_m, cells"},
-                                   {"patch", Presence::optional, ""},
-                                   {"material", Presence::required, "a table [material] with two moduli"},
-                                   {"load", Presence::required, "at least one [[load]]"},
-                                   {"compare", Presence::optional, ""},
-                                   {"section", Presence::optional, ""},
-                                   {"line", Presence::optional, ""},
-                                   {"probe", Presence::optional, ""},
-                                   {"reference", Presence::optional, ""},
-                                   {"expect", Presence::optional, ""},
-                                   {"published", Presence::optional, ""}};
+constexpr Key document_schema[] = {{"cite"},
+                                   {"what"},
+                                   {"kinematics"},
+                                   {"body", "a table [body] with geo, size_m, cells"},
+                                   {"patch"},
+                                   {"material", "a table [material] with two moduli"},
+                                   {"load", "at least one [[load]]"},
+                                   {"compare"},
+                                   {"section"},
+                                   {"line"},
+                                   {"probe"},
+                                   {"reference"},
+                                   {"expect"},
+                                   {"published"}};
 
 constexpr Key body_schema[] = {
-    {"geo", Presence::required,
-     "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .msh, .step or .brep file"},
-    {"size_m", Presence::optional, ""},
-    {"scale", Presence::optional, ""},
-    {"cells", Presence::optional, ""},
-    {"voxels", Presence::optional, ""},
-    {"voxel_edge_m", Presence::optional, ""}};
+    {"geo", "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .msh, .step or .brep file"},
+    {"size_m"},
+    {"scale"},
+    {"cells"},
+    {"voxels"},
+    {"voxel_edge_m"}};
 
-constexpr Key material_schema[] = {
-    {"youngs_modulus_Pa", Presence::optional, ""}, {"poisson_ratio", Presence::optional, ""},
-    {"shear_modulus_Pa", Presence::optional, ""},  {"bulk_modulus_Pa", Presence::optional, ""},
-    {"lame_lambda_Pa", Presence::optional, ""},    {"density_kg_m3", Presence::optional, ""}};
+constexpr Key material_schema[] = {{"youngs_modulus_Pa"}, {"poisson_ratio"},  {"shear_modulus_Pa"},
+                                   {"bulk_modulus_Pa"},   {"lame_lambda_Pa"}, {"density_kg_m3"}};
 
-constexpr Key section_schema[] = {{"point_m", Presence::required, "[x, y, z]"},
-                                  {"normal", Presence::required, "[x, y, z]"}};
-constexpr Key probe_schema[] = {{"name", Presence::required, "a name"},
-                                {"at_m", Presence::required, "[x, y, z], a rest position"}};
-constexpr Key reference_schema[] = {{"cells", Presence::optional, ""},
-                                    {"elements", Presence::optional, ""},
-                                    {"grading", Presence::optional, ""},
-                                    {"edge_m", Presence::optional, ""},
-                                    {"smooth", Presence::optional, ""}};
+constexpr Key section_schema[] = {{"point_m", "[x, y, z]"}, {"normal", "[x, y, z]"}};
+constexpr Key probe_schema[] = {{"name", "a name"}, {"at_m", "[x, y, z], a rest position"}};
+constexpr Key reference_schema[] = {{"cells"}, {"elements"}, {"grading"}, {"edge_m"}, {"smooth"}};
 
 /// A modulus of the file and where it goes.
 struct ModulusKey {

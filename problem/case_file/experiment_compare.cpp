@@ -12,28 +12,26 @@
 namespace springproof {
 namespace {
 
-constexpr Key compare_schema[] = {{"models", Presence::optional, ""},   {"measures", Presence::optional, ""},
-                                  {"elements", Presence::optional, ""}, {"most_unknowns", Presence::optional, ""},
-                                  {"cost", Presence::optional, ""},     {"exact", Presence::optional, ""}};
+constexpr Key compare_schema[] = {{"models"}, {"measures"}, {"elements"}, {"most_unknowns"}, {"cost"}, {"exact"}};
 
-constexpr Key expect_schema[] = {{"model", Presence::required, "a model of [compare], or fem, fem_q1, ..."},
-                                 {"poisson_ratio", Presence::optional, ""},
-                                 {"cells", Presence::optional, ""},
-                                 {"measure", Presence::required, "the name of a row"},
-                                 {"source", Presence::required, "analytic, extrapolated FEM, published, regression"},
-                                 {"value", Presence::optional, ""},
-                                 {"within", Presence::optional, ""},
-                                 {"within_relative", Presence::optional, ""},
-                                 {"at_least", Presence::optional, ""},
-                                 {"where", Presence::optional, ""}};
+constexpr Key expect_schema[] = {{"model", "a model of [compare], or fem, fem_q1, ..."},
+                                 {"poisson_ratio"},
+                                 {"cells"},
+                                 {"measure", "the name of a row"},
+                                 {"source", "analytic, extrapolated FEM, published, regression"},
+                                 {"value"},
+                                 {"within"},
+                                 {"within_relative"},
+                                 {"at_least"},
+                                 {"where"}};
 
-constexpr Key published_schema[] = {{"model", Presence::required, "the name of a model"},
-                                    {"poisson_ratio", Presence::required, "one of the case's Poisson's ratios"},
-                                    {"cells", Presence::optional, ""},
-                                    {"measure", Presence::required, "the name of a row"},
-                                    {"value", Presence::required, "a finite number"},
-                                    {"where", Presence::required, "table or figure"},
-                                    {"remark", Presence::optional, ""}};
+constexpr Key published_schema[] = {{"model", "the name of a model"},
+                                    {"poisson_ratio", "one of the case's Poisson's ratios"},
+                                    {"cells"},
+                                    {"measure", "the name of a row"},
+                                    {"value", "a finite number"},
+                                    {"where", "table or figure"},
+                                    {"remark"}};
 
 bool is_fem(const std::string& model) {
   const auto elements = element_names();

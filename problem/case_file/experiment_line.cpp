@@ -7,10 +7,7 @@
 namespace springproof {
 namespace {
 
-constexpr Key line_schema[] = {{"from_m", Presence::required, "[x, y, z]"},
-                               {"to_m", Presence::required, "[x, y, z]"},
-                               {"points", Presence::optional, ""},
-                               {"middle", Presence::optional, ""}};
+constexpr Key line_schema[] = {{"from_m", "[x, y, z]"}, {"to_m", "[x, y, z]"}, {"points"}, {"middle"}};
 
 int as_whole(const TomlValue& value, int low, int high) {
   const std::string words = fmt::format("an integer from {} to {}", low, high);

@@ -12,39 +12,26 @@ namespace {
 constexpr const char* patch_words = "a patch name or a list of them";
 constexpr const char* vector_words = "[x, y, z]";
 
-constexpr Key on_key = {"on", Presence::required, patch_words};
+constexpr Key on_key = {"on", patch_words};
 
-constexpr Key displacement_schema[] = {on_key,
-                                       {"displacement_m", Presence::required, "[x, y, z], each a number or \"free\""}};
-constexpr Key affine_schema[] = {on_key,
-                                 {"displacement_gradient", Presence::required, "3 rows of 3 numbers"},
-                                 {"displacement_m", Presence::optional, vector_words}};
+constexpr Key displacement_schema[] = {on_key, {"displacement_m", "[x, y, z], each a number or \"free\""}};
+constexpr Key affine_schema[] = {on_key, {"displacement_gradient", "3 rows of 3 numbers"}, {"displacement_m"}};
 constexpr Key rotation_schema[] = {on_key,
-                                   {"rotation_deg", Presence::required, "an angle"},
-                                   {"axis", Presence::required, "[x, y, z], the direction of the axis"},
-                                   {"about_m", Presence::required, "[x, y, z], a point of the axis"}};
-constexpr Key field_schema[] = {on_key, {"field", Presence::required, "the name of an exact field"}};
-constexpr Key pressure_schema[] = {on_key, {"pressure_Pa", Presence::required, "a number"}};
-constexpr Key body_force_schema[] = {{"body_force_of", Presence::required, "the name of an exact field"}};
-constexpr Key traction_schema[] = {on_key, {"traction_Pa", Presence::required, vector_words}};
-constexpr Key patch_force_schema[] = {on_key, {"force_N", Presence::required, vector_words}};
-constexpr Key point_force_schema[] = {{"force_N", Presence::required, vector_words},
-                                      {"at_m", Presence::required, "[x, y, z], a rest position"}};
-constexpr Key gravity_schema[] = {{"gravity_m_s2", Presence::required, vector_words}};
+                                   {"rotation_deg", "an angle"},
+                                   {"axis", "[x, y, z], the direction of the axis"},
+                                   {"about_m", "[x, y, z], a point of the axis"}};
+constexpr Key field_schema[] = {on_key, {"field", "the name of an exact field"}};
+constexpr Key pressure_schema[] = {on_key, {"pressure_Pa", "a number"}};
+constexpr Key body_force_schema[] = {{"body_force_of", "the name of an exact field"}};
+constexpr Key traction_schema[] = {on_key, {"traction_Pa", vector_words}};
+constexpr Key patch_force_schema[] = {on_key, {"force_N", vector_words}};
+constexpr Key point_force_schema[] = {{"force_N", vector_words}, {"at_m", "[x, y, z], a rest position"}};
+constexpr Key gravity_schema[] = {{"gravity_m_s2", vector_words}};
 
-constexpr Key any_load_schema[] = {{"on", Presence::optional, ""},
-                                   {"displacement_m", Presence::optional, ""},
-                                   {"displacement_gradient", Presence::optional, ""},
-                                   {"rotation_deg", Presence::optional, ""},
-                                   {"axis", Presence::optional, ""},
-                                   {"about_m", Presence::optional, ""},
-                                   {"field", Presence::optional, ""},
-                                   {"traction_Pa", Presence::optional, ""},
-                                   {"pressure_Pa", Presence::optional, ""},
-                                   {"force_N", Presence::optional, ""},
-                                   {"gravity_m_s2", Presence::optional, ""},
-                                   {"body_force_of", Presence::optional, ""},
-                                   {"at_m", Presence::optional, ""}};
+constexpr Key any_load_schema[] = {
+    {"on"},    {"displacement_m"}, {"displacement_gradient"}, {"rotation_deg"}, {"axis"},         {"about_m"},
+    {"field"}, {"traction_Pa"},    {"pressure_Pa"},           {"force_N"},      {"gravity_m_s2"}, {"body_force_of"},
+    {"at_m"}};
 
 Load read_displacement(const TomlTable& table, const std::string& on) {
   PrescribedDisplacement load{on, {}};

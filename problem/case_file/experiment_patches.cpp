@@ -7,17 +7,11 @@
 namespace springproof {
 namespace {
 
-constexpr Key rule_schema[] = {{"name", Presence::required, "a name"},
-                               {"box_m", Presence::optional, ""},
-                               {"beyond", Presence::optional, ""},
-                               {"facing", Presence::optional, ""},
-                               {"near", Presence::optional, ""}};
-constexpr Key beyond_schema[] = {{"point_m", Presence::required, "[x, y, z], a point of the plane"},
-                                 {"normal", Presence::required, "[x, y, z], towards the facets that are meant"}};
-constexpr Key facing_schema[] = {{"direction", Presence::required, "[x, y, z]"},
-                                 {"within_deg", Presence::required, "an angle > 0 and <= 180"}};
-constexpr Key near_schema[] = {{"point_m", Presence::required, "[x, y, z]"},
-                               {"radius_m", Presence::required, "a length > 0"}};
+constexpr Key rule_schema[] = {{"name", "a name"}, {"box_m"}, {"beyond"}, {"facing"}, {"near"}};
+constexpr Key beyond_schema[] = {{"point_m", "[x, y, z], a point of the plane"},
+                                 {"normal", "[x, y, z], towards the facets that are meant"}};
+constexpr Key facing_schema[] = {{"direction", "[x, y, z]"}, {"within_deg", "an angle > 0 and <= 180"}};
+constexpr Key near_schema[] = {{"point_m", "[x, y, z]"}, {"radius_m", "a length > 0"}};
 
 PatchRule::Box read_box(const TomlValue& value) {
   const auto corners = as_list_of(2, value, "two corners, [[x, y, z], [x, y, z]]");

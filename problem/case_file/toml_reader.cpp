@@ -206,8 +206,8 @@ TomlTable::TomlTable(const TomlValue& value, std::span<const Key> schema) : valu
   if (!table) wrong_type(value, "a table");
   refuse_unknown_keys(value, *table, schema);
   for (const Key& key : schema)
-    if (key.presence == Presence::required && !table->contains(key.name))
-      refuse({value.node, join_key(value.key, key.name), value.file}, "is missing", key.words);
+    if (key.required && !table->contains(key.name))
+      refuse({value.node, join_key(value.key, key.name), value.file}, "is missing", key.required);
 }
 
 std::optional<TomlValue> TomlTable::find(const std::string& key) const {

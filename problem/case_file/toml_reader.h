@@ -40,13 +40,10 @@ inline constexpr Range any_number{"a finite number"};
 inline constexpr Range positive_number{"a finite number > 0", 0};
 inline constexpr Range not_negative{"a finite number >= 0", 0, std::numeric_limits<double>::infinity(), true};
 
-enum class Presence { optional, required };
-
-/// A line of a table's schema.
+/// A line of a table's schema: {"what"} is optional, {"geo", "a file"} is required.
 struct Key {
   const char* name;
-  Presence presence;
-  const char* words;  ///< what it holds, for the message when it is missing
+  const char* required = nullptr;  ///< what it holds, for the message when it is missing; null: it may be
 };
 
 /// @throws InputError "FILE:LINE:COLUMN: key: what is wrong (allowed: ...)"; `hint` follows, e.g. "; did you
