@@ -11,6 +11,7 @@
 #include "comparisons/calculix/run.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/case_run.h"
+#include "comparisons/run/prepare.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/status.h"
 #include "fem_reference/case_request.h"

@@ -9,6 +9,7 @@
 #include "comparisons/calculix/deck.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/find_cases.h"
+#include "comparisons/run/prepare.h"
 #include "comparisons/run/suite.h"
 #include "meshes/mesher/mesher.h"
 

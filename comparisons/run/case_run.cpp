@@ -68,7 +68,8 @@ Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model
 
 /// Runs the finite elements.
 void run_fem(PartRun& run) {
-  run.grids = solve_grids(run.prepared, run.material);
+  const auto solve = run.experiment().body.is_voxels() ? solve_body_grids : solve_grids;
+  run.grids = solve(run.prepared, run.material);
   if (run.grids.elements.empty())
     run.part.runs.push_back(
         {run.key("fem_" + run.experiment().reference.elements.front(), run.prepared.reference_cells), "fem",

@@ -7,6 +7,7 @@
 #include "comparisons/judge/line_measure.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/reference_grids.h"
+#include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
 #include "msm/measure/block_moduli.h"
 #include "msm/measure/statistics.h"

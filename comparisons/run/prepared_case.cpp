@@ -1,121 +1,14 @@
 #include "comparisons/run/prepared_case.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-
-#include "comparisons/judge/measures.h"
-#include "comparisons/report/results.h"
-#include "comparisons/run/case_checks.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/voxel_body.h"
-#include "meshes/mesher/mesher.h"
-#include "msm/models.h"
-#include "msm/statics/equilibrium.h"
-#include "problem/case_file/measures.h"
-#include "problem/system/child.h"
-#include "problem/system/progress.h"
+#include <iterator>
 
 namespace springproof {
-namespace {
 
-// Elements of the finest reference grid (Q2): what a few seconds of one core can solve.
-constexpr double linear_reference_elements = 4096;
-constexpr double finite_reference_elements = 1000;
-
-// Cells of one lattice: what its matrices can hold in a workstation's memory.
-constexpr double largest_lattice = 4e6;
-
-/// Near-cubic elements, counts divisible by four so that the grid can be halved twice.
-Cells reference_cells(const Experiment& e) {
-  if (e.reference.cells[0] > 0) return e.reference.cells;
-  const double elements =
-      e.model_kinematics() == Kinematics::linear ? linear_reference_elements : finite_reference_elements;
-  const double edge = std::cbrt(e.body.size.prod() / elements);
-  Cells cells;
-  for (int d = 0; d < 3; ++d) cells[d] = 4 * std::max(1, static_cast<int>(std::lround(e.body.size[d] / edge / 4)));
-  return cells;
+void add_lattice(Lattice lattice, PreparedCase& prepared) {
+  lattice.first_node = prepared.nodes();
+  prepared.lattices.push_back(std::move(lattice));
 }
-
-/// @throws InputError at the model's place in the case, if its options lead to no network.
-EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& parameters, const Mesh& mesh,
-                           const IsotropicMaterial& material, const Region* region) try {
-  return build_embedded(parameters, mesh, material, region);
-} catch (const InputError& e) {
-  throw InputError(choice.where, fmt::format("compare.models: {}", e.what()));
-}
-
-/// Builds the model and puts the loads on it, for what may be wrong with either.
-void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number) try {
-  const Experiment& experiment = prepared.experiment;
-  const ModelParameters& parameters = prepared.models[number];
-  const Mesh& mesh = *lattice.mesh;
-  const auto [model, embedding] =
-      build_chosen(experiment.models[number], parameters, mesh, experiment.materials.front(), lattice.region.get());
-  if (parameters.row.topology == Topology::cells) return;
-  const BoundaryConditions bc =
-      transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
-  if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
-} catch (const InputError&) {
-  throw;
-} catch (const std::runtime_error&) {
-  // No network with this material's moduli: the run will say so.
-}
-
-/// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.
-std::vector<Load> lattice_loads(const PreparedCase& prepared) {
-  std::vector<Load> loads;
-  for (const Load& load : prepared.loads)
-    if (!std::holds_alternative<FieldBodyForce>(load)) loads.push_back(load);
-  return loads;
-}
-
-/// @throws InputError for a lattice that no workstation holds.
-void check_fineness(const Body& body, const Cells& c) {
-  if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
-    throw InputError(
-        body.where,
-        fmt::format("cells: {} x {} x {} = {:.3g} cells (allowed: up to {:.0g}; a lattice takes some 3 kB per cell)",
-                    c[0], c[1], c[2], total, largest_lattice));
-}
-
-void prepare_blocks(PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
-  prepared.reference_cells = reference_cells(e);
-  for (const Cells& cells : e.body.cells) check_fineness(e.body, cells);
-  for (const Cells& cells : e.body.cells)
-    add_lattice({cells, std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells))}, prepared);
-}
-
-/// The patches of the body itself, where their mean displacement is measured.
-void sample_patches(PreparedCase& prepared) {
-  if (!wanted("mean_displacement", prepared.experiment.measures)) return;
-  const bool voxels = prepared.experiment.body.is_voxels();
-  prepared.patch_samples =
-      samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
-}
-
-/// Tries what the case asks for on one lattice.
-void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
-  const Experiment& e = prepared.experiment;
-  const Mesh& mesh = *lattice.mesh;
-  std::vector<std::string> patches;
-  for (const Patch& p : mesh.patches) patches.push_back(p.name);
-  check_patches(e, patches);
-  check_mean_displacements(e, patches);
-  prepared.sharing = patches_sharing_supports(prepared.loads, mesh, e.model_kinematics());
-  if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
-    require_supported(transfer(lattice_loads(prepared), mesh, 1000, e.model_kinematics()), mesh.nodes);
-  for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    if (prepared.models[m].row.topology == Topology::cells || &lattice == &prepared.lattices.front())
-      try_model(prepared, lattice, m);
-  const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
-  if (e.section) section_distance(mesh, *e.section, u, u);
-  at_measured_points(prepared, lattice, u);
-}
-
-}  // namespace
 
 std::size_t finest_lattice(const PreparedCase& prepared) {
   const auto& all = prepared.lattices;
@@ -125,36 +18,12 @@ std::size_t finest_lattice(const PreparedCase& prepared) {
   return static_cast<std::size_t>(std::max_element(all.begin(), all.end(), finer) - all.begin());
 }
 
-void add_lattice(Lattice lattice, PreparedCase& prepared) {
-  lattice.first_node = prepared.nodes();
-  prepared.lattices.push_back(std::move(lattice));
-}
-
-PreparedCase prepare(const Experiment& experiment) try {
-  PreparedCase prepared;
-  prepared.experiment = experiment;
-  prepared.loads = experiment.loads;
-  prepared.size = experiment.body.size;
-  check_expectations(experiment);
-  for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
-  check_kinematics(experiment, prepared.models);
-  prepared.geo = find_geo(experiment.body, experiment.file);
-  progress::phase("cutting the body");
-  experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
-  for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);
-  sample_patches(prepared);
-  for (const Lattice& lattice : prepared.lattices) {
-    progress::phase(fmt::format("trying loads and models on {} cells", cells_text(lattice.cells, " x ")));
-    try_lattice(prepared, lattice);
-  }
-  return prepared;
-} catch (const NoRoom&) {  // no fault of the case
-  throw;
-} catch (const InputError& e) {
-  const std::string message = e.what(), file = experiment.file.string();
-  throw InputError(message.starts_with(file) ? message : file + ": " + message);
-} catch (const std::runtime_error& e) {
-  throw std::runtime_error(experiment.file.string() + ": " + e.what());
+std::vector<std::string> elements_of(const Experiment& e, char shape) {
+  std::vector<std::string> elements;
+  if (!e.models.empty())
+    std::copy_if(e.elements.begin(), e.elements.end(), std::back_inserter(elements),
+                 [&](const std::string& name) { return name[0] == shape; });
+  return elements;
 }
 
 bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree) {

@@ -63,11 +63,11 @@ struct PreparedCase {
 /// Adds the next lattice.
 void add_lattice(Lattice lattice, PreparedCase& prepared);
 
-/// @throws InputError for everything a user can get wrong, before any long work starts.
-PreparedCase prepare(const Experiment& experiment);
-
 /// Number of the lattice with the most cells.
 std::size_t finest_lattice(const PreparedCase& prepared);
+
+/// Of the elements compared beside the models, those of hexahedra ('q') or of tetrahedra ('p').
+std::vector<std::string> elements_of(const Experiment& experiment, char shape);
 
 /// False for a run with more unknowns than [compare] most_unknowns: about three per node of its mesh, and eight times
 /// as many for elements of degree 2.  Of a model the degree is 1.

@@ -8,7 +8,6 @@
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
-#include "comparisons/run/voxel_reference.h"
 #include "fem_reference/case_request.h"
 #include "problem/case_file/measures.h"
 #include "problem/exact_field.h"
@@ -148,22 +147,6 @@ std::optional<double> target(const Experiment& experiment, const ReferenceRecord
 
 }  // namespace
 
-NodalVectors probe_points(const Experiment& e) {
-  NodalVectors points(static_cast<Eigen::Index>(e.probes.size()), 3);
-  for (std::size_t i = 0; i < e.probes.size(); ++i)
-    points.row(static_cast<Eigen::Index>(i)) = e.probes[i].at.transpose();
-  return points;
-}
-
-NodalVectors measured_points(const PreparedCase& prepared) {
-  NodalVectors points = probe_points(prepared.experiment);
-  for (const PatchSamples& p : prepared.patch_samples) {
-    points.conservativeResize(points.rows() + p.points.rows(), 3);
-    points.bottomRows(p.points.rows()) = p.points;
-  }
-  return points;
-}
-
 std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
   const auto count = static_cast<Eigen::Index>(probes.size());
@@ -182,7 +165,6 @@ std::string with_note(const ElementGrids& e, const std::string& note) {
 
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
   const Experiment& experiment = prepared.experiment;
-  if (experiment.body.is_voxels()) return solve_body_grids(prepared, material);
   const bool stresses = wanted("stress", experiment.measures);
   fem::Request request = fem::request_of(experiment, material);
   request.points = sample_points(prepared);
@@ -215,10 +197,6 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   } catch (const std::runtime_error& e) {
     return {{}, {}, {}, e.what()};
   }
-}
-
-NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples) {
-  return samples.middleRows(lattice.first_node, lattice.mesh->nodes.rows());
 }
 
 Field sampled_field(const Lattice& lattice, const fem::Solution& s) {

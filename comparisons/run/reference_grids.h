@@ -6,7 +6,7 @@
 
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/report/results.h"
-#include "comparisons/run/prepared_case.h"
+#include "comparisons/run/sampling.h"
 #include "fem_reference/reference.h"
 
 namespace springproof {
@@ -33,24 +33,15 @@ struct ReferenceGrids {
   std::string failure;                              ///< why there is no answer
 };
 
-/// Displacements are asked for at the nodes of every lattice and at the measured points, stresses at the probes if the
-/// case measures them. An element without a result on some graded grid is solved on uniform ones; an element that the
-/// program dies of is alone in that.
+/// Of a block (of a body of voxels: solve_body_grids).  Displacements are asked for at the nodes of every lattice and
+/// at the measured points, stresses at the probes if the case measures them. An element without a result on some graded
+/// grid is solved on uniform ones; an element that the program dies of is alone in that.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
-
-/// The part of Solution::displacement that belongs to the nodes of one lattice.
-NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples);
 
 Field sampled_field(const Lattice& lattice, const fem::Solution& s);
 
 /// Every scalar measure of one solution, stresses among them.
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);
-
-/// Rest positions of the probes, n x 3 [m].
-NodalVectors probe_points(const Experiment& experiment);
-
-/// Those and after them the points of the patches whose mean displacement is measured.
-NodalVectors measured_points(const PreparedCase& prepared);
 
 /// The measures of a field that have a value of their own; `u` is the displacement at the measured points.
 std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u);

@@ -27,6 +27,7 @@
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/folder_lock.h"
 #include "comparisons/run/part_file.h"
+#include "comparisons/run/prepare.h"
 #include "comparisons/run/status.h"
 #include "comparisons/run/time_left.h"
 #include "fem_reference/reference.h"

@@ -8,8 +8,7 @@
 #include <functional>
 
 #include "comparisons/judge/measures.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/voxel_reference.h"
+#include "comparisons/run/sampling.h"
 #include "meshes/locate/facet_tree.h"
 #include "meshes/locate/locate.h"
 #include "meshes/mesher/mesher.h"
@@ -292,31 +291,6 @@ void prepare_voxel_body(PreparedCase& prepared) {
   } catch (const std::invalid_argument& e) {
     throw InputError(prepared.experiment.body.where, with_hint(e));
   }
-}
-
-NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {
-  NodalVectors out(static_cast<Eigen::Index>(prepared.body_samples.size()), 3);
-  for (std::size_t n = 0; n < prepared.body_samples.size(); ++n) {
-    const BodySample& s = prepared.body_samples[n];
-    const auto row = static_cast<Eigen::Index>(n);
-    out.row(row) = s.within < 0 ? Eigen::RowVector3d(u.row(s.at)) : 2 * u.row(s.at) - u.row(s.within);
-  }
-  return out;
-}
-
-NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice,
-                                const NodalVectors& displacement) {
-  const Experiment& e = prepared.experiment;
-  const Mesh& mesh = *lattice.mesh;
-  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // for a probe outside
-  const NodalVectors points = measured_points(prepared);
-  const Locator locator(mesh);
-  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    const Location at = locator(points.row(i).transpose());
-    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * displacement.row(mesh.hexahedra[at.cell][n]);
-  }
-  return out;
 }
 
 std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,

@@ -107,14 +107,6 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
 
 }  // namespace
 
-std::vector<std::string> elements_of(const Experiment& e, char shape) {
-  std::vector<std::string> elements;
-  if (!e.models.empty())
-    std::copy_if(e.elements.begin(), e.elements.end(), std::back_inserter(elements),
-                 [&](const std::string& name) { return name[0] == shape; });
-  return elements;
-}
-
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;

@@ -13,9 +13,6 @@ namespace springproof {
 // million unknowns of elements with 27 and with 8 nodes.
 inline constexpr std::size_t most_refined_cubes = 8000, most_cubes = 200000;
 
-/// Of the elements compared beside the models, those of hexahedra ('q') or of tetrahedra ('p').
-std::vector<std::string> elements_of(const Experiment& experiment, char shape);
-
 /// What solve_grids is for such a body.
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "comparisons/run/case_run.h"
+#include "comparisons/run/prepare.h"
 
 namespace springproof::test {
 

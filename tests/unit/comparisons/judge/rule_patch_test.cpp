@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "comparisons/run/case_run.h"
+#include "comparisons/run/prepare.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_reference.h"
 #include "meshes/patches/rule_region.h"

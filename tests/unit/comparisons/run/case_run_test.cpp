@@ -13,6 +13,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/folder_lock.h"
 #include "comparisons/run/part_file.h"
+#include "comparisons/run/prepare.h"
 #include "problem/system/child.h"
 
 namespace springproof {

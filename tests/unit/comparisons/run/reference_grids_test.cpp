@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "comparisons/run/case_run.h"
+#include "comparisons/run/prepare.h"
 #include "problem/exact_field.h"
 #include "problem/system/child.h"
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "comparisons/run/sampling.h"
 #include "meshes/volume.h"
 #include "msm/embedding/boundary.h"
 #include "msm/models.h"

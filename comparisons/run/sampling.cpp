@@ -1,0 +1,53 @@
+#include "comparisons/run/sampling.h"
+
+#include "comparisons/judge/measures.h"
+#include "meshes/locate/locate.h"
+
+namespace springproof {
+
+NodalVectors probe_points(const Experiment& e) {
+  NodalVectors points(static_cast<Eigen::Index>(e.probes.size()), 3);
+  for (std::size_t i = 0; i < e.probes.size(); ++i)
+    points.row(static_cast<Eigen::Index>(i)) = e.probes[i].at.transpose();
+  return points;
+}
+
+NodalVectors measured_points(const PreparedCase& prepared) {
+  NodalVectors points = probe_points(prepared.experiment);
+  for (const PatchSamples& p : prepared.patch_samples) {
+    points.conservativeResize(points.rows() + p.points.rows(), 3);
+    points.bottomRows(p.points.rows()) = p.points;
+  }
+  return points;
+}
+
+NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples) {
+  return samples.middleRows(lattice.first_node, lattice.mesh->nodes.rows());
+}
+
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {
+  NodalVectors out(static_cast<Eigen::Index>(prepared.body_samples.size()), 3);
+  for (std::size_t n = 0; n < prepared.body_samples.size(); ++n) {
+    const BodySample& s = prepared.body_samples[n];
+    const auto row = static_cast<Eigen::Index>(n);
+    out.row(row) = s.within < 0 ? Eigen::RowVector3d(u.row(s.at)) : 2 * u.row(s.at) - u.row(s.within);
+  }
+  return out;
+}
+
+NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice,
+                                const NodalVectors& displacement) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *lattice.mesh;
+  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // for a probe outside
+  const NodalVectors points = measured_points(prepared);
+  const Locator locator(mesh);
+  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Location at = locator(points.row(i).transpose());
+    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * displacement.row(mesh.hexahedra[at.cell][n]);
+  }
+  return out;
+}
+
+}  // namespace springproof

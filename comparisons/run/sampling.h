@@ -1,0 +1,25 @@
+// Where displacements are asked for: at the nodes of the lattices, then at the measured points.
+#pragma once
+
+#include "comparisons/run/prepared_case.h"
+
+namespace springproof {
+
+/// Rest positions of the probes, n x 3 [m].
+NodalVectors probe_points(const Experiment& experiment);
+
+/// Those and after them the points of the patches whose mean displacement is measured.
+NodalVectors measured_points(const PreparedCase& prepared);
+
+/// The part of Solution::displacement that belongs to the nodes of one lattice.
+NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples);
+
+/// Displacement at the nodes of every lattice, one after the other, from that at body_points.
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& at_body_points);
+
+/// Displacement at the measured points from that of a lattice's nodes.  A point of a patch, and in a body of voxels a
+/// probe, may lie beyond the cells: it takes what the nearest one continues to.
+/// @throws InputError naming a probe outside the body.
+NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
+
+}  // namespace springproof
