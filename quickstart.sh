@@ -70,7 +70,7 @@ if [ "${1:-}" = test ]; then
   # The fuzz targets take another compiler and a quarter of an hour: ctest --test-dir build/release -L fuzz
   step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" -LE fuzz "$@"
 else
-  build meshes/all msm/all fem_reference/all comparisons/all  # the programs, without the tests
+  build springproof springproof-mesh springproof-fem  # without the bench, the tests and what runs on several processes
   [ $# -gt 0 ] || set -- golec_2019/bending golec_2019/compression golec_2019/torsion bodies/rabbit --poisson-ratio=-0.5,0.25,0.4,0.499
   build/release/springproof compare --out springproof-report "$@"
   echo "open springproof-report/report.html in a browser"

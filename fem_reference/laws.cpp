@@ -7,11 +7,11 @@
 namespace springproof::fem {
 namespace {
 
-const std::array<std::pair<const char*, Law>, 5> names = {{{"hencky", Law::hencky},
-                                                           {"log_cauchy", Law::log_cauchy},
-                                                           {"neo_hooke", Law::neo_hooke},
-                                                           {"neo_hooke_isochoric", Law::neo_hooke_isochoric},
-                                                           {"st_venant_kirchhoff", Law::st_venant_kirchhoff}}};
+const std::array<std::pair<const char*, Law>, 5> law_table = {{{"hencky", Law::hencky},
+                                                               {"log_cauchy", Law::log_cauchy},
+                                                               {"neo_hooke", Law::neo_hooke},
+                                                               {"neo_hooke_isochoric", Law::neo_hooke_isochoric},
+                                                               {"st_venant_kirchhoff", Law::st_venant_kirchhoff}}};
 
 Eigen::Matrix3d right_cauchy_green(const Matrix3& F) {
   Eigen::Matrix3d C;
@@ -95,14 +95,14 @@ Voigt to_voigt(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; 
 }  // namespace
 
 std::optional<Law> law_named(const std::string& name) {
-  for (const auto& [text, law] : names)
+  for (const auto& [text, law] : law_table)
     if (name == text) return law;
   return {};
 }
 
 std::string law_names() {
   std::string all;
-  for (const auto& [text, law] : names) all += (all.empty() ? "" : ", ") + std::string(text);
+  for (const auto& [text, law] : law_table) all += (all.empty() ? "" : ", ") + std::string(text);
   return all;
 }
 

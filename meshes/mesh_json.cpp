@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "problem/system/json.h"
+
 namespace springproof {
 namespace {
 
@@ -44,9 +46,6 @@ std::vector<std::array<int, n>> to_tuples(const json& j) {
   return values;
 }
 
-json vec(const Vec3& v) { return {v[0], v[1], v[2]}; }
-Vec3 to_vec(const json& j) { return Vec3(j.at(0), j.at(1), j.at(2)); }
-
 }  // namespace
 
 json to_json(const Mesh& mesh) {
@@ -59,8 +58,8 @@ json to_json(const Mesh& mesh) {
               {"curved", points(mesh.curved)}};
   if (mesh.grid)
     out["grid"] = {{"cells", mesh.grid->cells},
-                   {"origin", vec(mesh.grid->origin)},
-                   {"spacing", vec(mesh.grid->spacing)},
+                   {"origin", mesh.grid->origin},
+                   {"spacing", mesh.grid->spacing},
                    {"cell_index", tuples(mesh.grid->cell_index)}};
   return out;
 }
@@ -74,7 +73,8 @@ Mesh mesh_from_json(const json& j) {
   mesh.curved = to_points(j.at("curved"));
   if (j.contains("grid")) {
     const json& g = j.at("grid");
-    mesh.grid = Grid{g.at("cells"), to_vec(g.at("origin")), to_vec(g.at("spacing")), to_tuples<3>(g.at("cell_index"))};
+    mesh.grid =
+        Grid{g.at("cells"), g.at("origin").get<Vec3>(), g.at("spacing").get<Vec3>(), to_tuples<3>(g.at("cell_index"))};
   }
   return mesh;
 }

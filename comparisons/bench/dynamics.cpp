@@ -14,7 +14,6 @@
 namespace springproof::bench {
 namespace {
 
-constexpr const char* subject = "dynamics";
 constexpr const char* per_spring = "ns per spring and step";
 constexpr double steps_of_the_paper = 10000;
 
@@ -37,7 +36,7 @@ double ns_per_spring(const Motion& motion, double seconds) { return 1e9 * second
 BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const Motion& motion,
                    double seconds, const std::string& baseline, double baseline_seconds, Target target) {
   const double to_ns = 1e9 / double(motion.springs);
-  return {subject,
+  return {"dynamics",
           what,
           size,
           per_spring,
@@ -118,7 +117,7 @@ void overhead(const Context& c, const std::string& size, const std::string& name
   progress(name + " over " + baseline, size);
   const auto ours = fastest_motion(model), base = fastest_motion(other);
   const std::vector<double> seconds = least_seconds({ours->advance, base->advance}, c.timer);
-  c.findings.rows.push_back({subject, name + " over " + baseline, size, "us per step", 1e6 * seconds[0], baseline,
+  c.findings.rows.push_back({"dynamics", name + " over " + baseline, size, "us per step", 1e6 * seconds[0], baseline,
                              1e6 * seconds[1], target, usage_of(*ours, seconds[0], c.machine), ours->how});
   const RooflinePoint point = point_of(*ours, seconds[0], c.machine, name, size);
   const auto same = [&](const RooflinePoint& p) { return p.name == point.name && p.size == point.size; };
@@ -167,7 +166,7 @@ void several_threads(const Context& c, const std::string& name, const std::strin
         "{} threads, {}, {}: not measured, the machine is busy (one thread takes {:.1f} times its CPU time)", number,
         name, size, seconds[1] / alone));
   const Target target = number == 2 ? at_least(limit) : Target{};
-  c.findings.rows.push_back({subject,
+  c.findings.rows.push_back({"dynamics",
                              fmt::format("{} threads over one, {}", number, name),
                              size,
                              "us per step, wall",
@@ -201,7 +200,7 @@ void growth(const Context& c, int small, int large) {
     return nlohmann::json{{"large", ns_per_spring(*first, seconds[0])}, {"small", ns_per_spring(*second, seconds[1])}};
   };
   const nlohmann::json a = in_child(work);
-  c.findings.rows.push_back({subject, "growth with size, HybMSS-CF", size, per_spring, a.at("large"),
+  c.findings.rows.push_back({"dynamics", "growth with size, HybMSS-CF", size, per_spring, a.at("large"),
                              fmt::format("{}^3", small), a.at("small"), at_most(1.4)});
 }
 
@@ -210,7 +209,7 @@ void memory(const Context& c, int n) {
   const auto ours = fastest_motion(model);
   const Motion plain = plain_motion(model.network);
   c.findings.rows.push_back(
-      {subject,
+      {"dynamics",
        "memory of HybMSS-CF",
        fmt::format("{}^3", n),
        "bytes per node",
@@ -233,7 +232,7 @@ void headline(const Context& c) {
     const MassSpringModel model = lattice(k.model, {10, 10, 10}, k.nu);
     const auto ours = fastest_motion(model);
     const double seconds = least_seconds({ours->advance}, c.timer)[0];
-    c.findings.rows.push_back({subject,
+    c.findings.rows.push_back({"dynamics",
                                k.name,
                                "10^3",
                                "s",

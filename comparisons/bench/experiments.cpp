@@ -14,8 +14,6 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr const char* subject = "experiments";
-
 struct Solvers {
   double springs = 0, finite_elements = 0;  ///< CPU [s]
   int runs = 0;
@@ -43,7 +41,7 @@ void run_case(const fs::path& springproof, const std::string& name, Findings& fi
   const double wall = seconds_of(Clock::wall) - start;
   throw_if_interrupted();
   const std::string text = text_of_file(folder.path / "report" / "results.json");
-  BenchRow row{subject, name, "whole", "wall s", wall};
+  BenchRow row{"experiments", name, "whole", "wall s", wall};
   if (end.kind != ChildEnd::exited || end.status > 1 || text.empty()) {
     row.ok = false;
     row.note = trimmed(text_of_file(folder.path / "errors"));
@@ -55,7 +53,7 @@ void run_case(const fs::path& springproof, const std::string& name, Findings& fi
       fmt::format("{} runs, one at a time{}", solvers.runs, end.status == 0 ? "" : "; an expectation does not hold");
   findings.rows.push_back(row);
   const auto add = [&](const char* stage, double seconds) {
-    findings.rows.push_back({subject, name, stage, "CPU s", seconds});
+    findings.rows.push_back({"experiments", name, stage, "CPU s", seconds});
   };
   add("all", end.seconds);
   add("springs", solvers.springs);

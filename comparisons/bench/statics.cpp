@@ -23,7 +23,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double tolerance = 1e-8;
-constexpr const char* subject = "statics";
 
 struct Problem {
   MassSpringModel model;
@@ -94,7 +93,7 @@ void measure(Findings& findings, const BenchRow& first, const Work& work, const 
 }
 
 BenchRow iterations_row(const std::string& what, const std::string& size, double limit) {
-  return {subject, what, size, "iterations to 1e-8", 0, "", 0, at_most(limit)};
+  return {"statics", what, size, "iterations to 1e-8", 0, "", 0, at_most(limit)};
 }
 
 /// What the iterations of a block should stay below, by Poisson's ratio.
@@ -118,8 +117,8 @@ void blocks(const BenchOptions& options, Findings& findings) {
             findings.rows.push_back(row);
             if (nu == 0.25) quarter = seconds;
             if (nu == 0.499 && quarter > 0)
-              findings.rows.push_back(
-                  {subject, "nu = 0.499 over nu = 0.25", row.size, "CPU s", seconds, "nu = 0.25", quarter, at_most(4)});
+              findings.rows.push_back({"statics", "nu = 0.499 over nu = 0.25", row.size, "CPU s", seconds, "nu = 0.25",
+                                       quarter, at_most(4)});
           });
     }
   }
@@ -141,7 +140,7 @@ void dispersion_blocks(int n, double gain, Findings& findings) {
       found.note = fmt::format("{}, {:.3g} CPU s", a.at("chosen").at("solver").get<std::string>(), chosen);
       findings.rows.push_back(found);
       if (nu == 0.25) return;
-      findings.rows.push_back({subject,
+      findings.rows.push_back({"statics",
                                row.what + ", over displacements alone",
                                row.size,
                                "CPU s",
@@ -173,7 +172,7 @@ template <class Make>
 void against_gamg(const std::string& what, const std::string& size, double limit, const Make& make,
                   Findings& findings) {
   if (!has_gamg()) return;
-  BenchRow row{subject, what, size, "CPU s", 0, "PETSc CG + GAMG", 0, at_least(limit)};
+  BenchRow row{"statics", what, size, "CPU s", 0, "PETSc CG + GAMG", 0, at_least(limit)};
   const auto work = [&] {
     const Problem p = make();
     const Equilibrium ours = solve(p);
@@ -200,7 +199,7 @@ void against_gamg(const std::string& what, const std::string& size, double limit
 }
 
 void against_dynamics(int n, Findings& findings) {
-  BenchRow row{subject,
+  BenchRow row{"statics",
                "block, nu = 0.25, over damped dynamics",
                fmt::format("{}^3", n),
                "CPU s",
@@ -224,7 +223,7 @@ void against_dynamics(int n, Findings& findings) {
 }
 
 void large(int n, Findings& findings) {
-  BenchRow row{subject, "large block, nu = 0.25", fmt::format("{}^3", n), "CPU s", 0, "", 0, at_most(10)};
+  BenchRow row{"statics", "large block, nu = 0.25", fmt::format("{}^3", n), "CPU s", 0, "", 0, at_most(10)};
   measure(
       findings, row, [&] { return answer(solve(cube(n, 0.25))); },
       [&](const Json& a) {
@@ -232,7 +231,7 @@ void large(int n, Findings& findings) {
         row.note = fmt::format("{}, {} iterations, {} unknowns", a.at("solver").get<std::string>(),
                                a.at("iterations").get<int>(), a.at("unknowns").get<long>());
         findings.rows.push_back(row);
-        findings.rows.push_back({subject, row.what, row.size, "GiB, peak of the process with its model",
+        findings.rows.push_back({"statics", row.what, row.size, "GiB, peak of the process with its model",
                                  a.at("memory_MiB").get<double>() / 1024, "", 0, at_most(2)});
       });
 }

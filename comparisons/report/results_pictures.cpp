@@ -13,8 +13,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
 template <class T>
 void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
@@ -89,7 +87,7 @@ Json pictures_to_json(const CaseResult& result) {
       meshes.push_back({{"rest", base64_floats(p.rest)}, {"quads", quads_json(p.quads, p.rest.size() / 3)}});
     }
     pictures.push_back({{"model", p.model},
-                        {"poisson_ratio", number(p.poisson_ratio)},
+                        {"poisson_ratio", p.poisson_ratio},
                         {"cells", p.cells},
                         {"surface", p.surface},
                         {"mesh", mesh},

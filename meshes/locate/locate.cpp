@@ -11,7 +11,7 @@
 namespace springproof {
 namespace {
 
-constexpr double tolerance = 1e-9;  // of a cell
+constexpr double cell_tolerance = 1e-9;  // of a cell
 
 /// Shape functions and their derivatives, one row per corner.
 struct Trilinear {
@@ -56,7 +56,9 @@ std::optional<Vec3> trilinear_coordinates(const Mesh& mesh, const Hexahedron& ce
   return {};
 }
 
-bool in_unit_cube(const Vec3& xi) { return (xi.array() >= -tolerance).all() && (xi.array() <= 1 + tolerance).all(); }
+bool in_unit_cube(const Vec3& xi) {
+  return (xi.array() >= -cell_tolerance).all() && (xi.array() <= 1 + cell_tolerance).all();
+}
 
 std::optional<Location> find_in_any(const Mesh& mesh, const Vec3& point) {
   for (std::size_t c = 0; c < mesh.hexahedra.size(); ++c) {
@@ -65,7 +67,7 @@ std::optional<Location> find_in_any(const Mesh& mesh, const Vec3& point) {
       low = low.cwiseMin(mesh.nodes.row(n).transpose());
       high = high.cwiseMax(mesh.nodes.row(n).transpose());
     }
-    const double slack = tolerance * (high - low).norm();
+    const double slack = cell_tolerance * (high - low).norm();
     if ((point.array() < low.array() - slack).any() || (point.array() > high.array() + slack).any()) continue;
     const auto xi = trilinear_coordinates(mesh, mesh.hexahedra[c], point);
     if (xi && in_unit_cube(*xi)) return Location{c, trilinear(*xi).shape};
@@ -137,8 +139,8 @@ std::optional<Location> Locator::find_in_grid(const Vec3& point) const {
   int low[3], high[3];
   for (int axis = 0; axis < 3; ++axis) {
     if (!(at[axis] >= -1 && at[axis] <= grid.cells[axis] + 1)) return {};
-    low[axis] = static_cast<int>(std::floor(at[axis] - tolerance));
-    high[axis] = static_cast<int>(std::floor(at[axis] + tolerance));
+    low[axis] = static_cast<int>(std::floor(at[axis] - cell_tolerance));
+    high[axis] = static_cast<int>(std::floor(at[axis] + cell_tolerance));
   }
   int first = -1;
   for (int k = low[2]; k <= high[2]; ++k)

@@ -11,7 +11,7 @@
 namespace springproof {
 namespace {
 
-constexpr double tolerance = 1e-9;  // of the weights: a point this far outside is inside
+constexpr double weight_tolerance = 1e-9;  // of the weights: a point this far outside is inside
 
 struct Extent {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -71,7 +71,7 @@ TetrahedronLocator::Place TetrahedronLocator::place_in(std::size_t c, const Vec3
   const Cell& cell = cells_[c];
   const Vec3 w = cell.to_weights * (p - cell.corners[0]);
   Place place{c, {1 - w.sum(), w[0], w[1], w[2]}, 0};
-  if (place.weights.minCoeff() >= -tolerance) return place;
+  if (place.weights.minCoeff() >= -weight_tolerance) return place;
   place.outside = std::numeric_limits<double>::infinity();
   for (int across = 0; across < 4; ++across) {
     if (place.weights[across] >= 0) continue;

@@ -4,15 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "meshes/mesh_json.h"
+#include "problem/system/json.h"
 
 namespace springproof {
 namespace {
 
 using nlohmann::json;
-
-json vec(const Vec3& v) { return {v[0], v[1], v[2]}; }
-
-Vec3 to_vec(const json& j) { return Vec3(j.at(0), j.at(1), j.at(2)); }
 
 /// Whether all are numbers of nodes.
 template <std::size_t n>
@@ -65,7 +62,7 @@ std::string cbor(const json& j) {
 
 std::string to_cbor(const MeshRequest& r) {
   return cbor({{"file", r.file.string()},
-               {"size", vec(r.size)},
+               {"size", r.size},
                {"cells", r.cells},
                {"tetrahedra", r.kind.tetrahedra},
                {"second_order", r.kind.second_order},
@@ -79,7 +76,7 @@ MeshRequest mesh_request_from_cbor(const std::string& bytes) {
   const json j = json::from_cbor(bytes);
   MeshRequest r;
   r.file = std::string(j.at("file"));
-  r.size = to_vec(j.at("size"));
+  r.size = j.at("size").get<Vec3>();
   r.cells = j.at("cells");
   r.kind = {j.at("tetrahedra"), j.at("second_order")};
   r.edge = j.at("edge");

@@ -12,7 +12,7 @@
 namespace springproof {
 namespace {
 
-constexpr double tolerance = 1e-9;
+constexpr double region_tolerance = 1e-9;
 
 using Polygon = std::vector<Vec3>;
 using Triangle = std::array<int, 3>;
@@ -90,7 +90,7 @@ Moments within(const std::vector<Eigen::Vector2d>& polygon, double radius_square
 
 bool faces(const PatchRule::Facing& facing, const Vec3& n) {
   const double angle = std::atan2(n.cross(facing.direction).norm(), n.dot(facing.direction)) * 180 / std::numbers::pi;
-  return angle <= facing.within_deg * (1 + tolerance);
+  return angle <= facing.within_deg * (1 + region_tolerance);
 }
 
 FacetPart part_of(const RuleRegion& region, Polygon polygon) {
@@ -167,7 +167,7 @@ RuleRegion rule_region(const PatchRule& rule, const Surface& surface) {
   if (rule.near) region.sphere = Border{nearest_point(rule.near->point, surface), Vec3::Zero(), rule.near->radius};
   region.facing = rule.facing;
   const Box box = bounding_box(surface);
-  region.slack = tolerance * (box.high - box.low).norm();
+  region.slack = region_tolerance * (box.high - box.low).norm();
   return region;
 }
 

@@ -16,7 +16,7 @@
 namespace springproof {
 namespace {
 
-constexpr double tolerance = 1e-9;  // of the body: boundaries belong to what is selected
+constexpr double selection_tolerance = 1e-9;  // of the body: boundaries belong to what is selected
 
 /// The outer facets and what rules look at.
 struct Facets {
@@ -24,7 +24,7 @@ struct Facets {
   std::vector<Vec3> middle, normal;
   Vec3 low, high;
 
-  double slack() const { return tolerance * (high - low).norm(); }
+  double slack() const { return selection_tolerance * (high - low).norm(); }
 };
 
 Facets facets_of(const Mesh& mesh) {
@@ -67,7 +67,7 @@ Miss miss_of(const PatchRule::Facing& facing, const Facets& s) {
   return [&](std::size_t f) {
     const double angle = std::atan2(s.normal[f].cross(facing.direction).norm(), s.normal[f].dot(facing.direction)) *
                          180 / std::numbers::pi;
-    return angle <= facing.within_deg * (1 + tolerance) ? 0 : angle - facing.within_deg;
+    return angle <= facing.within_deg * (1 + selection_tolerance) ? 0 : angle - facing.within_deg;
   };
 }
 

@@ -6,6 +6,9 @@
 
 namespace springproof {
 
+/// Free unknowns of a network of springs up to which a factorisation is faster than an iteration.
+inline constexpr long cholesky_limit = 3000;
+
 class DirectSolver {
  public:
   /// Of a BlockMatrix or a symmetric Tangent.

@@ -8,8 +8,8 @@ namespace {
 constexpr long blocks_of_piece = 256;  // some 150 nodes, a few microseconds
 
 /// Pieces that a worker has done, of all its steps; read by the one whose step follows.
-struct alignas(64) Progress {
-  std::atomic<long> pieces = 0;
+struct alignas(64) PiecesDone {
+  std::atomic<long> value = 0;
 };
 
 /// Per node the last piece that touches it.
@@ -43,7 +43,7 @@ Wavefront::Wavefront(const SpringBlocks& blocks) : complete{0} {
 
 void run_steps(const Wavefront& wavefront, long steps, Workers& workers, const PieceOfStep& compute) {
   const long count = workers.count(), together = count == 1 ? 2 : 1, pieces = wavefront.pieces(), lag = wavefront.lag;
-  std::vector<Progress> done(count);
+  std::vector<PiecesDone> done(count);
   const std::function<void(int)> work = [&](int worker) {
     for (long first = worker * together; first < steps; first += count * together)
       for (long position = 0; position < pieces + (together - 1) * lag; ++position)
@@ -52,9 +52,9 @@ void run_steps(const Wavefront& wavefront, long steps, Workers& workers, const P
           if (piece < 0 || piece >= pieces) continue;
           const long before = step - 1;  // of which so many pieces are to be done
           if (count > 1 && before >= 0)
-            wait_until(done[before % count].pieces, before / count * pieces + std::min(piece + lag, pieces));
+            wait_until(done[before % count].value, before / count * pieces + std::min(piece + lag, pieces));
           compute(step, piece);
-          done[worker].pieces.fetch_add(1, std::memory_order_release);
+          done[worker].value.fetch_add(1, std::memory_order_release);
         }
   };
   workers.run(work);

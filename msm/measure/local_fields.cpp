@@ -43,7 +43,7 @@ std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVec
   if (const MomentumDispersion* dispersion = dispersion_of(model)) {
     Tangent flow;
     dispersion->add_flow(network, network.X, flow);
-    add(dispersion->tensions(network, flow.inflow * Eigen::Map<const Eigen::VectorXd>(u.data(), u.size())), T);
+    add(dispersion->tensions(network, flow.inflow * flat(u)), T);
   }
   return T;
 }

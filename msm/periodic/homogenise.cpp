@@ -126,7 +126,7 @@ Effective effective_stiffness(const MassSpringModel& model, const Strains& strai
   Eigen::MatrixXd affine(3 * network.nodes(), size);
   for (Eigen::Index a = 0; a < size; ++a) {
     const NodalVectors u = network.X * strains[a];
-    affine.col(a) = Eigen::Map<const Eigen::VectorXd>(u.data(), u.size());
+    affine.col(a) = flat(u);
   }
   Effective effective{Eigen::MatrixXd(size, size)};
   Eigen::VectorXd force;

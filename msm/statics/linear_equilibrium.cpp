@@ -16,10 +16,7 @@ namespace springproof {
 namespace {
 
 constexpr long lattice_cholesky_limit = 1000;  // free unknowns; above it multigrid is faster
-constexpr long cholesky_limit = 3000;          // the same for other networks
 constexpr long judge_limit = 20000;            // up to it a factorisation tells what the iteration could not
-
-Eigen::VectorXd flat(const NodalVectors& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()); }
 
 NodalVectors nodal(const Eigen::VectorXd& v) { return Eigen::Map<const NodalVectors>(v.data(), v.size() / 3, 3); }
 

@@ -21,8 +21,6 @@ const VolumeCorrection* volume_of(const MassSpringModel& model) {
   return found;
 }
 
-Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data(), v.size()}; }
-
 }  // namespace
 
 struct MixedNewton::Linearised {

@@ -13,10 +13,7 @@
 namespace springproof {
 namespace {
 
-Eigen::Map<const Eigen::VectorXd> flat(const NodalVectors& v) { return {v.data(), v.size()}; }
-
-constexpr int cholesky_limit = 3000;    // free unknowns; above it Krylov with the rest state's multigrid
-constexpr int dispersive_limit = 4000;  // the factors of momentum dispersion are several times as large
+constexpr long dispersive_limit = 4000;  // the factors of momentum dispersion are several times as large
 
 /// One load step either lands on a stable state or says why not.
 enum class Outcome { accepted, unstable, inverted, not_converged };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -17,7 +18,6 @@ namespace springproof {
 namespace {
 
 constexpr double boundary_tolerance = 1e-12;  // of the size of the body
-constexpr double pi = 3.14159265358979323846;
 
 /// Triangles of the outer facets, pointing away from their cell, and the points they use.
 void add_surface(const Mesh& mesh, Region& region) {
@@ -154,7 +154,7 @@ Region ball(const Vec3& centre, double radius) {
   for (Vec3& p : region.surface_points) p = centre + radius * p;
   region.lower = centre - Vec3::Constant(radius);
   region.upper = centre + Vec3::Constant(radius);
-  region.volume = 4 * pi / 3 * radius * radius * radius;
+  region.volume = 4 * std::numbers::pi / 3 * radius * radius * radius;
   const double reach = radius + boundary_tolerance * region.size();
   region.inside = [centre, reach](const Vec3& p) { return (p - centre).squaredNorm() <= reach * reach; };
   return region;

@@ -88,44 +88,6 @@ std::vector<std::string> line_rows(const Experiment& experiment) {
   return rows;
 }
 
-using enum MeasureKind;
-
-// clang-format off
-const std::vector<Measure> table = {
-  {"displacement_error", distance, {{"displacement_error", "1"}}, "relative L2 difference to FEM over the nodes",
-   "displacement error", "|u − u_fem| in the L2 norm over the body, divided by |u_fem|"},
-  {"displacement_error_max", distance, {{"displacement_error_max", "1"}}, "largest difference over the largest displacement",
-   "largest displacement error", "largest |u − u_fem| over the nodes, divided by the largest |u_fem|"},
-  {"displacement_error_order", value, {{"displacement_error_order", "1"}},
-   "observed order of the displacement error, where the exact solution is known", "observed order of the displacement error", ""},
-  {"section_distance", distance, {{"section_distance", "m"}}, "mean distance to FEM on the plane [section] [m]",
-   "mean distance on the section", "mean |u − u_fem| over the nodes of the section"},
-  {"section_axis_distance", distance, {{"section_axis_distance", "m"}}, "the same per coordinate in the plane, (|dx| + |dy|)/2 [m]",
-   "mean distance per coordinate on the section", "mean |u − u_fem| per coordinate in the section, (|Δx| + |Δy|)/2"},
-  {"volume_change", value, {{"volume_change", "1"}}, "(V' - V)/V of the displaced body",
-   "volume change", "(V′ − V) / V of the deformed cells, exact; errors in percentage points"},
-  {"volume_change_magnitude", value, {{"volume_change_magnitude", "1"}}, "its absolute value, the papers' e",
-   "size of the volume change", "|V′ − V| / V, as the paper prints it; errors in percentage points"},
-  {"volume_change_first_order", value, {{"volume_change_first_order", "1"}}, "integral of div u over V",
-   "volume change, first order", "integral of div u over V; errors in percentage points"},
-  {"reaction", value, {{"force", "N"}, {"torque", "N m"}}, "force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m], where displacement is prescribed",
-   "", "", reaction_rows},
-  {"reaction_error", distance, {{"reaction_error", "1"}},
-   "largest relative error of force or torque on a moved support; always measured where one moves",
-   "reaction error of moved supports",
-   "|F − F_fem| / |F_fem| or |T − T_fem| / |T_fem|, the largest over the supports that are moved; those that vanish are left out"},
-  {"mean_displacement", value, {{"mean_displacement", "m"}},
-   "mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]", "", "", mean_displacement_rows},
-  {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
-  {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
-  {"moduli", value, {{"moduli", "1"}, {"moduli.youngs_modulus", "Pa"}, {"moduli.youngs_modulus_local", "Pa"}, {"moduli.affine_youngs_modulus", "Pa"}},
-   "E and nu of a block stretched along x, as the Kot papers measure them", "", "", moduli_rows},
-  {"network", value, {{"network", "1"}, {"network.mean_length", "m"}, {"network.length_deviation", "m"}},
-   "nodes, springs, springs per node, spring lengths [m]", "", "", network_rows},
-  {"line", deviation, {{"line", "1"}}, "strain and stress along [line] against Kelvin's solution", "", "", line_rows},
-};
-// clang-format on
-
 /// How much of a row's name a name of the table is; 0: nothing.
 std::size_t common(const std::string& row, const std::string& name) {
   return row == name || row.starts_with(name + '.') ? name.size() : 0;
@@ -133,10 +95,48 @@ std::size_t common(const std::string& row, const std::string& name) {
 
 }  // namespace
 
-const std::vector<Measure>& measure_table() { return table; }
+const std::vector<Measure>& measure_table() {
+  using enum MeasureKind;
+  // clang-format off
+  static const std::vector<Measure> table = {
+    {"displacement_error", distance, {{"displacement_error", "1"}}, "relative L2 difference to FEM over the nodes",
+     "displacement error", "|u − u_fem| in the L2 norm over the body, divided by |u_fem|"},
+    {"displacement_error_max", distance, {{"displacement_error_max", "1"}}, "largest difference over the largest displacement",
+     "largest displacement error", "largest |u − u_fem| over the nodes, divided by the largest |u_fem|"},
+    {"displacement_error_order", value, {{"displacement_error_order", "1"}},
+     "observed order of the displacement error, where the exact solution is known", "observed order of the displacement error", ""},
+    {"section_distance", distance, {{"section_distance", "m"}}, "mean distance to FEM on the plane [section] [m]",
+     "mean distance on the section", "mean |u − u_fem| over the nodes of the section"},
+    {"section_axis_distance", distance, {{"section_axis_distance", "m"}}, "the same per coordinate in the plane, (|dx| + |dy|)/2 [m]",
+     "mean distance per coordinate on the section", "mean |u − u_fem| per coordinate in the section, (|Δx| + |Δy|)/2"},
+    {"volume_change", value, {{"volume_change", "1"}}, "(V' - V)/V of the displaced body",
+     "volume change", "(V′ − V) / V of the deformed cells, exact; errors in percentage points"},
+    {"volume_change_magnitude", value, {{"volume_change_magnitude", "1"}}, "its absolute value, the papers' e",
+     "size of the volume change", "|V′ − V| / V, as the paper prints it; errors in percentage points"},
+    {"volume_change_first_order", value, {{"volume_change_first_order", "1"}}, "integral of div u over V",
+     "volume change, first order", "integral of div u over V; errors in percentage points"},
+    {"reaction", value, {{"force", "N"}, {"torque", "N m"}}, "force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m], where displacement is prescribed",
+     "", "", reaction_rows},
+    {"reaction_error", distance, {{"reaction_error", "1"}},
+     "largest relative error of force or torque on a moved support; always measured where one moves",
+     "reaction error of moved supports",
+     "|F − F_fem| / |F_fem| or |T − T_fem| / |T_fem|, the largest over the supports that are moved; those that vanish are left out"},
+    {"mean_displacement", value, {{"mean_displacement", "m"}},
+     "mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]", "", "", mean_displacement_rows},
+    {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
+    {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
+    {"moduli", value, {{"moduli", "1"}, {"moduli.youngs_modulus", "Pa"}, {"moduli.youngs_modulus_local", "Pa"}, {"moduli.affine_youngs_modulus", "Pa"}},
+     "E and nu of a block stretched along x, as the Kot papers measure them", "", "", moduli_rows},
+    {"network", value, {{"network", "1"}, {"network.mean_length", "m"}, {"network.length_deviation", "m"}},
+     "nodes, springs, springs per node, spring lengths [m]", "", "", network_rows},
+    {"line", deviation, {{"line", "1"}}, "strain and stress along [line] against Kelvin's solution", "", "", line_rows},
+  };
+  // clang-format on
+  return table;
+}
 
 const Measure* measure_of(const std::string& row) {
-  for (const Measure& measure : table)
+  for (const Measure& measure : measure_table())
     for (const auto& [name, unit] : measure.units)
       if (common(row, name) > 0) return &measure;
   return nullptr;
@@ -156,12 +156,12 @@ std::string unit_of(const std::string& row) {
 
 bool is_distance(const std::string& row) {
   const Measure* measure = measure_of(row);
-  return measure && measure->kind == distance;
+  return measure && measure->kind == MeasureKind::distance;
 }
 
 bool is_deviation(const std::string& row) {
   const Measure* measure = measure_of(row);
-  return measure && measure->kind == deviation && !row.ends_with(".order");
+  return measure && measure->kind == MeasureKind::deviation && !row.ends_with(".order");
 }
 
 bool wanted(const std::string& row, const std::vector<std::string>& measures) {
@@ -171,12 +171,12 @@ bool wanted(const std::string& row, const std::vector<std::string>& measures) {
 
 std::vector<std::string> measure_names() {
   std::vector<std::string> names;
-  for (const Measure& measure : table) names.push_back(measure.name);
+  for (const Measure& measure : measure_table()) names.push_back(measure.name);
   return names;
 }
 
 std::vector<std::string> rows_of_measure(const std::string& name, const Experiment& experiment) {
-  for (const Measure& measure : table)
+  for (const Measure& measure : measure_table())
     if (name == measure.name && measure.rows) return measure.rows(experiment);
   return {name};
 }

@@ -48,7 +48,7 @@ fi
 
 # A measure: the row and the line of the page, compiled into springproof, and expected of the new case.
 snippet() { awk -v wanted="$1" '/^```cpp$/ { n++; getline; if (n == wanted) { print; exit } }' "$page"; }
-awk -v row="$(snippet 2)" '{ print } /^const std::vector<Measure> table = \{/ { print row }' "$source/problem/case_file/measures.cpp" >table.cpp
+awk -v row="$(snippet 2)" '{ print } /^  static const std::vector<Measure> table = \{/ { print row }' "$source/problem/case_file/measures.cpp" >table.cpp
 awk -v line="$(snippet 3)" '{ print } /out = \{\{"volume_change"/ { print line }' "$source/comparisons/judge/measures.cpp" >judge.cpp
 link=$(ninja -C "$binary" -t commands springproof | tail -1)
 flags=(-std=c++20 -O0 -DFMT_SHARED -I"$binary/arrows/comparisons" -I"$binary/arrows/fem_reference" "${flags[@]:2}")
