@@ -103,8 +103,7 @@ class LinearElements {
 
 }  // namespace
 
-void put_linear_elements_below(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place,
-                               ElasticSystem& system) {
+void add_linear_coarse_space(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place, ElasticSystem& system) {
   start_mpi();
   const auto below = std::make_shared<LinearElements>(coarse, place, system);
   system.below = [below](LevelVector& x, const LevelVector& b) { below->cycle(x, b); };

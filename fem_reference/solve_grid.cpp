@@ -69,18 +69,18 @@ double peak_memory_MiB() {
 
 // Multigrid without a matrix needs cells that come from refining few; algebraic multigrid takes the rest.
 constexpr unsigned int largest_coarse_grid = 1000;  // cells
-// A coarsest level of cubes gets linear elements below it, from where these cost less than to solve on it by iteration.
-constexpr unsigned int smallest_grid_to_go_below = 300;
+// A coarsest level of cubes gets a coarse space of linear elements where that costs less than iterating on the level.
+constexpr unsigned int smallest_grid_for_coarse_space = 300;
 
-// Linear elements below are there for small strain and one process.
-bool goes_below(const GridProblem& problem, const Body3& body) {
-  return body.triangulation.n_cells(0) > smallest_grid_to_go_below && problem.coarse.grid && problem.law == "linear" &&
-         process_count() == 1;
+// The linear coarse space is for small strain and one process.
+bool has_linear_coarse_space(const GridProblem& problem, const Body3& body) {
+  return body.triangulation.n_cells(0) > smallest_grid_for_coarse_space && problem.coarse.grid &&
+         problem.law == "linear" && process_count() == 1;
 }
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
   return problem.method == Method::automatic && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
-         (body.triangulation.n_cells(0) <= largest_coarse_grid || goes_below(problem, body));
+         (body.triangulation.n_cells(0) <= largest_coarse_grid || has_linear_coarse_space(problem, body));
 }
 
 std::string element_name(const ElasticSystem& system) {
@@ -113,7 +113,7 @@ struct Discrete {
     check_held(held, dof_handler.get_communicator());
     if (!dof_handler.has_level_dofs()) return;
     system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
-    if (goes_below(problem, body)) put_linear_elements_below(problem.coarse, problem.place, system);
+    if (has_linear_coarse_space(problem, body)) add_linear_coarse_space(problem.coarse, problem.place, system);
   }
 
   std::vector<Prescribed> held;  // and owned

@@ -1,4 +1,4 @@
-// A second opinion: the same case by CalculiX and by our finite element reference, each with its uncertainty.
+// A cross-check: the same case by CalculiX and by our finite element reference, each with its uncertainty.
 #pragma once
 
 #include <filesystem>

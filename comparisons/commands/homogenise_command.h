@@ -1,4 +1,4 @@
-// The moduli that an endless network of a model has, its nodes relaxed.
+// The effective moduli of the infinite periodic network of a model, its nodes relaxed.
 #pragma once
 
 #include <optional>

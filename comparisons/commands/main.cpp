@@ -100,9 +100,9 @@ int main(int argc, char** argv) try {
   material.add_options(*material_command);
 
   HomogeniseCommand homogenisation;
-  CLI::App* homogenise_command = app.add_subcommand(
-      "homogenise",
-      "The moduli of an endless network of a model: effective stiffness, anisotropy, mean and spread over seeds");
+  CLI::App* homogenise_command = app.add_subcommand("homogenise",
+                                                    "Effective moduli of the infinite periodic network of a model: "
+                                                    "stiffness, anisotropy, mean and spread over seeds");
   homogenisation.add_options(*homogenise_command);
 
   ExportCommand export_case;

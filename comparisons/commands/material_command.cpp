@@ -196,7 +196,7 @@ void print_measured(const MaterialFacts& f) {
   const IsotropicMaterial& m = f.m;
   fmt::print("\nmeasured back from {}\n", f.lattice                                 ? "a block of 4 x 4 x 4 cells"
                                           : f.p.row.topology == Topology::hexagonal ? "a sheet of 4 rows"
-                                                                                    : "an endless sample");
+                                                                                    : "an infinite periodic network");
   fmt::print("  E  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.youngs_modulus,
              f.measured.youngs_modulus / m.youngs_modulus - 1);
   fmt::print("  nu = {:.8g}   ({:+.2e})\n", f.measured.poisson_ratio, f.measured.poisson_ratio - m.poisson_ratio);

@@ -160,7 +160,7 @@ struct CaseResult : Part {
       own_poisson_ratios;  ///< of the models, by label, that are solids of one Poisson's ratio only
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
-  std::vector<std::string> notes;  ///< what was mended or left out of the body
+  std::vector<std::string> notes;  ///< what was repaired or left out of the body
 };
 
 /// {812, 0, 0} stands for 812 tetrahedra, which form no grid.

@@ -28,7 +28,7 @@ std::vector<std::string> elements_of(const Experiment& e, char shape) {
 
 bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree) {
   const double unknowns = 3.0 * static_cast<double>(mesh.nodes.rows()) * degree * degree * degree;
-  return experiment.most_unknowns == 0 || unknowns <= experiment.most_unknowns;
+  return experiment.max_unknowns == 0 || unknowns <= experiment.max_unknowns;
 }
 
 }  // namespace springproof

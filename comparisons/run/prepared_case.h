@@ -69,7 +69,7 @@ std::size_t finest_lattice(const PreparedCase& prepared);
 /// Of the elements compared beside the models, those of hexahedra ('q') or of tetrahedra ('p').
 std::vector<std::string> elements_of(const Experiment& experiment, char shape);
 
-/// False for a run with more unknowns than [compare] most_unknowns: about three per node of its mesh, and eight times
+/// False for a run with more unknowns than [compare] max_unknowns: about three per node of its mesh, and eight times
 /// as many for elements of degree 2.  Of a model the degree is 1.
 bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree = 1);
 

@@ -148,7 +148,7 @@ MeshAt script_at(const MeshRequest& r) {
   };
 }
 
-/// Whether the edge has no say in how many cells there are.
+/// Whether the number of cells does not depend on the edge length.
 bool is_structured(const MeshAt& at, double edge) try {
   const auto count = [&](double times) { return at(times * edge, times).mesh.tetrahedra.size(); };
   return count(4) == count(2) && count(2) == count(1);

@@ -46,7 +46,7 @@ struct MeshRequest {
 
 struct MeshedBody {
   Mesh mesh;
-  std::vector<std::string> notes;  ///< what was mended, what quality came out: for the report
+  std::vector<std::string> notes;  ///< what was repaired, and the quality of the mesh: for the report
   double edge = 0;                 ///< that the tetrahedra were made with [m]; 0: the cells are the file's own
   std::vector<Mesh> coarser;       ///< one per factor of the request
 };

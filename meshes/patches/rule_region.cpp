@@ -117,7 +117,7 @@ double distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (a + std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d - p).norm();
 }
 
-/// Which facets hang together with those at the sphere's centre, by edges that reach into it.
+/// Which facets are connected with those at the sphere's centre, by edges that reach into it.
 std::vector<char> piece_around(const Border& sphere, const Surface& s, double slack) {
   const auto X = [&](int n) -> const Vec3& { return s.points[n]; };
   std::vector<std::pair<std::pair<int, int>, std::size_t>> edges;  // and a facet that has it

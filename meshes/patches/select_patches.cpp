@@ -71,7 +71,7 @@ Miss miss_of(const PatchRule::Facing& facing, const Facets& s) {
   };
 }
 
-/// Which of the facets `in` hang together with `first` by edges.
+/// Which of the facets `in` are connected with `first` through edges.
 std::vector<char> piece_with(std::size_t first, const std::vector<char>& in, const std::vector<OuterFacet>& facets) {
   std::vector<std::pair<std::pair<int, int>, std::size_t>> edges;  // and a facet that has it
   for (std::size_t f = 0; f < facets.size(); ++f) {

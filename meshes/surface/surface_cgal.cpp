@@ -118,7 +118,7 @@ std::vector<std::pair<int, int>> intersecting_facets(const Surface& surface, uns
 
 namespace {
 
-constexpr std::size_t most_cuts = 1000;  ///< of facets by others that are mended
+constexpr std::size_t most_cuts = 1000;  ///< of facets by others that are repaired
 
 /// Facets of this edge that would cover the surface.
 double facets_of(const Surface& surface, double edge) { return area(surface) / (std::sqrt(3.0) / 4 * edge * edge); }

@@ -10,14 +10,14 @@ namespace springproof {
 
 struct CheckedSurface {
   Surface surface;
-  std::vector<std::string> notes;  ///< what was mended, one sentence each
+  std::vector<std::string> notes;  ///< what was repaired, one sentence each
 };
 
 /// Makes the surface of one body from loose facets (each with points of its own, or welded already).
 /// Points nearer to each other than 1e-6 of the diagonal of the bounding box become one.
-/// Mended, and said in the notes: facets without area and facets that are there twice (removed), points whose facets
-/// only meet when points up to 1e-4 of the diagonal apart become one (welded, if no facet is lost by it), facets turned
-/// against their neighbours (turned), a surface inside out (turned).
+/// Repaired, and listed in the notes: facets without area and facets that are there twice (removed), points whose
+/// facets only meet when points up to 1e-4 of the diagonal apart become one (welded, if no facet is lost by it), facets
+/// oriented against their neighbours, a surface inside out (both reoriented).
 /// @throws InputError that begins with `name` and says how many, where the first one is (in the units of the surface)
 /// and what
 ///         to do: no facets, coordinates that are no numbers, open edges, edges of more than two facets, a surface with
@@ -34,7 +34,7 @@ Surface thinned(const Surface& surface, double edge);
 /// the old surface.
 /// @throws std::runtime_error if that fails: the edge is too long for the body (its volume changes by more than
 /// `most_change`, or
-///         facets cut each other and cannot be mended), or too short (more than 4 million facets).
+///         facets cut each other and cannot be repaired), or too short (more than 4 million facets).
 Surface remesh(const Surface& surface, double edge, double most_change = 0.01);
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-// How the facets of a welded surface hang together.
+// How the facets of a welded surface are connected.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ Neighbours neighbours_of(const std::vector<Side>& sides, std::size_t facets);
 /// Number of the shell (part joined by edges) of each facet, from 0.
 std::vector<int> shells(const Neighbours& neighbours);
 
-/// Open edges that hang together: the rim of a hole.
+/// Connected open edges: the rim of a hole.
 struct Hole {
   int edges = 0;
   Vec3 start;  ///< one of its points

@@ -83,7 +83,7 @@ std::size_t cubes_in(const std::vector<RowRun>& runs) {
   return sum;
 }
 
-/// Which piece each run belongs to, as the number of one of its runs: runs hang together where cubes share a face.
+/// Which piece each run belongs to, as the number of one of its runs: runs are connected where cubes share a face.
 std::vector<int> pieces_of(const std::vector<RowRun>& runs, const std::array<int, 3>& cells) {
   std::vector<int> parent(runs.size());
   std::iota(parent.begin(), parent.end(), 0);

@@ -27,8 +27,8 @@ struct Voxels {
 /// The cubes of the grid whose centres lie in the body.  Its surface are the outer facets of the mesh, quadrilaterals
 /// cut into two triangles; where it runs through centres, those at its low side in x, y and z are in and those at its
 /// high side are out. Each outer facet of the cubes gets the patches of the body's outer facet that is nearest to its
-/// middle (none, if that one has none). The cubes hang together by faces.  Others are left out, with a note, if they
-/// are at most 2 %.
+/// middle (none, if that one has none). The cubes are connected through faces.  Others are left out, with a note, if
+/// they are at most 2 %.
 /// @throws std::invalid_argument if the body reaches out of the grid, no centre lies inside, or more than 2 % would be
 /// left out.
 Voxels voxelise(const VoxelGrid& grid, const Mesh& body);

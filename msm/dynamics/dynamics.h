@@ -35,7 +35,7 @@ struct DynamicsResult {
 /// adds (dispersion_frequency_squared()).  A motion of frequencies omega_s (springs) and omega* takes the step (1 + c
 /// dt) z^2 - (2 + c dt - dt^2 omega_s^2) z + (1 + dt^2 omega*^2) = 0, and the product of its roots is below 1 only if
 /// c > dt omega*^2; for matrices it holds with their Rayleigh quotients, so for every motion.  0 for a negative
-/// dispersed fraction, which the lag itself damps.  Forms without an energy may need more.
+/// dispersed fraction, which the lag itself damps.  Non-conservative forms may need more.
 double lagged_damping(const MassSpringModel& model, double density, double time_step);
 
 /// Steps v += dt (f/m - damping v), x += dt v (the damping implicit), prescribed unknowns on their path.  Models that

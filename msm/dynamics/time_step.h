@@ -13,7 +13,7 @@ namespace springproof {
 ///  - momentum dispersion: springs k (R_i + R_j) beside them, with R_n of MomentumDispersion::stiffness_bound();
 ///  - volume and hourglass corrections: with the springs, the stiffest single cell (Irons and Treharne);
 ///  - any other law: the norms of the 3x3 blocks of its stiffness.
-/// A form of dispersion without an energy can have complex frequencies, whose flutter no step cures, only damping; its
+/// A non-conservative form of dispersion can have complex frequencies, whose flutter no step cures, only damping; its
 /// bound is that of their real part.
 /// `lagged`: dispersion from the step before (DynamicsOptions::lagged), where a negative one needs a smaller step.
 /// @throws std::invalid_argument if a node has no mass.

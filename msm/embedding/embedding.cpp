@@ -53,10 +53,10 @@ std::vector<std::vector<int>> neighbours_of(const Network& network) {
   return neighbours;
 }
 
-/// Those of `nodes` (ascending) that hang together, by springs among them, with the one nearest to p: what lies across
-/// a gap in the body has no say at p.
-std::vector<int> hanging_together(const NodalVectors& X, const std::vector<std::vector<int>>& neighbours,
-                                  const std::vector<int>& nodes, const Vec3& p) {
+/// Those of `nodes` (ascending) that are connected, through springs among them, with the one nearest to p: nodes across
+/// a gap in the body are excluded from the fit at p.
+std::vector<int> connected_to_nearest(const NodalVectors& X, const std::vector<std::vector<int>>& neighbours,
+                                      const std::vector<int>& nodes, const Vec3& p) {
   if (nodes.empty()) return {};
   const auto distance = [&](int n) { return (X.row(n).transpose() - p).squaredNorm(); };
   std::vector<int> found = {
@@ -149,7 +149,7 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip, const Reg
     std::vector<int> nodes;
     for (double radius = 1.6 * spacing; !weight; radius *= 1.2) {
       if (radius > 100 * spacing + extent.norm()) throw std::invalid_argument("the network's nodes span no volume");
-      nodes = hanging_together(network.X, neighbours, neighbourhood.near(p, radius), p);
+      nodes = connected_to_nearest(network.X, neighbours, neighbourhood.near(p, radius), p);
       weight = least_squares(network.X, nodes, p, radius, flat);
     }
     for (std::size_t i = 0; i < nodes.size(); ++i)

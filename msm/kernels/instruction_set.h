@@ -1,4 +1,4 @@
-// Kernels are compiled once per instruction set (msm/CMakeLists.txt); the processor is asked at run time.
+// Kernels are compiled once per instruction set (msm/CMakeLists.txt); one is selected at run time (CPU dispatch).
 #pragma once
 
 #include <string>

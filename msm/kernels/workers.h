@@ -25,7 +25,7 @@ class Workers {
   void work(int worker);
 
   std::vector<std::thread> threads_;
-  const std::function<void(int)>* job_ = nullptr;  ///< nullptr: go home
+  const std::function<void(int)>* job_ = nullptr;  ///< nullptr: stop the worker
   std::atomic<int> round_ = 0;
   std::atomic<int> busy_ = 0;
 };

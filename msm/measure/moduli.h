@@ -13,8 +13,8 @@ struct MeasuredModuli {
 
 /// Lattices whose nodes are the mesh's: uniaxial test between slipping plates (end force / (area * strain), lateral
 /// over axial strain) and an affine shear (from its energy), on a free block of `cells` cubed cells, linearised. Planar
-/// networks: the same in the plane, as plane strain.  Others: the endless solid, homogenised; random networks on a
-/// sample of 1000 nodes that the calibration has not seen.
+/// networks: the same in the plane, as plane strain.  Others: the infinite periodic network, homogenised; random
+/// networks on a sample of 1000 nodes that the calibration has not seen.
 /// @throws std::runtime_error if there is no equilibrium (zero-energy modes).
 MeasuredModuli measure_moduli(const ModelParameters& parameters, const IsotropicMaterial& material, int cells = 4);
 

@@ -94,12 +94,12 @@ std::string stable_range(const ModelParameters& p, const IsotropicMaterial& mate
   if (p.row.topology == Topology::random || p.row.topology == Topology::hexagonal)
     return "no energy: not proved, measured only";
   if (std::isinf(p.face_to_cube))
-    return "endless lattice of 18 springs: real frequencies to nu = 0.46, positive real part to 0.4989 (Bloch waves); "
+    return "infinite lattice of 18 springs: real frequencies to nu = 0.46, positive real part to 0.4989 (Bloch waves); "
            "blocks: measured";
   if (p.face_to_cube == 0)
-    return "endless lattice of 14 springs: zero-energy mode; complex frequencies above nu = 1/4 (Bloch waves)";
+    return "infinite lattice of 14 springs: zero-energy mode; complex frequencies above nu = 1/4 (Bloch waves)";
   if (p.face_to_cube == 1)
-    return "endless lattice of 26 springs, A = 1: positive real part to nu = 0.4996 (Bloch waves); blocks: measured";
+    return "infinite lattice of 26 springs, A = 1: positive real part to nu = 0.4996 (Bloch waves); blocks: measured";
   return "no energy: not proved, measured only";
 }
 

@@ -1,4 +1,4 @@
-// Spring constants and dispersed fraction that give an endless network the material's moduli.
+// Spring constants and dispersed fraction that give an infinite periodic network the material's moduli.
 #pragma once
 
 #include "msm/parameters/model_table.h"

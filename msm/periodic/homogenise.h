@@ -1,4 +1,4 @@
-// What an endless network of one periodic cell has for a stiffness: homogenisation with relaxed nodes.
+// Effective stiffness of the infinite network of a periodic cell: homogenisation with relaxed nodes.
 #pragma once
 
 #include "msm/laws/laws.h"

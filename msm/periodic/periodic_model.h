@@ -1,4 +1,4 @@
-// A model of the table as an endless solid: its bulk, without surfaces.
+// A model of the table as an infinite periodic network: its bulk, without surfaces.
 #pragma once
 
 #include "msm/periodic/bulk_calibration.h"

@@ -98,10 +98,10 @@ struct Experiment {
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
   std::vector<std::string> elements = {"q1"};  ///< finite elements compared beside the models, at the same resolutions
-  double most_unknowns = 0;  ///< runs of models and elements with about more than these are left out; 0: none
-  bool cost = false;         ///< the runs' times are compared: short ones are repeated, all stop at one residual
-                             ///< (problem/system/run_cost.h)
-  std::string exact;         ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
+  double max_unknowns = 0;  ///< runs of models and elements with about more than these are left out; 0: none
+  bool cost = false;        ///< the runs' times are compared: short ones are repeated, all stop at one residual
+                            ///< (problem/system/run_cost.h)
+  std::string exact;        ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
   std::vector<std::string> measures;
   std::vector<Probe> probes;
   std::optional<Section> section;

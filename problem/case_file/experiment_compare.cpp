@@ -12,7 +12,7 @@
 namespace springproof {
 namespace {
 
-constexpr Key compare_schema[] = {{"models"}, {"measures"}, {"elements"}, {"most_unknowns"}, {"cost"}, {"exact"}};
+constexpr Key compare_schema[] = {{"models"}, {"measures"}, {"elements"}, {"max_unknowns"}, {"cost"}, {"exact"}};
 
 constexpr Key expect_schema[] = {{"model", "a model of [compare], or fem, fem_q1, ..."},
                                  {"poisson_ratio"},
@@ -264,7 +264,7 @@ void read_compare_table(const TomlValue& value, const TomlTable& document, Exper
   }
   if (const auto measures = table.find("measures")) experiment.measures = read_measures(*measures, experiment);
   if (const auto elements = table.find("elements")) experiment.elements = read_elements(*elements, element_names());
-  if (const auto most = table.find("most_unknowns")) experiment.most_unknowns = as_number(*most, positive_number);
+  if (const auto most = table.find("max_unknowns")) experiment.max_unknowns = as_number(*most, positive_number);
   if (const auto cost = table.find("cost")) experiment.cost = as_flag(*cost);
 }
 

@@ -117,7 +117,7 @@ TEST(NetworkMultigrid, UnsymmetricFormsTakeFewStepsOverTheSymmetricOne) {
     }
 }
 
-// An endless sample that the calibration has not seen has the material's moduli; one sample of 1000 nodes varies by 1
+// An infinite network that the calibration has not seen has the material's moduli; one sample of 1000 nodes varies by 1
 // %.
 TEST(BulkCalibration, HoldsForOtherSamples) {
   for (double nu : {-0.5, 0.0, 0.25, 0.4, 0.49}) {

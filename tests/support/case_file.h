@@ -89,7 +89,7 @@ models = ["hybmss", { model = "hybmss", face_to_cube = 1.0, paper_e_form = true 
 measures = ["displacement_error", "displacement_error_max", "section_distance", "volume_change",
             "volume_change_first_order", "reaction", "probe", "stress"]
 elements = ["p1", "q1"]
-most_unknowns = 1e6
+max_unknowns = 1e6
 cost = true
 
 [section]

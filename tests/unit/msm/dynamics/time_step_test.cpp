@@ -74,7 +74,7 @@ TEST(SafeTimeStep, HoldsForEveryFormOfDispersionAndItsWeights) {
         }
 }
 
-// The endless lattice at nu = 1/4: omega^2 = 4 (lambda + 2 G) / (rho l^2), which its blocks give to the last digit.
+// The infinite lattice at nu = 1/4: omega^2 = 4 (lambda + 2 G) / (rho l^2), which its blocks give to the last digit.
 TEST(SafeTimeStep, IsExactForTheInsideOfALattice) {
   const double l = 0.5, E = 1e4;
   const IsotropicMaterial m{E, 0.25, density};

@@ -121,7 +121,7 @@ struct GrippedBlock {
 };
 
 // A block seems to have the modulus of (20): its grips shorten the length that stretches.  Over the local strain it is
-// as soft as the endless network, a little harder for the surface, whose missing springs (20) does not count.
+// as soft as the infinite network, a little harder for the surface, whose missing springs (20) does not count.
 TEST(RandomNetworks, GripsOfABlockHideItsSoftness) {
   const Vec3 size(36, 9, 9);
   const int seeds = 10;

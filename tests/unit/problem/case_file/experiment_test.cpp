@@ -40,7 +40,7 @@ TEST(Experiment, SmallestCaseHasTheDefaults) {
   EXPECT_EQ(e.measures, (std::vector<std::string>{"displacement_error", "volume_change", "reaction"}));
   EXPECT_EQ(e.elements, (std::vector<std::string>{"q1"}));
   EXPECT_FALSE(e.cost);
-  EXPECT_EQ(e.most_unknowns, 0);
+  EXPECT_EQ(e.max_unknowns, 0);
   EXPECT_EQ(e.reference.cells, (Cells{0, 0, 0}));
   EXPECT_EQ(e.reference.elements, (std::vector<std::string>{"q2"}));
   EXPECT_EQ(e.reference.grading, 1.5);
