@@ -59,7 +59,7 @@ install_missing() {
 # build TARGET ...
 build() {
   [ -f build/release/build.ninja ] || step configure "configuring" cmake --preset release
-  step build "building with $(nproc) processes" cmake --build build/release --target "$@"
+  step build "building" cmake --build build/release --target "$@"
 }
 
 [ "${1:-}" != test ] || packages+=(clang-format-14)  # of the test cli.format

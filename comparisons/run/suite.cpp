@@ -16,6 +16,7 @@
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <thread>
 
 #include "comparisons/judge/calibration.h"
@@ -154,6 +155,22 @@ std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const 
   return prepared;
 }
 
+std::vector<double> expected(const std::vector<Task>& tasks) {
+  std::vector<double> seconds;
+  for (const Task& t : tasks)
+    seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
+  return seconds;
+}
+
+/// The order in which tasks are started: none of the long ones is left for the end, when other processors idle.
+std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
+  const std::vector<double> seconds = expected(tasks);
+  std::vector<std::size_t> order(tasks.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
+  return order;
+}
+
 /// Shows the parts under way and prints those finished, with the time left; safe from several workers.
 class Progress {
  public:
@@ -186,12 +203,6 @@ class Progress {
   }
 
  private:
-  static std::vector<double> expected(const std::vector<Task>& tasks) {
-    std::vector<double> seconds;
-    for (const Task& t : tasks)
-      seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
-    return seconds;
-  }
   double now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -214,12 +225,14 @@ std::optional<Part> kept_part(const Task& task) try {
 void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
   const int jobs =
       options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const std::vector<std::size_t> order = longest_first(tasks);
   std::atomic<std::size_t> next = 0;
   Progress progress(tasks, jobs, options.quiet);
   std::mutex failure_mutex;
   std::exception_ptr failure;
   const auto work = [&] {
-    for (std::size_t i; !interrupted && (i = next++) < tasks.size();) try {
+    for (std::size_t k; !interrupted && (k = next++) < tasks.size();) try {
+        const std::size_t i = order[k];
         Task& task = tasks[i];
         const auto start = std::chrono::steady_clock::now();
         const Status::Working working = progress.working(i);
