@@ -9,6 +9,7 @@
 
 #include "comparisons/commands/calculix_command.h"
 #include "comparisons/commands/describe.h"
+#include "comparisons/commands/diff_command.h"
 #include "comparisons/commands/homogenise_command.h"
 #include "comparisons/commands/material_command.h"
 #include "comparisons/commands/pictures_command.h"
@@ -119,6 +120,11 @@ int main(int argc, char** argv) try {
       app.add_subcommand("pictures", "The figures and bodies of a report as PNG files, without a display");
   pictures.add_options(*pictures_command);
 
+  DiffCommand diff;
+  CLI::App* diff_command =
+      app.add_subcommand("diff", "Which numbers of two results folders differ, by how much, beyond which uncertainty");
+  diff.add_options(*diff_command);
+
   CLI::App* bench_command =
       app.add_subcommand("bench", "Measure what things cost, each beside its baseline (springproof bench --help)");
   bench_command->set_help_flag();
@@ -146,6 +152,7 @@ int main(int argc, char** argv) try {
   if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();
   if (*pictures_command) return pictures.run();
+  if (*diff_command) return diff.run();
   if (*cross_check_command) return second_opinion.run();
   return material.run();
 } catch (const springproof::InputError& e) {

@@ -119,6 +119,10 @@ for name in own.msh own.step own.brep own.stl; do
 done
 [ -e "$work/trace" ] && { echo "FAILED: a command was run"; failures=$((failures + 1)); }
 
+expect "differences of no results" "/nowhere: no results.json here" diff /nowhere "$work"
+echo '{"cases": 1}' >"$work/results.json"
+expect "differences of other files" "results.json: not the results" diff "$work" "$work"
+
 # What is no fault of the case.
 TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
 

@@ -1,0 +1,93 @@
+#include "comparisons/commands/diff_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "comparisons/judge/differences.h"
+
+namespace springproof {
+namespace {
+
+std::string times_uncertainty(const Difference& d) {
+  return std::isnan(d.of_uncertainty) ? "" : fmt::format("{:.2g}", d.of_uncertainty);
+}
+
+void print_csv(const Differences& all) {
+  fmt::print("case,kinematics,model,poisson_ratio,cells,measure,what,first,second,unit,relative,of_uncertainty\n");
+  for (const Difference& d : all.changed)
+    fmt::print("{},{},{},{},{},{},{},{},{},{},{:.3g},{}\n", d.row.case_name, d.row.kinematics, d.row.model,
+               d.row.poisson_ratio, cells_text(d.row.cells), d.row.measure, d.what, d.first, d.second, d.row.unit,
+               d.relative, times_uncertainty(d));
+}
+
+/// Rows that have no partner, counted by case and model.
+void print_lonely(const std::filesystem::path& folder, const std::vector<Row>& rows, std::size_t lines) {
+  if (rows.empty()) return;
+  std::map<std::string, int> counts;
+  for (const Row& row : rows) ++counts[fmt::format("{}  nu {}  {}", row.case_name, row.poisson_ratio, row.model)];
+  fmt::print("\n{} numbers are in {} alone:\n", rows.size(), folder.string());
+  std::size_t printed = 0;
+  for (const auto& [run, count] : counts)
+    if (printed++ < lines) fmt::print("  {:<60} {}\n", run, count);
+  if (printed > lines) fmt::print("  ... and of {} other runs\n", printed - lines);
+}
+
+void print_changed(const Differences& all, std::size_t lines) {
+  if (all.changed.empty()) return;
+  fmt::print("\n{:<26} {:>7} {:<12} {:<10} {:<32} {:>13} {:>13} {:<4} {:>8} {:>12}\n", "case", "nu", "model", "cells",
+             "measure", "first", "second", "", "relative", "uncertainties");
+  for (std::size_t i = 0; i < std::min(lines, all.changed.size()); ++i) {
+    const Difference& d = all.changed[i];
+    const std::string measure = d.what == "value" ? d.row.measure : fmt::format("{} ({})", d.row.measure, d.what);
+    fmt::print("{:<26} {:>7} {:<12} {:<10} {:<32} {:>13.6g} {:>13.6g} {:<4} {:>8.1e} {:>12}\n", d.row.case_name,
+               d.row.poisson_ratio, d.row.model, cells_text(d.row.cells), measure, d.first, d.second, d.row.unit,
+               d.relative, times_uncertainty(d));
+  }
+  if (all.changed.size() > lines) fmt::print("... and {} more (--lines, --csv)\n", all.changed.size() - lines);
+}
+
+}  // namespace
+
+void DiffCommand::add_options(CLI::App& command) {
+  command.add_option("FIRST", first_, "what `springproof compare` wrote")->required();
+  command.add_option("SECOND", second_, "the same of another run")->required();
+  command.add_option("--tolerance", tolerance_, "relative difference up to which two numbers are the same")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--lines", lines_, "so many of the largest differences are printed")->capture_default_str();
+  command.add_flag("--csv", csv_, "all differences as CSV, nothing else");
+  command.footer(
+      "Relative: to the larger of the two numbers or, for a component, of all components of that vector.\n"
+      "Uncertainties: the difference divided by the uncertainty of the reference.\n"
+      "Exit status: 0 the same numbers to the tolerance, 1 others, more or fewer, 2 the input is unusable.");
+}
+
+int DiffCommand::run() const {
+  const ResultsFolder first = read_results(first_), second = read_results(second_);
+  const Differences all = differences(first, second, tolerance_);
+  if (csv_) {
+    print_csv(all);
+    return all.none() ? 0 : 1;
+  }
+  for (const auto& [folder, results] : {std::pair{&first_, &first}, std::pair{&second_, &second}})
+    fmt::print("{}: {} numbers, version {}, {}\n", folder->string(), results->rows.size(), results->version,
+               results->generated);
+  fmt::print(
+      "{} numbers are in both; {} values, references and uncertainties of them differ by more than {:g}, the "
+      "largest by {:.1e}\n",
+      all.in_both, all.changed.size(), tolerance_, all.largest);
+  const auto beyond = std::count_if(all.changed.begin(), all.changed.end(), [](const Difference& d) {
+    return d.what != "reference_uncertainty" && d.of_uncertainty > 1;
+  });
+  if (!all.changed.empty()) fmt::print("{} of the differences exceed the uncertainty of the reference\n", beyond);
+  print_changed(all, lines_);
+  print_lonely(first_, all.only_first, lines_);
+  print_lonely(second_, all.only_second, lines_);
+  return all.none() ? 0 : 1;
+}
+
+}  // namespace springproof

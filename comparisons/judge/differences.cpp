@@ -1,0 +1,127 @@
+#include "comparisons/judge/differences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "problem/system/input_error.h"
+#include "problem/system/json.h"
+
+namespace springproof {
+namespace {
+
+using nlohmann::json;
+
+double number_or_nan(const json& j) { return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>(); }
+
+Row row_of(const json& j, const std::string& case_name) {
+  Row row;
+  row.case_name = case_name;
+  row.model = j.at("model");
+  row.poisson_ratio = number_or_nan(j.at("poisson_ratio"));
+  row.cells = j.at("cells").get<Cells>();
+  row.kinematics = j.at("kinematics");
+  row.measure = j.at("measure");
+  row.value = number_or_nan(j.at("value"));
+  row.unit = j.at("unit");
+  j.at("reference").get_to(row.reference);
+  j.at("reference_uncertainty").get_to(row.reference_uncertainty);
+  return row;
+}
+
+std::string run_of(const Row& row) {
+  return fmt::format("{}|{}|{}|{:.9g}|{}", row.case_name, row.kinematics, row.model, row.poisson_ratio,
+                     cells_text(row.cells));
+}
+
+std::string key_of(const Row& row) { return run_of(row) + '|' + row.measure; }
+
+/// "force.z_max" of "force.z_max.x"; the measure itself where it is no component.
+std::string vector_of(const std::string& measure) {
+  const std::size_t dot = measure.rfind('.');
+  return dot == std::string::npos ? measure : measure.substr(0, dot);
+}
+
+double size_of(double x) { return std::isfinite(x) ? std::abs(x) : 0; }
+
+/// Per vector of a run the largest of its components.
+std::map<std::string, double> sizes(const ResultsFolder& folder) {
+  std::map<std::string, double> largest;
+  for (const Row& row : folder.rows) {
+    double& size = largest[run_of(row) + '|' + vector_of(row.measure)];
+    size = std::max({size, size_of(row.value), size_of(row.reference.value_or(0))});
+  }
+  return largest;
+}
+
+double relative_difference(double a, double b, double size) {
+  if (std::isnan(a) && std::isnan(b)) return 0;
+  if (!std::isfinite(a) || !std::isfinite(b)) return a == b ? 0 : std::numeric_limits<double>::infinity();
+  return a == b ? 0 : std::abs(b - a) / std::max({size, std::abs(a), std::abs(b)});
+}
+
+}  // namespace
+
+ResultsFolder read_results(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "results.json";
+  std::ifstream in(file);
+  if (!in)
+    throw InputError(
+        fmt::format("{}: no results.json here; give a folder that `springproof compare` wrote", folder.string()));
+  try {
+    const json document = json::parse(in);
+    ResultsFolder found{document.at("program").at("version"), document.at("generated"), {}};
+    for (const json& result : document.at("cases")) {
+      const json& experiment = result.at("experiment");
+      const std::string group = experiment.at("folder"), name = experiment.at("name");
+      for (const json& row : result.at("rows"))
+        found.rows.push_back(row_of(row, group.empty() ? name : group + '/' + name));
+    }
+    return found;
+  } catch (const json::exception& e) {
+    throw InputError(fmt::format("{}: not the results of `springproof compare`: {}", file.string(), e.what()));
+  }
+}
+
+Differences differences(const ResultsFolder& first, const ResultsFolder& second, double tolerance) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::map<std::string, double> sizes_first = sizes(first), sizes_second = sizes(second);
+  std::map<std::string, const Row*> others;
+  for (const Row& row : second.rows) others[key_of(row)] = &row;
+  Differences all;
+  for (const Row& a : first.rows) {
+    const auto found = others.find(key_of(a));
+    if (found == others.end()) {
+      all.only_first.push_back(a);
+      continue;
+    }
+    const Row& b = *found->second;
+    others.erase(found);
+    ++all.in_both;
+    const std::string vector = run_of(a) + '|' + vector_of(a.measure);
+    const double size = std::max(sizes_first.at(vector), sizes_second.at(vector));
+    const double uncertainty = std::max(a.reference_uncertainty.value_or(0), b.reference_uncertainty.value_or(0));
+    const auto compare = [&](const char* what, double x, double y) {
+      const double relative = relative_difference(x, y, size);
+      all.largest = std::max(all.largest, relative);
+      if (relative > tolerance)
+        all.changed.push_back({a, what, x, y, relative, uncertainty > 0 ? std::abs(y - x) / uncertainty : nan});
+    };
+    compare("value", a.value, b.value);
+    compare("reference", a.reference.value_or(nan), b.reference.value_or(nan));
+    compare("reference_uncertainty", a.reference_uncertainty.value_or(nan), b.reference_uncertainty.value_or(nan));
+  }
+  for (const Row& row : second.rows)
+    if (const auto left = others.find(key_of(row)); left != others.end() && left->second == &row)
+      all.only_second.push_back(row);
+  std::stable_sort(all.changed.begin(), all.changed.end(),
+                   [](const Difference& a, const Difference& b) { return a.relative > b.relative; });
+  return all;
+}
+
+}  // namespace springproof

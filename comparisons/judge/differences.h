@@ -1,0 +1,44 @@
+// How the numbers of two results folders differ.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "comparisons/report/results.h"
+
+namespace springproof {
+
+/// The rows of a folder that `springproof compare` wrote.
+struct ResultsFolder {
+  std::string version, generated;  ///< of the program; when
+  std::vector<Row> rows;           ///< case_name: with the folder of the case, "golec_2019/bending"
+};
+
+/// @throws InputError if FOLDER/results.json is missing or no document of results; the message names file and reason.
+ResultsFolder read_results(const std::filesystem::path& folder);
+
+/// One number that differs.
+struct Difference {
+  Row row;           ///< of the first folder
+  std::string what;  ///< "value", "reference" or "reference_uncertainty"
+  double first, second;
+  double relative;  ///< |second - first| over the size of the quantity; infinite if only one of the two is a number
+  double of_uncertainty;  ///< |second - first| over the larger reference uncertainty of the two rows; NaN: none stated
+};
+
+/// A quantity's size is the largest of its two values and, for a component of a vector or tensor, of the other
+/// components of the same run: round-off in a component that vanishes is no difference.
+struct Differences {
+  std::size_t in_both = 0;
+  std::vector<Row> only_first, only_second;
+  std::vector<Difference> changed;  ///< by more than the tolerance, the largest first
+  double largest = 0;               ///< relative, of all that are in both
+
+  bool none() const { return only_first.empty() && only_second.empty() && changed.empty(); }
+};
+
+/// Rows belong together if case, kinematics, model, Poisson's ratio, cells and measure are the same.
+Differences differences(const ResultsFolder& first, const ResultsFolder& second, double tolerance);
+
+}  // namespace springproof
