@@ -60,7 +60,7 @@ std::unique_ptr<SparseMatrix> empty_matrix(const dealii::DoFHandler<3>& rows, co
 
 }  // namespace
 
-// What does not change with the state.
+// Degrees of freedom, quadrature and constraints, which do not depend on the state.
 struct AssembledOperator::Spaces {
   Spaces(const ElasticSystem& system, std::optional<Law> wanted_law, const dealii::DoFHandler<3>& displacement,
          const std::vector<unsigned int>& constrained)
@@ -92,7 +92,7 @@ struct AssembledOperator::Spaces {
 
   bool mixed() const { return p_dofs.has_value(); }
 
-  // Visits the cells of this process with shape, u_indices and p_indices set.
+  // Calls visit() on every locally owned cell, with shape, u_indices and p_indices set.
   template <typename Visit>
   void for_each_cell(const Visit& visit) {
     std::vector<dealii::types::global_dof_index> dofs(u_indices.size()), pressure_dofs(p_indices.size());
@@ -139,7 +139,7 @@ struct AssembledOperator::Spaces {
 
   MixedVector vector() const { return {zero(u_dofs, comm), mixed() ? zero(*p_dofs, comm) : DofVector()}; }
 
-  // Of the body at rest (nullptr) or deformed.
+  // Stiffness of the undeformed body (nullptr), or of the deformed one.
   void assemble_stiffness(const DofVector* deformed_by, SparseMatrix& matrix) {
     matrix.clear();
     DofVector x;
@@ -156,7 +156,7 @@ struct AssembledOperator::Spaces {
     matrix.finish();
   }
 
-  // Element matrices without what is constrained; of the rows themselves the diagonal stays.
+  // Adds a cell matrix with constrained rows and columns eliminated; their diagonal entries are kept.
   void add_free(CellMatrix K, SparseMatrix& matrix) const {
     for (std::size_t i = 0; i < u_indices.size(); ++i) {
       if (!is_constrained[u_indices[i]]) continue;
@@ -167,7 +167,7 @@ struct AssembledOperator::Spaces {
     }
     matrix.add(u_indices, u_indices, K.data());
   }
-  // One row per pressure.
+  // Adds a coupling block, one row per pressure.
   void add_coupling(CellMatrix B, SparseMatrix& matrix) const {
     for (std::size_t i = 0; i < u_indices.size(); ++i)
       if (is_constrained[u_indices[i]]) B.col(i).setZero();
@@ -189,7 +189,7 @@ struct AssembledOperator::Spaces {
   CellShape shape;
 };
 
-// Linear elements on the same cells.
+// Linear elements on the same triangulation: the coarse level of p-multigrid.
 struct AssembledOperator::CoarseSpaces {
   CoarseSpaces(const ElasticSystem& system, Spaces& fine)
       : dof_handler(distributed(system)), spaces(system, std::nullopt, *dof_handler, shared_constraints(fine)) {
@@ -218,7 +218,7 @@ struct AssembledOperator::CoarseSpaces {
     return handler;
   }
 
-  // Visits the cells of this process with the degrees of freedom of both elements.
+  // Calls visit() on every locally owned cell, with the degrees of freedom of both elements.
   template <typename Visit>
   void for_each_pair(const Spaces& fine, const Visit& visit) const {
     std::vector<dealii::types::global_dof_index> f(fine.u.get_fe().n_dofs_per_cell()),
@@ -233,7 +233,7 @@ struct AssembledOperator::CoarseSpaces {
     }
   }
 
-  // Corners are the first degrees of freedom of a cell in both elements.
+  // The vertex degrees of freedom of a cell come first in both elements.
   std::vector<unsigned int> shared_constraints(const Spaces& fine) const {
     std::set<unsigned int> held;
     for_each_pair(fine, [&](const auto& fine_dofs, const auto& coarse_dofs) {
@@ -243,7 +243,7 @@ struct AssembledOperator::CoarseSpaces {
     return {held.begin(), held.end()};
   }
 
-  // The values at the corners.
+  // Restriction by injection: the values at the vertices.
   DofVector restricted(const Spaces& fine, const DofVector& x) const {
     DofVector from = zero(fine.u_dofs, fine.comm), to = zero(spaces.u_dofs, fine.comm);
     from = x;
@@ -260,10 +260,10 @@ struct AssembledOperator::CoarseSpaces {
   std::unique_ptr<SparseMatrix> matrix, interpolation;
 };
 
-// The tangent.  Couplings have one row per pressure; `force` is that of the pressures' forces.
+// Blocks of the tangent.  The couplings have one row per pressure: `dilatation` is K_pu, `force` is K_up transposed.
 struct AssembledOperator::Matrices {
   explicit Matrices(const Spaces& s) {
-    if (s.law.law) uu = empty_matrix(s.u, s.u, s.comm);  // else the smoothed one is the tangent
+    if (s.law.law) uu = empty_matrix(s.u, s.u, s.comm);  // otherwise smoothed_ is the tangent
     if (!s.mixed()) return;
     dilatation = empty_matrix(s.p, s.u, s.comm);
     force = empty_matrix(s.p, s.u, s.comm);
@@ -354,7 +354,7 @@ double AssembledOperator::linearise(MixedVector& f, const MixedVector& x) {
   return dealii::Utilities::MPI::min(smallest, spaces_->comm);
 }
 
-// Only cells that x moves are looked at: Newton asks this of boundary values, the linear solver of everything.
+// Cells on which x is zero are skipped: Newton applies this to boundary values, the linear solver to all unknowns.
 void AssembledOperator::apply(MixedVector& f, const MixedVector& x) const {
   MixedVector from = x;
   from.u.update_ghost_values();
@@ -383,7 +383,7 @@ void AssembledOperator::apply(MixedVector& f, const MixedVector& x) const {
 }
 
 void AssembledOperator::vmult(MixedVector& y, const MixedVector& x) const {
-  // The constrained rows and columns of every matrix hold nothing but a diagonal.
+  // Constrained rows and columns of every matrix are zero except for the diagonal.
   (law_ ? matrices_->uu : smoothed_)->multiply(y.u, x.u);
   if (spaces_->mixed()) {
     matrices_->force->multiply_transposed_and_add(y.u, x.p);
@@ -402,8 +402,8 @@ void AssembledOperator::precondition(MixedVector& z, const MixedVector& r) const
   if (spaces_->mixed()) precondition_pressure(z.p, r.p);
 }
 
-// The inverse mass: Chebyshev's iteration for eigenvalues of the matrix over its diagonal from 1/2 to 5/2, which those
-// of linear tetrahedra are (Wathen 1987).  Four steps leave 4 %; pressures of a cell of its own need one.
+// Inverse of the pressure mass matrix by Jacobi-preconditioned Chebyshev iteration on eigenvalues from 1/2 to 5/2, the
+// bounds for linear tetrahedra (Wathen 1987).  Four steps leave an error of 4 %; discontinuous pressures need one step.
 void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) const {
   if (!spaces_->mixed()) return;
   constexpr double middle = 1.5, half_width = 1;

@@ -1,5 +1,5 @@
-// The elastic system with assembled matrices: any cells, any law.  The counterpart of the matrix-free operators for
-// meshes without a hierarchy.
+// The elastic system with assembled matrices, for any cells and any law.  The counterpart of the matrix-free operators
+// for meshes without a multigrid hierarchy.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace springproof::fem::assembled {
 
-/// What solve_linear() and Newton ask of an operator (linear.h, newton.h).
+/// Implements the operator interface of solve_linear() and Newton (linear.h, newton.h).
 class AssembledOperator {
  public:
   /// Without a law: small strain.
@@ -30,7 +30,7 @@ class AssembledOperator {
   CellPressures pressures(const MixedVector& x) const;
 
   double linearise(MixedVector& f, const MixedVector& x);
-  /// Sets the multigrid up for the deformed body, if the one there is has become slow.
+  /// Rebuilds the multigrid for the deformed body, if the current one has become slow.
   void prepare(const MixedVector& x);
 
   const std::string& preconditioner() const { return multigrid_->name(); }  ///< of the displacements, for the report
@@ -46,14 +46,14 @@ class AssembledOperator {
   std::optional<Law> law_;
   std::unique_ptr<Spaces> spaces_;
   std::unique_ptr<Matrices> matrices_;
-  MixedVector state_;                       ///< that was linearised at
-  std::unique_ptr<SparseMatrix> smoothed_;  ///< the stiffness that the multigrid is of
-  std::unique_ptr<CoarseSpaces> coarse_;    ///< of quadratic elements: the linear ones
+  MixedVector state_;                       ///< state of the last linearise()
+  std::unique_ptr<SparseMatrix> smoothed_;  ///< fine-level matrix of the multigrid
+  std::unique_ptr<CoarseSpaces> coarse_;    ///< for quadratic elements: the linear ones
   std::unique_ptr<Multigrid> multigrid_;
-  std::unique_ptr<SparseMatrix> mass_;  ///< of the pressures
+  std::unique_ptr<SparseMatrix> mass_;  ///< pressure mass matrix
   DofVector inverse_mass_;              ///< its diagonal, inverted
-  mutable int cycles_ = 0;              ///< since prepare()
-  int cycles_when_new_ = 0;             ///< in the first solve after the set-up
+  mutable int cycles_ = 0;              ///< V-cycles since prepare()
+  int cycles_when_new_ = 0;             ///< V-cycles in the first solve after the set-up
 };
 
 }  // namespace springproof::fem::assembled

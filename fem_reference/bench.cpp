@@ -46,7 +46,7 @@ GridProblem compressed_cube(const BenchRow& row) {
   return problem;
 }
 
-// Each run in a process of its own, so that its memory is its own.
+// Each run in a child process, so that the peak memory is that of this run.
 void measure(BenchRow& row) {
   fmt::print(stderr, "{}, {}^3 cells, nu = {} ...\n", row.name, row.cells, row.poisson_ratio);
   int ends[2];

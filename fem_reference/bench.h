@@ -1,4 +1,4 @@
-// The cost of the finite element reference: ratios of runs on this machine, one after the other.
+// Benchmark of the finite element reference: ratios of runs on this machine, one after the other.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@ namespace springproof::fem {
 
 struct BenchOptions {
   int cells = 24;         ///< along each side of the cube of the comparison; a multiple of 8
-  bool baseline = true;   ///< run the assembled baseline too: the slow and large part
-  std::string json_file;  ///< also as JSON; empty: no
+  bool baseline = true;   ///< also run the assembled baseline, which is slow and takes much memory
+  std::string json_file;  ///< output file for JSON; empty: none
 };
 
 /// Prints a table to standard output, progress to standard error.

@@ -22,7 +22,7 @@ bool on_patch(const Body3& body, const std::string& patch, boundary_id id) {
   return body.patches.at(patch).count(id) > 0;
 }
 
-// Indices of the loads that prescribe something on the faces of each boundary id.
+// Indices of the loads that prescribe displacement on the faces of each boundary id.
 std::map<boundary_id, std::vector<int>> prescribing_loads(const Body3& body, const std::vector<Load>& loads) {
   std::map<boundary_id, std::vector<int>> by_id;
   for (std::size_t l = 0; l < loads.size(); ++l)
@@ -31,7 +31,7 @@ std::map<boundary_id, std::vector<int>> prescribing_loads(const Body3& body, con
   return by_id;
 }
 
-// FE_SimplexP says of every function that it may live on a face.
+// FE_SimplexP reports support on every face for every shape function, so the support point decides.
 bool lives_on_face(const dealii::FiniteElement<3>& fe, unsigned int i, unsigned int face) {
   if (!fe.reference_cell().is_simplex()) return fe.has_support_on_face(i, face);
   const dealii::Point<3> X = fe.unit_support_point(i);
@@ -42,8 +42,7 @@ bool lives_on_face(const dealii::FiniteElement<3>& fe, unsigned int i, unsigned 
 bool is_known(const dealii::DoFHandler<3>::active_cell_iterator& cell) { return !cell->is_artificial(); }
 bool is_known(const dealii::DoFHandler<3>::level_cell_iterator& cell) { return !cell->is_artificial_on_level(); }
 
-// Calls visit(cell, load, i, component, X) for every prescribed shape function i of a cell, active or of a
-// level.
+// Calls visit(cell, load, i, component, X) for every prescribed shape function i on active or level cells.
 template <typename Cells, typename Visit>
 void for_each_prescribed(const Cells& cells, const Body3& body, const std::vector<Load>& loads, const Visit& visit) {
   const auto by_id = prescribing_loads(body, loads);
@@ -78,7 +77,7 @@ void add_integral(const Values& values, const Cell& cell, const Force& force, Do
   }
 }
 
-// Calls visit(cell, face_values) on every face of a patch that belongs to this process.
+// Calls visit(cell, face_values) on every face of a patch on a locally owned cell.
 template <typename Visit>
 void for_each_face(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::string& patch,
                    const Visit& visit) {
@@ -116,7 +115,7 @@ PatchGeometry patch_geometry(const dealii::DoFHandler<3>& dof_handler, const Bod
   return geometry;
 }
 
-// Calls visit(cell, values) on every cell that belongs to this process.
+// Calls visit(cell, values) on every locally owned cell.
 template <typename Visit>
 void for_each_cell(const dealii::DoFHandler<3>& dof_handler, const Body3& body, unsigned int quadrature_points,
                    const Visit& visit) {
@@ -138,7 +137,7 @@ void add_force(const Region& region, const Force& force, DofVector& load) {
   });
 }
 
-// Besides `force`, which is added elsewhere, the rigid field that together with it has the wrench.
+// Adds the rigid field that, together with `force` (added elsewhere), has the given resultant.
 template <typename Region, typename Force>
 void complete(const Region& region, const Force& force, const std::optional<Wrench>& wrench, MPI_Comm comm,
               DofVector& load) {

@@ -1,4 +1,4 @@
-// Loads of an experiment -> prescribed degrees of freedom, load vector, reactions.
+// Prescribed degrees of freedom, load vector and reactions from the loads of an experiment.
 #pragma once
 
 #include <deal.II/dofs/dof_handler.h>
@@ -22,10 +22,10 @@ struct Prescribed {
   Vec3 X;    ///< rest position [m]
 };
 
-/// @throws InputError naming the load's patch and those there are.
+/// @throws InputError naming the load's patch and those of the body, if the body has no such patch.
 void check_patches(const Body3& body, const std::vector<Load>& loads);
 
-/// On the cells of this process and around them; ascending in dof.
+/// On locally owned and ghost cells; ascending in dof.
 /// @throws InputError if two loads prescribe different values.
 std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                                    const std::vector<Load>& loads);
@@ -34,17 +34,17 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
 std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                                                    const std::vector<Load>& loads);
 
-/// `prescribed` is what this process owns, as for reactions().
-/// @throws InputError with the motion that is left if the body can move or turn as a whole.
+/// Checks that no rigid-body motion is left.  `prescribed` holds locally owned degrees of freedom, as for reactions().
+/// @throws InputError with the motion that is left if the body can translate or rotate as a whole.
 void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm);
 
-/// Traction, patch forces, gravity, point forces and a body force [N] on every degree of freedom.
+/// Right-hand side [N]: tractions, pressures, patch forces, gravity, point forces and body forces.
 DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::vector<Load>& loads,
                       const IsotropicMaterial& material, const std::function<Vec3(const Vec3&)>& body_force);
 
 /// One per patch with prescribed displacement, in the order of the loads; `imbalance` is internal force -
-/// load [N]. Lever arms are about the patch's rest centroid, to the rest positions plus `arm` (the
-/// displacement, or nothing).
+/// load [N]. Lever arms run from the patch's rest centroid to the rest positions plus `arm` (the displacement, or
+/// null).
 std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                                      const std::vector<Load>& loads, const std::vector<Prescribed>& prescribed,
                                      const DofVector& imbalance, const DofVector* arm);

@@ -1,4 +1,4 @@
-// The request of a case file.
+// Builds the finite element request of a case.
 #pragma once
 
 #include "fem_reference/reference.h"
@@ -6,8 +6,9 @@
 
 namespace springproof::fem {
 
-/// Body, material, law and loads of the case; grids and points are the caller's.  Tolerance: that of references, 1e-8.
-/// @throws InputError if the body's script is not there (find_geo).
+/// Body, material, law and loads of the case; the caller adds grids and points.  The tolerance is that of references,
+/// 1e-8.
+/// @throws InputError if the body's script does not exist (find_geo).
 Request request_of(const Experiment& experiment, const IsotropicMaterial& material);
 
 }  // namespace springproof::fem

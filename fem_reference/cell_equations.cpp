@@ -9,7 +9,7 @@ using Matrix3d = Eigen::Matrix3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// Response at one point: stress S = S_shear + p Q, dilatation g, and their slopes.
+// Material response at one quadrature point: stress S = S_shear + p Q, dilatation g, and their derivatives.
 struct PointResponse {
   Matrix3d F;    // identity at small strain
   Vector6 S, Q;  // xx yy zz xy yz xz
@@ -68,7 +68,7 @@ ValueAndSlope dilatation_of(const CellLaw& law, double p) {
   return dilatation_at_pressure(*law.law, law.lambda, p);
 }
 
-// dE = B du, shears twice the tensor's.
+// dE = B du, with engineering shears.
 Eigen::Matrix<double, 6, Eigen::Dynamic> strain_matrix(const Matrix3d& F,
                                                        const Eigen::Ref<const Eigen::Matrix3Xd>& dN) {
   constexpr int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
@@ -82,10 +82,10 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> strain_matrix(const Matrix3d& F,
   return B;
 }
 
-// Gradients of the displacement, dilatations and pressures of the law at all points.
+// Displacement gradients, dilatations and pressures at all quadrature points.
 struct PointStates {
   std::vector<Matrix3d> h;
-  Eigen::VectorXd g, p, slope;  // slope: dp/dg, or of the mixed form dg/dp
+  Eigen::VectorXd g, p, slope;  // slope: dp/dg, or dg/dp in the mixed form
   double smallest = std::numeric_limits<double>::infinity();
 };
 
@@ -115,7 +115,7 @@ PointStates states(const CellLaw& law, const CellShape& shape, const CellVector&
   return s;
 }
 
-// grad N_a . S grad N_b on the three components alike
+// Geometric stiffness: grad N_a . S grad N_b, equal for the three components.
 void add_stress_stiffness(const CellShape& shape, const std::vector<Matrix3d>& S, CellMatrix& K) {
   const int n = shape.nodes();
   Eigen::MatrixXd weighted(3 * shape.points(), n);

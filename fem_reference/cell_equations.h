@@ -1,4 +1,4 @@
-// One cell's share of residual and tangent, total Lagrangian, one path for every law.
+// Cell residual and tangent, total Lagrangian, with one implementation for every law.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,8 +12,8 @@ namespace springproof::fem {
 /// Shape functions of a cell at its quadrature points.
 struct CellShape {
   Eigen::MatrixXd gradients;  ///< 3 q + i, a: dN_a/dX_i at point q [1/m]
-  Eigen::VectorXd weights;    ///< quadrature weight times volume [m^3]
-  Eigen::MatrixXd pressures;  ///< q, f: pressure function f; no columns: no pressure
+  Eigen::VectorXd weights;    ///< quadrature weight times Jacobian determinant [m^3]
+  Eigen::MatrixXd pressures;  ///< q, f: pressure shape function f at point q; no columns: no pressure
 
   int nodes() const { return int(gradients.cols()); }
   int points() const { return int(weights.size()); }
@@ -38,13 +38,13 @@ struct CellLaw {
   double mu, lambda;  ///< [Pa]
 };
 
-/// Adds to `smallest` = min det F over the points; the residual is of no use unless that is positive.  `tangent` may be
-/// null.
+/// Lowers `smallest` to min det F over the quadrature points; the residual is valid only if that is positive.
+/// `tangent` may be null.
 CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellVector& x, double& smallest,
                          CellTangent* tangent);
 
-/// The stiffness of small strain with gradients taken in the body deformed by u (nullptr: at rest), per rest volume:
-/// what multigrid is made of.  The mixed form leaves lambda out.
+/// The small-strain stiffness with gradients in the configuration deformed by u (nullptr: undeformed), integrated over
+/// the rest volume: the matrix of the multigrid.  The mixed form omits the lambda term.
 CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd* u);
 
 }  // namespace springproof::fem

@@ -10,7 +10,8 @@ namespace {
 
 using dealii::types::global_dof_index;
 
-/// Values of degrees of freedom of a level from those of linear elements: a row of weights each, none where prescribed.
+/// Interpolation matrix from linear elements to the degrees of freedom of a level, by rows; empty rows where
+/// prescribed.
 struct Interpolation {
   std::vector<std::size_t> start;
   std::vector<global_dof_index> column;
@@ -23,7 +24,7 @@ class LinearElements {
       : body_(triangulate(coarse, 0, place)), handler_(body_->triangulation) {
     handler_.distribute_dofs(*displacement_element(*body_, 1));
     interpolate_to(fine);
-    // What multigrid works on: of the mixed form the shear alone.
+    // The operator of the multigrid: for the mixed form the shear part alone.
     const bool mixed = fine.form == Form::mixed;
     system_.emplace(ElasticSystem{*body_,
                                   handler_,
@@ -67,7 +68,7 @@ class LinearElements {
                                                             &fine.dof_handler);
       cell->get_dof_indices(own);
       same->get_mg_dof_indices(on_level);
-      // Corners are the first degrees of freedom of a cell in every element.
+      // The vertex degrees of freedom of a cell come first in every element.
       for (std::size_t j = 0; j < own.size(); ++j) held[own[j]] |= char(prescribed.is_element(on_level[j]));
       for (unsigned int i = 0; i < on_level.size(); ++i) {
         auto& row = rows[on_level[i]];

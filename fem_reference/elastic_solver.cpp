@@ -48,7 +48,7 @@ namespace {
 
 constexpr unsigned int active_cells = dealii::numbers::invalid_unsigned_int;
 
-// The stiffness that multigrid works on: that of the displacement form, or the shear alone.
+// The operator of the multigrid: the stiffness of the displacement form, or for the mixed form its shear part alone.
 Coefficients<float> smoothed(const ElasticSystem& system) {
   if (system.form == Form::mixed) return {float(system.mu), 0, false};
   return {float(system.mu), float(system.lambda), system.form == Form::mean_dilatation};

@@ -1,4 +1,4 @@
-// The elastic problem on one grid as the solvers see it.
+// The discrete elastic problem on one grid, the input of the solvers.
 #pragma once
 
 #include <deal.II/base/index_set.h>
@@ -21,14 +21,14 @@ using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
 using LevelVector = dealii::LinearAlgebra::distributed::Vector<float>;  ///< on a level of the matrix-free multigrid
 
-/// Zero on every degree of freedom, with room for those of other processes on the cells of this one and around them.
+/// A zero vector with ghost entries for the locally relevant degrees of freedom.
 inline DofVector zero_vector(const dealii::DoFHandler<3>& dof_handler) {
   dealii::IndexSet relevant;
   dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
   return DofVector(dof_handler.locally_owned_dofs(), relevant, dof_handler.get_communicator());
 }
 
-/// Of an Eigen matrix, entry by entry, on every process.
+/// Sums an Eigen matrix over all processes, entry by entry; every process gets the result.
 template <typename Matrix>
 void sum_over_processes(Matrix& m, MPI_Comm comm) {
   const dealii::ArrayView<double> values(m.data(), m.size());
@@ -39,42 +39,41 @@ void sum_over_processes(Matrix& m, MPI_Comm comm) {
 /// zero in the cells of other processes.
 using CellPressures = std::vector<std::array<double, 4>>;
 
-/// Factors of 3-D bodies grow with the power 4/3 of the unknowns, their cost with 2; at so many they cost as much as
-/// solving by GAMG a few times, on cubes.  Thin and ragged bodies, where GAMG is at its worst, have the smallest.
+/// For n unknowns in 3-D, Cholesky factors grow as n^(4/3) and their cost as n^2; at this many rows, on cubes, they
+/// cost as much as a few solves by GAMG.  Thin and ragged bodies, for which GAMG performs worst, have the smallest
+/// factors.
 constexpr int most_factored_rows = 40000;
 
 struct ElasticSystem {
   const Body3& body;
-  const dealii::DoFHandler<3>& dof_handler;  ///< with level degrees of freedom, if solved without a matrix
-  std::vector<unsigned int> constrained;     ///< degrees of freedom with prescribed value, on the cells of this process
-                                             ///  and around them
-  std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level; empty: solved with a matrix
+  const dealii::DoFHandler<3>& dof_handler;  ///< with level degrees of freedom, if solved matrix-free
+  std::vector<unsigned int> constrained;     ///< degrees of freedom with prescribed value, locally owned and ghost
+  std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level; empty: solved with assembled matrices
   int degree;
   Form form;
   double mu, lambda;  ///< [Pa]
   double tolerance;   ///< relative residual
-  bool wide_vectors;  ///< where the processor has them
-  bool plain_gamg;    ///< with matrices: no level of linear elements
-  int most_factored;  ///< with matrices: rows up to which that of linear elements is factored
+  bool wide_vectors;  ///< use wide SIMD vectors where the processor has them
+  bool plain_gamg;    ///< assembled matrices: no level of linear elements
+  int most_factored;  ///< assembled matrices: largest number of rows for which linear elements are factored
   std::function<void(LevelVector& x, const LevelVector& r)> below =
-      {};  ///< a correction of the coarsest level by something coarser;
-           ///  empty: nothing is
+      {};  ///< coarse-grid correction of the coarsest level; empty: none
 };
 
 struct ElasticAnswer {
-  DofVector internal_force;  ///< on every degree of freedom, the constrained ones too [N]
+  DofVector internal_force;  ///< on every degree of freedom, including constrained ones [N]
   int iterations = 0;
-  double residual = 0;  ///< |free part of load - internal force| / forces at work (at the start, or reactions)
+  double residual = 0;  ///< |unconstrained part of load - internal force| / (initial residual, or reactions)
   bool converged = false;
   CellPressures pressure;   ///< of the mixed form, else empty
   double load_reached = 1;  ///< fraction of the load that internal_force balances
   std::string method;
 };
 
-/// Solves for the free part of `displacement`, whose constrained entries hold the prescribed values.
+/// Solves for the unconstrained entries of `displacement`; its constrained entries hold the prescribed values.
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
 
-/// What finite strain adds.
+/// Additional data for finite strain.
 struct FiniteProblem {
   Law law;
   /// Sets the prescribed entries to their values at a fraction of the load; all others to zero.
@@ -88,7 +87,7 @@ struct FiniteAnswer : ElasticAnswer {
   int newton_iterations = 0, load_steps = 0;
 };
 
-/// Total Lagrangian Newton's method; the load is dead.  If it fails, the answer is that of the load reached.
+/// Newton's method, total Lagrangian, with dead loads.  If it fails, the result is that at the load reached.
 FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
                           DofVector& displacement);
 

@@ -14,8 +14,8 @@ Element element_named(const std::string& name) {
 
 Form form_for(const Element& element, double poisson_ratio, bool small_strain) {
   if (element.tetrahedra && element.degree == 1) return Form::pointwise;
-  // For Q1 the mixed form is the same discretisation as the mean dilatation, which conjugate gradients manage for
-  // longer.
+  // For Q1 the mixed form is equivalent to mean dilatation, for which conjugate gradients suffice up to larger
+  // Poisson's ratios.
   const double limit = element.degree == 2 ? 0.4 : small_strain ? 0.4995 : 0.45;
   if (poisson_ratio > limit) return Form::mixed;
   return element.degree == 1 ? Form::mean_dilatation : Form::pointwise;

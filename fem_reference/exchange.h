@@ -1,4 +1,4 @@
-// What travels between a caller and `springproof-fem`: a request and its answer, as CBOR.
+// Serialisation of requests to `springproof-fem` and of its results, for exchange as CBOR.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

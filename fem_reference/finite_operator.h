@@ -1,5 +1,4 @@
-// The finite-strain residual and its tangent without a matrix, total Lagrangian.  Part of elastic_solver.cpp,
-// as stiffness.h.
+// Matrix-free finite-strain residual and tangent, total Lagrangian.  Part of elastic_solver.cpp, like stiffness.h.
 #pragma once
 
 #include <limits>
@@ -9,8 +8,8 @@
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
-// Internal force from P = F S, S = S_shear + p Q.  The pressure p comes from the dilatation g at the point,
-// from its mean over the cell, or is unknown: then there are also the integrals of (g - g(p)) q.
+// Internal force from P = F S, S = S_shear + p Q.  The pressure p follows from the dilatation g at the quadrature point
+// or from its mean over the cell, or is an unknown; then the residual also contains the integrals of (g - g(p)) q.
 template <int degree>
 class FiniteOperator {
  public:
@@ -38,7 +37,7 @@ class FiniteOperator {
   }
 
   /// Residual at x, on all degrees of freedom, and the tangent that vmult uses from then on.  Returns the
-  /// smallest det F at quadrature points; f and the tangent are of no use unless it is positive.
+  /// smallest det F at quadrature points; f and the tangent are valid only if it is positive.
   double linearise(MixedVector& f, const MixedVector& x) {
     double smallest = std::numeric_limits<double>::infinity();
     loop(f, x, [&](Cell& u, unsigned int batch, const Coefficients& p) { return evaluate(u, batch, p, smallest); });
@@ -50,7 +49,7 @@ class FiniteOperator {
     loop(y, x, [&](Cell& u, unsigned int batch, const Coefficients& p) { return tangent(u, batch, p); });
   }
 
-  /// Tangent times x; constrained degrees of freedom do not move, and what they feel is dropped.
+  /// Tangent times x, with constrained rows and columns set to zero.
   void vmult(MixedVector& y, const MixedVector& x) const {
     base_.without_constrained(x.u, [&] { apply(y, x); });
     base_.clear_constrained(y.u);
@@ -88,7 +87,7 @@ class FiniteOperator {
 
   using AtPoints = std::array<Lane, points>;
 
-  // Mean over the cell, if that is the form.
+  // Replaces g by its mean over the cell in the mean-dilatation form.
   void average(const Cell& u, AtPoints& g) const {
     if (form_ != Form::mean_dilatation) return;
     Lane sum = 0., volume = 0.;
@@ -99,7 +98,7 @@ class FiniteOperator {
     g.fill(sum / volume);
   }
 
-  // Adds the integral of `excess` against the pressure functions.
+  // Adds the contribution of point q to the integrals of `excess` times the pressure functions.
   void test(const Cell& u, unsigned int q, const Lane& excess, Coefficients& r) const {
     for (int f = 0; f < pressure_.functions; ++f) r[f] += pressure_.basis[f][q] * excess * u.JxW(q);
   }
@@ -143,7 +142,7 @@ class FiniteOperator {
     return r;
   }
 
-  // Single precision is enough for the tangent: it is only the slope that Newton's method follows.
+  // Stores the tangent in single precision: it affects only the convergence of Newton's method, not the solution.
   void set_lane(std::size_t lane, const Tensor& F, const LawResponse& response, double slope, float* to,
                 Tensor& S) const {
     constexpr int index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};

@@ -1,5 +1,5 @@
-// Krylov methods.  The minimal residual methods work in the norm of a symmetric, positive definite preconditioner P:
-// |r|^2 = r . P^-1 r.  That norm makes forces and volumes comparable in a mixed system.
+// Krylov methods.  MINRES and GMRES minimise the residual in the norm of a symmetric, positive definite preconditioner
+// P: |r|^2 = r . P^-1 r.  That norm makes forces and volumes comparable in a mixed system.
 #pragma once
 
 #include <algorithm>
@@ -87,7 +87,7 @@ KrylovOutcome minres(const Multiply& multiply, const Precondition& precondition,
   return outcome;
 }
 
-/// For any matrix, without restart: keeps two vectors per iteration.  Else as minres.
+/// For any matrix, without restart (Saad and Schultz 1986): stores two vectors per iteration.  Otherwise as minres.
 template <typename Vector, typename Multiply, typename Precondition>
 KrylovOutcome gmres(const Multiply& multiply, const Precondition& precondition, const Vector& b, double reduction,
                     int max_iterations, Vector& x) {

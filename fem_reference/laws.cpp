@@ -26,7 +26,8 @@ struct Principal {
   Eigen::Matrix3d d;        // ds_a / dc_b
 };
 
-// Kirchhoff stress tau / c, as tau depends on c_a itself (slope) and on J (through p J).
+// S = tau / c from principal Kirchhoff stresses tau, which depend on their own c_a (derivative `slope`) and on J
+// (through p J).
 Principal from_kirchhoff(const Eigen::Vector3d& tau, const Eigen::Vector3d& slope, double pJ, double J,
                          const Eigen::Vector3d& c) {
   const Eigen::Vector3d inverse = c.cwiseInverse();

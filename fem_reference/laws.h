@@ -2,8 +2,8 @@
 // F.
 //
 // All share one form: the second Piola-Kirchhoff stress S = S_shear(C) + p Q(C), with a pressure p that
-// depends on a dilatation g alone.  So the elements may average g, or make p an unknown, without knowing the
-// law; and what they average is the volume itself.
+// depends on a dilatation g alone.  So the elements can average g, or make p an unknown, independently of the law; the
+// quantity averaged is the volume change itself (St. Venant-Kirchhoff: tr E).
 #pragma once
 
 #include <array>
@@ -52,7 +52,7 @@ struct ValueAndSlope {
 /// in S_shear; St. Venant-Kirchhoff).
 ValueAndSlope pressure(Law law, double lambda, double g);
 
-/// Its inverse g(p).  Where hencky and neo_hooke have none (lambda / e < p, J beyond e) the largest there is.
+/// Its inverse g(p).  Where hencky and neo_hooke have none (lambda / e < p, J beyond e) the largest attainable g.
 ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p);
 
 double determinant(const Matrix3& F);

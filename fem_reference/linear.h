@@ -1,4 +1,4 @@
-// Linear statics, whatever multiplies by the stiffness.  Part of each solver, as mixed_vector.h.
+// Linear statics, for any operator that multiplies by the stiffness.  Part of each solver, like mixed_vector.h.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,10 +10,10 @@
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
-// What an operator offers, for linear and for finite strain:
+// Interface of an operator, for small and for finite strain:
 //   vector()               zero displacement and pressure
 //   apply(f, x)            the stiffness (the tangent) times x on all degrees of freedom
-//   vmult(y, x)            the same; constrained degrees of freedom do not move, and what they feel is dropped
+//   vmult(y, x)            the same, with constrained rows and columns eliminated
 //   precondition(z, r)     symmetric, positive definite
 //   clear_constrained(f)   zero where displacement is prescribed
 //   pressures(x)           CellPressures
@@ -31,7 +31,7 @@ ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const
   ElasticAnswer answer;
   MixedVector x = K.vector(), r = x, f = x, z = x, dx = x;
   x.u = displacement;
-  double start = 0, start_force = 0;  // the forces at work
+  double start = 0, start_force = 0;  // reference values of the residual norms
   for (int repeat = 0; repeat < 6; ++repeat) {
     K.apply(f, x);
     r = f;
@@ -45,7 +45,7 @@ ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const
       norm = std::sqrt(z.dot(r));
     }
     if (repeat == 0) start = norm, start_force = norm_force;
-    // Reactions may be far larger than the loads that cause them (slender bodies), and rounding goes with them.
+    // Reactions may be far larger than the loads that cause them (slender bodies), and rounding errors scale with them.
     start_force = std::max(start_force, f.u.l2_norm());
     if (!mixed) start = start_force;
     answer.residual = start > 0 ? std::max(norm / start, start_force > 0 ? norm_force / start_force : 0) : 0;

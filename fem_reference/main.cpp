@@ -18,7 +18,7 @@
 namespace springproof::fem {
 namespace {
 
-// Halves the cells as long as all counts are even: the coarsest level of the multigrid.
+// Halves the cells as long as all counts are even, down to the coarsest level of the multigrid; returns how often.
 int halve(Cells& cells) {
   int times = 0;
   const auto can_be_halved = [](int n) { return n % 2 == 0; };
@@ -29,8 +29,8 @@ int halve(Cells& cells) {
   return times;
 }
 
-// Blocks become few cells, refined: multigrid needs that.  Other bodies are meshed as they are wanted, hexahedra with
-// second-order edges, so that a curved surface stays curved.
+// Blocks are meshed with few cells and refined, as geometric multigrid requires.  Other bodies are meshed at the
+// requested resolution, hexahedra with second-order edges, so that curved surfaces stay curved.
 void mesh_into(GridProblem& problem, const Request& request, const Discretisation& grid) {
   const Element element = element_named(grid.element);
   problem.degree = element.degree;
@@ -82,7 +82,8 @@ std::string words_for(const Discretisation& grid) {
   return fmt::format("{} on {} x {} x {} cells{}", grid.element, nx, ny, nz, grid.grading == 1 ? "" : ", graded");
 }
 
-// Graded grids of one element are a sequence, coarse to fine: what fails on one takes minutes to fail on the next.
+// Graded grids of one element are a sequence, coarse to fine: after a failure on one, the next would take minutes to
+// fail.
 bool is_hopeless(const Discretisation& grid, const std::vector<Solution>& before) {
   return grid.grading != 1 && std::any_of(before.begin(), before.end(), [&](const Solution& s) {
            return !s.ok && s.grid.element == grid.element && s.grid.grading == grid.grading;
@@ -187,7 +188,7 @@ bool solve_case(const Options& options) {
   return ok;
 }
 
-// One process speaks for all; of an error that the others do not share, the one that has it.
+// An error common to all processes is printed by the first alone, any other by the process where it occurred.
 int fail(const std::exception& e, int exit_status) {
   const bool everywhere = all_failed();
   if (!everywhere || process_rank() == 0) fmt::print(stderr, "{}\n", plain_words(e.what()));
@@ -195,7 +196,7 @@ int fail(const std::exception& e, int exit_status) {
   return exit_status;
 }
 
-// The others solve along and keep silent.
+// The other processes take part in the solve but print nothing.
 void start_processes() {
   if (process_count() == 1) return;
   start_mpi();

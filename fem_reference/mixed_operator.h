@@ -1,4 +1,4 @@
-// Displacement and pressure.  Part of elastic_solver.cpp, as stiffness.h.
+// Matrix-free mixed displacement-pressure operator.  Part of elastic_solver.cpp, like stiffness.h.
 #pragma once
 
 #include "fem_reference/elastic_system.h"
@@ -8,7 +8,8 @@
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
-/// Pressures of a cell: a constant (Q1), or a constant and the three coordinates of the reference cell (Q2).
+/// Discontinuous pressures, per cell: a constant (Q1), or a constant and the three coordinates of the reference cell
+/// (Q2).
 template <int degree>
 struct PressureSpace {
   using Cell = typename Stiffness<degree, double>::Cell;
@@ -25,7 +26,7 @@ struct PressureSpace {
     const unsigned int size = cells.n_cell_batches() * functions * Lane::size();
     if (process_count() == 1)
       inverse_mass.reinit(size);
-    else  // one range of numbers after the other
+    else  // contiguous index ranges, one per process
       inverse_mass.reinit(size, 0, cells.get_dof_handler().get_communicator());
     Cell u(cells);
     for (unsigned int batch = 0; batch < cells.n_cell_batches(); ++batch) {
@@ -61,7 +62,7 @@ struct PressureSpace {
       y.local_element(i) = scale * inverse_mass.local_element(i) * x.local_element(i);
   }
 
-  /// As affine functions of the reference cell's coordinates.
+  /// The pressure of each cell as an affine function of the reference coordinates.
   CellPressures per_cell(const Cells& cells, const Vector<double>& p) const {
     CellPressures all(cells.n_cell_batches() == 0 ? 0 : cells.get_dof_handler().get_triangulation().n_active_cells());
     for (unsigned int batch = 0; batch < cells.n_cell_batches(); ++batch)
@@ -78,11 +79,12 @@ struct PressureSpace {
   }
 
   std::array<std::array<double, Cell::static_n_q_points>, functions> basis;
-  Vector<double> inverse_mass;  ///< of the diagonal; zero in lanes without a cell
+  Vector<double> inverse_mass;  ///< reciprocals of the diagonal; zero in lanes without a cell
 };
 
-// [ 2 mu eps : eps   p div v      ]   symmetric, indefinite; p = lambda div u, projected on the pressure
-// space. [ q div u          -p q / lambda ]
+// [ 2 mu eps : eps   p div v       ]
+// [ q div u          -p q / lambda ]
+// Symmetric, indefinite; p = lambda div u, projected onto the pressure space.
 template <int degree>
 class MixedOperator {
  public:
@@ -122,7 +124,7 @@ class MixedOperator {
 
   CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(shear_.cells(), x.p); }
 
-  /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1.
+  /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1, an approximate inverse of the Schur complement.
   void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {
     pressure_.divide_by_mass(1 / (1 / lambda_ + 0.5 / shear_.coefficients().mu), x, y);
   }

@@ -1,4 +1,4 @@
-// Displacement and pressure, the unknowns of every form.  Compiled into each solver's namespace, as krylov's users.
+// Displacement and pressure, the unknowns of every formulation.  Compiled into each solver's namespace, like linear.h.
 #pragma once
 
 #include <deal.II/lac/la_parallel_vector.h>
@@ -10,7 +10,7 @@ using Vector = dealii::LinearAlgebra::distributed::Vector<Number>;
 
 struct MixedVector {
   Vector<double> u;  ///< displacement, or force
-  Vector<double> p;  ///< coefficients of the pressure, or of the dilatation it wants; empty without pressure
+  Vector<double> p;  ///< pressure coefficients, or residual of the dilatation equation; empty without pressure
 
   void add(double factor, const MixedVector& other) {
     u.add(factor, other.u);

@@ -16,7 +16,7 @@ void check(PetscErrorCode code) {
   throw std::runtime_error(fmt::format("PETSc: {}", text ? text : "unknown error"));
 }
 
-// The entries of this process as a PETSc vector, without a copy.
+// A PETSc view of the locally owned entries, without a copy.
 class Wrapped {
  public:
   explicit Wrapped(const DofVector& v) {
@@ -67,7 +67,8 @@ void use_gamg(PC preconditioner, Mat matrix, const dealii::Mapping<3>& mapping,
   check(PCSetFromOptions(preconditioner));
 }
 
-/// Factors of a matrix with up to so many rows, GAMG for larger ones.  Returns the name of what is used.
+/// Cholesky factors for a matrix with at most `most_factored` rows, GAMG for larger ones.  Returns the name of the
+/// method.
 std::string use_one_of(PC preconditioner, PetscInt most_factored, Mat matrix, const dealii::Mapping<3>& mapping,
                        const dealii::DoFHandler<3>& dof_handler) {
   PetscInt rows = 0;
@@ -152,8 +153,8 @@ Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mappi
   check(KSPSetType(smoother, KSPCHEBYSHEV));
   check(KSPSetNormType(smoother, KSP_NORM_NONE));
   check(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 4));
-  // Slivers have the largest eigenvalues, few and far above the rest: the usual ten steps miss them, and a cycle that
-  // amplifies them is not positive.
+  // Slivers cause a few eigenvalues far above the rest: the usual ten steps of the estimate miss them, and a cycle that
+  // amplifies them is not positive definite.
   KSP estimate = nullptr;
   check(KSPChebyshevEstEigSet(smoother, 0, 0.1, 0, 1.1));
   check(KSPChebyshevEstEigGetKSP(smoother, &estimate));

@@ -1,4 +1,4 @@
-// Multigrid of PETSc for elasticity, and PETSc matrices that multiply deal.II's vectors.
+// PETSc multigrid for elasticity, and PETSc matrices that multiply deal.II's vectors.
 #pragma once
 
 #include <deal.II/base/index_set.h>
@@ -13,10 +13,10 @@
 
 namespace springproof::fem {
 
-/// A sparse matrix that grows by element matrices, over the processes of `comm`.
+/// A sparse matrix assembled from cell matrices, distributed over the processes of `comm`.
 class SparseMatrix {
  public:
-  /// `pattern` holds the rows of this process.
+  /// `pattern` contains the locally owned rows.
   SparseMatrix(const dealii::IndexSet& rows, const dealii::IndexSet& columns,
                const dealii::DynamicSparsityPattern& pattern, MPI_Comm comm);
   ~SparseMatrix();
@@ -24,7 +24,7 @@ class SparseMatrix {
   SparseMatrix& operator=(const SparseMatrix&) = delete;
 
   void clear();
-  /// `values` row by row.
+  /// `values` in row-major order.
   void add(const std::vector<PetscInt>& rows, const std::vector<PetscInt>& columns, const double* values);
   void insert(const std::vector<PetscInt>& rows, const std::vector<PetscInt>& columns, const double* values);
   void finish();  ///< after the last add() or insert()
@@ -45,13 +45,13 @@ struct LinearLevel {
   const dealii::DoFHandler<3>& dof_handler;
 };
 
-/// One V-cycle: GAMG, smoothed aggregation that knows the rigid motions, or factors of a small matrix; of quadratic
-/// elements after a level of linear ones, which makes the set-up several times cheaper.  Symmetric, positive definite
-/// if the matrices are.
+/// One V-cycle: GAMG, smoothed aggregation with the rigid-body modes as near null space, or Cholesky factors of a small
+/// matrix; for quadratic elements applied to a coarse level of linear ones, which makes the set-up several times
+/// cheaper.  Symmetric, positive definite if the matrices are.
 class Multigrid {
  public:
-  /// Rows as the degrees of freedom of the handler, three per node; the matrices must outlive the preconditioner.
-  /// Linear elements are factored up to so many rows.
+  /// Rows are numbered as the degrees of freedom of the handler, three per node; the matrices must outlive the
+  /// preconditioner.  Matrices (the linear level's, if given) with at most `most_factored` rows are factored.
   Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler,
             int most_factored);
   Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear,

@@ -1,4 +1,5 @@
-// Newton's method with load steps, whatever multiplies by the tangent.  Part of each solver, as mixed_vector.h.
+// Newton's method with load steps, for any operator that multiplies by the tangent.  Part of each solver, like
+// mixed_vector.h.
 #pragma once
 
 #include <deal.II/grid/grid_tools.h>
@@ -13,7 +14,7 @@ namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
 // Operator: as for solve_linear, and
 //   linearise(f, x)            residual at x on all degrees of freedom, and the tangent used from then on; returns the
-//                              smallest det F, and f and the tangent are of no use unless it is positive
+//                              smallest det F; f and the tangent are valid only if it is positive
 //   prepare(x)                 makes the preconditioner fit the state x
 //   precondition_pressure(y, x)  its pressure part
 template <typename Operator>
@@ -60,8 +61,8 @@ class Newton {
   }
 
  private:
-  // r_ = load - internal force where free, and minus the pressure's residual; f_ is that of x_.  Returns its
-  // size relative to the forces at work.
+  // r_ = load - internal force where unconstrained, and minus the pressure's residual; f_ is the residual at x_.
+  // Returns the norm of the force residual relative to load and reactions.
   double residual(double factor) {
     r_ = f_;
     r_.sadd(-1, 0, r_);
@@ -74,7 +75,7 @@ class Newton {
   bool equilibrate(double from, double to, FiniteAnswer& answer) {
     if (K_.linearise(f_, x_) <= 0) return false;
     residual(to);
-    // The prescribed increment goes in through the first tangent: K du = r with du given where constrained.
+    // The prescribed increment enters through the first tangent: K du = r with du given where constrained.
     problem_.prescribe(from, dx_.u);
     problem_.prescribe(to, z_.u);
     MixedVector given = K_.vector();
@@ -93,13 +94,14 @@ class Newton {
       const double now = residual(to);
       ++answer.newton_iterations;
       if (now <= tolerance && pressure_residual() <= tolerance) return true;
-      if (iteration >= 12 && now > 1e-3) return false;  // wanders: a shorter load step is cheaper
+      if (iteration >= 12 && now > 1e-3) return false;  // not converging: a shorter load step is cheaper
       eta = std::clamp(std::max(0.1 * now, 0.3 * tolerance / now), 1e-6, 1e-2);
     }
     return false;
   }
 
-  // dx_ with K dx_ = r_, roughly.  A system that resists has lost its stability: false.
+  // Solves K dx_ = r_ to the relative tolerance eta.  False if GMRES stalls, as it does when the system has lost its
+  // stability.
   bool correct(double eta, FiniteAnswer& answer) {
     K_.prepare(x_);
     dx_.sadd(0, 0, dx_);
@@ -119,8 +121,7 @@ class Newton {
     return outcome.reduction < 0.2;
   }
 
-  // x_ += dx_, or less of it, so that no cell turns inside out; one that carries a prescribed
-  // increment cannot be shortened.
+  // x_ += dx_, halved until no cell is inverted; a step with a prescribed increment (`whole`) is not shortened.
   bool advance(bool whole) {
     const MixedVector start = x_;
     for (double part = 1; part > 0.05; part /= 2) {
@@ -132,14 +133,14 @@ class Newton {
     return false;
   }
 
-  // Largest lack of dilatation of a pressure function, per volume.
+  // Largest dilatation residual of a pressure function, per volume.
   double pressure_residual() {
     if (system_.form != Form::mixed) return 0;
     K_.precondition_pressure(z_.p, r_.p);
     return z_.p.linfty_norm() / (2 * system_.mu);
   }
 
-  // Size of the forces that rounding alone makes of a strain of one.
+  // Size of the rounding errors in the forces at a strain of one.
   static double round_off(const ElasticSystem& system) {
     const auto& triangulation = system.dof_handler.get_triangulation();
     const double length =

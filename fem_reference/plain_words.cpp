@@ -6,7 +6,7 @@
 namespace springproof::fem {
 namespace {
 
-/// What stands between two marks; empty: there is no such mark.
+/// The text between two marks; empty if the first is missing.
 std::string between(const std::string& text, const std::string& begin, const std::string& end) {
   const auto at = text.find(begin);
   if (at == std::string::npos) return {};

@@ -28,7 +28,8 @@ void start_mpi() {
   int started = 0;
   MPI_Initialized(&started);
   if (started) return;
-  // deal.II empties its pools of vectors when the session ends: they must be there before it, to be gone after it.
+  // deal.II clears its static vector memory pools when the session ends, so they are created before it and destroyed
+  // after it.
   dealii::GrowingVectorMemory<dealii::LinearAlgebra::distributed::Vector<double>>::release_unused_memory();
   dealii::GrowingVectorMemory<dealii::LinearAlgebra::distributed::Vector<float>>::release_unused_memory();
   static int argc = 1;
@@ -40,7 +41,7 @@ void start_mpi() {
 
 void together(const std::function<void()>& f) {
   if (process_count() == 1) return f();
-  std::pair<int, std::string> failure;  // its kind: 0 none, 2 of the input, 1 else
+  std::pair<int, std::string> failure;  // kind of error: 0 none, 2 InputError, 1 any other
   try {
     f();
   } catch (const InputError& e) {

@@ -1,4 +1,4 @@
-// The processes of a run under mpirun.  One process alone starts no MPI until PETSc needs it.  No deal.II in this
+// MPI processes of a run under mpirun.  A single process does not start MPI until PETSc needs it.  No deal.II in this
 // header.
 #pragma once
 
@@ -9,21 +9,21 @@ namespace springproof::fem {
 /// How many processes Open MPI or MPICH started; 1 without them.
 int process_count();
 
-/// Of this process, from 0; MPI must have been started if there are several.
+/// Rank of this process, from 0; MPI must have been started if there are several.
 int process_rank();
 
-/// Starts MPI and PETSc, once, if the program has not; ends them with the program.
+/// Initialises MPI and PETSc, unless this has been done; they are finalised when the program ends.
 void start_mpi();
 
-/// Runs f, which must not communicate.  Where it throws on any process, every process throws what the first of them
-/// threw.
+/// Runs f, which must not communicate.  If it throws on any process, every process throws the error of the first of
+/// these.
 /// @throws InputError, std::runtime_error
 void together(const std::function<void()>& f);
 
-/// True if every process calls this within seconds: the error that led here is everybody's.
+/// True if every process calls this within seconds, that is, if all have failed.
 bool all_failed();
 
-/// Ends every process, also those that wait for this one.
+/// Aborts every process, including those waiting for this one.
 [[noreturn]] void end_all(int exit_status);
 
 }  // namespace springproof::fem

@@ -30,7 +30,7 @@ fs::path program_or_throw() {
   return file;
 }
 
-/// Whether it can be used for what was asked: a solution per grid, a row per point, the same patches on every grid.
+/// Whether the results match the request: a solution per grid, a row per point, the same patches on every grid.
 bool answers(const std::vector<Solution>& solutions, const Request& request) {
   if (solutions.size() != request.grids.size()) return false;
   const Solution* first = nullptr;

@@ -1,7 +1,7 @@
-// The finite element reference as its callers see it: no deal.II in here.
+// Interface of the finite element reference, without deal.II.
 //
-// solve() runs the separate program `springproof-fem` (found beside the running executable), so that a
-// program that does not need FEM pays nothing for it, and a failing reference cannot take its caller down.
+// solve() runs the separate program `springproof-fem` (found beside the running executable), so that programs without
+// need of FEM do not load it, and a crash of the reference cannot take its caller down.
 #pragma once
 
 #include <filesystem>
@@ -21,9 +21,9 @@ namespace springproof::fem {
 struct Discretisation {
   Cells cells;                 ///< nx, ny, nz of the .geo: cells along each side of a block
   std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra)
-  double grading = 1.0;        ///< draws the cells of a block towards its faces (fem::graded), exponent; 1 = uniform
-  int mesh = -1;               ///< number in Request::meshes that takes the place of the .geo; -1: none
-  int refinements = 0;         ///< of that mesh's hexahedra: each is cut into 8 this many times
+  double grading = 1.0;  ///< exponent that grades the cells of a block towards its faces (fem::graded); 1 = uniform
+  int mesh = -1;         ///< index into Request::meshes, used instead of the .geo; -1: none
+  int refinements = 0;   ///< of that mesh's hexahedra: each is cut into 8 this many times
 };
 
 /// xx yy zz xy yz xz [Pa], one row per point.
@@ -31,25 +31,25 @@ using Stresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 struct Request {
   std::string name;            ///< of the case, in messages
-  std::filesystem::path geo;   ///< gmsh script of the body, for grids that are no given mesh
+  std::filesystem::path geo;   ///< gmsh script of the body, for grids without a given mesh
   Vec3 size = Vec3::Zero();    ///< its parameters [m]
   std::string law = "linear";  ///< or a law of finite strain (fem_reference/laws.h)
   IsotropicMaterial material;
   std::vector<Load> loads;
   std::vector<Discretisation> grids;
-  NodalVectors points;  ///< rest positions at which the displacement is wanted, n x 3 [m]; of a given mesh also
-                        ///< outside, where the displacement of the nearest place is continued linearly
-  NodalVectors stress_points = NodalVectors(0, 3);       ///< rest positions at which the stress is wanted, m x 3 [m]
+  NodalVectors points;  ///< rest positions at which the displacement is requested, n x 3 [m]; for a given mesh also
+                        ///< outside, where it is extrapolated from the nearest cell
+  NodalVectors stress_points = NodalVectors(0, 3);       ///< rest positions at which the stress is requested, m x 3 [m]
   double tolerance = 1e-9;                               ///< relative residual of the linear solves
   std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the .geo
   bool cost = false;                                     ///< measure times and memory for comparison (RunTimes)
 };
 
-/// The answer on one grid.
+/// The result on one grid.
 struct Solution {
   Discretisation grid;
   bool ok = false;
-  std::string message;        ///< why not, with the load reached
+  std::string message;        ///< reason of failure, with the load reached
   std::string form;           ///< "Q2 displacement, CG, matrix-free multigrid", "P2-P1 mixed, MINRES, AMG", ...
   std::string law;            ///< "linear", "hencky", ...
   NodalVectors displacement;  ///< at Request::points [m]
@@ -58,29 +58,29 @@ struct Solution {
   double volume_change = 0;              ///< exact, by the element's own quadrature [1]
   double volume_change_first_order = 0;  ///< integral of div u / V [1]
   double min_jacobian = 1;               ///< min det F at quadrature points
-  long degrees_of_freedom = 0;           ///< of the displacement, held ones too
-  long unknowns = 0;                     ///< of them free
+  long degrees_of_freedom = 0;           ///< of the displacement, including constrained ones
+  long unknowns = 0;                     ///< unconstrained degrees of freedom
   int iterations = 0;                    ///< of the linear solver, all steps together
   double residual = 0;                   ///< relative, of the final state
   double seconds = 0;                    ///< CPU time of this grid, of all processes
-  RunTimes times;                        ///< of it, what the displacement took; the rest went into measuring
-  double memory_MiB =
-      0;  ///< peak resident set so far, of the largest process; of an experiment with `cost` what the grid added
+  RunTimes times;                        ///< the part of it spent on the displacement; the rest is post-processing
+  double memory_MiB = 0;  ///< peak resident set so far, of the largest process; for an experiment with `cost` the
+                          ///< growth due to this grid
 };
 
 /// Solves on every grid, in order.  A grid that fails has ok = false; it does not throw.
 /// @throws InputError if the experiment cannot be used (no such patch, unconstrained body, unknown law).
-/// @throws std::runtime_error if the program cannot be run or is killed (with its last words).
+/// @throws std::runtime_error if the program cannot be run or is killed (with its last error output).
 std::vector<Solution> solve(const Request& request);
 
-/// Runs the program with these arguments, its output on ours, and returns its exit status.
-/// @throws std::runtime_error if it is not there or is killed.
+/// Runs the program with these arguments, its output going to ours, and returns its exit status.
+/// @throws std::runtime_error if it is not found or is killed.
 int run_program(const std::vector<std::string>& arguments);
 
-/// Ends every solve() under way, which then throws; may be called in a signal handler.
+/// Terminates every running solve(), which then throws; may be called in a signal handler.
 void interrupt();
 
-/// True if `springproof-fem` is there to be run.
+/// True if `springproof-fem` is found.
 bool available();
 
 /// "deal.II 9.4.1, AVX2" of the program, empty if not available.

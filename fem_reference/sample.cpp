@@ -23,14 +23,15 @@ double distance_outside_unit_cell(const dealii::Point<3>& unit, bool tetrahedron
   return unit.distance(dealii::GeometryInfo<3>::project_to_unit_cell(unit));
 }
 
-// A point this far outside is no longer taken: of the cell next to it (hexahedra), of the body's extent (tetrahedra).
+// Points further outside are refused, as a fraction of the adjacent cell (hexahedra) or of the body's extent
+// (tetrahedra).
 constexpr double furthest_outside_cell = 0.5, furthest_outside = 0.2;
 
 [[noreturn]] void throw_outside(const dealii::Point<3>& X) {
   throw InputError(fmt::format("the point ({}, {}, {}) is outside the body", X[0], X[1], X[2]));
 }
 
-// For a point just outside the facetted body: the cell at the nearest vertex that it is least outside of.
+// For a point just outside the facetted body: among the cells at the nearest vertex, the one it is least outside of.
 Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii::GridTools::Cache<3>& cache,
                      const dealii::Point<3>& X) {
   const auto& mapping = cache.get_mapping();
@@ -68,12 +69,12 @@ namespace {
 
 constexpr double within = 1e-6;  // of a cell's size: a point this far outside counts as inside
 
-// The cells of this process that hold the point, up to `within`.
+// The locally owned cells that contain the point, up to `within`.
 std::vector<Location> owned_cells_at(const dealii::GridTools::Cache<3>& cache, const dealii::Point<3>& X) {
   std::vector<Location> all;
   const auto& boxes = cache.get_locally_owned_cell_bounding_boxes_rtree();
   for (const auto& [box, cell] : boxes) {
-    if (!box.point_inside(X, 0.1)) continue;  // a curved cell may leave the box of its nodes
+    if (!box.point_inside(X, 0.1)) continue;  // a curved cell may extend beyond the bounding box of its nodes
     try {
       const dealii::Point<3> unit = cache.get_mapping().transform_real_to_unit_cell(cell, X);
       if (distance_outside_unit_cell(unit, cell->reference_cell().is_simplex()) < within) all.push_back({cell, unit});
@@ -83,7 +84,7 @@ std::vector<Location> owned_cells_at(const dealii::GridTools::Cache<3>& cache, c
   return all;
 }
 
-// What this process knows of a point: a cell of its own, and how far outside that it is; else infinity.
+// A locally owned cell for a point, and how far outside it the point is; infinity if there is no such cell.
 std::pair<Location, double> own_location(const Body3& body, const dealii::GridTools::Cache<3>& cache,
                                          const dealii::Point<3>& X) {
   const std::vector<Location> inside = owned_cells_at(cache, X);
@@ -120,7 +121,7 @@ std::vector<Location> locate_among_processes(const Body3& body, const dealii::Gr
   return places;
 }
 
-// Every cell of the mesh is an active one, with its number.
+// The mesh is not refined, so every cell is active and its index is that in the mesh.
 std::vector<Location> locate_in_tetrahedra(const Body3& body, const NodalVectors& points) {
   const auto& vertices = body.triangulation.get_vertices();
   NodalVectors X(vertices.size(), 3);
@@ -135,7 +136,7 @@ std::vector<Location> locate_in_tetrahedra(const Body3& body, const NodalVectors
   for (const auto& p : points.rowwise()) {
     TetrahedronLocator::Place place = locator(p.transpose());
     if (place.outside > furthest_outside * extent) throw_outside({p[0], p[1], p[2]});
-    // Far outside a cell that is small, as where a coarse mesh cuts off a tip, quadratic functions are not continued.
+    // Far outside a small cell, as where a coarse mesh cuts off a tip, quadratic functions are not extrapolated.
     if (place.weights.minCoeff() < -0.5) {
       place.weights = place.weights.cwiseMax(0.0);
       place.weights /= place.weights.sum();
@@ -182,7 +183,7 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
 
 namespace {
 
-// What the cells need to know of their pressure, at one point.
+// The pressure at one point: from the pressure unknowns if there are any, else from the dilatation.
 double pressure_at(const ElasticSystem& system, std::optional<Law> law, const CellPressures& pressures,
                    const Location& place, double dilatation) {
   if (!pressures.empty()) {
@@ -192,7 +193,7 @@ double pressure_at(const ElasticSystem& system, std::optional<Law> law, const Ce
   return law ? pressure(*law, system.lambda, dilatation).value : system.lambda * dilatation;
 }
 
-// Every cell of this process that holds the point, `first` among them.
+// `first`, and the other locally owned cells that contain the point.
 std::vector<Location> cells_around(const dealii::GridTools::Cache<3>& cache, const Location& first, const Vec3& X) {
   std::set<dealii::Triangulation<3>::active_cell_iterator> neighbours;
   for (const unsigned int v : first.cell->vertex_indices())
@@ -227,8 +228,8 @@ Eigen::Matrix3d cauchy_stress(Law law, const Matrix3& F, double mu, double p) {
   return deformation * second * deformation.transpose() / determinant(F);
 }
 
-// Where a cell's stresses are more exact than elsewhere, by a power of its size (Barlow): the points of the Gauss rule
-// with `degree` points; and what to multiply the stress of each by, to extrapolate to `unit`.
+// Superconvergent stress points (Barlow 1976): the points of the Gauss rule with `degree` points per direction, and the
+// weights that extrapolate their stresses to `unit`.
 struct StressPoints {
   std::vector<dealii::Point<3>> points;
   std::vector<double> weights;

@@ -18,7 +18,8 @@
 
 namespace springproof::fem {
 
-// The solvers: without a matrix per vector width (elastic_solver.cpp), and with matrices (assembled_operator.cpp).
+// The solvers: matrix-free, one per vector width (elastic_solver.cpp), and with assembled matrices
+// (assembled_operator.cpp).
 namespace one_lane {
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
 FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
@@ -67,9 +68,9 @@ double peak_memory_MiB() {
   return usage.ru_maxrss / 1024.0;
 }
 
-// Multigrid without a matrix needs cells that come from refining few; algebraic multigrid takes the rest.
+// Matrix-free multigrid requires a coarse grid of few cells; other grids use algebraic multigrid.
 constexpr unsigned int largest_coarse_grid = 1000;  // cells
-// A coarsest level of cubes gets a coarse space of linear elements where that costs less than iterating on the level.
+// A coarsest level of cubes gets a coarse space of linear elements where that is cheaper than iterating on the level.
 constexpr unsigned int smallest_grid_for_coarse_space = 300;
 
 // The linear coarse space is for small strain and one process.
@@ -87,7 +88,7 @@ std::string element_name(const ElasticSystem& system) {
   return describe({system.body.has_tetrahedra(), system.degree}, system.form);
 }
 
-// What a grid and its loads become, whatever the law.
+// The discrete problem on one grid, for any law: prescribed degrees of freedom, right-hand side, elastic system.
 struct Discrete {
   Discrete(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler)
       : held(prescribed(dof_handler, body, problem.loads)),
@@ -116,7 +117,7 @@ struct Discrete {
     if (has_linear_coarse_space(problem, body)) add_linear_coarse_space(problem.coarse, problem.place, system);
   }
 
-  std::vector<Prescribed> held;  // and owned
+  std::vector<Prescribed> held;  // locally owned
   DofVector load;
   ElasticSystem system;
 };
@@ -137,7 +138,7 @@ ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete,
   return answer;
 }
 
-// Small enough that the linear predictor stays near the path: it inflates what turns, and it knows volume
+// Small enough that the linear predictor stays near the solution path: it enlarges rotating bodies and preserves volume
 // only to first order.
 double first_load_step(const GridProblem& problem) {
   double step = problem.material.poisson_ratio > 0.45 ? 0.25 : 1;
@@ -161,7 +162,7 @@ ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discre
   return answer;
 }
 
-// `start`: when the mesh was there.
+// `start`: CPU time [s] at which the mesh was in memory.
 void solve_into(Solution& solution, const GridProblem& problem, const Body3& body,
                 const dealii::DoFHandler<3>& dof_handler, double start, const std::optional<MemoryGrowth>& memory) {
   progress::detail(fmt::format("{} unknowns, set-up", dof_handler.n_dofs()));
@@ -221,7 +222,7 @@ Solution solve_grid(const GridProblem& problem) {
 
 std::function<Vec3(const Vec3&)> graded(const Vec3& low, const Vec3& high, double exponent) {
   if (exponent == 1.0) return {};
-  const double reach = (high - low).minCoeff() / 2;  // the same on every axis, or a slender body's cells go flat
+  const double reach = (high - low).minCoeff() / 2;  // the same on every axis, else cells of slender bodies go flat
   return [=](const Vec3& X) {
     Vec3 x = X;
     for (int c = 0; c < 3; ++c) {

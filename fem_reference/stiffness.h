@@ -1,5 +1,5 @@
-// The elastic stiffness without a matrix.  Part of elastic_solver.cpp: compiled once per vector width, in a
-// namespace of that width.
+// Matrix-free elastic stiffness (Kronbichler and Kormann 2012).  Part of elastic_solver.cpp: compiled once per vector
+// width, in a namespace of that width.
 #pragma once
 
 #include <deal.II/base/quadrature_lib.h>
@@ -28,8 +28,7 @@ struct Coefficients {
   bool mean_dilatation;
 };
 
-// The stiffness on one level, or on the active cells.  Constrained rows and columns are those of the
-// identity.
+// The stiffness on one level, or on the active cells.  Constrained rows and columns are those of the identity matrix.
 template <int degree, typename Number>
 class Stiffness : public dealii::Subscriptor {
  public:
@@ -62,7 +61,7 @@ class Stiffness : public dealii::Subscriptor {
   const Cells& cells() const { return cells_; }
   const Coefficients<Number>& coefficients() const { return coefficients_; }
   unsigned int m() const { return rows_; }
-  Number el(unsigned int, unsigned int) const { return Number(1); }  // asked for by PreconditionChebyshev's interface
+  Number el(unsigned int, unsigned int) const { return Number(1); }  // required by PreconditionChebyshev
 
   Vector<Number> vector() const {
     Vector<Number> v;
@@ -75,7 +74,7 @@ class Stiffness : public dealii::Subscriptor {
     for (std::size_t i = 0; i < constrained_.size(); ++i) y.local_element(constrained_[i]) = saved_[i];
   }
 
-  // f() while the constrained entries of x are zero.
+  // Calls f() while the constrained entries of x are set to zero.
   template <typename F>
   void without_constrained(const Vector<Number>& x, const F& f) const {
     auto& x_ = const_cast<Vector<Number>&>(x);
@@ -125,8 +124,8 @@ class Stiffness : public dealii::Subscriptor {
     return diagonal;
   }
 
-  // From now on the stiffness of the body deformed by u, per rest volume: gradients are taken in the deformed
-  // position.  Cells that u turns inside out stay as they are at rest.
+  // Switches to the stiffness of the body deformed by u, integrated over the rest volume: gradients are taken in the
+  // deformed configuration.  Quadrature points with det F < 0.05 keep the rest configuration.
   void deform(const Vector<Number>& displacement) {
     to_rest_.resize(cells_.n_cell_batches() * Cell::static_n_q_points);
     displacement.update_ghost_values();
@@ -149,7 +148,7 @@ class Stiffness : public dealii::Subscriptor {
   }
 
  private:
-  // Displacement gradient in the deformed position.
+  // Displacement gradient in the deformed configuration.
   dealii::Tensor<2, 3, Lanes<Number>> gradient(const Cell& u, unsigned int q) const {
     const dealii::Tensor<2, 3, Lanes<Number>> h = u.get_gradient(q);
     return to_rest_.empty() ? h : h * to_rest(u, q);
@@ -217,7 +216,7 @@ class Stiffness : public dealii::Subscriptor {
 
   Cells cells_;
   dealii::AlignedVector<dealii::Tensor<2, 3, Lanes<Number>>> to_rest_;  // inverse deformation gradient, or empty
-  std::vector<unsigned int> constrained_;  // among the degrees of freedom that this process owns
+  std::vector<unsigned int> constrained_;  // indices among the locally owned degrees of freedom
   Coefficients<Number> coefficients_;
   mutable std::vector<Number> saved_;
   unsigned int rows_;

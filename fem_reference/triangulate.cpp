@@ -74,15 +74,15 @@ std::vector<dealii::CellData<3>> tetrahedra(const Mesh& mesh) {
   return cells;
 }
 
-// The second-order points of each cell, in deal.II's order.  deal.II may have turned the cell: a point is known by the
-// corners it lies between.
+// The second-order points of each cell, in deal.II's order.  deal.II may have reoriented the cell, so a point is
+// identified by the corners it lies between.
 std::unique_ptr<dealii::Mapping<3>> curved_mapping(const Mesh& mesh, const dealii::Triangulation<3>& triangulation) {
   const std::vector<dealii::Point<3>> units = dealii::FE_Q<3>(2).get_unit_support_points();
   const auto points_of = [&](const dealii::Triangulation<3>::cell_iterator& cell) {
     const Hexahedron& corners = mesh.hexahedra[cell->index()];
     std::vector<dealii::Point<3>> points;
     for (const dealii::Point<3>& unit : units) {
-      Vec3 place = Vec3::Zero();  // in the mesh's frame of the cell
+      Vec3 place = Vec3::Zero();  // reference coordinates in the mesh's orientation of the cell
       for (unsigned int v = 0; v < 8; ++v) {
         const auto corner = std::find(corners.begin(), corners.end(), int(cell->vertex_index(v)));
         const auto& at = hexahedron_corners[corner - corners.begin()];
@@ -99,7 +99,7 @@ std::unique_ptr<dealii::Mapping<3>> curved_mapping(const Mesh& mesh, const deali
   return mapping;
 }
 
-// p4est deals out the cells of a refined block; it knows neither tetrahedra nor, here, second-order edges.
+// p4est partitions the cells of a refined block; it supports neither tetrahedra nor, here, second-order edges.
 std::unique_ptr<dealii::Triangulation<3>> no_cells(bool refined) {
   constexpr auto smoothing = dealii::Triangulation<3>::limit_level_difference_at_vertices;
   if (process_count() == 1) return std::make_unique<dealii::Triangulation<3>>(smoothing);

@@ -1,4 +1,5 @@
-// Mesh -> deal.II triangulation: hexahedra, with a multigrid hierarchy where the cells are boxes, or tetrahedra.
+// Converts a mesh to a deal.II triangulation: hexahedra, with a multigrid hierarchy where edges are straight, or
+// tetrahedra.
 #pragma once
 
 #include <deal.II/base/quadrature.h>
@@ -20,7 +21,7 @@ struct Body3 {
   explicit Body3(std::unique_ptr<dealii::Triangulation<3>> cells) : owned(std::move(cells)), triangulation(*owned) {}
 
   std::unique_ptr<dealii::Triangulation<3>> owned;
-  dealii::Triangulation<3>& triangulation;      ///< of several processes: each has its part and the cells around it
+  dealii::Triangulation<3>& triangulation;      ///< with several processes: locally owned and ghost cells
   std::unique_ptr<dealii::Mapping<3>> mapping;  ///< straight edges, or those of Mesh::curved
   std::map<std::string, std::set<dealii::types::boundary_id>> patches;  ///< a facet may belong to several patches
 
@@ -28,8 +29,8 @@ struct Body3 {
 };
 
 /// Refines `coarse` `refinements` times; then every vertex X [m] of the finest mesh is moved to place(X), if
-/// given.  Curved meshes and tetrahedra are not refined; of those every process holds the whole mesh, and a part of the
-/// degrees of freedom.  Every process must be given the same mesh.
+/// given.  Curved meshes and tetrahedra are not refined; for those every process stores the whole mesh, and owns part
+/// of the degrees of freedom.  Every process must be given the same mesh.
 /// @throws InputError if the mesh has inverted cells, no cells, or both kinds.
 std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements, const std::function<Vec3(const Vec3&)>& place);
 

@@ -1,4 +1,4 @@
-// Multigrid preconditioner.  Part of elastic_solver.cpp, as stiffness.h.
+// Matrix-free geometric multigrid preconditioner.  Part of elastic_solver.cpp, like stiffness.h.
 #pragma once
 
 #include <deal.II/lac/diagonal_matrix.h>
@@ -16,15 +16,15 @@
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
-// The inverse of a small level, found column by column; none if the level is too large, shared by processes, or hardly
-// positive.
+// Cholesky factors of the matrix of a small level, found column by column; none if the level is too large, distributed
+// over processes, or numerically not positive definite.
 template <typename Level>
 class DenseInverse {
  public:
   explicit DenseInverse(const Level& level) {
     const Eigen::Index n = level.m();
     auto x = level.vector(), y = level.vector();
-    if (n > largest || process_count() > 1) return;  // products are of all processes
+    if (n > largest || process_count() > 1) return;  // matrix products are collective
     Eigen::MatrixXd K(n, n);
     for (Eigen::Index column = 0; column < n; ++column) {
       x.local_element(column) = 1;
@@ -53,7 +53,7 @@ class DenseInverse {
   bool there_ = false;
 };
 
-// A symmetric V-cycle in single precision, Chebyshev smoothing.
+// A symmetric V-cycle in single precision with Chebyshev smoothing (Adams et al. 2003).
 template <int degree>
 class VCycle {
  public:
@@ -88,7 +88,7 @@ class VCycle {
     transfer_.copy_from_mg(dof_handler_, y, x_);
   }
 
-  // Takes the body as deformed by u.
+  // Sets up all levels for the body deformed by u.
   void deform(const Vector<double>& u) {
     transfer_.interpolate_to_mg(dof_handler_, t_, u);
     for (unsigned int l = 0; l < levels_.size(); ++l) {
@@ -113,7 +113,7 @@ class VCycle {
     return data;
   }
 
-  // x_[l] from b_[l]
+  // V-cycle from level l down: x_[l] from b_[l].
   void cycle(unsigned int l) const {
     if (l == 0 && *coarsest_) return coarsest_->vmult(x_[0], b_[0]);
     smoothers_[l]->vmult(x_[l], b_[l]);

@@ -17,7 +17,7 @@ namespace {
 
 using enum Topology;
 
-/// Edge of a cube of the mesh, or of one as large as its mean cell [m].
+/// Edge [m] of a cube of the mesh, or of a cube with the volume of its mean cell.
 double mean_edge(const Mesh& mesh) {
   const auto cells = static_cast<double>(mesh.hexahedra.size() + mesh.tetrahedra.size());
   return mesh.grid ? mesh.grid->spacing.maxCoeff() : std::cbrt(volume(mesh, mesh.nodes) / cells);
@@ -39,7 +39,7 @@ Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* reg
   return random_network(region ? *region : region_of(mesh), random);
 }
 
-/// Depth [m] to which a support holds nodes: on the surface, the outermost layer, or what the case says.
+/// Depth [m] to which a support holds nodes: the surface, the outermost layer, or the case's value.
 double grip_of(const ModelParameters& p, const Mesh& mesh) {
   const double layer = p.row.topology == centres || p.row.topology == hexagonal ? 0.51
                        : p.random.surface_nodes                                 ? 0.0

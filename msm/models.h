@@ -1,4 +1,4 @@
-// A model of the table in the body that it stands for.
+// Construction of a model of the table in a body.
 #pragma once
 
 #include "msm/embedding/embedding.h"
@@ -6,15 +6,15 @@
 
 namespace springproof {
 
-/// A model in the body that it stands for.
+/// A model and its embedding in a body.
 struct EmbeddedModel {
   MassSpringModel model;
   Embedding embedding;
 };
 
-/// The model of a body.  Disordered networks fill `region`, where there is one that the mesh's cells only roughly fill.
-/// @throws InputError if the mesh does not suit it; std::runtime_error if the network cannot have the material's
-/// moduli.
+/// Builds the model of a body.  Disordered networks fill `region`, if given, which the mesh's cells only approximate.
+/// @throws InputError if the mesh does not suit the model; std::runtime_error if the network cannot have the material's
+///   moduli.
 EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region = nullptr);
 

@@ -11,7 +11,7 @@
 namespace springproof {
 
 /// "trigonometric": products of sines, three different components, none zero on the surface of the unit cube.
-/// "solenoidal": the curl of such a field, so free of divergence: its stress stays bounded as nu -> 1/2.
+/// "solenoidal": the curl of such a field, hence divergence-free: its stress stays bounded as nu -> 1/2.
 /// Both vary over 1 m and are of the order of 0.01 m.
 std::vector<std::string> exact_field_names();
 

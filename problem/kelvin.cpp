@@ -8,7 +8,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// From the force to X.
+/// Vector from the force to X.
 struct Arm {
   Vec3 n;    ///< direction
   double R;  ///< length [m]

@@ -15,7 +15,7 @@ struct KelvinSolution {
 };
 
 /// With r = X - at, R = |r|: u = (1 + nu) / (8 pi E (1 - nu) R) ((3 - 4 nu) F + (F.r) r / R^2) [m].
-/// @throws std::invalid_argument, as those below, where R = 0.
+/// @throws std::invalid_argument where R = 0, as do the functions below.
 Vec3 kelvin_displacement(const KelvinSolution& solution, const Vec3& X);
 
 /// Kot et al. (2014), eq. (23) [1].

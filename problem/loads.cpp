@@ -29,7 +29,7 @@ PrescribedValue value_at(const PrescribedRotation& load, const Vec3& X, Kinemati
   const Vec3 arm = X - load.point;
   const double angle = factor * load.angle;
   if (kinematics == Kinematics::linear) return all_components(angle * load.axis.cross(arm));
-  // Rodrigues' formula for R arm - arm, with 1 - cos written so that small angles keep their digits.
+  // Rodrigues' formula for R arm - arm, with 1 - cos = 2 sin^2(angle / 2) to avoid cancellation at small angles.
   const double half_sine = std::sin(angle / 2);
   const Vec3 turned = load.axis.cross(arm);
   return all_components(std::sin(angle) * turned + 2 * half_sine * half_sine * load.axis.cross(turned));

@@ -1,4 +1,4 @@
-// What is done to the body: held, moved, turned, pulled.  Geometry appears only as patch names and points.
+// Loads and prescribed displacements of a body.  Geometry appears only as patch names and points.
 #pragma once
 
 #include <array>
@@ -41,14 +41,14 @@ struct PrescribedField {
   std::optional<KelvinSolution> kelvin = {};  ///< of the field "kelvin"
 };
 
-/// What a load comes to as a whole: force [N], and moment [N m] about a point [m].
+/// Resultant of a load: force [N], and moment [N m] about a point [m].
 struct Wrench {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero(), about = Vec3::Zero();
 };
 
-// Loads below may carry the wrench that they have on the true body.  A discretisation, whose patches and volume are
-// only nearly the body's, then adds the field a + b x (X - c), over the patch's area or the volume, that gives it that
-// wrench exactly.
+// The loads below may carry their resultant on the true body.  A discretisation, whose patches and volume only
+// approximate the body's, then adds the field a + b x (X - c), over the patch's area or the volume, so that its
+// resultant is exactly this wrench.
 
 /// Force per rest area, constant in direction (dead load) [Pa].
 struct Traction {
@@ -77,7 +77,7 @@ struct Gravity {
   std::optional<Wrench> wrench = {};
 };
 
-/// Force [N] at the rest point `at` [m]; spread over the corners of the element that holds the point.
+/// Force [N] at the rest point `at` [m]; distributed over the nodes of the element that contains the point.
 struct PointForce {
   Vec3 at = Vec3::Zero();
   Vec3 force = Vec3::Zero();
@@ -98,14 +98,14 @@ const std::string* patch_of(const Load& load);
 const std::optional<Wrench>* wrench_of(const Load& load);
 std::optional<Wrench>* wrench_of(Load& load);
 
-/// The field a + b x (X - c) of force per area or volume, by its moments over the region that it acts on.
+/// The field a + b x (X - c) of force per area or volume, determined by the moments of the region that it acts on.
 struct RigidField {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero(), c = Vec3::Zero();
 
   Vec3 at(const Vec3& X) const;
 };
 
-/// Sums over a region that tell which rigid field has a given wrench.
+/// Moments of a region, from which the rigid field with a given resultant follows.
 struct RegionMoments {
   double measure = 0;                                ///< area or volume
   Vec3 first = Vec3::Zero();                         ///< integral of X
@@ -115,7 +115,8 @@ struct RegionMoments {
 };
 
 /// The rigid field whose resultant over the region is the wrench.
-/// @throws std::invalid_argument if the region has no measure or is a line, and so bears no moment about itself.
+/// @throws std::invalid_argument if the region has zero measure, or is a line, which cannot carry a moment about
+/// itself.
 RigidField rigid_field(const RegionMoments& region, const Wrench& wrench);
 
 /// The wrench about another point.

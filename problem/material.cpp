@@ -24,7 +24,7 @@ void check_poisson_ratio(double nu) {
   if (!(nu > -1 && nu < 0.5)) refuse(fmt::format("poisson_ratio = {}", nu), poisson_range);
 }
 
-/// "youngs_modulus, poisson_ratio" of what is given, each checked on its own.
+/// "youngs_modulus = 10000 Pa", "poisson_ratio = 0.3", ... for the given moduli, each checked on its own.
 std::vector<std::string> checked_names(const Moduli& given) {
   std::vector<std::string> names;
   auto positive = [&](const char* name, const std::optional<double>& value) {

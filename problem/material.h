@@ -1,4 +1,4 @@
-// The isotropic linear-elastic material: what the user knows about it, in any two moduli.
+// The isotropic linear-elastic material, given by any two of its moduli.
 #pragma once
 
 #include <cmath>
@@ -18,8 +18,8 @@ double shear_modulus(const IsotropicMaterial& m);  ///< G = E / (2 (1 + nu)) [Pa
 double bulk_modulus(const IsotropicMaterial& m);   ///< K = E / (3 (1 - 2 nu)) [Pa]
 double lame_lambda(const IsotropicMaterial& m);    ///< lambda = E nu / ((1 + nu)(1 - 2 nu)) [Pa]
 
-/// kappa = lambda - G [Pa], the modulus that the springs' Cauchy relation lambda = G leaves over;
-/// zero at nu = 1/4, negative below.  Golec et al. (2019), eqs. (5.4)-(5.5).
+/// kappa = lambda - G [Pa], the modulus that springs, with their Cauchy relation lambda = G, cannot represent; zero at
+/// nu = 1/4, negative below.  Golec et al. (2019), eqs. (5.4)-(5.5).
 double kappa(const IsotropicMaterial& m);
 
 /// Any subset of the moduli of an isotropic solid [Pa, nu in 1].
@@ -41,7 +41,7 @@ IsotropicMaterial material_from(const Moduli& given, double density = 1000.0);
 /// @throws std::invalid_argument unless E > 0, -1 < nu < 1/2, rho > 0, all finite.
 void check(const IsotropicMaterial& m);
 
-/// Whether two Poisson's ratios, of which a file may name either, are meant to be one: to 1e-9.
+/// Whether two Poisson's ratios, either of which may come from a file, are equal to within 1e-9.
 inline bool same_poisson_ratio(double a, double b) { return std::abs(a - b) < 1e-9; }
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-// A mass-spring model as a user names it.
+// A mass-spring model as named by the user.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace springproof {
 
-/// A model as named in the case file, with its options; what they mean is the model table's business (msm/models.h).
+/// A model as named in the case file, with its options, which the model table interprets (msm/models.h).
 struct ModelChoice {
   std::string name;                                                        ///< row of the table, "hybmss"
   std::map<std::string, std::variant<bool, double, std::string>> options;  ///< e.g. face_to_cube = 1.0

@@ -1,4 +1,4 @@
-// A part of the surface that the case file names by where it lies.
+// A rule of the case file that selects part of the surface by its position or orientation.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace springproof {
 
-/// Selects the part of the outer surface where every condition that is given holds; at least one is.  Its border runs
-/// through facets (meshes/patches/rule_region.h), but for `facing`, which takes whole ones by their normals.  Borders
-/// belong to what is selected.
+/// Selects the part of the outer surface where all given conditions hold; at least one is given.  Its border cuts
+/// through facets (meshes/patches/rule_region.h), except for `facing`, which selects whole facets by their normals.
+/// The border belongs to the selection.
 struct PatchRule {
   struct Box {
     Vec3 low, high;  ///< [m]
@@ -23,8 +23,8 @@ struct PatchRule {
     Vec3 direction;         ///< length 1
     double within_deg = 0;  ///< largest angle to the outward normal [degrees]
   };
-  /// What lies within `radius` of the point of the surface that is nearest to `point`, as far as it hangs together with
-  /// that point.
+  /// The connected part of the surface that contains the surface point nearest to `point` and lies within `radius` of
+  /// it.
   struct Near {
     Vec3 point;         ///< [m]
     double radius = 0;  ///< [m]

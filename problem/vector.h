@@ -1,4 +1,4 @@
-// The array types every module shares.
+// Array types shared by all modules.
 #pragma once
 
 #include <Eigen/Core>

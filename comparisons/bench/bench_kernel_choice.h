@@ -1,4 +1,4 @@
-// The bench's kernels for an instruction set that this processor has.
+// Selects the bench's kernels for an instruction set of this processor.
 #pragma once
 
 #include "comparisons/bench/kernels/bench_kernels.h"

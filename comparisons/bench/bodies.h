@@ -1,4 +1,4 @@
-// What is timed: lattices and disordered networks of cubes of 0.1 m, and how they are held and loaded.
+// Benchmark bodies: lattices of cubes of 0.1 m and disordered networks of that spacing, with their supports and loads.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@ namespace springproof::bench {
 
 inline constexpr double edge = 0.1, youngs_modulus = 1e4, density = 1000;  // [m], [Pa], [kg/m^3]
 
-/// A block of so many cubes as a model of the table (msm/models.h) at a Poisson's ratio, with options as in case files.
+/// A block of `cells` cubes as a model of the table (msm/models.h) at a Poisson's ratio, with options as in case files.
 MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells, double poisson_ratio,
                         const decltype(ModelChoice::options)& options = {});
 
-/// A cube of about so many nodes joined at random, <S> = 15, nu = 1/4.
+/// A cubic random network of about `nodes` nodes, <S> = 15, nu = 1/4.
 MassSpringModel random_springs(int nodes);
 
-/// The rest positions, each moved by a hundredth of an edge at most: smooth and the same every time.
+/// The rest positions, each moved by a hundredth of an edge at most: smooth and reproducible.
 NodalVectors moved(const Network& network);
 
 /// The nodes at the bottom (z <= depth above the lowest) clamped, an oblique body force on all, small enough for linear

@@ -111,7 +111,7 @@ void random_networks(const Context& c) {
     against_peers(c, "random network", fmt::format("{} nodes", k.nodes), random_springs(k.nodes), k.lammps, k.plain);
 }
 
-/// One model's step over another's.
+/// Time per step of one model, relative to another's.
 void overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
               const std::string& baseline, const MassSpringModel& other, Target target) {
   progress(name + " over " + baseline, size);
@@ -188,7 +188,7 @@ void threads(const Context& c) {
     several_threads(c, "random network", fmt::format("{} nodes", nodes), random_springs(nodes), 1.8);
 }
 
-/// In a process of its own, since its network takes gigabytes.
+/// In a child process, since its network takes gigabytes.
 void growth(const Context& c, int small, int large) {
   const std::string size = fmt::format("{}^3 over {}^3", large, small);
   progress("growth of the cost per spring", size);
@@ -221,7 +221,7 @@ void memory(const Context& c, int n) {
        fmt::format("{}; the plain loop keeps {:.0f}", ours->how, plain.work.kept / double(plain.nodes))});
 }
 
-/// The paper's main experiment, whose seconds it prints.
+/// The paper's main experiment, for which it prints the time.
 void headline(const Context& c) {
   struct Case {
     const char *name, *model;

@@ -1,4 +1,4 @@
-// Whole built-in experiments: what a user of `springproof compare` waits for.
+// Benchmark of whole built-in experiments: the run time of `springproof compare`.
 #pragma once
 
 #include "comparisons/bench/options.h"

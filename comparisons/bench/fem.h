@@ -1,4 +1,4 @@
-// The finite element reference's own bench, its ratios as rows.
+// Benchmark of the finite element reference, with its ratios as rows.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,7 +8,7 @@
 
 namespace springproof::bench {
 
-/// Runs `springproof-fem --bench`, which prints its own table.  @return its JSON; null if the program is not there.
+/// Runs `springproof-fem --bench`, which prints its own table.  @return its JSON; null if the program is not found.
 nlohmann::json bench_fem(const BenchOptions& options, Findings& findings);
 
 }  // namespace springproof::bench

@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 std::atomic<pid_t> forked = 0;
 
 [[noreturn]] void answer(const std::function<Json()>& work, int to) {
-  std::signal(SIGINT, SIG_IGN);  // the parent ends it
+  std::signal(SIGINT, SIG_IGN);  // the parent kills the child
   std::signal(SIGTERM, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   Json reply;

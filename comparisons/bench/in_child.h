@@ -1,4 +1,4 @@
-// Work in a process of its own: its memory is its own, and it can be ended.
+// Runs work in a child process, which has its own memory and can be killed.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,11 @@
 namespace springproof::bench {
 
 /// Runs `work` in a fork of this process and returns what it returned.
-/// @throws std::runtime_error with the message of what the work threw, or with how it ended (memory, signal);
-/// Interrupted.
+/// @throws std::runtime_error with the message of the exception thrown by the work, or with how the process ended
+/// (memory, signal); Interrupted.
 nlohmann::json in_child(const std::function<nlohmann::json()>& work);
 
-/// Ends the one under way; may be called in a signal handler.
+/// Kills the running child; may be called in a signal handler.
 void interrupt_forked_child();
 
 }  // namespace springproof::bench

@@ -1,4 +1,4 @@
-// A bench that is interrupted shows what it has measured so far.
+// Interrupt handling: an interrupted bench shows what it has measured so far.
 #pragma once
 
 #include <stdexcept>
@@ -9,7 +9,7 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// From here on SIGINT and SIGTERM end the programs and processes under way and make throw_if_interrupted() throw.
+/// From here on SIGINT and SIGTERM end the running child processes and make throw_if_interrupted() throw.
 void catch_interrupts();
 
 bool interrupted();

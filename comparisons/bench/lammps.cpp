@@ -23,7 +23,7 @@ fs::path program() {
   return program_on_path("lmp");
 }
 
-/// Numbers 1, 2, ... of the different values among many.
+/// Assigns the numbers 1, 2, ... to distinct values.
 template <class Key>
 class Types {
  public:
@@ -45,7 +45,7 @@ double longest_spring(const Network& network) {
   return longest;
 }
 
-/// Masses of at most 64 kinds, by node.
+/// Mass of each node; all get the mean if there are more than 64 different masses.
 std::vector<double> few_masses(const Network& network) {
   const Eigen::VectorXd all = masses(network, density);
   Types<double> types;

@@ -18,12 +18,13 @@ class Lammps {
   /// different masses all get the mean one, since LAMMPS has masses per type.
   explicit Lammps(const Network& network);
 
-  /// CPU time of one step [s]: what its process takes for many steps more than for one, over their number; of each the
-  /// least of some runs.  The steps take about so many seconds, or as long as reading the data, whichever is longer.
-  /// @throws std::runtime_error if it fails, with its last words.
+  /// CPU time of one step [s]: the difference between a run of many steps and a run of one, over the number of steps,
+  /// each the least of `runs` runs.  The steps take about `seconds_of_steps`, or as long as reading the data, whichever
+  /// is longer.
+  /// @throws std::runtime_error if LAMMPS fails, with its error message.
   double seconds_per_step(double seconds_of_steps, int runs) const;
 
-  /// Its forces at moved() [N].
+  /// LAMMPS' forces at the positions moved() [N].
   NodalVectors forces() const;
 
  private:

@@ -41,7 +41,7 @@ std::vector<MemoryLevel> caches() {
     if (type == "Data" || type == "Unified")
       levels.push_back({"L" + first_word(at + "level"), size_of(first_word(at + "size"))});
   }
-  if (levels.empty()) levels = {{"L1", 32768}, {"L2", 524288}, {"L3", 16777216}};  // where the system does not say
+  if (levels.empty()) levels = {{"L1", 32768}, {"L2", 524288}, {"L3", 16777216}};  // if the system does not report them
   return levels;
 }
 
@@ -80,7 +80,7 @@ double read_GB_s(const BenchKernels& k, double bytes, const TimerOptions& option
   return 8e-9 * double(a.size) / seconds;
 }
 
-/// The best of some sizes that lie between two levels.
+/// Best bandwidth over a few array sizes between two cache levels.
 double level_GB_s(const BenchKernels& k, double inner, double bytes, const TimerOptions& options) {
   double best = 0;
   for (const double part : {0.125, 0.25, 0.5})
@@ -88,7 +88,7 @@ double level_GB_s(const BenchKernels& k, double inner, double bytes, const Timer
   return best > 0 ? best : read_GB_s(k, 0.5 * bytes, options);
 }
 
-/// Triad of `threads` at once, each with arrays of its own, that no cache holds.
+/// Triad of `threads` threads at once, each on its own part of arrays larger than any cache.
 double triad_GB_s(const BenchKernels& k, double last_cache, int threads, TimerOptions options) {
   const long n = std::max(4194304L, long(2 * last_cache / 8 / 64) * 64) / threads / 64 * 64;
   const Array a(n * threads), b(n * threads), c(n * threads);

@@ -1,4 +1,4 @@
-// The machine: what it is, and what a core of it can do at most, measured.
+// The machine, and the measured limits of one core.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,13 +9,13 @@ namespace springproof::bench {
 
 /// A level of the memory as one core sees it.
 struct MemoryLevel {
-  std::string name;  ///< "L1", "L2", "L3", "DRAM"
-  double bytes = 0;  ///< its size; of DRAM 0
-  double GB_s = 0;   ///< read by one core; of DRAM the triad's, the line that a store reads first counted (32 bytes)
+  std::string name;      ///< "L1", "L2", "L3", "DRAM"
+  double bytes = 0;      ///< its size; of DRAM 0
+  double GB_s = 0;       ///< read by one core; for DRAM that of the triad, counting the write-allocate read (32 bytes)
   double all_cores = 0;  ///< [GB/s] of DRAM, all cores at once; else 0
 };
 
-/// What one core does with one instruction set.
+/// Peak arithmetic of one core with one instruction set.
 struct Arithmetic {
   std::string instruction_set;        ///< "portable", "avx2", "avx512"
   double gflops64 = 0, gflops32 = 0;  ///< multiply-adds, two each
@@ -29,7 +29,7 @@ struct Machine {
   std::vector<MemoryLevel> memory;     ///< nearest first
 
   const Arithmetic& widest() const { return arithmetic.back(); }
-  /// The level that holds so many bytes, with a tenth of its room left.
+  /// The nearest level that holds `bytes` with a tenth of its capacity to spare.
   const MemoryLevel& level_for(double bytes) const;
 };
 

@@ -1,6 +1,6 @@
-// springproof-bench, which `springproof bench` starts: what things cost on this machine, each beside its baseline.
+// springproof-bench, started by `springproof bench`: benchmarks on this machine, each with its baseline.
 //
-// A program of its own because it may link PETSc, whose libraries springproof shall not wait for.
+// A separate program because it may link PETSc, whose libraries would slow the start of springproof.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

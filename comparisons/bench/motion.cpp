@@ -14,7 +14,7 @@
 namespace springproof::bench {
 namespace {
 
-/// Positions and velocities stepped with forces(): the definition, with whatever kernels stand behind it.
+/// Time steps with forces(): the reference implementation, with whichever kernels forces() uses.
 class Stepper {
  public:
   explicit Stepper(const MassSpringModel& model)
@@ -141,7 +141,7 @@ Motion plain_motion(const Network& network) {
 
 namespace {
 
-/// Least time [s] that the arithmetic of a step can take on one core.
+/// Lower bound [s] on the time that the arithmetic of a step takes on one core.
 double arithmetic_limit(const Motion& motion, const Arithmetic& core) {
   const bool fp64 = motion.precision == Precision::float64;
   return std::max(1e-9 * motion.work.flops / (fp64 ? core.gflops64 : core.gflops32),

@@ -1,4 +1,4 @@
-// Motions that can be timed: one entry per way of computing an explicit step.
+// Implementations of an explicit time step that can be timed.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace springproof::bench {
 
-/// What one step takes at least; docs/performance.md says how it is counted.
+/// Minimum work of one step, counted as docs/performance.md describes.
 struct Work {
   double flops = 0;     ///< additions, multiplications, roots and divisions, each one
   double roots = 0;     ///< of them pairs of a root and a division
@@ -35,20 +35,19 @@ struct MotionOptions {
   Precision precision = Precision::float64;
 };
 
-/// The fastest way that the library has for a model; nothing if it has none with these options.
-/// The model must outlive it.
+/// The library's fastest implementation for a model; empty if none supports these options.  The model must outlive it.
 std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options = {});
 
-/// The baseline that anybody writes in an hour: one array of nodes {x, v, f}, one of springs of 24 bytes, a loop over
-/// each, compiled for this processor.
+/// The straightforward baseline: one array of nodes {x, v, f}, one of springs of 24 bytes, a loop over each, compiled
+/// for this processor.
 Motion plain_motion(const Network& network);
 
-/// How well a motion that takes so many seconds per step uses one core.
+/// How well a motion that takes `seconds` per step uses one core.
 Usage usage_of(const Motion& motion, double seconds, const Machine& machine);
 RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,
                        const std::string& size);
 
-/// Operations of one step of the model, whoever computes it.
+/// Operations of one step of the model, for any implementation.
 Work operations(const MassSpringModel& model);
 
 }  // namespace springproof::bench

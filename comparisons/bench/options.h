@@ -1,4 +1,4 @@
-// What a user asks a bench for.
+// Command-line options of the bench.
 #pragma once
 
 #include <filesystem>

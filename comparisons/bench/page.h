@@ -1,4 +1,4 @@
-// The findings as a page of their own, with the report's charts and colours.
+// Writes the findings as an HTML page, with the report's charts and colours.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The baseline of the static solver that every mass-spring program has: dynamics, damped until it rests.
+// The usual baseline of a static mass-spring solver: damped dynamics until rest.
 #pragma once
 
 #include "msm/statics/equilibrium.h"
@@ -15,7 +15,7 @@ struct Relaxation {
 
 /// run_dynamics() from rest with the largest safe step and the best mass-proportional damping, 2 sqrt(lmin), lmin the
 /// smallest squared frequency [1/s^2] of the linearised model, until the unbalanced force falls below the tolerance.
-/// `factor`: times that damping.
+/// `factor` multiplies that damping.
 Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
                  double factor = 1);
 

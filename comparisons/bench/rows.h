@@ -1,4 +1,4 @@
-// What a bench finds: rows, each with its baseline of the same run and its target, and points of the roofline.
+// Results of a bench: rows, each with its baseline of the same run and its target, and points of the roofline.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,7 @@ namespace springproof::bench {
 
 enum class Sense { none, at_least, at_most };
 
-/// What the judged number of a row should reach.
+/// Target of the judged number of a row.
 struct Target {
   Sense sense = Sense::none;
   double limit = 0;
@@ -31,7 +31,7 @@ struct BenchRow {
   std::string size;     ///< "30^3"
   std::string unit;     ///< of the value and the baseline's value
   double value = 0;
-  std::string baseline = {};  ///< what it is held against; empty: nothing, and the value itself is judged
+  std::string baseline = {};  ///< what it is compared with; empty: nothing, and the value itself is judged
   double baseline_value = 0;
   Target target = {};
   std::optional<Usage> usage = {};

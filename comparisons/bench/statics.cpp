@@ -58,7 +58,7 @@ Problem rabbit(int voxels) {
           transfer(loads, mesh, density, Kinematics::linear)};
 }
 
-/// The time of a short one is the least of three.
+/// Solves; the time of a short solve is the least of three.
 Equilibrium solve(const Problem& p, LinearSolver solver = LinearSolver::automatic) {
   const auto once = [&] { return solve_linear(p.model, p.conditions, {solver, tolerance}); };
   Equilibrium e = once();
@@ -75,8 +75,8 @@ Json answer(const Equilibrium& e) {
           {"solver", e.solver}};
 }
 
-/// Measures in a process of its own and adds what `rows` makes of the answer; a failure becomes the first row without a
-/// result.
+/// Runs `work` in a child process and passes its result to `rows`, which adds the rows; on failure adds the first row
+/// without a result.
 template <class Work, class Rows>
 void measure(Findings& findings, const BenchRow& first, const Work& work, const Rows& rows) {
   fmt::print(stderr, "statics: {}, {} ...\n", first.what, first.size);
@@ -96,7 +96,7 @@ BenchRow iterations_row(const std::string& what, const std::string& size, double
   return {"statics", what, size, "iterations to 1e-8", 0, "", 0, at_most(limit)};
 }
 
-/// What the iterations of a block should stay below, by Poisson's ratio.
+/// Target for the iterations of a block, by Poisson's ratio.
 double iteration_limit(double nu) { return nu <= 0.4 ? 13 : nu <= 0.499 ? 16 : 25; }
 
 void blocks(const BenchOptions& options, Findings& findings) {
@@ -124,7 +124,7 @@ void blocks(const BenchOptions& options, Findings& findings) {
   }
 }
 
-/// Momentum dispersion: few iterations, and what the pressures as unknowns gain near nu = 1/2.
+/// Momentum dispersion: iterations, and the gain from pressures as unknowns near nu = 1/2.
 void dispersion_blocks(int n, double gain, Findings& findings) {
   for (const double nu : {0.25, 0.499}) {
     const BenchRow row =
@@ -167,7 +167,7 @@ void rabbits(const BenchOptions& options, Findings& findings) {
   }
 }
 
-/// Ours and GAMG on the same problem in the same process.
+/// Our solver and GAMG on the same problem in the same process.
 template <class Make>
 void against_gamg(const std::string& what, const std::string& size, double limit, const Make& make,
                   Findings& findings) {

@@ -1,4 +1,4 @@
-// Equilibrium: what the static solver costs, against PETSc CG + GAMG and optimally damped dynamics.
+// Benchmark of the static solver, against PETSc CG + GAMG and optimally damped dynamics.
 #pragma once
 
 #include "comparisons/bench/options.h"
@@ -6,7 +6,7 @@
 
 namespace springproof::bench {
 
-/// Adds its rows one by one, so that an interrupted run keeps those it has.
+/// Adds its rows one by one, so that an interrupted run keeps those measured before.
 void bench_statics(const BenchOptions& options, Findings& findings);
 
 }  // namespace springproof::bench

@@ -1,4 +1,4 @@
-// The findings as text.
+// Formats the findings as a text table.
 #pragma once
 
 #include <string>

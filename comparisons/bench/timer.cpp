@@ -16,7 +16,7 @@ double seconds_of_sample(const Advance& advance, long steps, Clock clock) {
   return seconds_of(clock) - start;
 }
 
-/// Steps that fill a sample; warms up too.
+/// Number of steps that fill a sample; also warms up.
 long steps_per_sample(const Advance& advance, const TimerOptions& options) {
   long steps = 1;
   for (double seconds;; steps *= 4) {

@@ -1,4 +1,4 @@
-// Times of short pieces of work on a machine that others use too.
+// Timing of short pieces of work on a shared machine.
 #pragma once
 
 #include <functional>
@@ -6,10 +6,10 @@
 
 namespace springproof::bench {
 
-/// Does so many steps.
+/// Performs `steps` steps.
 using Advance = std::function<void(long steps)>;
 
-/// Whose time counts: the calling thread's, or the clock on the wall (work of several threads).
+/// CPU time of the calling thread, or wall time (for work of several threads).
 enum class Clock { thread, wall };
 
 double seconds_of(Clock clock);
@@ -20,9 +20,9 @@ struct TimerOptions {
   Clock clock = Clock::thread;
 };
 
-/// Seconds per step of each piece of work: the least over many short samples, taken in turn, so that a ratio of two is
-/// of runs side by side and what others do to the caches and the clock rate falls out.  A step longer than a sample is
-/// one.
+/// Seconds per step of each piece of work: the least over many short samples, interleaved, so that a ratio compares
+/// simultaneous runs and disturbances of caches and clock rate by other programs cancel.  A step longer than a sample
+/// counts as one.
 std::vector<double> least_seconds(const std::vector<Advance>& work, const TimerOptions& options = {});
 
 }  // namespace springproof::bench

@@ -34,7 +34,7 @@ void on_interrupt(int) {
   calculix::interrupt();
 }
 
-/// One case at one Poisson's ratio, while both programs answer it.
+/// One case at one Poisson's ratio, to be solved by both programs.
 struct Question {
   const PreparedCase& prepared;
   IsotropicMaterial material;
@@ -45,13 +45,13 @@ struct Question {
   const Experiment& experiment() const { return prepared.experiment; }
 };
 
-/// What one program says on one grid.
+/// The results of one program on one grid.
 struct Answer {
   std::map<std::string, double> values;
   NodalVectors displacement;  ///< at the nodes of the coarsest of CalculiX' grids [m]
 };
 
-/// Limits of the three grids.
+/// Values extrapolated from the three grids.
 struct Opinion {
   std::map<std::string, ReferenceValue> values;
   ReferenceField field;
@@ -68,8 +68,8 @@ bool is_reduced(const IsotropicMaterial& material) {
   return material.poisson_ratio > calculix::largest_ratio_full_integration;
 }
 
-/// Near-cubic elements, counts divisible by four; by eight at least with reduced integration, as a single
-/// element across a body has modes without strain at its eight points.
+/// Near-cubic elements, counts divisible by four; at least eight with reduced integration, as a single element across a
+/// body has zero-energy modes.
 Cells finest_cells(const Experiment& e, const IsotropicMaterial& material, const Cells& given) {
   Cells cells = given;
   if (given[0] == 0) {
@@ -85,8 +85,7 @@ Cells finest_cells(const Experiment& e, const IsotropicMaterial& material, const
   return cells;
 }
 
-/// Draws nodes towards the faces of the body's box, as fem::graded, so that edges weigh as little in both
-/// programs.
+/// Grades nodes towards the faces of the body's bounding box, as fem::graded, so that edges affect both programs alike.
 void grade(double exponent, Mesh& mesh) {
   const Eigen::RowVector3d low = mesh.nodes.colwise().minCoeff(), high = mesh.nodes.colwise().maxCoeff();
   const double reach = (high - low).minCoeff() / 2;
@@ -112,7 +111,8 @@ NodalVectors at_common_nodes(const Mesh& coarse, const Mesh& mesh, const NodalVe
   return out;
 }
 
-/// False for the force or torque on a patch that shares held nodes with another, and for what other rows say.
+/// False for the force or torque on a patch that shares constrained nodes with another, and for magnitudes, which
+/// follow from other rows.
 bool is_compared(const PreparedCase& prepared, const std::string& measure) {
   if (measure.ends_with("magnitude")) return false;
   if (!measure.starts_with("force.") && !measure.starts_with("torque.")) return true;
@@ -168,7 +168,7 @@ std::optional<Opinion> ask_calculix(const Question& q, Status& status) {
   return opinion(q.prepared, q.meshes[0], answers, noise);
 }
 
-/// Round-off of our solver: its tolerance times the forces and displacements at work.
+/// Round-off of our solver: 1e-7 of the largest forces and displacements.
 Noise our_noise(const Question& q, const Answer& finest) {
   constexpr double relative = 1e-7;
   const double size = q.prepared.size.norm(), u = finest.displacement.rowwise().norm().maxCoeff();
@@ -274,7 +274,7 @@ Question question(const PreparedCase& prepared, const IsotropicMaterial& materia
   return q;
 }
 
-/// The rows that differ, or that nobody answered: at least one then.
+/// Number of rows that differ; 1 if a program has no result.
 int check_material(const Question& q) {
   std::optional<Opinion> calculix, ours;
   {

@@ -1,4 +1,4 @@
-// A cross-check: the same case by CalculiX and by our finite element reference, each with its uncertainty.
+// Cross-check: solves the same case with CalculiX and with our finite element reference, each with its uncertainty.
 #pragma once
 
 #include <filesystem>
@@ -30,15 +30,15 @@ struct SecondOpinion {
 SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& calculix, const ReferenceValue& ours);
 
 /// The material of `experiment` with this Poisson's ratio, or its first.
-/// @throws InputError listing those there are.
+/// @throws InputError listing those of the case.
 const IsotropicMaterial& material_of(const Experiment& experiment, std::optional<double> poisson_ratio);
 
 /// Exit statuses of cross_check.
 enum CrossCheckStatus { all_agree = 0, some_differ = 1, no_program = 3, cross_check_interrupted = 130 };
 
 /// Runs both programs, on three grids each, and prints a table per Poisson's ratio; progress goes to stderr.
-/// A program that gives no answer counts as not agreeing.
-/// @throws InputError for everything a user can get wrong, a law that CalculiX does not have among them.
+/// A program without a result counts as not agreeing.
+/// @throws InputError for every error in the input, including a law that CalculiX lacks.
 int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options);
 
 }  // namespace springproof

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double largest_turn_per_step = 20 * std::numbers::pi / 180;
 
-/// What a law of the case files is in a deck.
+/// A law of the case files, and its form in a deck.
 struct Counterpart {
   const char* kinematics;
   bool finite;

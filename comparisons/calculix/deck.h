@@ -1,4 +1,4 @@
-// A case as an input deck for CalculiX (ccx) or Abaqus.
+// Writes a case as an input deck for CalculiX (ccx) or Abaqus.
 #pragma once
 
 #include <ostream>
@@ -10,11 +10,11 @@
 
 namespace springproof::calculix {
 
-/// A displacement component that is prescribed; where two loads prescribe it, the one named first counts.
+/// A displacement component that is prescribed; where two loads prescribe it, the one named first applies.
 struct HeldComponent {
   int node;
   int component;  ///< 0, 1, 2
-  int load;       ///< number in Experiment::loads
+  int load;       ///< index into Experiment::loads
 };
 
 struct Deck {
@@ -26,21 +26,20 @@ struct Deck {
   std::vector<HeldComponent> held;  ///< by node, then component
   NodalVectors forces;              ///< concentrated loads [N]: all but gravity
   Vec3 gravity = Vec3::Zero();      ///< sum of all [m/s^2]
-  int steps = 1;                    ///< a large rotation is led along its arc
+  int steps = 1;                    ///< a large rotation is applied in steps along its arc
 };
 
-/// The largest Poisson's ratio that is given fully integrated elements; above, eight-point ones, which do not
-/// lock.
+/// The largest Poisson's ratio for fully integrated elements; above, reduced integration with eight points, which does
+/// not lock.
 inline constexpr double largest_ratio_full_integration = 0.4;
 
-/// Kinematics that CalculiX has too: "linear, neo_hooke_isochoric, st_venant_kirchhoff".
+/// Kinematics that CalculiX supports: "linear, neo_hooke_isochoric, st_venant_kirchhoff".
 std::string kinematics_with_counterpart();
 
 /// @throws InputError if the case's law has no counterpart, naming those that have.
 void require_counterpart(const Experiment& experiment);
 
-/// @throws InputError as require_counterpart; for an unknown patch, a point force outside the body, two
-/// patches of the
+/// @throws InputError as require_counterpart; for an unknown patch, a point force outside the body, two patches of the
 ///   same name once written as a set.
 Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh);
 
@@ -48,7 +47,7 @@ Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, 
 /// last step: U of ALL_NODES, RF of HELD_NODES, their totals per patch.
 void write(const Deck& deck, std::ostream& out);
 
-/// External nodal loads at the full load, gravity included [N]: what RF holds besides the support forces.
+/// External nodal loads at the full load, gravity included [N]: contained in RF in addition to the support forces.
 NodalVectors external_loads(const Deck& deck);
 
 }  // namespace springproof::calculix

@@ -82,7 +82,7 @@ struct QuadraturePoint {
   double weight;
 };
 
-/// Of the reference element; tetrahedra as collapsed cubes.
+/// Quadrature points of the reference element; tetrahedra as collapsed cubes.
 std::vector<QuadraturePoint> volume_points(std::size_t nodes) {
   std::vector<QuadraturePoint> points;
   for (const auto& [u, a] : gauss)
@@ -265,7 +265,7 @@ std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const 
   if (!place)
     throw InputError(fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies in no hexahedron of the body", point.x(),
                                  point.y(), point.z()));
-  // Trilinear shape functions hold the reference coordinates: the sum over the corners of one face.
+  // The trilinear shape functions yield the reference coordinates: each is the sum over the corners of one face.
   Vec3 xi = -Vec3::Ones();
   for (int corner = 0; corner < 8; ++corner)
     for (int d = 0; d < 3; ++d) xi[d] += 2 * hexahedron_corners[corner][d] * place->shape[corner];
@@ -286,7 +286,7 @@ VolumeChange volume_change(const QuadraticMesh& mesh, const NodalVectors& displa
       const double volume = weight * dX.determinant();
       rest += volume;
       divergence += volume * H.trace();
-      // det(I + H) - 1 without the loss of digits
+      // det(I + H) - 1 without cancellation
       gained += volume * (H.trace() + (H.trace() * H.trace() - (H * H).trace()) / 2 + H.determinant());
     }
   }

@@ -1,5 +1,5 @@
-// A mesh with a node in the middle of every edge: the elements C3D20 and C3D10 of Abaqus and CalculiX, their
-// shape functions and what follows from those.
+// A mesh with a node in the middle of every edge: the elements C3D20 and C3D10 of Abaqus and CalculiX, their shape
+// functions and integrals of these.
 #pragma once
 
 #include <functional>
@@ -49,8 +49,8 @@ Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh);
 /// Consistent loads [N] of a body force given at rest positions [N/m^3].
 NodalVectors nodal_body_forces(const QuadraticMesh& mesh, const std::function<Vec3(const Vec3&)>& body_force);
 
-/// What each node counts for at a rest position inside a hexahedron: node and shape function.
-/// `linear` is the mesh that `mesh` was made of.
+/// Nodes and values of their shape functions at a rest position inside a hexahedron.  `linear` is the mesh from which
+/// `mesh` was made.
 /// @throws InputError naming the point if it lies in no hexahedron.
 std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point);
 

@@ -1,4 +1,4 @@
-// Runs ccx on a deck and reads its answer.
+// Runs ccx on a deck and reads its results.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ inline constexpr double print_rounding = 5e-7;
 /// Printed values of the last block per kind and node set.
 struct Printed {
   NodalVectors displacement;  ///< of all nodes [m]
-  NodalVectors force;         ///< RF of the held nodes, zero elsewhere [N]
+  NodalVectors force;         ///< RF of the constrained nodes, zero elsewhere [N]
   double time = 0;            ///< of the displacements
 };
 
@@ -31,7 +31,7 @@ struct Printed {
 /// @throws std::runtime_error if a node's values are missing.
 Printed read_dat(std::istream& in, Eigen::Index nodes);
 
-/// What a solution may be off because its numbers are printed with seven digits.
+/// Error bounds of a solution due to printing with seven digits.
 struct PrintFloor {
   double force = 0;         ///< of a patch [N]
   double torque = 0;        ///< [N m]
@@ -41,7 +41,7 @@ struct PrintFloor {
 
 struct Solution {
   bool ok = false;
-  std::string message;        ///< why not: ccx' own words
+  std::string message;        ///< reason of failure: ccx' own message
   NodalVectors displacement;  ///< of all nodes of the deck [m]
   Field field;                ///< on the mesh with corner nodes only
   PrintFloor floor;
@@ -53,7 +53,7 @@ struct Solution {
 /// @throws std::runtime_error if ccx cannot be started.
 Solution solve(const Deck& deck, double time_limit);
 
-/// Ends a solve() under way; may be called in a signal handler.
+/// Terminates a running solve(); may be called in a signal handler.
 void interrupt();
 
 }  // namespace springproof::calculix

@@ -1,4 +1,4 @@
-// The subcommands that talk to CalculiX: export and cross-check.
+// The subcommands that use CalculiX: export and cross-check.
 #pragma once
 
 #include <optional>

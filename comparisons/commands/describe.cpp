@@ -35,13 +35,13 @@ std::string replaced(std::string text, char from, const std::string& to) {
   return text;
 }
 
-/// Text that roff prints as it is.
+/// Escapes text so that roff prints it unchanged.
 std::string roff(const std::string& text) {
   const std::string plain = replaced(replaced(text, '\\', "\\e"), '-', "\\-");
   return plain.starts_with('.') || plain.starts_with('\'') ? "\\&" + plain : plain;
 }
 
-/// "CASE..." of the options that are given by their places.
+/// The positional arguments, " CASE...".
 std::string places(const CLI::App& command) {
   std::string text;
   for (const CLI::Option* option : positionals_of(command)) {
@@ -93,7 +93,7 @@ constexpr std::array environment = {
     Variable{"SPRINGPROOF_LAMMPS", "the lmp of LAMMPS that the bench measures beside ours, instead of the one on PATH"},
 };
 
-/// The variable of the script that holds the known values of an option or a place.
+/// The variable of the script that holds the known values of an option or a positional argument.
 std::string variable_of(const std::string& name) {
   return replaced(name.substr(name.find_first_not_of('-')), '-', "_");
 }
@@ -121,7 +121,7 @@ std::string value_branches(const CLI::App& command, const KnownValues& values) {
   return text;
 }
 
-/// The branch `"COMMAND "*)`: its options, and what its places take.
+/// The branch `"COMMAND "*)`: its options, and the values of its positional arguments.
 std::string command_branch(const CLI::App& command, const KnownValues& values) {
   std::vector<std::string> words;
   for (const CLI::Option* option : options_of(command))

@@ -1,4 +1,4 @@
-// The command line as a man page and as completion for bash, from the tables that parse it.
+// Generates the man page and the bash completion from the command-line parser.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,7 @@ namespace springproof {
 /// springproof.1 in roff, with every command and option that --help shows.
 std::string man_page(const CLI::App& app, const std::string& version);
 
-/// Words for the values of an option ("--model") or for what is given by its place ("CASE"), where they are known.
+/// Known values of an option ("--model") or of a positional argument ("CASE").
 using KnownValues = std::map<std::string, std::vector<std::string>>;
 
 /// A script for bash: commands, their options, known values, else file names.

@@ -26,7 +26,7 @@ struct Sample {
   Homogenised h;
 };
 
-/// A number of a sample: what it is called, and where it is.
+/// A quantity of a sample: its names, and how to read it.
 struct Quantity {
   const char* key;
   const char* label;
@@ -78,7 +78,7 @@ bool stable(const Homogenised& h) {
   return Eigen::LLT<Eigen::Matrix<double, 6, 6>>(h.C + h.C.transpose()).info() == Eigen::Success;
 }
 
-/// The modulus that the calibration was set to.
+/// The value that the calibration aims at.
 double wanted(const Quantity& quantity, const ModelParameters& p, const IsotropicMaterial& m) {
   const IsotropicMaterial aim =
       p.has(Extension::none) ? IsotropicMaterial{2.5 * spring_shear_modulus(p, m), 0.25, m.density} : m;

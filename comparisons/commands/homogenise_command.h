@@ -1,4 +1,4 @@
-// The effective moduli of the infinite periodic network of a model, its nodes relaxed.
+// The subcommand that computes the effective moduli of the infinite periodic network of a model, its nodes relaxed.
 #pragma once
 
 #include <optional>

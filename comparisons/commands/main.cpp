@@ -1,4 +1,4 @@
-// springproof: can a mass-spring model be trusted as an elastic solid?
+// springproof: compares mass-spring models of elastic solids with finite elements.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -128,7 +128,7 @@ int main(int argc, char** argv) try {
   CLI::App* bench_command =
       app.add_subcommand("bench", "Measure what things cost, each beside its baseline (springproof bench --help)");
   bench_command->set_help_flag();
-  bench_command->prefix_command();  // the program that it starts knows its options
+  bench_command->prefix_command();  // its options are parsed by the program that it starts
 
   std::string form;
   CLI::App* describe_command =

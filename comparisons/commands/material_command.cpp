@@ -44,7 +44,7 @@ const char* name_of(Dispersion form) {
   return "";
 }
 
-/// A body that shows the row's time step: one cube where one bounds them all, else a block, or a sheet.
+/// A body for the row's safe time step: one cube where it bounds all meshes, else a block, or a sheet.
 Mesh sample_mesh(const ModelRow& row, double l) {
   const int n = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion ? 1 : 5;
   const int layers = row.topology == Topology::hexagonal ? 1 : n;
@@ -109,7 +109,7 @@ void print(const DispersionFacts& f, const ModelParameters& p, const IsotropicMa
           : "no flutter");
 }
 
-/// Everything that is said of a material in a model.
+/// All values printed for a material in a model.
 struct MaterialFacts {
   const IsotropicMaterial& m;
   const ModelParameters& p;

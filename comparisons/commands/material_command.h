@@ -1,4 +1,4 @@
-// The parameter oracle: any two moduli in, everything a spring programmer needs out.
+// The subcommand that computes a spring model's parameters from any two moduli.
 #pragma once
 
 #include <string>

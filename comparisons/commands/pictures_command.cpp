@@ -39,7 +39,7 @@ std::vector<std::string> cases_of(const fs::path& folder) {
   }
 }
 
-/// Per cent signs for what a fragment may not hold.
+/// Percent-encodes text for a URL fragment.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const unsigned char c : text)

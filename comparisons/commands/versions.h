@@ -1,4 +1,4 @@
-// What `springproof --version` says.
+// The output of `springproof --version`.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 constexpr const char* header = "case,poisson_ratio,element,measure,value,uncertainty,where";
 constexpr double near_incompressible = 0.45;  // Poisson's ratio
 constexpr double largest_known_uncertainty =
-    0.25;  // of the stated one or of the error, as a verdict asks it of a reference
+    0.25;  // fraction of the stated uncertainty or of the error, as a verdict requires of a reference
 
 struct KnownLine {
   std::string case_name;
@@ -36,7 +36,7 @@ double number_of(const std::string& text, const SourceLocation& at, const char* 
   throw InputError(at, fmt::format("{}: '{}' is no number (allowed: a finite number)", column, text));
 }
 
-/// The last column may hold commas.
+/// The last column may contain commas.
 KnownLine read_line(const std::string& text, const SourceLocation& at) {
   std::array<std::string, 7> cells;
   std::istringstream in(text);

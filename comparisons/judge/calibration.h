@@ -1,4 +1,4 @@
-// Are the reference's stated uncertainties right?  They are held against answers that are exact, or known far better.
+// Calibration of the reference's stated uncertainties against values that are exact, or known far more accurately.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,7 +9,7 @@
 
 namespace springproof {
 
-/// A quantity of one element of [reference] beside what it really is.
+/// A quantity of one element of [reference], with its known value.
 struct KnownQuantity {
   std::string case_name;
   double poisson_ratio = 0;
@@ -19,7 +19,7 @@ struct KnownQuantity {
   std::string kind;  ///< of reference: "hexahedra", "tetrahedra", "finite strain", "near-incompressible"
   double known = 0;
   double known_uncertainty = 0;  ///< of the known value itself; 0: exact
-  std::string where;             ///< it comes from: "Lame, closed form", "3 times finer"
+  std::string where;             ///< source of the known value: "Lame, closed form", "3 times finer"
   double value = 0;              ///< the reference's
   double uncertainty = 0;        ///< as stated
   std::string note;
@@ -28,9 +28,9 @@ struct KnownQuantity {
   bool inside() const { return error() <= uncertainty; }
 };
 
-/// The quantities of a case that the table `known.csv` beside its file knows; none without that table.
+/// The quantities of a case that the table `known.csv` beside its file lists; none without that table.
 /// Lines: case,poisson_ratio,element,measure,value,uncertainty,where.
-/// Left out are values known too badly to judge: no better than a quarter of the stated uncertainty and of the error.
+/// Left out are values whose own uncertainty exceeds a quarter of both the stated uncertainty and the error.
 /// @throws InputError with file and line for a line that cannot be read.
 std::vector<KnownQuantity> known_quantities(const CaseResult& result);
 

@@ -1,4 +1,4 @@
-// How far a body is deformed: whether linear theory may be asked at all.
+// Size of the deformation of a body, which decides whether linear theory applies.
 #pragma once
 
 #include "meshes/mesh.h"
@@ -6,14 +6,14 @@
 
 namespace springproof {
 
-/// What 99 % of a body's volume stay below: singular edges and point forces have no say.
+/// The 99th percentile over the body's volume, which excludes singular edges and point forces.
 struct DeformationSize {
   double principal_strain =
       0;                ///< largest principal strain in size [1]: of sym grad u (linear), of U - 1 in F = R U (finite)
   double rotation = 0;  ///< [rad], from the rest position: of the rotation vector of grad u (linear), of R (finite)
 };
 
-/// Of a displacement (n x 3 [m]) at the nodes of a mesh of hexahedra, read at the 2 x 2 x 2 points of Gauss of each
+/// For a displacement (n x 3 [m]) at the nodes of a mesh of hexahedra, evaluated at the 2 x 2 x 2 Gauss points of each
 /// cell.
 DeformationSize deformation_size(const Mesh& mesh, const NodalVectors& displacement, Kinematics kinematics);
 

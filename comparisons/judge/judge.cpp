@@ -8,7 +8,7 @@
 namespace springproof {
 namespace {
 
-// A reference may be at most this uncertain, as a fraction of the tolerance it decides.
+// Largest uncertainty of a reference, as a fraction of the tolerance that it is used for.
 constexpr double largest_uncertainty_fraction = 0.25;
 
 const Row* find_row(const CaseResult& result, const RunKey& key, const std::string& measure) {

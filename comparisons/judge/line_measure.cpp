@@ -23,7 +23,7 @@ bool only_tensions(const MassSpringModel& model) {
   });
 }
 
-/// What lies within `reach` of the line, so that not every spring is looked at for every point.
+/// The springs within `reach` of the line, so that not every spring is visited for every point.
 Network near_line(const Network& network, const Line& line, double reach, std::vector<double>& tensions) {
   Network near;
   near.X = network.X;

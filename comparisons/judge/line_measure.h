@@ -13,7 +13,7 @@ namespace springproof {
 
 /// Samples the line.  Strain: moving least squares over the nodes within 2 mean spacings (V/N)^(1/3); stress: Hardy's,
 /// in balls of 2 mean spacings, left out for models whose forces are not all tensions of springs.  Small strains.
-/// Model, Poisson's ratio and cells of the record are the caller's to fill in.
+/// The caller sets model, Poisson's ratio and cells of the record.
 LineRecord sample_line(const Line& line, const KelvinSolution& solution, const MassSpringModel& model,
                        const NodalVectors& u);
 

@@ -18,7 +18,7 @@ void add_vector(const std::string& name, const Vec3& v, std::map<std::string, do
   out[name + ".magnitude"] = v.norm();
 }
 
-/// The components of a measure, each as `read` takes it from the map's value.
+/// The components of a vector measure, each read from the map's value by `read`.
 template <class Value, class Read>
 std::optional<Vec3> vector_of(const std::map<std::string, Value>& values, const std::string& name, Read read) {
   const auto x = values.find(name + ".x"), y = values.find(name + ".y"), z = values.find(name + ".z");
@@ -30,7 +30,7 @@ std::optional<Vec3> vector_of(const std::map<std::string, double>& values, const
   return vector_of(values, name, [](double x) { return x; });
 }
 
-/// Size of a reaction of the reference; zero if it is not known, or not beyond its uncertainty.
+/// Magnitude of a reaction of the reference; zero if unknown, or not larger than its uncertainty.
 double size_of(const std::map<std::string, ReferenceValue>& truth, const std::string& name) {
   const auto value = vector_of(truth, name, [](const ReferenceValue& r) { return r.value; });
   const auto uncertainty = vector_of(truth, name, [](const ReferenceValue& r) { return r.uncertainty; });

@@ -1,4 +1,4 @@
-// The ruler: every measure, computed from Fields alone, by the same code for every solver.
+// Computes every measure from Fields alone, by the same code for every solver.
 #pragma once
 
 #include <map>
@@ -14,8 +14,8 @@
 namespace springproof {
 
 /// Scalar measures of one field that have a value of their own: volume changes, reactions, probe displacements.
-/// Names: volume_change, volume_change_first_order, force.<patch>.<x|y|z|magnitude>, torque.<patch>.<...>,
-/// displacement.<probe>.<...>.
+/// Names: volume_change, volume_change_magnitude, volume_change_first_order, force.<patch>.<x|y|z|magnitude>,
+/// torque.<patch>.<...>, displacement.<probe>.<...>.
 std::map<std::string, double> scalar_measures(const Field& field, const std::vector<Probe>& probes,
                                               const NodalVectors& probe_displacement);
 
@@ -26,8 +26,8 @@ using ProbeStresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 std::map<std::string, double> stress_measures(const std::vector<Probe>& probes, const ProbeStresses& stress);
 
 /// Largest difference of force or torque between two sets of measures on one of the patches, relative to the force or
-/// torque of `truth` [1].  One that vanishes is left out: below its uncertainty, or below a tenth of what the other of
-/// the two amounts to with the body's `length` [m] as lever.  Nothing if none is left.
+/// torque of `truth` [1].  A force or torque that vanishes is left out: below its uncertainty, or below a tenth of the
+/// other of the two, converted with the body's `length` [m] as lever arm.  Empty if none is left.
 std::optional<double> reaction_difference(const std::map<std::string, double>& a,
                                           const std::map<std::string, double>& b,
                                           const std::map<std::string, ReferenceValue>& truth,

@@ -1,4 +1,4 @@
-// The mean displacement of a patch: where it is sampled, the same places for every discretisation.
+// The mean displacement of a patch, sampled at the same points for every discretisation.
 #pragma once
 
 #include <map>
@@ -16,8 +16,8 @@ struct PatchSamples {
   Eigen::VectorXd weights;  ///< share of each in the patch's area, n; they sum to 1
 };
 
-/// Those of every patch of a mesh that has an area.  Exact for displacements that are biquadratic on its facets
-/// (quadratic on triangles), which those of its elements are.
+/// The samples of every patch with nonzero area.  Exact for displacements that are biquadratic on its facets (quadratic
+/// on triangles), as those of its elements are.
 std::vector<PatchSamples> samples_of_patches(const Mesh& mesh);
 
 /// mean_displacement.<patch>.x|y|z|magnitude [m]; `u` n x 3 at the points of all patches, one after the other.

@@ -26,10 +26,10 @@ double order_of(double quotient, const GridRatios& r) {
   return (low + high) / 2;
 }
 
-/// Error of the finest grid over f3 - f2 at this order.
+/// Ratio of the finest grid's error to f3 - f2 at this order.
 double by_last(double order, const GridRatios& r) { return 1 / std::expm1(order * std::log(r.fine)); }
 
-/// Error of the finest grid over f2 - f1 at this order.
+/// Ratio of the finest grid's error to f2 - f1 at this order.
 double by_first(double order, const GridRatios& r) {
   return std::pow(r.fine, -order) / std::expm1(order * std::log(r.coarse));
 }
@@ -53,7 +53,7 @@ double weighted_product(const NodalVectors& u, const NodalVectors& v, const Eige
   return weights.dot(u.cwiseProduct(v).rowwise().sum()) / weights.sum();
 }
 
-/// "force.z_max" of "force.z_max.x"; measures without components are their own.
+/// "force.z_max" of "force.z_max.x"; measures without components are returned unchanged.
 std::string vector_of(const std::string& measure) {
   return measure.substr(0, measure.find('.') == std::string::npos ? std::string::npos : measure.rfind('.'));
 }
@@ -161,7 +161,8 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   if (!are_refined(ratios)) return finest(coarse_safety_factor * spread, not_refined(ratios));
   const double along = result.correlation.value_or(0), quotient = f > 0 ? along * c / f : 0,
                order = order_of(quotient, ratios);
-  // Differences that fall at first order or faster: what is left is at most that order's, whichever way they point.
+  // If the differences decrease at first order or faster, the remaining error is at most that of first order, whatever
+  // their directions.
   const bool fall = f > 0 && c >= ratios.coarse * f;
   const Eigen::VectorXd left = safety_factor * (fall ? Eigen::VectorXd(by_last(1, ratios) * last) : spread);
   if (doubt > 0)

@@ -1,4 +1,4 @@
-// How sure a reference is: three grids, observed order, Richardson limit, grid convergence index (GCI).
+// Uncertainty of a reference from three grids: observed order, Richardson limit, grid convergence index (GCI).
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace springproof {
 
-/// What a sequence of grids does.
+/// Convergence of a sequence of grids.
 enum class Sequence { equal, converging, not_converging };
 
 /// A number with its uncertainty (about two standard deviations, in ASME V&V 20's sense).
@@ -20,22 +20,22 @@ struct ReferenceValue {
   std::optional<double> observed_order;  ///< empty: not extrapolated
   std::string note;
   Sequence sequence = Sequence::converging;  ///< equal: on all grids, to solver accuracy
-  bool matters = true;  ///< false where it is less than a tenth of what the body's loads and displacements would allow
+  bool matters = true;  ///< false if less than a tenth of the scale set by the body's forces, stresses or displacements
 };
 
 inline constexpr double solver_noise = 1e-7;       ///< of a value or field, relative to its scale
 inline constexpr double safety_factor = 1.25;      ///< Fs for three grids (Roache)
 inline constexpr double coarse_safety_factor = 3;  ///< Fs for two grids, and for three that are hardly refined
-inline constexpr double smallest_ratio = 1.2;      ///< of cell sizes, below which a sequence tells no order
+inline constexpr double smallest_ratio = 1.2;      ///< of cell sizes, below which no order can be observed
 inline constexpr double smallest_correlation =
     0.5;  ///< of a field's two differences, below which it is not extrapolated
 
-/// The highest order that is believed of a sequence, whatever it shows.  With clamped edges 2, as they keep the true
-/// order low.
+/// The highest order used for extrapolation, whatever order is observed: 2 with clamped edges, whose singularities keep
+/// the true order low.
 inline constexpr double clamped_order = 2;
 
-/// That of a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution displacements converge with
-/// degree + 1 and stresses with degree; all else as with clamped edges.
+/// The highest order used for a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution
+/// displacements converge with degree + 1 and stresses with degree; all else as with clamped edges.
 double trusted_order(const std::string& measure, const std::string& element, bool smooth);
 
 /// Cell sizes of the first grid over the second's, and of the second over the third's.
@@ -47,13 +47,13 @@ struct GridRatios {
 bool are_refined(const GridRatios& ratios);
 
 /// Limit of a quantity computed on three grids (coarse to fine; the last three of more).  `noise`: round-off of the
-/// values. Monotone, with an order p that takes the limit no further from the finest grid than the three are apart (at
-/// ratios of 2: p of 1/2 or more): Richardson extrapolation with p, but at most `highest_order`.  Its uncertainty is Fs
-/// times the larger of the two errors that the two differences come to on the finest grid at that order: where it shows
-/// a higher one, two grids have come to agree faster than is believed, and the first difference counts. Otherwise the
-/// finest value, with an uncertainty of Fs times: of slow sequences the step that p, at least 1/2, would make, or the
-/// spread of the three; of those that are not monotone the last difference, or what first order leaves of the first.
-/// Grids that are not refined: the finest value, 3 times the spread.
+/// values. For monotone values with an order p whose limit is no further from the finest value than the spread of the
+/// three (at ratios of 2: p of 1/2 or more): Richardson extrapolation with p, at most `highest_order`.  Its uncertainty
+/// is Fs times the larger of the two estimates of the finest grid's error at that order, from the last and from the
+/// first difference; the latter is the larger where the observed order exceeds `highest_order`.  Otherwise the finest
+/// value, with an uncertainty of Fs times: for slow sequences the extrapolation step with p, at least 1/2, or the
+/// spread of the three; for sequences that are not monotone the last difference, or what remains of the first at first
+/// order. For grids that are not refined: the finest value, 3 times the spread.
 ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order = clamped_order,
                            const GridRatios& ratios = {});
 
@@ -73,10 +73,10 @@ double doubt_of(const std::map<std::string, ReferenceValue>& limits);
 std::string kind_of(const std::string& measure);
 
 /// The same for a displacement field sampled at the same points on three grids, in the weighted L2 norm: the order is
-/// that of the first difference's part along the second.  It is extrapolated only where the two point the same way and
-/// there is no `doubt` (below).  Otherwise the uncertainty is Fs times what first order leaves after the last
-/// difference, or, where the differences do not fall that fast, Fs times the largest of the three distances, node by
-/// node; never less than the doubt.
+/// that of the first difference's component along the second.  It is extrapolated only if the two are correlated
+/// (smallest_correlation) and there is no `doubt` (below).  Otherwise the uncertainty is Fs times the error that first
+/// order leaves after the last difference, or, if the differences do not decrease that fast, Fs times the largest of
+/// the three distances, node by node; never less than the doubt.
 struct ReferenceField {
   NodalVectors displacement;
   double uncertainty = 0;             ///< relative to the norm of the finest field

@@ -34,9 +34,9 @@ using ByNu = std::map<double, Worst>;
 struct ModelErrors {
   ByNu displacement, volume, reaction;
   ByNu springs;                        // displacement: the springs' own part of it, on bodies of voxels
-  ByNu rank;                           // what the closest model is found by
+  ByNu rank;                           // errors by which the closest model is found
   std::set<std::string> cases;         // in which a displacement was compared
-  std::optional<double> own_nu;        // the only Poisson's ratio that the model claims
+  std::optional<double> own_nu;        // the only Poisson's ratio that the model is valid for, if any
   bool parts = false, wholes = false;  // ranked by the springs' own part somewhere, by the whole error somewhere
 };
 
@@ -71,7 +71,7 @@ std::string where_within(const ByNu& errors, double limit) {
   return fmt::format("{}", fmt::join(parts, " and "));
 }
 
-/// The first of 1 % and 5 % that is held somewhere but not everywhere.
+/// The first of the limits 1 % and 5 % that is met at some Poisson's ratios but not at every one.
 std::string tighter_clause(const ByNu& errors, double worst) {
   for (double limit : {0.01, 0.05}) {
     const std::string where = where_within(errors, limit);
@@ -85,7 +85,7 @@ const std::pair<const double, Worst>& largest(const ByNu& errors) {
                            [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
 }
 
-/// Those at the Poisson's ratios that the model claims.
+/// The errors at the Poisson's ratios that the model is valid for.
 ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
   ByNu out = by_nu;
   if (errors.own_nu)
@@ -146,7 +146,7 @@ std::string run_line(const std::string& case_name, const Json& run) {
 struct Candidate {
   std::string name;
   const ModelErrors* errors;
-  ByNu rank;  ///< where the model claims to hold
+  ByNu rank;  ///< where the model is valid
   double error() const { return largest(rank).second.error; }
   double uncertainty() const { return largest(rank).second.uncertainty; }
   auto breadth() const { return std::tuple(errors->cases.size(), rank.size()); }
@@ -202,7 +202,7 @@ std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
       where_text(tied.front()));
 }
 
-/// That every model was run off the only Poisson's ratio that it claims; or nothing.
+/// States that every model was run only at Poisson's ratios other than the one it is valid for; or nothing.
 std::string no_claim_text(const std::map<ModelKey, ModelErrors>& models) {
   std::vector<std::string> names;
   for (const auto& [key, errors] : models)
@@ -266,7 +266,7 @@ class Collector {
                  [](const std::string& line) { return !line.empty(); });
   }
 
-  /// What a model claims, where it was compared.
+  /// Stores the only Poisson's ratio that a model is valid for, if it was compared.
   void models_for(const std::string& label, std::optional<double> own_nu) {
     if (const auto found = models_.find({large_, label}); found != models_.end()) found->second.own_nu = own_nu;
   }

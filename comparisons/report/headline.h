@@ -11,17 +11,17 @@ namespace springproof {
 struct ModelVerdict {
   std::string model;
   bool finite_elements = false;    ///< a FEM of the lattice's own resolution, shown for comparison
-  bool large_deformation = false;  ///< cases with a finite-strain law; told apart from the linear ones
+  bool large_deformation = false;  ///< cases with a finite-strain law; listed apart from the linear ones
   std::string sentence;            ///< "displacement within 0.8 % of FEM for ν from −0.5 to 0.4 ..."
 };
 
 struct Headline {
-  std::string
-      doubt;  ///< where the reference does not converge or is uncertain by more than 5 %; empty: nowhere.  Said first
-  std::string answer;                ///< which spring model comes closest in the linear cases; empty: none was compared
+  std::string doubt;   ///< where the reference does not converge or is uncertain by more than 5 %; empty: nowhere.
+                       ///< Printed first
+  std::string answer;  ///< which spring model comes closest in the linear cases; empty: none was compared
   std::vector<ModelVerdict> models;  ///< springs first, then finite elements; linear cases before large deformation
   std::vector<std::string> deformations;  ///< per case the reference's largest principal strain and rotation at each nu
-  std::vector<std::string> warnings;      ///< linear cases that linear theory does not hold for, with what to do
+  std::vector<std::string> warnings;      ///< linear cases to which linear theory does not apply, with what to do
   std::vector<std::string> verification;  ///< of cases without models: value, target, error, verdict; one line each
   int held = 0, failed = 0, reference_too_coarse = 0, no_reference = 0, no_result = 0;  ///< expectations
   std::vector<std::string> failed_checks;  ///< one line each, with expected and computed value
@@ -37,9 +37,9 @@ inline constexpr const char* large_title =
 
 /// Judges each model by its largest "displacement_error", "reaction_error" and "volume_change" error over the cases and
 /// Poisson's ratios, at the finest resolution of each case.  The closest is found at the Poisson's ratios that a model
-/// claims, by the larger of displacement and reaction error, on a body of voxels of their parts that are the springs'
-/// own; models that differ by less than the reference's uncertainty are named together.  `results` is the document of
-/// results.json.
+/// is valid for, by the larger of displacement and reaction error, on a body of voxels by the parts of these due to the
+/// springs; models that differ by less than the reference's uncertainty are named together.  `results` is the document
+/// of results.json.
 Headline headline(const nlohmann::json& results);
 
 /// "31 of 36 expectations hold, 2 fail, for 3 the reference is too coarse."

@@ -13,19 +13,19 @@ namespace {
 
 using namespace words;
 
-// A reference that is less sure than this is said to be so before anything is said of the models.
+// A reference with a larger uncertainty is reported as doubtful before the results of the models.
 constexpr double doubtful_uncertainty = 0.05;
-// And one that is surer than this decides what is said of them, however its grids approach each other.
+// A reference with a smaller uncertainty is accepted even if its grids do not converge.
 constexpr double harmless_uncertainty = 0.01;
 
-// Beyond these linear theory is off by some per cent itself.
+// Beyond these linear theory itself has errors of some per cent.
 constexpr double largest_linear_strain = 0.05, largest_linear_rotation_deg = 5;
 
 bool has_models(const Json& result) { return !list_of(object_of(result, "experiment"), "models").empty(); }
 std::string name_of(const Json& result) { return string_of(object_of(result, "experiment"), "name"); }
 bool is_linear(const Json& result) { return string_of(object_of(result, "experiment"), "kinematics") == "linear"; }
 
-/// The element that the models are compared with; empty: none was asked for.
+/// The element that the models are compared with; empty: none was requested.
 std::string reference_element_of(const Json& result) {
   const Json& elements = list_of(object_of(object_of(result, "experiment"), "reference"), "elements");
   return elements.empty() ? "" : elements.front().get<std::string>();

@@ -1,5 +1,4 @@
-// What the verdict says of each case, whatever its models: how sure the reference is, how far the body is deformed,
-// what failed.
+// Sentences of the verdict on each case as a whole: uncertainty of the reference, size of the deformation, failures.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,10 +14,10 @@ std::string doubt_sentence(const nlohmann::json& cases);
 /// "bunny: ν = 0.45: 12 %, 31°; ...": largest principal strain and rotation of the reference; or nothing.
 std::string deformation_line(const nlohmann::json& result);
 
-/// That linear theory does not hold for a linear case with models, and what to do; or nothing.
+/// A warning that linear theory does not apply to a linear case with models, and what to do; or nothing.
 std::string deformation_warning(const nlohmann::json& result);
 
-/// Why a case is no success, besides its expectations: no reference at some nu, no run with a result, nothing compared.
+/// Why a case failed, apart from its expectations: no reference at some nu, no run with a result, nothing compared.
 std::vector<std::string> failures_of(const nlohmann::json& result);
 
 /// Of a case without models one line for each expected or published value: value, target, error, verdict.

@@ -1,4 +1,4 @@
-// What the sentences of the verdict are made of: reading results.json, and numbers as words.
+// Helpers for the sentences of the verdict: reading results.json, and formatting numbers.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace springproof::words {
 
 using Json = nlohmann::json;
 
-// A member of an object, or what stands for it where it is missing or of another kind.
+// A member of an object, or a default value where it is missing or of another type.
 std::string string_of(const Json& object, const char* key);  ///< else ""
 std::optional<double> number_of(const Json& object, const char* key);
 const Json& list_of(const Json& object, const char* key);    ///< else []
@@ -21,7 +21,7 @@ Cells cells_of(const Json& item);                            ///< else {0, 0, 0}
 /// With a minus sign instead of a hyphen.
 std::string minus(std::string number);
 
-/// As many digits as read back; "nothing".
+/// As many digits as read back exactly; "nothing" if empty.
 std::string number_text(std::optional<double> x);
 
 /// Two significant digits, a fraction as percent, without its sign %: 0.0191 -> "1.9".

@@ -1,4 +1,4 @@
-// Pages that carry everything with them: a template with values and JSON put in.
+// Self-contained HTML pages: a template filled with values and JSON.
 #pragma once
 
 #include <map>
@@ -8,11 +8,11 @@
 
 namespace springproof {
 
-/// JSON that may stand inside <script>.
+/// JSON escaped for use inside <script>.
 std::string script_json(const nlohmann::json& json);
 
-/// Puts values[name] in place of each @name@, in one pass: what is put in is not searched again.
-/// @throws std::logic_error naming one that has no value.
+/// Puts values[name] in place of each @name@, in one pass: inserted text is not searched again.
+/// @throws std::logic_error naming a placeholder that has no value.
 std::string filled(std::string_view text, const std::map<std::string_view, std::string>& values);
 
 }  // namespace springproof

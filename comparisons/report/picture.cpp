@@ -40,7 +40,7 @@ void append(const Eigen::RowVector3d& v, std::vector<float>& out) {
   for (double value : v) out.push_back(static_cast<float>(value));
 }
 
-/// Numbers the nodes of the facets in order of appearance; `add` puts the values of one into the picture.
+/// Numbers the nodes of the facets in order of appearance; `add` appends the values of one node to the picture.
 template <class Add>
 void add_facets(const std::vector<Facet>& facets, const NodalVectors& points, Picture& p, const Add& add) {
   std::vector<int> number(static_cast<std::size_t>(points.rows()), -1);

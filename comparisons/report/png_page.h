@@ -1,4 +1,4 @@
-// PNG files out of report.html, by Chromium without a display.
+// Extracts PNG files from report.html with headless Chromium.
 #pragma once
 
 #include <filesystem>
@@ -18,13 +18,13 @@ struct PngPage {
 };
 
 /// The pictures in the page that the report becomes with the fragment "#png=N" (report/figure.js).
-/// @throws std::runtime_error if the page did not come to its end.
+/// @throws std::runtime_error if the page was not completed.
 PngPage png_page(const std::string& dom);
 
 /// Chromium on the search path (chromium, chromium-browser, google-chrome); empty: none.
 std::filesystem::path find_chromium();
 
-/// The page as Chromium holds it once its scripts have run; at most so many seconds.
+/// The DOM of the page after Chromium has run its scripts, for at most `time_limit` seconds.
 /// @throws std::runtime_error if it cannot be started, fails or takes longer.
 std::string dump_dom(const std::filesystem::path& chromium, const std::filesystem::path& page,
                      const std::string& fragment, double time_limit);

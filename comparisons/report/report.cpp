@@ -26,7 +26,8 @@ Json measures_json() {
   return all;
 }
 
-/// The results with each case's rows as one table {"columns", "values"}: half the size; and what the measures are.
+/// The results with each case's rows as one table {"columns", "values"}: half the size; and the titles and meanings of
+/// the measures.
 Json packed(Json results) {
   static const std::vector<std::string> columns = {
       "kinematics", "model",     "poisson_ratio",         "cells", "measure", "value",

@@ -20,7 +20,7 @@ struct RunKey {
   Cells cells = {0, 0, 0};
 };
 
-/// Of one model at one Poisson's ratio and resolution.
+/// Whether both are of one model at one Poisson's ratio and resolution.
 bool same_run(const RunKey& a, const RunKey& b);
 
 /// One number of one model: a line of results.csv.
@@ -47,13 +47,13 @@ struct Run : RunKey {
   int iterations = 0;
   double residual = 0;        ///< relative
   double seconds = 0;         ///< CPU time from a discrete system with its loads to the displacement
-  long unknowns = 0;          ///< displacements that are free
-  double memory_MiB = 0;      ///< largest resident memory of the solver's program up to the end of this run; in an
-                              ///< experiment with `cost` what the run added
+  long unknowns = 0;          ///< unconstrained displacement components
+  double memory_MiB = 0;      ///< peak resident set of the solver's process up to the end of this run; in an experiment
+                              ///< with `cost` the growth due to the run
   double set_up_seconds = 0;  ///< CPU time from the mesh in memory to that system
 };
 
-/// How sure the reference is of one measure: three grids, observed order, Richardson limit, GCI.
+/// Uncertainty of the reference for one measure: three grids, observed order, Richardson limit, GCI.
 struct ReferenceRecord {
   double poisson_ratio = 0;
   std::string measure;
@@ -65,14 +65,14 @@ struct ReferenceRecord {
   double uncertainty = 0;
   std::string note;                        ///< "Richardson", "not monotone: spread of the three grids", ...
   std::string element = "q2";              ///< of [reference] elements
-  bool converging = true;                  ///< false: the grids tell no order, the value is the finest
-  std::optional<double> correlation = {};  ///< of a field: how far its two differences point the same way, -1 to 1
+  bool converging = true;                  ///< false: no order can be observed, the value is that of the finest grid
+  std::optional<double> correlation = {};  ///< of a field: correlation of its two differences, -1 to 1
 };
 
 enum class Verdict { pass, fail, reference_too_coarse, no_reference, no_result };
 std::string to_string(Verdict verdict);
 
-/// One [[expect]] judged.
+/// The verdict on one [[expect]].
 struct Check : RunKey {
   std::string measure;
   std::string unit;
@@ -98,8 +98,9 @@ struct PublishedRow {
   std::string remark;
 };
 
-/// Where a model's difference from the body-fitted reference comes from, on a body of voxels.  Of a scalar measure the
-/// three parts add up to the total; of displacement_error each is the norm of its own field, over the reference's norm.
+/// Splits a model's difference from the body-fitted reference by source, on a body of voxels.  For a scalar measure the
+/// three parts add up to the total; for displacement_error each is the norm of its own field, over the reference's
+/// norm.
 struct ErrorSplit : RunKey {
   double voxel_edge = 0;  ///< [m]
   std::string measure;
@@ -127,21 +128,21 @@ using LineTensors = std::vector<double>;
 
 /// Strain and stress of one model along the case's line; of several networks, of the first.
 struct LineRecord : RunKey {
-  int first = 0, last = 0;                 ///< of the points, from 1, that deviations are the mean over
+  int first = 0, last = 0;                 ///< range of points, from 1, over which deviations are averaged
   std::vector<double> distance;            ///< of each point from the line's start [m]
   LineTensors strain;                      ///< [1]
-  LineTensors stress;                      ///< [Pa]; empty: the model has forces that are no tensions of springs
+  LineTensors stress;                      ///< [Pa]; empty: the model has forces other than spring tensions
   LineTensors exact_strain, exact_stress;  ///< Kelvin's
 };
 
-/// How far the reference of a case is deformed at one Poisson's ratio (comparisons/judge/deformation.h).
+/// Size of the deformation of a case's reference at one Poisson's ratio (comparisons/judge/deformation.h).
 struct Deformation {
   double poisson_ratio = 0;
   double principal_strain = 0;  ///< [1]
   double rotation_deg = 0;
 };
 
-/// What the runs of a case give, at one Poisson's ratio or at all.
+/// Results of the runs of a case, at one Poisson's ratio or at all of them.
 struct Part {
   std::vector<Run> runs;
   std::vector<Row> rows;
@@ -154,7 +155,7 @@ struct Part {
 
 struct CaseResult : Part {
   Experiment experiment;     ///< as read
-  Vec3 size = Vec3::Zero();  ///< of the body [m]; of a body of voxels that of the box around it
+  Vec3 size = Vec3::Zero();  ///< of the body [m]; for a body of voxels that of its bounding box
   std::vector<Cells> cells;  ///< of its lattices
   std::map<std::string, double>
       own_poisson_ratios;  ///< of the models, by label, that are solids of one Poisson's ratio only
@@ -169,7 +170,7 @@ bool is_tetrahedra(const Cells& cells);
 /// "10x10x10" or "812 tets".
 std::string cells_text(const Cells& cells, std::string_view times = "x");
 
-/// Hexahedra or tetrahedra of which there are so many.
+/// Number of hexahedra or tetrahedra.
 double cell_count(const Cells& cells);
 
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".

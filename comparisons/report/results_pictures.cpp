@@ -32,7 +32,7 @@ std::string base64_floats(const std::vector<float>& values) {
   return base64(bytes.data(), bytes.size());
 }
 
-/// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough to look at.
+/// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough for display.
 Json shorts_json(const std::vector<float>& values) {
   double largest = 0;
   for (float value : values)

@@ -29,7 +29,8 @@ double area(const NodalVectors& points, const std::vector<Triangle>& triangles) 
   return sum;
 }
 
-/// Of the nodes in each cube of a lattice the one nearest to their mean; by node, -1 for nodes of no triangle.
+/// For each node the representative of its lattice cube, the node nearest to the mean of the cube's nodes; -1 for nodes
+/// of no triangle.
 std::vector<int> representatives(const NodalVectors& points, const std::vector<Triangle>& triangles, double edge) {
   std::map<std::array<long, 3>, std::vector<int>> cubes;
   std::vector<int> of(static_cast<std::size_t>(points.rows()), -1);

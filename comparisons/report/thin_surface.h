@@ -1,4 +1,4 @@
-// Fewer triangles for a picture: nodes of one lattice cube become one.
+// Thins a surface for display: the nodes in each cube of a lattice become one.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace springproof {
 
-/// The facets (triangles: fourth number -1) as they are if they come to at most `most` triangles; else triangles
-/// between fewer of the same points [m], at most `most`: of the points in a cube of a lattice the one nearest to their
-/// mean stands for all.  What is thinner than a cube may be lost; for looking at only.
+/// The facets (triangles: fourth number -1) unchanged if they make at most `most` triangles; else at most `most`
+/// triangles between fewer of the same points [m]: of the points in a cube of a lattice the one nearest to their mean
+/// represents all.  Features thinner than a cube may be lost; for display only.
 std::vector<std::array<int, 4>> thinned(const NodalVectors& points, const std::vector<std::array<int, 4>>& facets,
                                         std::size_t most = 20000);
 

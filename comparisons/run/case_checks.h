@@ -1,4 +1,4 @@
-// What is refused of a case once its models and its body's patches are known.
+// Checks of a case that require its models or the patches of its body.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace springproof {
 
-/// @throws InputError at an expectation that has nothing to be held against.
+/// @throws InputError at an expectation that has nothing to be compared with.
 void check_expectations(const Experiment& experiment);
 
-/// @throws InputError at a model that does not hold under the case's kinematics; `models` as they stand in the case.
+/// @throws InputError at a model that does not hold under the case's kinematics; `models` in the order of the case.
 void check_kinematics(const Experiment& experiment, const std::vector<ModelParameters>& models);
 
 /// @throws InputError at an expectation or a published value of the mean displacement of a patch that the body lacks.

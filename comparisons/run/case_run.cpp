@@ -26,7 +26,7 @@
 namespace springproof {
 namespace {
 
-/// The finite element answer at the nodes of one lattice.
+/// The finite element reference at the nodes of one lattice.
 struct Reference {
   ReferenceField field;
   std::map<std::string, ReferenceValue> scalars;  ///< the same for every lattice
@@ -39,8 +39,8 @@ struct PartRun {
   const std::filesystem::path& vtu_folder;
   Part part;
 
-  ReferenceGrids grids;                             ///< no elements: none to be had
-  std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: none to be had
+  ReferenceGrids grids;                             ///< no elements: no reference
+  std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: no reference
   std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
 
   const Experiment& experiment() const { return prepared.experiment; }
@@ -127,7 +127,7 @@ void build_reference(PartRun& run) {
   }
 }
 
-/// How far the reference is deformed, on the finest lattice.
+/// Size of the deformation of the reference, on the finest lattice.
 void measure_deformation(PartRun& run) {
   const std::size_t finest = finest_lattice(run.prepared);
   if (!run.reference[finest]) return;
@@ -209,7 +209,7 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
     run.part.rows.push_back(row);
   }
   if (!reference) return;
-  // What the reference may be off, node by node, measured by the same ruler.
+  // The nodal uncertainty of the reference, expressed in the same measures.
   NodalVectors doubt = reference->field.displacement;
   doubt.col(0) += reference->field.nodal_uncertainty;
   const auto of_sample = [&](const NodalVectors& field, const std::map<std::string, double>& values) {

@@ -1,4 +1,4 @@
-// One case: every model and the reference, at every Poisson's ratio, measured by the same ruler.
+// Runs one case: every model and the reference, at one Poisson's ratio, measured by the same code.
 #pragma once
 
 #include <filesystem>

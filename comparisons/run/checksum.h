@@ -1,4 +1,4 @@
-// What a file's contents come to.
+// Checksum of a file's contents.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace springproof {
 
-/// XXH3 with 128 bits, as 32 hexadecimal digits: finds damage and change, not malice.
+/// XXH3 with 128 bits, as 32 hexadecimal digits: detects damage and changes, not tampering.
 std::string checksum(std::string_view bytes);
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-// Where case files lie and what they are called.
+// Finds case files by path or built-in name.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace springproof {
 
-/// Case files named by paths: files, folders (the *.toml right in them), or folders of the built-in experiments
+/// Case files named by paths: files, folders (the *.toml directly in them), or folders of the built-in experiments
 /// ("golec_2019", "golec_2019/compression").
-/// @throws InputError if a name leads nowhere.
+/// @throws InputError if there is no case of a name.
 std::vector<std::filesystem::path> find_cases(const std::vector<std::string>& names);
 
 /// "golec_2019/compression" for a built-in case, the file's stem for others.

@@ -1,15 +1,15 @@
-// One comparison at a time in a folder.
+// File lock that allows one comparison at a time in a folder.
 #pragma once
 
 #include <filesystem>
 
 namespace springproof {
 
-/// Holds a folder as long as it lives; the system lets go of it when the process ends, however it ends, and nothing is
-/// left behind.
+/// Locks a folder during its lifetime; the system releases the lock when the process ends, however it ends, and no file
+/// is left behind.
 class FolderLock {
  public:
-  /// @throws InputError if another process holds the folder.
+  /// @throws InputError if another process holds the lock.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

@@ -33,7 +33,7 @@ void add_network(const Network& network, std::map<std::string, double>& out) {
   out["network.length_deviation"] = s.length_deviation;
 }
 
-/// The papers' moduli of a block stretched along x; lengths of the local fields as the network's spacing asks.
+/// The papers' moduli of a block stretched along x; lengths of the local fields follow from the network's spacing.
 void add_moduli(const PreparedCase& prepared, const MassSpringModel& model, const NodalVectors& u,
                 std::map<std::string, double>& out) {
   const StretchedBlock block{Vec3::Zero(), prepared.size, *elongation_along_x(prepared.experiment)};
@@ -48,7 +48,7 @@ void add_moduli(const PreparedCase& prepared, const MassSpringModel& model, cons
   out["moduli.affine_youngs_modulus"] = 2.5 * affine_shear_modulus(model.network);
 }
 
-/// A network with what was found.
+/// A network with its solution.
 struct Solved {
   EmbeddedModel built;
   BoundaryConditions conditions;
@@ -79,11 +79,11 @@ Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const
   return s;
 }
 
-/// With times worth comparing, and the memory of this run alone.
+/// Solves with times that can be compared, and the memory of this run alone.
 Solved solve_and_count(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material) {
   if (&lattice == &prepared.lattices.front())
-    solve_network(prepared, lattice, parameters, material);  // what is kept from run to run is not counted
+    solve_network(prepared, lattice, parameters, material);  // memory retained between runs is not counted
   const MemoryGrowth memory;
   Solved s = solve_network(prepared, lattice, parameters, material);
   s.state.memory_MiB = memory.most_MiB();
@@ -135,7 +135,7 @@ std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice
     } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli
       samples.emplace_back();
       samples.back().state.message = e.what();
-    } catch (const std::invalid_argument& e) {  // it jams, with this seed
+    } catch (const std::invalid_argument& e) {  // node placement jams with this seed
       samples.emplace_back();
       samples.back().state.message = e.what();
     }

@@ -13,7 +13,7 @@
 
 namespace springproof {
 
-/// What one network gives.
+/// Results of one network.
 struct ModelSample {
   Equilibrium state;
   RunTimes times;

@@ -30,14 +30,14 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines
 
 namespace {
 
-// The file: this line with the checksum of the rest behind it, the rest as CBOR.
+// File format: this line with the checksum of the rest appended, then the rest as CBOR.
 constexpr std::string_view heading = "springproof part 1 ";
 
 [[noreturn]] void damaged(const std::filesystem::path& file) {
   throw DamagedPart(fmt::format("{} is damaged", file.string()));
 }
 
-/// What follows a heading that is true of it.
+/// The body after the heading, if the heading's checksum matches it.
 std::string_view checked(const std::filesystem::path& file, std::string_view bytes) {
   const std::size_t end = bytes.find('\n');
   if (end == std::string_view::npos || !bytes.starts_with(heading)) damaged(file);

@@ -1,4 +1,4 @@
-// A finished part on disk, so that an interrupted comparison can go on.
+// Serialises finished parts to disk, so that an interrupted comparison can be resumed.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace springproof {
 
-/// `stamp` says what the part was computed from; a part is only taken back with the same stamp.
+/// `stamp` identifies the inputs of the part; a part is only loaded with the same stamp.
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part);
 
-/// A part's file is not as it was written.
+/// Thrown if a part's file is damaged.
 class DamagedPart : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -20,11 +20,11 @@
 namespace springproof {
 namespace {
 
-// Elements of the finest reference grid (Q2): what a few seconds of one core can solve.
+// Elements of the finest reference grid (Q2): what one core can solve in a few seconds.
 constexpr double linear_reference_elements = 4096;
 constexpr double finite_reference_elements = 1000;
 
-// Cells of one lattice: what its matrices can hold in a workstation's memory.
+// Largest number of cells of a lattice whose matrices fit into a workstation's memory.
 constexpr double largest_lattice = 4e6;
 
 /// Near-cubic elements, counts divisible by four so that the grid can be halved twice.
@@ -38,7 +38,7 @@ Cells reference_cells(const Experiment& e) {
   return cells;
 }
 
-/// @throws InputError at the model's place in the case, if its options lead to no network.
+/// @throws InputError at the model's location in the case, if its options yield no network.
 EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& parameters, const Mesh& mesh,
                            const IsotropicMaterial& material, const Region* region) try {
   return build_embedded(parameters, mesh, material, region);
@@ -46,7 +46,7 @@ EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& par
   throw InputError(choice.where, fmt::format("compare.models: {}", e.what()));
 }
 
-/// Builds the model and puts the loads on it, for what may be wrong with either.
+/// Builds the model and applies the loads, to find errors in either.
 void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number) try {
   const Experiment& experiment = prepared.experiment;
   const ModelParameters& parameters = prepared.models[number];
@@ -60,10 +60,10 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
 } catch (const InputError&) {
   throw;
 } catch (const std::runtime_error&) {
-  // No network with this material's moduli: the run will say so.
+  // No network with this material's moduli: the run will report it.
 }
 
-/// The loads that a lattice can be tried with before the work starts: all but the body forces of exact fields.
+/// The loads that can be checked on a lattice before the work starts: all but the body forces of exact fields.
 std::vector<Load> lattice_loads(const PreparedCase& prepared) {
   std::vector<Load> loads;
   for (const Load& load : prepared.loads)
@@ -71,7 +71,7 @@ std::vector<Load> lattice_loads(const PreparedCase& prepared) {
   return loads;
 }
 
-/// @throws InputError for a lattice that no workstation holds.
+/// @throws InputError for a lattice too large for a workstation's memory.
 void check_fineness(const Body& body, const Cells& c) {
   if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)
     throw InputError(
@@ -88,7 +88,7 @@ void prepare_blocks(PreparedCase& prepared) {
     add_lattice({cells, std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells))}, prepared);
 }
 
-/// The patches of the body itself, where their mean displacement is measured.
+/// Samples the patches of the body itself, if their mean displacement is measured.
 void sample_patches(PreparedCase& prepared) {
   if (!wanted("mean_displacement", prepared.experiment.measures)) return;
   const bool voxels = prepared.experiment.body.is_voxels();
@@ -96,7 +96,7 @@ void sample_patches(PreparedCase& prepared) {
       samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
 }
 
-/// Tries what the case asks for on one lattice.
+/// Checks patches, loads, models and measures of the case on one lattice.
 void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   const Experiment& e = prepared.experiment;
   const Mesh& mesh = *lattice.mesh;

@@ -16,7 +16,7 @@
 namespace springproof {
 namespace {
 
-/// All points at which the displacement is wanted: the nodes of every lattice, then the measured points.
+/// All points at which the displacement is requested: the nodes of every lattice, then the measured points.
 NodalVectors sample_points(const PreparedCase& prepared) {
   const NodalVectors measured = measured_points(prepared);
   NodalVectors points(prepared.nodes() + measured.rows(), 3);
@@ -26,7 +26,7 @@ NodalVectors sample_points(const PreparedCase& prepared) {
   return points;
 }
 
-/// A direction of one cell (plane strain) stays so.
+/// A direction of one cell (plane strain) is not divided.
 Cells divided(const Cells& cells, int divisor) {
   Cells coarse;
   for (int d = 0; d < 3; ++d) coarse[d] = std::max(1, cells[d] / divisor);
@@ -39,7 +39,7 @@ void add_reference_grids(const PreparedCase& prepared, const std::string& elemen
   for (int divisor : {4, 2, 1}) request.grids.push_back({divided(prepared.reference_cells, divisor), element, grading});
 }
 
-/// What the program that dies of a request leaves of it.
+/// Solutions without a result, for a request on which the program fails.
 std::vector<fem::Solution> without_answer(const fem::Request& request, const std::string& why) {
   std::vector<fem::Solution> none(request.grids.size());
   for (std::size_t i = 0; i < none.size(); ++i) {
@@ -49,8 +49,8 @@ std::vector<fem::Solution> without_answer(const fem::Request& request, const std
   return none;
 }
 
-/// Solves on every grid; if the program dies, once more for each element apart.
-/// @throws std::runtime_error if no element has an answer.
+/// Solves on every grid; if the program fails, once more for each element separately.
+/// @throws std::runtime_error if no element has a result.
 std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
   return fem::solve(request);
 } catch (const std::runtime_error&) {
@@ -76,7 +76,7 @@ std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
   return all;
 }
 
-/// Elements that fail on graded grids, whose thin cells turn inside out first, are solved on three uniform ones.
+/// Elements that fail on graded grids, whose thin cells are inverted first, are solved on three uniform ones.
 void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<ElementGrids>& elements) {
   if (prepared.experiment.reference.grading == 1) return;
   for (ElementGrids& e : elements) {
@@ -97,8 +97,8 @@ void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<E
   }
 }
 
-/// What values of a measure are measured by: the largest displacement, the strain, the largest force (also of those
-/// that balance torques, and times the body's size for torques), or the largest stress.
+/// Scale of the values of a measure: the largest displacement, the strain, the largest force (also of those that
+/// balance torques, and times the body's size for torques), or the largest stress.
 double scale_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
                 double largest_displacement) {
   if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return largest_displacement;

@@ -1,4 +1,4 @@
-// The finite element reference on its grids: what is asked for, and what three grids of one element say.
+// The finite element reference on its grids: requests, and limits from three grids of one element.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace springproof {
 struct ElementGrids {
   std::string element;
   std::vector<fem::Solution> grids;
-  std::string note = {};  ///< why these are not the grids asked for
+  std::string note = {};  ///< why these are not the requested grids
 };
 
 /// The note of a limit, and that of the grids that it comes from.
@@ -25,17 +25,18 @@ std::string with_note(const ElementGrids& e, const std::string& note);
 bool complete(const ElementGrids& e);
 
 struct ReferenceGrids {
-  std::vector<ElementGrids> elements;  ///< in the order of [reference] elements; empty: the program gave no answer
+  std::vector<ElementGrids> elements;             ///< in the order of [reference] elements; empty: the program failed
   std::vector<std::vector<fem::Solution>> peers;  ///< per lattice the elements of [compare], if there are models; none
                                                   ///< where that would be too many cubes
-  std::vector<std::vector<fem::Solution>> refined;  ///< of a body of voxels, per lattice: q2 on its cubes, and on these
-                                                    ///< cut into eight; none where that would be too many
-  std::string failure;                              ///< why there is no answer
+  std::vector<std::vector<fem::Solution>> refined;  ///< for a body of voxels, per lattice: q2 on its cubes, and on
+                                                    ///< these cut into eight; none where that would be too many
+  std::string failure;                              ///< why there is no result
 };
 
-/// Of a block (of a body of voxels: solve_body_grids).  Displacements are asked for at the nodes of every lattice and
-/// at the measured points, stresses at the probes if the case measures them. An element without a result on some graded
-/// grid is solved on uniform ones; an element that the program dies of is alone in that.
+/// Solves on the grids of a block (for a body of voxels: solve_body_grids).  Displacements are requested at the nodes
+/// of every lattice and at the measured points, stresses at the probes if the case measures them. An element without a
+/// result on some graded grid is solved on uniform ones; an element on which the program fails does not affect the
+/// others.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
 Field sampled_field(const Lattice& lattice, const fem::Solution& s);
@@ -46,10 +47,10 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
 /// The measures of a field that have a value of their own; `u` is the displacement at the measured points.
 std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u);
 
-/// False for the force or torque on a patch that shares held nodes with another: no reference can be given.
+/// False for the force or torque on a patch that shares constrained nodes with another: no reference can be given.
 bool comparable(const PreparedCase& prepared, const std::string& measure);
 
-/// The supports that are moved and whose reactions are their own.
+/// The moved supports that share no constrained nodes with another.
 std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared);
 
 /// Largest relative error of the force or torque on a moved support; nothing where none is moved, or none can be
@@ -60,7 +61,7 @@ std::optional<double> reaction_error(const PreparedCase& prepared, const std::ma
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
 
-/// By which the cell sizes of the three grids fall, as the number of cells grows; layers of one cell stay so.
+/// Refinement ratios of the three grids, from their numbers of cells; directions of one cell do not count.
 GridRatios ratios_of(const ElementGrids& e);
 
 /// Adds a relative uncertainty.
@@ -69,8 +70,8 @@ void widen(double spread, ReferenceField& field);
 /// Limit and uncertainty of every scalar measure.
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e);
 
-/// What the report shows of one element: the measures wanted, on each grid, with their limits; with an exact field also
-/// displacement_error and its observed order.
+/// The records of one element for the report: the requested measures on each grid, with their limits; with an exact
+/// field also displacement_error and its observed order.
 std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const IsotropicMaterial& material,
                                         const ElementGrids& e);
 

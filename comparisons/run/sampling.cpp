@@ -39,7 +39,7 @@ NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lat
                                 const NodalVectors& displacement) {
   const Experiment& e = prepared.experiment;
   const Mesh& mesh = *lattice.mesh;
-  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // for a probe outside
+  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // throws for a probe outside
   const NodalVectors points = measured_points(prepared);
   const Locator locator(mesh);
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);

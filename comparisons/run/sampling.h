@@ -1,4 +1,4 @@
-// Where displacements are asked for: at the nodes of the lattices, then at the measured points.
+// The points at which displacements are requested: the nodes of the lattices, then the measured points.
 #pragma once
 
 #include "comparisons/run/prepared_case.h"
@@ -8,7 +8,7 @@ namespace springproof {
 /// Rest positions of the probes, n x 3 [m].
 NodalVectors probe_points(const Experiment& experiment);
 
-/// Those and after them the points of the patches whose mean displacement is measured.
+/// The probes, then the points of the patches whose mean displacement is measured.
 NodalVectors measured_points(const PreparedCase& prepared);
 
 /// The part of Solution::displacement that belongs to the nodes of one lattice.
@@ -18,7 +18,7 @@ NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples);
 NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& at_body_points);
 
 /// Displacement at the measured points from that of a lattice's nodes.  A point of a patch, and in a body of voxels a
-/// probe, may lie beyond the cells: it takes what the nearest one continues to.
+/// probe, may lie outside the cells: the nearest one is extrapolated.
 /// @throws InputError naming a probe outside the body.
 NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
 

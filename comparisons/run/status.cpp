@@ -20,7 +20,7 @@ constexpr const char clear_line[] = "\r\x1b[K";
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Columns of the terminal; 80 if it does not tell.
+/// Columns of the terminal; 80 if unknown.
 std::size_t terminal_width() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
@@ -50,7 +50,7 @@ std::string left_words(std::optional<double> left) {
   return left ? fmt::format(", about {} left", time_words(*left)) : "";
 }
 
-/// Whoever dies of a signal leaves the terminal clean.
+/// Clears the live line before the process is killed by a signal.
 void clear_and_die(int signal) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, clear_line, sizeof clear_line - 1);
   std::signal(signal, SIG_DFL);

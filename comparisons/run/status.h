@@ -1,4 +1,4 @@
-// What runs at the moment, on standard error: on a terminal one line, rewritten in place; elsewhere a line per long
+// Shows the running work on standard error: on a terminal one line, rewritten in place; elsewhere a line per long
 // phase.
 #pragma once
 
@@ -15,10 +15,10 @@
 
 namespace springproof {
 
-/// "12 s", "3 min", "1 h 20 min": as exact as it is worth.
+/// "12 s", "3 min", "1 h 20 min": suitably rounded.
 std::string time_words(double seconds);
 
-/// Something under way.
+/// A running piece of work.
 struct Activity {
   std::string title;          ///< "[3/8] golec_2019/bending  nu0.3"
   std::string phase, detail;  ///< as in problem/system/progress.h
@@ -26,23 +26,23 @@ struct Activity {
   double phase_seconds = 0;   ///< since its phase began
 };
 
-/// All of it in at most `width` characters: the first (the oldest) with its phase, the time left, how many there are
-/// besides.
+/// The running work in at most `width` characters: the first (the oldest) with its phase, the time left, the number of
+/// others.
 std::string live_line(const std::vector<Activity>& running, std::optional<double> left, std::size_t width);
 
 /// "  golec_2019/bending  nu0.3: finite elements 2 of 5, ... (10 s so far, about 3 min left)".
 std::string phase_line(const Activity& activity, std::optional<double> left);
 
-/// Shows what the scopes of Working are at, from as many threads as there are; also what is printed through it.
+/// Shows the progress of all Working scopes, from any number of threads, and the lines printed through it.
 class Status {
  public:
   /// `left`: seconds to the end of everything, if known.  Quiet: shows nothing but what is printed.
   explicit Status(bool quiet = false, std::function<std::optional<double>()> left = {});
-  ~Status();  ///< the live line is gone, also after an interrupt
+  ~Status();  ///< removes the live line, also after an interrupt
   Status(const Status&) = delete;
   Status& operator=(const Status&) = delete;
 
-  /// A line that stays.
+  /// Prints a permanent line.
   void print(const std::string& line);
 
   /// This thread's work, to the end of the scope.

@@ -57,7 +57,7 @@ std::string key_of(const fs::path& file) {
   return file_name(key);
 }
 
-/// Everything that a case is computed from.
+/// Checksum of all files from which a case is computed.
 std::string checksum_of(const PreparedCase& p) {
   std::string all = checksum(p.experiment.text);
   for (const fs::path& file : files_behind(p.geo)) all += file.filename().string() + checksum(text_of_file(file));
@@ -111,7 +111,7 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
   return tasks;
 }
 
-/// Leaves a case the Poisson's ratios that are wanted, and what is expected there or everywhere.
+/// Restricts a case to the requested Poisson's ratios, and to the expectations at these or at every one.
 /// @throws InputError if it has none of them.
 Experiment only(const std::vector<double>& wanted, Experiment e) {
   if (wanted.empty()) return e;
@@ -128,8 +128,8 @@ Experiment only(const std::vector<double>& wanted, Experiment e) {
   return e;
 }
 
-/// Multiplies the cells of the reference's grids along each direction, but for layers of one cell.
-/// @throws InputError if the case leaves its reference to the program.
+/// Multiplies the cells of the reference's grids along each direction, except in directions of one cell.
+/// @throws InputError if the case leaves the choice of its reference grids to the program.
 Experiment finer(int times, Experiment e) {
   if (times == 1) return e;
   if (e.reference.cells[0] == 0 && e.reference.edge == 0)
@@ -141,7 +141,7 @@ Experiment finer(int times, Experiment e) {
   return e;
 }
 
-/// Those before an interrupt, which ends the mesher too.
+/// The cases prepared before an interrupt, which also ends the mesher.
 std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
   Status status(options.quiet);
@@ -171,7 +171,7 @@ std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
   return order;
 }
 
-/// Shows the parts under way and prints those finished, with the time left; safe from several workers.
+/// Shows the running parts and prints those finished, with the time left; thread-safe.
 class Progress {
  public:
   Progress(const std::vector<Task>& tasks, int jobs, bool quiet)
@@ -185,7 +185,7 @@ class Progress {
           fmt::format("about {} for {} part{}, {} at once", time_words(*all), parts, parts == 1 ? "" : "s", at_once));
   }
 
-  /// A task for the length of the scope.
+  /// Marks a task as running until the end of the scope.
   auto working(std::size_t task) {
     time_left_.started(task, now());
     return Status::Working(status_, fmt::format("[{}/{}] {}", task + 1, tasks_.size(), tasks_[task].title));
@@ -214,7 +214,7 @@ class Progress {
   const bool quiet_;
 };
 
-/// What was finished before, unless its file has changed since.
+/// The part saved by an earlier run, unless its stamp differs or its file is damaged.
 std::optional<Part> kept_part(const Task& task) try {
   return load_part(task.file, task.stamp);
 } catch (const DamagedPart& e) {
@@ -335,7 +335,7 @@ bool write_results(const std::vector<CaseResult>& results, const fs::path& out) 
   return success(h);
 }
 
-/// @throws InputError if two cases would write the same files, or one no files.
+/// @throws InputError if two cases would write the same files, or one could write none.
 void check_names(const std::vector<fs::path>& cases) {
   for (const fs::path& file : cases)
     if (key_of(file).size() > longest_file_name)

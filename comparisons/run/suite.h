@@ -1,4 +1,4 @@
-// Many cases: scheduled over a few workers, kept when interrupted, written out.
+// Runs many cases on several worker threads, keeps finished parts when interrupted, and writes the results.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,13 @@ struct SuiteOptions {
   int jobs = 0;                        ///< parts at once; 0 = one per processor core
   bool resume = false;                 ///< take finished parts from `out`
   bool vtu = false;                    ///< write a VTU per run
-  bool quiet = false;                  ///< say nothing of what is under way
+  bool quiet = false;                  ///< show no progress
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
   int finer = 1;                       ///< reference grids with so many times the cells along each direction
 };
 
 /// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out.
-/// What is under way goes to stderr (comparisons/run/status.h), before a run of more than a minute also how long it may
-/// take.
+/// Progress goes to stderr (comparisons/run/status.h), before a run of more than a minute also its estimated duration.
 /// @return 0: every expectation holds; 1: one does not, or cannot be judged, or a case had no reference, no result or
 /// nothing to compare; 130: interrupted (finished parts are kept).
 /// @throws InputError for unusable input or output folder, before anything is computed.

@@ -7,11 +7,11 @@
 namespace springproof {
 namespace {
 
-// Seconds of one core per unknown.  Matrices: of tetrahedra, and of cubes that come from no coarser ones.
+// Seconds of one core per unknown.  Assembled matrices: tetrahedra, and cubes without a multigrid hierarchy.
 constexpr double matrix_free = 5e-6, with_matrices = 6e-5, springs = 5e-6;
-constexpr double with_pressures = 4, pressures_above = 0.4;  // times as much above this Poisson's ratio
+constexpr double with_pressures = 4, pressures_above = 0.4;  // factor above this Poisson's ratio
 constexpr double start_up = 0.3;                             // of the programs
-constexpr double large_strain = 25;  // linear systems that its load steps and Newton steps come to
+constexpr double large_strain = 25;  // number of linear systems in all load steps and Newton steps
 
 double unknowns(const Cells& cells, int degree) {
   double nodes = 1;
@@ -98,7 +98,7 @@ void TimeLeft::kept(std::size_t part) {
   parts_[part] = {0, 0.0, 0.0};
 }
 
-/// By how much longer parts take than expected.
+/// Ratio of actual to expected time.
 double TimeLeft::rate(double now) const {
   double took = 0, expected = 0, slowest = 0;
   for (const Part& p : parts_) {

@@ -1,4 +1,4 @@
-// How long a comparison takes: guessed from its unknowns, corrected by the parts that are done.
+// Estimates how long a comparison takes, from its numbers of unknowns and the times of finished parts.
 #pragma once
 
 #include <mutex>
@@ -9,20 +9,20 @@
 
 namespace springproof {
 
-/// What a part takes on one core [s], from the unknowns of its finite elements and springs; a guess.
+/// Rough estimate of a part's time on one core [s], from the unknowns of its finite elements and springs.
 double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& material);
 
 /// Parts of a run, by number; times are seconds since it began.  Safe from several threads.
 class TimeLeft {
  public:
-  /// What each part is expected to take, and how many run at once.
+  /// The expected time of each part [s], and how many run at once.
   TimeLeft(std::vector<double> expected, int jobs);
 
   void started(std::size_t part, double now);
   void finished(std::size_t part, double now);
-  void kept(std::size_t part);  ///< was there already
+  void kept(std::size_t part);  ///< loaded from an earlier run
 
-  /// At the rate of the parts that are done, and no faster than those under way; empty: nothing is known.
+  /// Seconds left at the rate of the finished parts, and no faster than the running ones; empty: unknown.
   std::optional<double> at(double now) const;
 
  private:

@@ -21,9 +21,9 @@
 namespace springproof {
 namespace {
 
-// Of the finest mesh: quadratic ones are 100,000 unknowns, some five seconds of one core.
+// Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.
 constexpr int finest_tetrahedra = 20000;
-constexpr double least_spread = 1e-6;  // of an area or a volume over the meshes that is said
+constexpr double least_spread = 1e-6;  // of an area or a volume between the meshes, above which it is reported
 constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
 
 MeshRequest body_request(const PreparedCase& prepared) {
@@ -34,7 +34,7 @@ MeshRequest body_request(const PreparedCase& prepared) {
   return request;
 }
 
-/// For files in millimetres that are taken as metres; empty: there is no reason to think so.
+/// Hint for files in millimetres that are read as metres; empty if the size is plausible.
 std::string scale_hint(const Mesh& mesh, const Body& body) {
   constexpr double large = 10;  // [m]
   const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
@@ -72,7 +72,7 @@ std::vector<double> voxel_edges(const Body& body, double volume) {
   return edges;
 }
 
-/// @throws std::invalid_argument, before the work, if the body holds more cubes than a lattice may have.
+/// @throws std::invalid_argument, before the work, if more cubes fill the body than a lattice may have.
 void check_counts(const std::vector<double>& edges, double volume) {
   constexpr double most_cubes = 4e6;
   for (const double edge : edges)
@@ -94,7 +94,7 @@ void compare_volumes(double cubes, double edge, double body, std::vector<std::st
   if (std::abs(share - 1) > 0.1) notes.push_back(says + ": its thin parts are not resolved");
 }
 
-/// As fine as the lattices, for elements on tetrahedra beside the models.
+/// Tetrahedral meshes as fine as the lattices, for elements compared with the models.
 void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   if (elements_of(e, 'p').empty()) return;
@@ -122,7 +122,7 @@ void cut_lattices(PreparedCase& prepared) {
   }
 }
 
-/// Of a patch by a rule its share of each facet, cut through where the border runs; of another its facets.
+/// The facets of a patch: for a patch by a rule its part of each facet, cut at the border; for others whole facets.
 std::vector<FacetPart> parts_of(const Experiment& e, const Mesh& mesh, const std::string& name) {
   const auto rule =
       std::find_if(e.patches.begin(), e.patches.end(), [&](const PatchRule& r) { return r.name == name; });
@@ -180,8 +180,7 @@ void set_wrenches(PreparedCase& prepared) {
   }
 }
 
-/// How far a quantity of the finest mesh is from that of the next, relative; or, if it does not fall in order, from
-/// those of all.
+/// Relative difference of a quantity between the finest mesh and the next; without `in_order` the largest to any mesh.
 double spread(const PreparedCase& prepared, bool in_order, const std::function<double(const Mesh&)>& quantity) {
   const auto& meshes = prepared.tetrahedra;
   const double fine = quantity(*meshes.back());
@@ -191,14 +190,14 @@ double spread(const PreparedCase& prepared, bool in_order, const std::function<d
   return most;
 }
 
-/// True if meshes of the body hold it by other facets each.
+/// True if the patch consists of whole facets by their normals, so that its border differs from mesh to mesh.
 bool has_ragged_border(const Experiment& e, const std::string& patch) {
   return std::any_of(e.patches.begin(), e.patches.end(),
                      [&](const PatchRule& r) { return r.name == patch && r.facing; });
 }
 
-/// What loads that go with an area or a volume leave open, as every mesh bears those of the finest; and supports with
-/// ragged borders.
+/// Sets the uncertainty of loads proportional to an area or a volume, as every mesh carries the resultants of the
+/// finest; and of supports with ragged borders.
 void set_load_spread(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (const Load& load : e.loads) {
@@ -217,7 +216,8 @@ void set_load_spread(PreparedCase& prepared) {
   }
 }
 
-/// Lattice nodes in the body are asked for themselves; those outside at the nearest place and behind it.
+/// Requests displacements at lattice nodes in the body; for those outside at the nearest surface point and at the
+/// mirror image.
 void place_samples(PreparedCase& prepared) {
   const Mesh& body = *prepared.tetrahedra.back();
   const std::vector<OuterFacet> facets = outer_facets(body);

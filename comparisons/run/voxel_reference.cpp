@@ -50,8 +50,8 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   return solutions;
 }
 
-/// On the cubes of one lattice: these elements, and for the parts of the error q2, and q2 on cubes cut into eight, if
-/// they are not too many.
+/// Solves on the cubes of one lattice: with these elements, and for the error split with q2, and q2 on cubes cut into
+/// eight, if they are not too many.
 std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Lattice& lattice,
                                        const IsotropicMaterial& material, const std::vector<std::string>& elements) {
   const Experiment& e = prepared.experiment;
@@ -80,7 +80,7 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Latti
   return solutions;
 }
 
-/// Of reaction_error; nothing where no support is moved.
+/// The split of reaction_error; nothing where no support is moved.
 std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const VoxelLimit& voxels,
                                              const BodyLimit& body,
                                              const std::vector<std::map<std::string, double>>& samples,

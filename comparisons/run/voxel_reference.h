@@ -1,4 +1,4 @@
-// The finite elements of a body of voxels: body-fitted tetrahedra, and hexahedra on the lattices' own cubes.
+// Finite element solutions for a body of voxels: body-fitted tetrahedra, and hexahedra on the lattices' own cubes.
 #pragma once
 
 #include <map>
@@ -9,14 +9,15 @@
 
 namespace springproof {
 
-// Cubes of a lattice up to which they are also cut into eight, and up to which finite elements run on them at all: some
+// Largest numbers of cubes of a lattice that are also cut into eight, and on which finite elements run at all: some
 // million unknowns of elements with 27 and with 8 nodes.
 inline constexpr std::size_t most_refined_cubes = 8000, most_cubes = 200000;
 
-/// What solve_grids is for such a body.
+/// The counterpart of solve_grids for such a body.
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
 
-/// What finite elements on the cubes of one lattice say: eight nodes as the lattice has them, and refined to the limit.
+/// Finite element results on the cubes of one lattice: of eight-node elements, and extrapolated to the limit of
+/// refinement.
 struct VoxelLimit {
   NodalVectors peer, limit;           ///< displacement at the lattice's nodes [m]
   Eigen::VectorXd nodal_uncertainty;  ///< of the limit [m]
@@ -33,7 +34,7 @@ struct BodyLimit {
   const std::map<std::string, ReferenceValue>& scalars;
 };
 
-/// Where the difference of one model from the body-fitted limit comes from; `u` and `values` one per sample.
+/// Splits the difference of one model from the body-fitted limit by source; `u` and `values` one per sample.
 std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice& lattice, const RunKey& key,
                                     const VoxelLimit& voxels, const BodyLimit& body, const std::vector<NodalVectors>& u,
                                     const std::vector<std::map<std::string, double>>& values);

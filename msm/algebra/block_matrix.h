@@ -33,7 +33,7 @@ class BlockMatrix {
   /// Diagonal entries, 3 n.
   Eigen::VectorXd diagonal() const;
 
-  /// The entries of the unknowns with number[i] >= 0, renumbered by it; lower triangle only.
+  /// Lower triangle of the submatrix of the unknowns with number[i] >= 0, renumbered by `number`.
   Eigen::SparseMatrix<double> lower_triangle(const std::vector<int>& number, int unknowns) const;
 
  private:

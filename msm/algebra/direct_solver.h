@@ -1,4 +1,4 @@
-// Sparse Cholesky of the free unknowns of a matrix.
+// Sparse Cholesky factorisation of a matrix on its free unknowns.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -6,15 +6,14 @@
 
 namespace springproof {
 
-/// Free unknowns of a network of springs up to which a factorisation is faster than an iteration.
+/// Number of free unknowns of a spring network up to which a factorisation is faster than an iterative solver.
 inline constexpr long cholesky_limit = 3000;
 
 class DirectSolver {
  public:
-  /// Of a BlockMatrix or a symmetric Tangent.
-  /// @return false if the matrix is not positive definite: a pivot below `round_off` of the largest is a mechanism, and
-  /// what
-  ///   it would give no equilibrium.
+  /// Factors a BlockMatrix or a symmetric Tangent.
+  /// @return false if the matrix is not positive definite: a pivot below `round_off` of the largest indicates a
+  ///   mechanism, and the solution would be no equilibrium.
   template <class Matrix>
   bool factor(const Matrix& A, const std::vector<char>& fixed, double round_off = 1e-14) {
     number_free(fixed);

@@ -1,4 +1,4 @@
-// Krylov iterations on plain vectors.
+// Krylov solvers (conjugate gradients, GMRES) for matrix-free operators.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,12 +15,12 @@ struct KrylovResult {
   bool negative_curvature = false;  ///< CG met p . A p <= 0: A is not positive definite
 };
 
-/// Preconditioned conjugate gradients from x; A and the preconditioner symmetric positive definite.
+/// Preconditioned conjugate gradients starting from x; A and the preconditioner are symmetric positive definite.
 KrylovResult conjugate_gradients(const Operator& A, const Operator& precondition, const Eigen::VectorXd& b,
                                  double tolerance, int max_iterations, Eigen::VectorXd& x);
 
-/// Right-preconditioned restarted GMRES from x.  It is flexible: the preconditioner may be inexact, in single precision
-/// or itself an iteration; what it gives is kept, rounded to single precision.
+/// Flexible right-preconditioned restarted GMRES starting from x: the preconditioner may be inexact, in single
+/// precision or itself an iteration; the preconditioned vectors are stored in single precision.
 KrylovResult gmres(const Operator& A, const Operator& precondition, const Eigen::VectorXd& b, double tolerance,
                    int max_iterations, int restart, Eigen::VectorXd& x);
 

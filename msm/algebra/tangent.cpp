@@ -3,7 +3,7 @@
 namespace springproof {
 namespace {
 
-/// The columns with number[i] >= 0, renumbered by it.
+/// The columns i with number[i] >= 0, renumbered by `number`.
 NodalForms columns(const NodalForms& forms, const std::vector<int>& number, int unknowns) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(static_cast<std::size_t>(forms.nonZeros()));
@@ -25,7 +25,7 @@ void Tangent::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
 std::vector<Eigen::Matrix3d> Tangent::node_blocks() const {
   std::vector<Eigen::Matrix3d> blocks(local.nodes());
   for (int n = 0; n < local.nodes(); ++n) blocks[n] = local.at(n, n);
-  // Rows hold whole nodes, three columns each, and the two forms share their pattern.
+  // Rows store all three columns of each node, and the two matrices share their sparsity pattern.
   for (int n = 0; n < inflow.outerSize(); ++n)
     for (NodalForms::InnerIterator in(inflow, n), out(outflow, n); in; ++in, ++in, ++in, ++out, ++out, ++out) {
       const Eigen::Map<const Eigen::Vector3d> a(&in.value()), c(&out.value());

@@ -1,4 +1,4 @@
-// The stiffness of a model about a state: blocks between joined nodes, and what passes through a node's sum.
+// Tangent stiffness of a model at a given state: 3x3 blocks of coupled nodes and the factors of momentum dispersion.
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
@@ -8,10 +8,10 @@ namespace springproof {
 /// One linear form per node over all unknowns, n x 3 n.
 using NodalForms = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// K = local + outflow^T inflow.  The second term reaches the neighbours of neighbours and is kept as its two factors.
+/// K = local + outflow^T inflow.  The second term couples neighbours of neighbours and is stored as its two factors.
 struct Tangent {
   BlockMatrix local;
-  NodalForms inflow;   ///< dJ_n/dx of momentum dispersion; no rows: there is none
+  NodalForms inflow;   ///< dJ_n/dx of momentum dispersion; no rows if the model has none
   NodalForms outflow;  ///< d(force)/dJ_n, with the sign of a stiffness
   bool symmetric = true;
 
@@ -23,10 +23,10 @@ struct Tangent {
   /// Diagonal entries, 3 n.
   Eigen::VectorXd diagonal() const;
 
-  /// The 3x3 block of each node with itself.
+  /// The diagonal 3x3 block of each node.
   std::vector<Eigen::Matrix3d> node_blocks() const;
 
-  /// The entries of the unknowns with number[i] >= 0, renumbered by it; of a symmetric K.
+  /// Lower triangle of the submatrix of the unknowns with number[i] >= 0, renumbered by `number`; for a symmetric K.
   Eigen::SparseMatrix<double> lower_triangle(const std::vector<int>& number, int unknowns) const;
 };
 

@@ -29,18 +29,18 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
   return dt;
 }
 
-/// What moves the nodes.
+/// Interface of the time integrators.
 struct Motion {
   virtual ~Motion() = default;
   virtual void set_conditions(const BoundaryConditions& conditions) = 0;
-  virtual void move_supports() = 0;  ///< at once
+  virtual void move_supports() = 0;  ///< immediately
   virtual ForceNorms advance(long steps) = 0;
   virtual NodalVectors positions() const = 0;
   virtual NodalVectors velocities() const = 0;
   virtual std::string description() const = 0;
 };
 
-/// Any model, by the plain force loops.
+/// Time integration of any model by the plain force loops.
 class PlainMotion : public Motion {
  public:
   PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping,
@@ -86,7 +86,7 @@ class PlainMotion : public Motion {
     return {std::sqrt(unbalanced), std::sqrt(support)};
   }
 
-  /// Lagged: with the J that the nodes had at the step before.
+  /// Internal forces at x_; lagged: with the J of the previous step.
   NodalVectors forces_at_x() {
     if (!dispersion_) return forces(model_, x_);
     NodalVectors f = NodalVectors::Zero(x_.rows(), 3);
@@ -100,7 +100,7 @@ class PlainMotion : public Motion {
   }
 
   const MassSpringModel& model_;
-  const MomentumDispersion* dispersion_;  ///< nullptr: nothing lags
+  const MomentumDispersion* dispersion_;  ///< nullptr: dispersion is not lagged
   Eigen::VectorXd inverse_mass_, J_;
   double dt_, damping_;
   NodalVectors x_, v_;
@@ -162,7 +162,7 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
   return std::make_unique<MotionOfList<double>>(model, inverse_mass, of_list);
 }
 
-constexpr long steps_between_looks = 10;  // at whether the nodes are at rest, or lost
+constexpr long steps_between_looks = 10;  // looks: checks for rest and divergence
 
 }  // namespace
 

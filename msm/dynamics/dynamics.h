@@ -11,20 +11,20 @@ namespace springproof {
 
 struct DynamicsOptions {
   std::optional<double> time_step;  ///< [s]; empty: 0.95 of safe_time_step()
-  double damping = 0;               ///< mass-proportional, force -damping * m * v [1/s]; momentum dispersion without an
-                                    ///< energy needs some, or it flutters
-  double ramp = 0;                  ///< the load grows linearly over this time [s]; 0 = at once
-  double duration = 10;             ///< [s]
-  double rest_tolerance = 0;        ///< stop when unbalanced and inertial forces fall below this fraction; 0 = never
-  Precision precision = Precision::float64;  ///< of the kernels; the plain loops have float64 only
-  int threads = 1;                           ///< of the kernels; the plain loops and momentum dispersion have one
-  bool lagged = false;  ///< nodes disperse the J of the step before; Kot & Nagahashi (2015), sec. 7
+  double damping = 0;  ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
+                       ///< some, or it flutters
+  double ramp = 0;     ///< the load grows linearly over this time [s]; 0 = at once
+  double duration = 10;       ///< [s]
+  double rest_tolerance = 0;  ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
+  Precision precision = Precision::float64;  ///< of the kernels; the plain loops use float64
+  int threads = 1;                           ///< of the kernels; the plain loops and momentum dispersion use one
+  bool lagged = false;  ///< dispersion uses the J of the previous step; Kot & Nagahashi (2015), sec. 7
   /// Called after every step with the time, positions [m] and the velocity of the step [m/s].
   std::function<void(double time, const NodalVectors& x, const NodalVectors& v)> after_step = {};
 };
 
 struct DynamicsResult {
-  Equilibrium state;     ///< at the end; ok if at rest within rest_tolerance, or if the duration was the aim
+  Equilibrium state;     ///< final state; ok if at rest within rest_tolerance, or if rest_tolerance is 0
   double time = 0;       ///< [s]
   double time_step = 0;  ///< [s]
   long steps = 0;
@@ -32,14 +32,14 @@ struct DynamicsResult {
 };
 
 /// Smallest damping [1/s] with which lagged dispersion is stable: step * omega*^2, omega* a bound on what dispersion
-/// adds (dispersion_frequency_squared()).  A motion of frequencies omega_s (springs) and omega* takes the step (1 + c
-/// dt) z^2 - (2 + c dt - dt^2 omega_s^2) z + (1 + dt^2 omega*^2) = 0, and the product of its roots is below 1 only if
-/// c > dt omega*^2; for matrices it holds with their Rayleigh quotients, so for every motion.  0 for a negative
-/// dispersed fraction, which the lag itself damps.  Non-conservative forms may need more.
+/// adds (dispersion_frequency_squared()).  For a mode of frequencies omega_s (springs) and omega* the step has the
+/// characteristic equation (1 + c dt) z^2 - (2 + c dt - dt^2 omega_s^2) z + (1 + dt^2 omega*^2) = 0, and the product of
+/// its roots is below 1 only if c > dt omega*^2; for matrices the same holds with Rayleigh quotients, hence for every
+/// motion.  0 for a negative dispersed fraction, which the lag itself damps.  Non-conservative forms may need more.
 double lagged_damping(const MassSpringModel& model, double density, double time_step);
 
-/// Steps v += dt (f/m - damping v), x += dt v (the damping implicit), prescribed unknowns on their path.  Models that
-/// have a kernel (LatticeMotion, ListMotion) are stepped by it.  Whether they are at rest is asked every few steps.
+/// Integrates v += dt (f/m - damping v), x += dt v (the damping implicit) with prescribed unknowns on their path.
+/// Models that have a kernel (LatticeMotion, ListMotion) use it.  Rest is checked every few steps.
 /// @throws InputError if the time step exceeds safe_time_step(), if the damping is negative, or, lagged, not above
 ///   lagged_damping(); the bound is in the message.
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,

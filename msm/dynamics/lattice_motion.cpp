@@ -14,7 +14,7 @@ namespace springproof {
 namespace {
 
 constexpr std::size_t cache_line = 64;
-constexpr double far_away = 1e4;  // [edges] where places without a node are, so that no node is ever in the same place
+constexpr double far_away = 1e4;  // [edges] displacement where there is no node, so that none ever coincides with it
 
 template <class Real>
 LatticeKernels<Real> kernels_for(InstructionSet set) {
@@ -33,7 +33,7 @@ LatticeKernels<Real> kernels_for(InstructionSet set) {
   return kernels;
 }
 
-/// Values on cache lines.
+/// Array aligned to cache lines.
 template <class Real>
 class AlignedArray {
  public:
@@ -61,9 +61,9 @@ AlignedArray<Real> aligned_copy(const std::vector<double>& values) {
   return copy;
 }
 
-/// First planes of slabs with equal numbers of blocks to compute, and the end.
+/// First plane of each of `slabs` slabs with equal computational work, and the end.
 std::vector<int> split_planes(const LatticeLayout& l, int slabs) {
-  std::vector<double> work(l.nodes[2] + 1, 0.0);  // of the planes below
+  std::vector<double> work(l.nodes[2] + 1, 0.0);  // cumulative: of the planes below
   for (int z = 0; z < l.nodes[2]; ++z) {
     work[z + 1] = work[z] + 1e-3;
     for (int r = l.first_run[long(z) * l.nodes[1]]; r < l.first_run[long(z + 1) * l.nodes[1]]; ++r)
@@ -81,9 +81,9 @@ std::vector<int> split_planes(const LatticeLayout& l, int slabs) {
   return begin;
 }
 
-/// How far a slab has come, in steps; read by its neighbours.
+/// Number of steps that a slab has completed; read by its neighbours.
 struct alignas(cache_line) Progress {
-  std::atomic<long> swept = 0;       ///< forces of all planes
+  std::atomic<long> swept = 0;       ///< forces of all planes are computed
   std::atomic<long> first_done = 0;  ///< the first plane has moved
 };
 
@@ -235,7 +235,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   void make_arrays() {
-    const std::size_t apart = layout_.size + 5 * cache_line / sizeof(Real);  // as with planes
+    const std::size_t apart = layout_.size + 5 * cache_line / sizeof(Real);  // padded as planes are
     const std::size_t each = (apart * sizeof(Real) + cache_line - 1) / cache_line * cache_line / sizeof(Real);
     motion_ = AlignedArray<Real>(6 * each, Real(0));
     for (int d = 0; d < 3; ++d) {
@@ -255,7 +255,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     layout_.inflow = layout_.outflow = {};
     J_ = AlignedArray<Real>(layout_.row * layout_.rows() + layout_.lanes, Real(0));
     std::vector<int> first(network_.nodes(), layout_.nodes[2]),
-        last(network_.nodes(), 0);  // planes of those that share a J
+        last(network_.nodes(), 0);  // first and last plane of the nodes that share a J
     for (int n = 0; n < network_.nodes(); ++n) {
       const int to = law.sink(network_, n);
       for (int node : {n, to}) {
@@ -280,7 +280,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     return slot / layout_.plane * layout_.nodes[1] * layout_.row + in_plane;
   }
 
-  /// J of plane z and of those before it that waited for it; nodes that share one have the sum.
+  /// Computes J of plane z and completes that of earlier planes; nodes that share a J get the sum.
   void find_inflow(const LatticeView<Real>& view, int z) {
     const long plane = layout_.nodes[1] * layout_.row;
     if (z == 0) std::fill_n(J_.data(), plane, Real(0));
@@ -346,7 +346,8 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     return {std::sqrt(total.free), std::sqrt(total.fixed)};
   }
 
-  /// The slab above gives its first plane's positions before it moves, the slab below its forces on our first plane.
+  /// Reads the first plane of the slab above before that plane moves, and adds the forces of the slab below to its own
+  /// first plane.
   void step_of_slab(int s, long number, const LatticeView<Real>& view, const LatticeStep<Real>& step,
                     LatticeSums& sums) {
     if (view.J) return dispersed_step(view, step, sums);
@@ -363,14 +364,14 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     progress_[s].first_done.store(number + 1, std::memory_order_release);
   }
 
-  /// By its own thread: what another one writes has to come from the other's cache.
+  /// Called by the slab's own thread: memory written by another one would have to be fetched from its cache.
   void clear_end(const LatticeSlab<Real>& slab) {
     const long rows = layout_.nodes[1];
     for (long row = (slab.end - slab.begin) * rows, end = row + rows; row < end; ++row)
       std::fill_n(slab.ring + row % (rows + 2) * 3 * layout_.row, 3 * layout_.row, Real(0));
   }
 
-  /// J is found some planes ahead of the forces, with positions that have not moved yet.
+  /// J is computed some planes ahead of the forces, from positions that have not moved yet.
   void dispersed_step(const LatticeView<Real>& view, const LatticeStep<Real>& step, LatticeSums& sums) {
     int found = 0;
     for (int z = 0; z < layout_.nodes[2]; ++z) {
@@ -395,7 +396,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   LatticeHourglass<Real> hourglass_ = {};
   AlignedArray<Real> motion_, rings_, springs_, nodes_, inflow_, outflow_, J_, inverse_lengths_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>>
-      shared_;            ///< whose J another node has, by the last plane that adds to it
+      shared_;            ///< pairs of J that share a sum, by the last plane that adds to it
   int inflow_ahead_ = 0;  ///< planes
   std::array<Real*, 3> u_, v_;
   std::vector<int> node_entry_;

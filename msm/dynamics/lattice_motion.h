@@ -15,18 +15,18 @@ enum class Precision { float64, float32 };
 
 struct LatticeMotionOptions {
   Precision precision = Precision::float64;  ///< float32: forces to 1e-6 of the largest, twice as fast
-  int threads = 1;                           ///< at most one per plane of nodes; momentum dispersion has one
+  int threads = 1;                           ///< at most one per plane of nodes; momentum dispersion uses one
   InstructionSet instructions = instruction_set();
 };
 
-/// Norms of internal and external forces together [N].
+/// Norms of the sum of internal and external forces [N].
 struct ForceNorms {
   double unbalanced = 0;  ///< at free unknowns
   double support = 0;     ///< at fixed unknowns
 };
 
-/// Nodes lie in a box of rows, in separate arrays of the components of displacement and velocity; forces of a row are
-/// complete when the next one is reached, and are then spent at once.  Every spring is computed once.
+/// Nodes are stored in a box of rows, in separate arrays of the components of displacement and velocity.  The forces on
+/// a row are complete when the next row is reached and are applied at once.  Every spring is computed once.
 class LatticeMotion {
  public:
   /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without
@@ -40,14 +40,15 @@ class LatticeMotion {
   LatticeMotion& operator=(LatticeMotion&&) noexcept;
   ~LatticeMotion();
 
-  /// Supports and external forces of the steps to come; fixed unknowns are moved at the end of the first of them.
+  /// Sets supports and external forces for the following steps; fixed unknowns are moved at the end of the first of
+  /// them.
   void set_conditions(const BoundaryConditions& conditions);
   /// Moves the fixed unknowns at once.
   void move_supports();
 
   void set_state(const NodalVectors& x, const NodalVectors& v);  ///< [m], [m/s]
 
-  /// Of nodes begin <= n < end: displacement [m], then velocity [m/s], six values each.
+  /// Displacement [m], then velocity [m/s] of nodes begin <= n < end, six values per node.
   void read(int begin, int end, double* values) const;
   void write(int begin, int end, const double* values);
 
@@ -59,7 +60,7 @@ class LatticeMotion {
   NodalVectors velocities() const;  ///< [m/s]
   NodalVectors forces();            ///< internal forces [N]
 
-  double bytes_per_node() const;    ///< of what is kept
+  double bytes_per_node() const;    ///< of all stored arrays
   std::string description() const;  ///< which kernel runs
 
  private:

@@ -6,9 +6,9 @@
 namespace springproof {
 namespace {
 
-constexpr int gain = 3;  // of the four numbers of a node's external force
+constexpr int gain = 3;  // index of dt / m * decay in a node's entry of external_
 
-/// More threads than this would wait for each other.
+/// Number of threads up to which they do not wait for each other.
 int useful_threads(const Wavefront& wavefront, int wanted) {
   return static_cast<int>(std::clamp(static_cast<long>(wanted), 1L, std::max(1L, wavefront.pieces() / wavefront.lag)));
 }
@@ -52,7 +52,8 @@ void ListMotion<Real>::place_prescribed() {
   moved_ = false;
 }
 
-/// Nodes that have all their forces.  Of those held the sum is made 0 before, so that they stay.
+/// Moves the nodes begin <= n < end, whose forces are complete.  The total force on fixed unknowns is set to 0 first,
+/// so that they stay.
 template <class Real>
 typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bool last) {
   Squares sum;
@@ -95,7 +96,7 @@ typename ListMotion<Real>::Squares ListMotion<Real>::run(long steps) {
     const bool last = step == steps - 1;
     forces_.add_springs(wavefront_.begin[piece], wavefront_.begin[piece + 1], x_.data(), last ? f_.data() : s_.data());
     const Squares more = move(wavefront_.complete[piece], wavefront_.complete[piece + 1], last);
-    if (!last) return;  // the pieces of a step are one thread's
+    if (!last) return;  // one thread computes all pieces of a step
     sum.unbalanced += more.unbalanced;
     sum.support += more.support;
   });

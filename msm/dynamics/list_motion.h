@@ -10,20 +10,21 @@ namespace springproof {
 struct ListMotionOptions {
   double time_step = 0;  ///< [s]
   double damping = 0;    ///< [1/s]
-  bool lagged = false;   ///< nodes disperse the J of the step before
+  bool lagged = false;   ///< dispersion uses the J of the previous step
   int threads = 1;  ///< of advance() by several steps; at most one per three layers or so of nodes; momentum dispersion
-                    ///< has one. Two gain little, if anything (docs/performance.md)
+                    ///< uses one. Two gain little, if anything (docs/performance.md)
   InstructionSet instructions = instruction_set();
 };
 
-/// A model in motion: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the order of the kernels.
-/// A node moves as soon as its last force is in, and the next step follows before the first is through (run_steps()).
+/// Time integration of a model: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the kernels'
+/// order.  A node moves as soon as its forces are complete, and the next step starts before the first is finished
+/// (run_steps()).
 template <class Real>
 class ListMotion {
  public:
   ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options);
 
-  /// Loads from here on; prescribed unknowns are moved at the end of the next step.
+  /// Sets the loads of the following steps; prescribed unknowns are moved at the end of the next step.
   void load(const BoundaryConditions& conditions);
   void place_prescribed();  ///< moves them at once
   /// @return the norms at the beginning of the last step.
@@ -54,7 +55,7 @@ class ListMotion {
   double decay_;
   bool moved_ = false;
   std::vector<Padded<Real>> x_, s_, f_, external_;
-  std::vector<Held> held_;  ///< by place
+  std::vector<Held> held_;  ///< sorted by place
 };
 
 extern template class ListMotion<double>;

@@ -21,7 +21,7 @@ double largest_eigenvalue(const NodeBlocks& blocks) {
   return largest;
 }
 
-/// Adds to each node's block what bounds springs of the given stiffness [N/m], over the masses.
+/// Adds to each node's block the bound of springs of the given stiffness [N/m], divided by the masses.
 void add_springs(const Network& network, const Eigen::VectorXd& mass, const std::vector<double>& stiffness,
                  NodeBlocks& blocks) {
   for (std::size_t s = 0; s < stiffness.size(); ++s) {
@@ -34,7 +34,7 @@ void add_springs(const Network& network, const Eigen::VectorXd& mass, const std:
   }
 }
 
-/// The same for any law, by the norms of the blocks of its stiffness at rest.
+/// The same for any law, from the norms of the blocks of its stiffness at rest.
 template <class Law>
 void add_norms(const Network& network, const Eigen::VectorXd& mass, const Law& law, NodeBlocks& blocks) {
   const auto coupled = coupled_nodes(network);

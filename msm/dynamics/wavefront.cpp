@@ -7,12 +7,12 @@ namespace {
 
 constexpr long blocks_of_piece = 256;  // some 150 nodes, a few microseconds
 
-/// Pieces that a worker has done, of all its steps; read by the one whose step follows.
+/// Number of pieces that a worker has completed in all its steps; read by the worker of the following step.
 struct alignas(64) PiecesDone {
   std::atomic<long> value = 0;
 };
 
-/// Per node the last piece that touches it.
+/// Last piece that touches each node.
 std::vector<long> last_pieces(const SpringBlocks& blocks) {
   std::vector<long> last(blocks.order.size(), 0);
   for (std::size_t e = 0; e < blocks.entries(); ++e) {
@@ -50,7 +50,7 @@ void run_steps(const Wavefront& wavefront, long steps, Workers& workers, const P
         for (long step = first; step < std::min(first + together, steps); ++step) {
           const long piece = position - (step - first) * lag;
           if (piece < 0 || piece >= pieces) continue;
-          const long before = step - 1;  // of which so many pieces are to be done
+          const long before = step - 1;  // the previous step, which must be ahead by `lag` pieces
           if (count > 1 && before >= 0)
             wait_until(done[before % count].value, before / count * pieces + std::min(piece + lag, pieces));
           compute(step, piece);

@@ -15,7 +15,7 @@
 namespace springproof {
 namespace {
 
-/// Prescribes the load at the nodes that its patch holds; X their positions, `size` the body's.
+/// Prescribes the load's displacement at the nodes `held` by its patch; X: rest positions of all nodes.
 void prescribe(const Load& load, int number, const std::vector<int>& held, const NodalVectors& X, Kinematics kinematics,
                double factor, BoundaryConditions& bc) {
   const double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
@@ -51,7 +51,8 @@ void add_uniform(const Mesh& mesh, const std::string& on, const Vec3& traction, 
   external += (is_total ? area / area.sum() : area) * traction.transpose();
 }
 
-/// Shares of a facet's pressure: integral of N_i * (area vector); by 2 x 2 Gauss points, which is exact.
+/// Adds the nodal forces of a pressure on a facet: integral of N_i * (area vector); by 2 x 2 Gauss points, which is
+/// exact.
 void add_facet_pressure(const Mesh& mesh, const std::array<int, 4>& facet, double pressure, NodalVectors& external) {
   const auto X = [&](int i) -> Vec3 { return mesh.nodes.row(facet[i]).transpose(); };
   if (facet[3] < 0) {
@@ -78,7 +79,7 @@ BoundaryConditions nothing(Eigen::Index n) {
   return {std::vector<char>(3 * n, 0), std::vector<int>(3 * n, -1), NodalVectors::Zero(n, 3), NodalVectors::Zero(n, 3)};
 }
 
-/// Does `act` for each load, naming the load in what goes wrong.
+/// Calls `act` for each load; error messages name the load.
 template <class Action>
 void for_each(const std::vector<Load>& loads, const Action& act) {
   for (std::size_t i = 0; i < loads.size(); ++i) {
@@ -90,8 +91,8 @@ void for_each(const std::vector<Load>& loads, const Action& act) {
   }
 }
 
-/// Adds to a load's nodal forces the rigid field over the nodes' areas or volumes that gives them the wrench it
-/// carries.
+/// Adds to a load's nodal forces a rigid field, weighted by the nodes' areas or volumes, so that their wrench is the
+/// load's.
 void complete(const std::optional<Wrench>& wrench, double factor, const Mesh& mesh, const Eigen::VectorXd& weights,
               NodalVectors& force) {
   if (!wrench) return;
@@ -172,7 +173,7 @@ namespace {
 
 using Motion = Eigen::Matrix<double, 6, 1>;
 
-/// The six rigid motions, translations then rotations about the middle over the size, at an unknown.
+/// Values of the six rigid motions at an unknown: translations, then rotations about the centre, divided by the size.
 struct RigidMotions {
   const NodalVectors& X;
   Vec3 middle = X.colwise().mean().transpose();
@@ -187,7 +188,7 @@ struct RigidMotions {
   }
 };
 
-/// The rigid motion that the fixed unknowns hold least; nothing if they hold all six.
+/// The rigid motion that the fixed unknowns constrain least; nothing if they constrain all six.
 std::optional<Motion> free_motion(const BoundaryConditions& bc, const RigidMotions& rigid) {
   Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
   double count = 0;

@@ -1,4 +1,4 @@
-// Loads carried over to the nodes of a network; what the supports then answer.
+// Transfer of loads to the nodes of a mesh or network, and the reactions of the supports.
 #pragma once
 
 #include <set>
@@ -15,22 +15,22 @@ namespace springproof {
 struct BoundaryConditions {
   std::vector<char> fixed;  ///< per unknown 3 * node + axis: displacement prescribed
   std::vector<int> owner;   ///< per unknown: number of the load that prescribes it, -1 = free
-  NodalVectors prescribed;  ///< displacement at the full load, zero where free [m]
-  NodalVectors external;    ///< nodal forces at the full load [N]
+  NodalVectors prescribed;  ///< prescribed displacement, zero where free [m]
+  NodalVectors external;    ///< nodal forces [N]
 };
 
-/// Transfers the loads to the mesh's nodes.  Tractions and pressure by the facets' shape functions, gravity by nodal
-/// mass, a point force by the shape functions of the cell that holds it: resultant and moment are kept.  A load that
-/// carries a wrench (of the true body, of which the mesh is only nearly one) gets that wrench.
+/// Transfers the loads at load factor `factor` to the mesh's nodes.  Tractions and pressure by the facets' shape
+/// functions, gravity by nodal mass, a point force by the shape functions of the cell that contains it: resultant and
+/// moment are preserved.  A load that carries a wrench (of the true body, which the mesh only approximates) gets that
+/// wrench.
 /// @throws InputError: a body force of an exact field, no such patch, a point force outside the body, two loads that
-/// prescribe different values at
-///   one node.
+///   prescribe different values at one node.
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
                             double factor = 1.0);
 
-/// The same for a network in the mesh: forces pass through the embedding, so that resultant and moment are kept;
-/// supports hold the nodes that their patch holds, with the values at the nodes' own places.  The nodes of a planar
-/// network stay in their plane.
+/// The same for a network in the mesh: forces are transferred by the transposed embedding, which preserves resultant
+/// and moment; supports fix the nodes that their patch holds, with the values at the nodes' own positions.  The nodes
+/// of a planar network stay in their plane.
 /// @throws InputError also if a support finds no node to hold.
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& embedding,
                             const Network& network, double density, Kinematics kinematics, double factor = 1.0);
@@ -38,8 +38,8 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
 /// @throws InputError naming the free rigid motion if the fixed unknowns of nodes at X leave one.
 void require_supported(const BoundaryConditions& conditions, const NodalVectors& X);
 
-/// Fixes as few unknowns as hold the rigid motions that are left free, at zero displacement: nothing strains by it, and
-/// there is no force on them if the loads balance.
+/// Fixes, at zero displacement, the fewest unknowns that constrain the remaining rigid motions: this causes no strain,
+/// and no reaction if the loads are in equilibrium.
 void hold_free_motions(const NodalVectors& X, BoundaryConditions& conditions);
 
 /// Support forces and torques per patch with prescribed displacement, from the support force of each node at X [N].

@@ -15,7 +15,7 @@
 namespace springproof {
 namespace {
 
-/// Nodes by place, to find those near one.
+/// Cell list of the nodes, to find those near a point.
 struct Neighbourhood {
   const NodalVectors& X;
   double edge;

@@ -1,4 +1,4 @@
-// How a network carries a body: the mesh moves with the network's nodes, and the patches hold some of them.
+// Embedding of a body's mesh in a network: interpolation to the mesh's nodes, and the network nodes held by each patch.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -13,18 +13,17 @@ namespace springproof {
 
 struct Embedding {
   /// Displacement of the mesh's nodes = weights * displacement of the network's, mesh nodes x network nodes.  Affine
-  /// displacements are carried exactly, so that transposed they take loads over with their resultant and moment.
+  /// displacements are reproduced exactly, so that the transpose preserves the resultant and moment of loads.
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights;
   std::map<std::string, std::vector<int>> held;  ///< patch -> the network nodes that its supports hold, ascending
 };
 
-/// Of a network whose nodes are the mesh's nodes, in their order.
+/// Embedding in a network whose nodes are the mesh's nodes, in their order.
 Embedding nodes_of_mesh(const Mesh& mesh);
 
-/// Of any other: moving least squares with linear fields over the nearest network nodes that springs join to the
-/// nearest of them (not across a gap in the body), and each patch holds the nodes within `grip` [m] of it (none, if
-/// there is none so near).  Patches are those of `region` where the network fills that and the mesh is only nearly the
-/// body.
+/// Embedding in any other: moving least squares with linear fields over the nearest network nodes that are connected by
+/// springs with the nearest of them (not across a gap in the body), and each patch holds the nodes within `grip` [m] of
+/// it (possibly none).  If the network fills `region`, which the mesh only approximates, patches are those of `region`.
 /// @throws std::invalid_argument if the nodes span no volume (no area, for a network in a plane z = const).
 Embedding embed(const Mesh& mesh, const Network& network, double grip, const Region* region = nullptr);
 

@@ -1,17 +1,17 @@
-// Kernels for lattices of equal cells: stiffness, divergence and gradient row by row, without a matrix.
+// Matrix-free kernels for lattices of equal cells: stiffness, divergence and gradient, row by row.
 #pragma once
 
 #include "msm/kernels/instruction_set.h"
 
 namespace springproof {
 
-/// At most so many cells in one row of a kernel: what it keeps between its passes stays in the first cache.
+/// Maximum number of cells in one row of a kernel, so that its intermediate values stay in the first-level cache.
 inline constexpr int longest_cell_row = 64;
 
-/// Values beyond the end of an array that kernels may read, and add zero to.
+/// Number of values beyond the end of an array that kernels may read, and add zero to.
 inline constexpr int array_slack = 96;
 
-/// A run of cells along x and where the points of its corners stand.
+/// A run of cells along x and the numbers of its corner points.
 struct CellRow {
   long cell = 0;       ///< number of its first cell
   long point[4] = {};  ///< numbers of the first point of rows (y, z), (y+1, z), (y, z+1), (y+1, z+1)
@@ -20,15 +20,15 @@ struct CellRow {
 
 /// A run of parallel springs, from a row of points to a row of points.
 struct SpringRun {
-  long i = 0, j = 0;  ///< points of its first spring; those of the next are the next ones
+  long i = 0, j = 0;  ///< points of its first spring; consecutive springs have consecutive points
   long spring = 0;    ///< number of its first spring
   int length = 0;     ///< at most longest_cell_row
   int direction = 0;
 };
 
-/// A cell's stiffness in the sign patterns of its corners.  A cell with three mirror planes couples component a of
-/// pattern t xor e_a (e_a: the sign changes along a) with no other than the two of the same class t: eight symmetric
-/// 3x3 blocks.
+/// A cell's stiffness in the basis of sign patterns of its corners.  In a cell with three mirror planes component a of
+/// pattern t xor e_a (e_a: the sign changes along a) couples only with the two others of the same class t: eight
+/// symmetric 3x3 blocks.
 template <class Real>
 struct CellBlocks {
   Real m[8][6] = {};  ///< per class: xx, xy, xz, yy, yz, zz
@@ -43,11 +43,11 @@ struct PlanePair {
   long low_begin = 0, high_begin = 0;  ///< numbers of these first points
 };
 
-/// One instruction set's kernels.  The points of a row are neighbours in memory, and so are its cells.
+/// Kernels of one instruction set.  The points of a row are contiguous in memory, and so are its cells.
 template <class Real>
 struct CellKernels {
   /// y += fill (K u + gradient^T p), divergence = fill gradient u.  `fill`, `p`, `divergence` may be null: 1, 0, not
-  /// wanted.
+  /// computed.
   void (*cells)(const CellBlocks<Real>& K, const CellRow* rows, long count, const Real* const* u, const Real* fill,
                 const Real* p, Real* divergence, const PlanePair<Real>& y);
   /// divergence = fill gradient u.
@@ -61,11 +61,11 @@ struct CellKernels {
   /// J += w e of the ends' points, e = direction . (u_j - u_i).
   void (*inflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j,
                  const Real* const* u, Real* J);
-  /// y += the transpose of that, of p.
+  /// y += the transpose of that operator applied to p.
   void (*outflow)(const SpringRun* runs, long count, const Real* directions, const Real* w_i, const Real* w_j,
                   const Real* p, Real* const* y);
 
-  // Along n values.
+  // Vector updates, n values each.
   /// r -= y; z = a z + b d r; x += z.
   void (*chebyshev)(long n, const Real* y, const Real* d, Real a, Real b, Real* r, Real* z, Real* x);
   /// r -= y + c z; z = a z + b d r; x += z.

@@ -1,4 +1,4 @@
-// What each instruction set's copy of cell_operator_kernel.cpp gives.
+// Cell kernels defined by each instruction set's copy of cell_operator_kernel.cpp.
 #pragma once
 
 #include "msm/kernels/cell_kernels.h"

@@ -46,16 +46,16 @@ void transform_across(const FourRows<Real>& u, int points, Real (*b)[scratch]) {
   }
 }
 
-/// One row of cells in sign patterns: component, pattern across, then x; `right` what each point gets from the cell
-/// before it.
+/// One row of cells in sign patterns: component, pattern across, then x; `right`: contribution to each point of the
+/// cell before it.
 template <class Real>
 struct Patterns {
   alignas(64) Real b[3][4][scratch];
   alignas(64) Real right[3][4][scratch];
 };
 
-/// The two classes of sign patterns that have `across` (1: y, 2: z) in their first component.
-/// with_pressure, with_divergence: of class 0 alone.
+/// Applies the stiffness to the two classes of sign patterns that have `across` (1: y, 2: z) in their first component.
+/// with_pressure, with_divergence: for class 0 only.
 template <class Real, int across, bool with_pressure, bool with_divergence>
 inline void couple(const CellBlocks<Real>& K, int n, const Real* fill, const Real* p, Real* divergence,
                    Patterns<Real>& s) {
@@ -98,7 +98,7 @@ inline void couple(const CellBlocks<Real>& K, int n, const Real* fill, const Rea
   }
 }
 
-/// Zero on what the coupling left untouched beyond the last cell and before the first point.
+/// Zeroes the values beyond the last cell and before the first point, which the coupling does not write.
 template <class Real>
 void clear_ends(int n, Patterns<Real>& s) {
   const int end = whole_vectors<Real>(n);
@@ -162,7 +162,7 @@ void cells(const CellBlocks<Real>& K, const CellRow* rows, long count, const Rea
 template <class Real>
 void divergence_of(Real gradient, const CellRow* rows, long count, const PlanePair<Real>& u, const Real* fill,
                    Real* divergence) {
-  alignas(64) Real along[scratch], across[scratch];  // of a point's four rows: u_x, and what u_y and u_z add
+  alignas(64) Real along[scratch], across[scratch];  // sums over a point's four rows: u_x, and the terms of u_y and u_z
   for (const CellRow* row = rows; row != rows + count; ++row) {
     const long p00 = row->point[0] - u.low_begin, p10 = row->point[1] - u.low_begin;
     const long p01 = row->point[2] - u.high_begin, p11 = row->point[3] - u.high_begin;
@@ -188,7 +188,7 @@ void divergence_of(Real gradient, const CellRow* rows, long count, const PlanePa
 template <class Real>
 void gradient_of(Real gradient, const CellRow* rows, long count, const Real* p, const Real* fill,
                  const PlanePair<Real>& y) {
-  alignas(64) Real t[scratch + margin];  // pressures, one cell to the right and zeros around
+  alignas(64) Real t[scratch + margin];  // pressures, shifted by one cell and padded with zeros
   for (const CellRow* row = rows; row != rows + count; ++row) {
     const int n = row->length, end = whole_vectors<Real>(n);
     const Real* w = fill ? fill + row->cell : nullptr;
@@ -216,7 +216,7 @@ void gradient_of(Real gradient, const CellRow* rows, long count, const Real* p, 
   }
 }
 
-// Simple enough for the compiler.
+// Simple enough for the compiler to vectorise.
 
 /// y += a b.
 template <class Real>
@@ -293,7 +293,7 @@ void schur_step(long n, const Real* __restrict y, const Real* __restrict c, cons
 template <class Real>
 void restrict_row(int fine_points, bool odd, Real weight, const Real* __restrict fine, Real* __restrict coarse) {
   const Real half = weight / 2;
-  int f = 0;  // the fine point on the next coarse one
+  int f = 0;  // the fine point that coincides with the next coarse one
   if (odd) {
     coarse[0] += half * fine[0];
     f = 1;
@@ -304,7 +304,7 @@ void restrict_row(int fine_points, bool odd, Real weight, const Real* __restrict
     coarse[0] += half * fine[0];
     return;
   }
-  const int inner = (fine_points - f - 1) / 2;  // coarse points with a fine one on either side to the right
+  const int inner = (fine_points - f - 1) / 2;  // pairs of successive coarse points within the fine row
   const Real* at = fine + f;
   for (int c = 0; c < inner; ++c) coarse[c] += weight * at[2 * c] + half * at[2 * c + 1];
   for (int c = 0; c < inner; ++c) coarse[c + 1] += half * at[2 * c + 1];

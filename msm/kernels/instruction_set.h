@@ -10,11 +10,11 @@ enum class InstructionSet { portable, avx2, avx512 };
 
 std::string name_of(InstructionSet set);
 
-/// Those that this program has kernels for and this processor runs, the widest last.
+/// Instruction sets that this program has kernels for and this processor supports, the widest last.
 const std::vector<InstructionSet>& usable_instruction_sets();
 
-/// The one that kernels run with: the widest usable, or what SPRINGPROOF_INSTRUCTION_SET names ("portable", "avx2",
-/// "avx512").
+/// The instruction set in use: the widest usable, or the one that SPRINGPROOF_INSTRUCTION_SET names ("portable",
+/// "avx2", "avx512").
 /// @throws std::runtime_error if it names one that is not usable here.
 InstructionSet instruction_set();
 

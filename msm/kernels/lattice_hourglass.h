@@ -25,7 +25,7 @@ SPRINGPROOF_INLINE Patterns<Real> patterns_of(const Real* r00, const Real* r10, 
   return {(d[1] - d[0]) + (d[3] - d[2]), (d[2] - d[0]) + (d[3] - d[1]), (m[0] - m[1]) + (m[3] - m[2])};
 }
 
-/// Adds what nodes at x get from the cells above and below them, `before` of the block before.
+/// Adds to the nodes at x the forces of the cells on both sides of them in x; `before`: patterns of the previous block.
 template <class Real>
 SPRINGPROOF_INLINE void add_patterns(Real* f00, Real* f10, Real* f01, Real* f11, long n, const Patterns<Real>& g,
                                      Patterns<Real>& before) {

@@ -1,10 +1,10 @@
-// First half of momentum dispersion on a lattice: what flows in to each node.
+// First half of momentum dispersion on a lattice: the inflow J of each node.
 #include "msm/kernels/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
 
-/// Elongations of springs whose ends are (x, y, z) apart; their inverse lengths are kept.
+/// Elongations of springs whose ends are (x, y, z) apart; their inverse lengths are stored.
 template <int axes, class Real>
 SPRINGPROOF_INLINE Lanes<Real> elongation(const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z,
                                           Real* inverse_length) {

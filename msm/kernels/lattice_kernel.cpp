@@ -1,4 +1,4 @@
-// One time step of a lattice: forces row by row, each row moved as soon as it has all of its own.
+// One time step of a lattice: forces row by row, each row moved as soon as its forces are complete.
 #include "msm/kernels/lattice_hourglass.h"
 #include "msm/kernels/lattice_rows.h"
 #include "msm/kernels/lattice_volume.h"
@@ -6,7 +6,7 @@
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
 
-/// What the springs to a row get by momentum dispersion, given what its nodes have.
+/// Data for the tensions that momentum dispersion adds to the springs between two rows.
 template <class Real>
 struct Dispersed {
   const Real *o, *r;  ///< J of the two rows
@@ -18,8 +18,8 @@ struct Dispersed {
 
 struct Undispersed {};
 
-/// (k (L' - L) + T) / L' of springs whose ends are (x, y, z) apart, T by dispersion; the ends are at a and b in their
-/// rows.
+/// (k (L' - L) + T) / L' of springs whose ends are (x, y, z) apart, T the tension of dispersion; the ends are at a and
+/// b in their rows.
 template <int axes, class Real>
 SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>& x, const Lanes<Real>& y,
                                                   const Lanes<Real>& z, const Undispersed&, int, int, long, long) {
@@ -92,7 +92,7 @@ void springs_between(const Row<Real>& o, const Row<Real>& r, const ForceRow<Real
   }
 }
 
-/// A block of one component: v' = (v + dt f / m) decay, u' = u + dt v'; the forces' place is left empty.
+/// A block of one component: v' = (v + dt f / m) decay, u' = u + dt v'; the forces are reset to zero.
 template <LatticeFinish finish, class Real>
 SPRINGPROOF_INLINE void finish_block(Real* f, const Lanes<Real>& inverse_mass, const Lanes<Real>& external, Real* u,
                                      Real* v, Real* stored, const LatticeStep<Real>& step, Lanes<Real>& free,
@@ -180,7 +180,7 @@ void pair_of_rows(const Neighbours<Real>& n, const Coefficients<Real>& c, const 
   springs_between<pair, true, true>(o, r, on_o, on_r, c, of_straight, of_slanted, run.begin, run.end);
 }
 
-/// What the springs of row (y, z) to one of its pairs get by dispersion.
+/// Dispersion data of the springs from row (y, z) to the row of one of its pairs.
 template <class Real>
 Dispersed<Real> dispersed(const LatticeView<Real>& l, int y, int z, int pair) {
   const long row = long(z) * l.rows + y, other = row + row_pairs[pair][0] + long(row_pairs[pair][1]) * l.rows;
@@ -235,7 +235,7 @@ ForceRow<Real> first_row(const LatticeView<Real>& l, const LatticeSlab<Real>& sl
   return {p, p + l.row, p + 2 * l.row};
 }
 
-/// to += from, which may be left empty.
+/// to += from; resets `from` to zero if `empty`.
 template <bool empty, class Real>
 void take(const LatticeView<Real>& l, long row, const ForceRow<Real>& from, const ForceRow<Real>& to) {
   Real* const source[3] = {from.x, from.y, from.z};

@@ -1,10 +1,10 @@
-// What the lattice kernels work on: plain arrays, springs by their place in the lattice.
+// Interface of the lattice kernels: plain arrays, with springs stored by their position in the lattice.
 //
-// Nodes stand at x + stride (y + rows z), x in blocks of as many nodes as the processor has lanes; lengths in cell
-// edges. A spring belongs to the row that it starts from.  From each row go five pairs of rows: along the row itself,
-// and to the rows at (y, z) + row_pairs[]; the last four hold up to three springs per node: straight (x to x), rising
-// (x to x + 1) and falling (x + 1 to x).  Blocks with equal coefficients share one entry of a table, so there is no
-// stiffness per spring.
+// Node (x, y, z) is stored at x + row y + plane z, x in blocks of as many nodes as the processor has lanes; lengths in
+// cell edges.  A spring belongs to the row that it starts from.  Each row forms five pairs, with itself and with the
+// rows at (y, z) + row_pairs[]; the last four hold up to three springs per node: straight (x to x), rising (x to x + 1)
+// and falling (x + 1 to x).  Blocks with equal coefficients share one entry of a table, so there is no stiffness per
+// spring.
 #pragma once
 
 namespace springproof {
@@ -14,8 +14,7 @@ constexpr int lattice_directions = 13;  ///< along x; then straight, rising, fal
 constexpr int row_pairs[lattice_pairs][2] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};  ///< (dy, dz)
 constexpr int kappa_coefficient =
     lattice_directions;  ///< after the spring constants: of the volume correction of cells
-constexpr int hourglass_coefficient =
-    kappa_coefficient + 1;  ///< how often a cell's hourglass modes are corrected: once or not
+constexpr int hourglass_coefficient = kappa_coefficient + 1;  ///< 1 if a cell's hourglass modes are corrected, else 0
 constexpr int lattice_coefficients = hourglass_coefficient + 1;
 constexpr int flow_coefficients =
     2 * lattice_directions;           ///< per direction: at the start and at the end of its springs
@@ -25,8 +24,8 @@ constexpr int node_coefficients = 6;  ///< 1 / mass of the three unknowns (0 if 
 struct LatticeRun {
   int begin, end;
   unsigned springs;  ///< bit d: there are springs of direction d
-  unsigned flows;  ///< the same of those that take part in momentum dispersion; of a pair's, the straight ones with the
-                   ///< others
+  unsigned flows;    ///< the same for springs with momentum dispersion; within a pair, the straight ones whenever the
+                     ///< others are marked
   bool volume, hourglass;  ///< there are cells that start from this row and correct their volume, their hourglass modes
 };
 
@@ -40,7 +39,7 @@ template <class Real>
 struct LatticeView {
   Real* u[3];       ///< displacement [edges]
   Real* v[3];       ///< velocity [edges/s]
-  long row, plane;  ///< from row to row, from plane to plane
+  long row, plane;  ///< strides from row to row, from plane to plane
   int rows;         ///< per plane
   int planes;
   int row_blocks;
@@ -54,16 +53,16 @@ struct LatticeView {
   LatticeHourglass<Real> hourglass;
   Real* J;  ///< inflow of momentum dispersion, at row (y + rows z) + x; nullptr: there is none
   const int* inflow_entry;
-  const Real* inflow;  ///< flow_coefficients vectors per entry, times elongations [edges]: what flows in
+  const Real* inflow;  ///< flow_coefficients vectors per entry, times elongations [edges]: the inflow
   const int* outflow_entry;
   const Real* outflow;  ///< the same, times J: tension [N]
   Real outflow_sign;
-  Real* inverse_lengths;  ///< of the springs [1/edges], of so many planes by turns
+  Real* inverse_lengths;  ///< of the springs [1/edges], in a ring of kept_planes planes
   int kept_planes;
 };
 
-/// Planes of one thread.  Forces live in a ring of rows + 2 rows, three components each, all zero before a step; after
-/// it only what the plane at `end` has got is left.
+/// Planes of one thread.  Forces are kept in a ring of rows + 2 rows, three components each, all zero before a step;
+/// after it only the contributions to the plane at `end` are left.
 template <class Real>
 struct LatticeSlab {
   int begin, end;
@@ -89,13 +88,13 @@ struct LatticeSums {
 template <class Real>
 struct LatticeKernels {
   int lanes;
-  /// Adds what the springs of the nodes of plane z flow in to J, of this plane and the next, and keeps their inverse
+  /// Adds the inflow of the springs that start in plane z to J of this plane and the next, and stores their inverse
   /// lengths.
   void (*inflow)(const LatticeView<Real>&, int z);
-  /// Forces of planes begin <= z < end and the motion of those rows that have all of theirs.
+  /// Computes the forces of planes begin <= z < end and moves the rows whose forces are complete.
   void (*sweep)(const LatticeView<Real>&, const LatticeSlab<Real>&, int begin, int end, const LatticeStep<Real>&,
                 LatticeSums&);
-  /// The first plane of a slab, once the slab below is swept.
+  /// Completes and moves the first plane of a slab, once the slab below is swept.
   void (*finish_first)(const LatticeView<Real>&, const LatticeSlab<Real>&, const LatticeSlab<Real>& below,
                        const LatticeStep<Real>&, LatticeSums&);
 };

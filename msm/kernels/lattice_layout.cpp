@@ -11,7 +11,7 @@ namespace {
 
 using Place = std::array<int, 3>;
 
-/// Places of the nodes in the lattice, counted from its lowest corner; empty if they are not on one.
+/// Integer coordinates of the nodes, counted from the lowest corner; empty if they are not on a lattice.
 std::vector<Place> places_of(const Network& network) {
   const double edge = network.cell_edge;
   if (!(edge > 0) || network.nodes() == 0) return {};
@@ -69,7 +69,7 @@ const Law* law_of(const MassSpringModel& model) {
   return nullptr;
 }
 
-/// Each law at most once, and only those that the kernels have.
+/// Whether each law occurs at most once and the kernels have it.
 bool laws_fit(const MassSpringModel& model) {
   std::vector<std::size_t> kinds;
   for (const ForceLaw& law : model.laws) {
@@ -86,7 +86,7 @@ bool laws_fit(const MassSpringModel& model) {
 
 long rounded_up(long n, long to) { return (n + to - 1) / to * to; }
 
-/// The axes of space along x, y and z of the arrays.
+/// Axes of space assigned to x, y and z of the arrays.
 Place axes_for(const Place& extent, int lanes) {
   const auto waste = [&](int d) { return double(rounded_up(extent[d], lanes)) / extent[d]; };
   Place axis = {0, 1, 2};
@@ -103,7 +103,7 @@ struct Direction {
   int number;       ///< of lattice_directions
 };
 
-/// What a spring from one place to another is to the kernels; d = places[j] - places[i] along the arrays' axes.
+/// Direction of a spring in the kernels; d = places[j] - places[i] along the arrays' axes.
 Direction direction_of(Place d) {
   const bool forward = d[2] > 0 || (d[2] == 0 && (d[1] > 0 || (d[1] == 0 && d[0] > 0)));
   if (!forward) d = {-d[0], -d[1], -d[2]};
@@ -123,7 +123,7 @@ class BlockCoefficients {
   }
   const double* block(std::size_t number) const { return &values_[number * size_]; }
 
-  /// Where each block's coefficients start in a table that has equal ones once.
+  /// Start of each block's coefficients in a table that stores equal blocks once.
   std::vector<int> table(std::vector<double>& values) const {
     CoefficientTable known(size_);
     std::vector<int> entries;
@@ -138,7 +138,7 @@ class BlockCoefficients {
   std::vector<double> values_;
 };
 
-/// Where a spring stands among the coefficients.
+/// Position of a spring among the coefficients.
 struct PlaceOfSpring {
   int slot, direction;
   bool from_first;
@@ -187,7 +187,8 @@ BlockCoefficients flow_coefficients_of(const std::vector<std::array<double, 2>>&
   return c;
 }
 
-/// Of an energy what flows out is what flows in times a factor of the node, which is spread over both.
+/// In the conservative form the outflow coefficients are the inflow coefficients times a factor per node, whose square
+/// root is applied to each.
 void add_flows(const MomentumDispersion& law, const Network& network, LatticeLayout& l) {
   MomentumDispersion::Coefficients c = law.coefficients(network);
   for (auto& ends : c.in)
@@ -203,7 +204,7 @@ void add_flows(const MomentumDispersion& law, const Network& network, LatticeLay
   l.inflow_entry = flow_coefficients_of(c.in, network, l).table(l.inflow);
 }
 
-/// Per block of the lattice the directions whose springs have coefficients: where in tables there are any but 0.
+/// Marks, per block of the lattice, the directions whose springs have non-zero coefficients in the table.
 void mark_flows(const LatticeLayout& l, const std::vector<int>& entries, const std::vector<double>& table,
                 std::vector<unsigned>& flows) {
   for (std::size_t b = 0; b < entries.size(); ++b)
@@ -211,7 +212,8 @@ void mark_flows(const LatticeLayout& l, const std::vector<int>& entries, const s
       if (table[entries[b] + c] != 0) flows[b] |= 1u << c / l.lanes / 2;
 }
 
-/// Where a pair's slanted springs take part in dispersion its straight ones do: the kernels have no case for less.
+/// Marks a pair's straight springs where its slanted ones take part in dispersion: the kernels have no case for slanted
+/// ones alone.
 unsigned with_straight_flows(const LatticeRun& run) {
   unsigned flows = run.flows;
   for (int pair = 1; pair < lattice_pairs; ++pair)
@@ -280,7 +282,7 @@ bool is_lattice_of_springs(const MassSpringModel& model) {
     return false;
   const Place extent = extent_of(places);
   double box = 1;
-  for (int n : extent) box *= n + 16;  // with what rows are padded by
+  for (int n : extent) box *= n + 16;  // with the padding of the rows
   return box * lattice_coefficients < std::numeric_limits<int>::max() && box < 64.0 * network.nodes() + 1e6;
 }
 
@@ -293,9 +295,9 @@ LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_
   l.axis = axes_for(extent, lanes);
   for (int d = 0; d < 3; ++d) l.nodes[d] = extent[l.axis[d]];
   l.row_blocks = static_cast<int>(rounded_up(l.nodes[0], lanes) / lanes);
-  l.row = rounded_up(l.nodes[0] + 1, lanes);  // beyond a row's end there is no node
+  l.row = rounded_up(l.nodes[0] + 1, lanes);  // at least one place without a node at the end of a row
   const long line = 64 / bytes_per_value;
-  l.plane = rounded_up(l.nodes[1] * l.row, line) + 5 * line;  // no power of two: planes would share places in the cache
+  l.plane = rounded_up(l.nodes[1] * l.row, line) + 5 * line;  // no power of two, or planes would share cache sets
   l.size = l.plane * l.nodes[2] + lanes;
   std::vector<char> has_node(std::size_t(l.rows()) * l.row_blocks, 0);
   for (const Place& p : places) {

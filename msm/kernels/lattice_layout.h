@@ -1,4 +1,4 @@
-// Where the nodes and springs of a lattice lie in the arrays of its kernels (msm/kernels/lattice_kernel.h).
+// Memory layout of the nodes and springs of a lattice in its kernels (msm/kernels/lattice_kernel.h).
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace springproof {
 
-/// Blocks of coefficients, equal ones kept once.
+/// Table of blocks of coefficients that stores equal ones once.
 class CoefficientTable {
  public:
   explicit CoefficientTable(int size) : size_(size) {}
 
-  /// Where the block starts among the values.
+  /// Start of the block among the values; appends it if it is new.
   int entry(const double* block);
   const std::vector<double>& values() const { return values_; }
 
@@ -28,27 +28,27 @@ class CoefficientTable {
 };
 
 struct LatticeLayout {
-  std::array<int, 3> axis;   ///< of space, along which x, y and z of the arrays run
-  std::array<int, 3> nodes;  ///< along them
+  std::array<int, 3> axis;   ///< axis of space along x, y and z of the arrays
+  std::array<int, 3> nodes;  ///< number of nodes along them
   int lanes = 0;
   int row_blocks = 0;
   long row = 0, plane = 0, size = 0;  ///< strides and length of an array, in values
-  std::vector<int> slot;              ///< of each node of the network in the arrays
+  std::vector<int> slot;              ///< index of each node of the network in the arrays
   std::vector<int> first_run;
   std::vector<LatticeRun> runs;
   std::vector<int> spring_entry;  ///< per block
-  std::vector<double> springs;    ///< their coefficients, each once
+  std::vector<double> springs;    ///< coefficients, equal blocks once
   std::vector<int> inflow_entry,
-      outflow_entry;  ///< of momentum dispersion; no outflow: it is the inflow times outflow_sign
+      outflow_entry;  ///< of momentum dispersion; empty outflow: the inflow times outflow_sign
   std::vector<double> inflow, outflow;
   double outflow_sign = 1;
 
   long rows() const { return long(nodes[1]) * nodes[2]; }
-  int block_of(int slot) const;  ///< number of the block that holds a node
+  int block_of(int slot) const;  ///< number of the block that contains a slot
 };
 
-/// Whether a network is a cubic lattice of nodes, joined with neighbours at most one edge away on each axis, with no
-/// two nodes in one place, and its laws are springs, volume and hourglass correction, momentum dispersion.
+/// Whether a network is a cubic lattice of distinct nodes, connected with neighbours at most one edge away on each
+/// axis, and its laws are springs, volume and hourglass correction, momentum dispersion.
 bool is_lattice_of_springs(const MassSpringModel& model);
 
 /// Rows run along the axis that wastes fewest lanes, planes across the longest of the others.

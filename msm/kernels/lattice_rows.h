@@ -1,4 +1,4 @@
-// Rows of a lattice, blocks of them, and what is added to them.  For the lattice kernels only.
+// Rows and blocks of a lattice and the accumulation of forces on them.  For the lattice kernels only.
 #pragma once
 
 #include "msm/kernels/lattice_kernel.h"
@@ -78,14 +78,14 @@ SPRINGPROOF_INLINE Force<Real> difference(const Force<Real>& a, const Force<Real
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// Inverse lengths of the springs that start from a row, found by inflow(): direction after direction, l.row values
+/// Inverse lengths of the springs that start from a row, computed by inflow(): direction by direction, l.row values
 /// each.
 template <class Real>
 Real* inverse_lengths(const LatticeView<Real>& l, int y, int z) {
   return l.inverse_lengths + (long(z % l.kept_planes) * l.rows + y) * lattice_directions * l.row;
 }
 
-/// What the springs of a plane's nodes flow in to J, and their inverse lengths.
+/// Adds the inflow of the springs of a plane's nodes to J and stores their inverse lengths.
 template <class Real>
 void inflow(const LatticeView<Real>& l, int z);
 

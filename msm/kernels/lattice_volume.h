@@ -5,13 +5,13 @@
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 
-/// Pressure of cells of J times their volume, per kappa; anything where there is no cell.
+/// Pressure, per kappa, of cells with volume ratio J; arbitrary where there is no cell.
 template <bool bounded, class Real>
 SPRINGPROOF_INLINE Lanes<Real> pressure(Lanes<Real> J, const Lanes<Real>& kappa) {
   if constexpr (bounded) {
     stdx::where(kappa == Real(0), J) = 1;
     const Lanes<Real> d = J - Real(1);
-    // 3 (J^(1/3) - 1) / J^(2/3); near 1 the root is known well enough for one step.
+    // 3 (J^(1/3) - 1) / J^(2/3); near 1 a series gives a start value that needs only one step.
     Lanes<Real> y;
     if (stdx::all_of(stdx::abs(d) < Real(0.125)))
       y = nearer_inverse_cube_root(J, Real(1) - d * (Real(1.0 / 3) - d * (Real(2.0 / 9) - d * Real(14.0 / 81))));
@@ -58,7 +58,7 @@ void volume_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], con
     scale(bc);
     scale(ca);
     scale(ab);
-    // A corner with signs (sx, sy, sz) gets -(sx bc + sy ca + sz ab); those of high x belong one further on.
+    // The force on a corner with signs (sx, sy, sz) is -(sx bc + sy ca + sz ab); corners of high x are the next nodes.
     const Force<Real> far_bc = shifted(before[0], bc), far_ca = shifted(before[1], ca), far_ab = shifted(before[2], ab);
     before[0] = bc, before[1] = ca, before[2] = ab;
     const Force<Real> B = difference(bc, far_bc), C = sum(ca, far_ca), A = sum(ab, far_ab);

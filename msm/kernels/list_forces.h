@@ -13,11 +13,11 @@ namespace springproof {
 template <class Real>
 const ListKernels<Real>& list_kernels(InstructionSet set);
 
-/// What momentum dispersion needs beside the springs.
+/// Coefficients of momentum dispersion.
 template <class Real>
 struct ListDispersionData {
   std::vector<Real> a_i, a_j, c_i, c_j;  ///< per entry
-  std::vector<int> sink;                 ///< per place the place whose J takes its springs' flow; empty: its own
+  std::vector<int> sink;                 ///< per place, the place whose J receives its springs' inflow; empty: its own
 
   ListDispersionData(const MomentumDispersion& law, const Network& network, const SpringBlocks& blocks);
 
@@ -25,15 +25,16 @@ struct ListDispersionData {
   explicit ListDispersionData(const ListDispersionData<Other>& other);
 
   ListDispersion<Real> arrays() const { return {a_i.data(), a_j.data(), c_i.data(), c_j.data()}; }
-  void share(std::vector<Real>& J) const;  ///< gives all members of a group the group's J
+  void share(std::vector<Real>& J) const;  ///< assigns the sum of J over a group to all its members
 };
 
-/// The internal forces of a model of springs, with or without momentum dispersion; the model may go.
-/// Real = double: as laws::add_forces() to 1e-12 of the largest force; float: 1e-5 at strains of a few percent.
+/// Internal forces of a model of springs, with or without momentum dispersion; keeps no reference to the model.
+/// Real = double: equal to forces() (msm/laws/laws.h) to 1e-12 of the largest force; float: 1e-5 at strains of a few
+/// percent.
 template <class Real>
 class ListForces {
  public:
-  /// Whether the model consists of nothing else.  Periodic images are nodes like others, whose inflows add up.
+  /// Whether the model has these laws only.  Periodic images are treated as nodes, whose inflows are summed.
   static bool covers(const MassSpringModel& model);
 
   /// @throws std::invalid_argument if covers() is false.
@@ -42,10 +43,10 @@ class ListForces {
   /// f = internal forces [N] at x [m], in the network's order.
   void at(const NodalVectors& x, NodalVectors& f);
 
-  /// f += internal forces, by place.  `lagged`: nodes disperse the J of the call before.
+  /// f += internal forces, by place.  `lagged`: dispersion uses the J of the previous call.
   void add(const Padded<Real>* x, Padded<Real>* f, bool lagged = false);
 
-  /// f += forces of the springs of some blocks only, by place; nothing is dispersed.
+  /// f += forces of the springs of blocks begin <= b < end, by place, without dispersion.
   void add_springs(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
 
   bool disperses() const { return !dispersion_.empty(); }

@@ -1,6 +1,6 @@
 // Springs in blocks of four from one node.  Four differences of padded vectors give four squared lengths by shuffles,
-// the roots are taken in full registers, and each tension multiplies its own difference again: no transposes, and whole
-// nodes are loaded and stored, so that two lanes may share a node.
+// square roots are computed in full registers, and each tension multiplies its own difference again: no transposes, and
+// whole nodes are loaded and stored, so that two lanes may share a node.
 #include "msm/kernels/list_kernels.h"
 #include "msm/kernels/simd.h"
 
@@ -16,9 +16,9 @@ struct FourOf {
   typedef Real type __attribute__((vector_size(4 * sizeof(Real)), may_alias));
 };
 template <class Real>
-using Four = typename FourOf<Real>::type;  // of an aligned address
+using Four = typename FourOf<Real>::type;  // at an aligned address
 
-// Blocks whose roots fill a register.
+// Number of blocks whose square roots fill a register.
 template <class Real>
 constexpr int group = Lanes<Real>::size() < 4 ? 1 : static_cast<int>(Lanes<Real>::size()) / 4;
 template <class Real>
@@ -53,7 +53,7 @@ inline Wide<Real> square_root(Wide<Real> a) {
   return reinterpret_cast<Wide<Real>&>(lanes);
 }
 
-/// The sums over the lanes of each.
+/// Horizontal sums of the four vectors.
 template <class V>
 inline V sums(const V& a, const V& b, const V& c, const V& d) {
   const V ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
@@ -73,7 +73,7 @@ inline Wide<Real> join(const Four<Real>* parts) {
                                    5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-/// What one group of blocks works with.
+/// Nodes and difference vectors of one group of blocks.
 template <class Real>
 struct Group {
   int i[group<Real>];
@@ -95,7 +95,7 @@ struct Group {
     return join<Real>(parts);
   }
 
-  /// The products with a vector per entry.
+  /// Dot products with one vector per entry.
   inline Wide<Real> along(const Padded<Real>* m) const {
     Four<Real> parts[group<Real>];
     for (int g = 0; g < group<Real>; ++g)
@@ -145,7 +145,7 @@ template <class Real>
 void spring_forces(const ListPattern& p, const ListSprings<Real>& springs, const Padded<Real>* x, Padded<Real>* f) {
   for (long b = 0; b < p.blocks; b += group<Real>) {
     const Group<Real> at(p, b, x);
-    const Wide<Real> square = at.squared_lengths();  // root and quotient do not wait for each other
+    const Wide<Real> square = at.squared_lengths();  // square root and quotient are independent
     const Wide<Real> s = wide(springs.k + 4 * b) - wide(springs.kL + 4 * b) / square * square_root<Real>(square);
     scatter<Real>(at.i, at.j, at.d, s, f);
   }

@@ -1,4 +1,5 @@
-// The kernels of networks without a lattice, on plain arrays: what list_kernel.cpp defines once per instruction set.
+// Interface of the kernels for networks without a lattice, on plain arrays; list_kernel.cpp defines them once per
+// instruction set.
 #pragma once
 
 namespace springproof {
@@ -12,8 +13,8 @@ struct alignas(4 * sizeof(Real)) Padded {
 constexpr int block_springs = 4;    ///< springs of a block, all from the same node i
 constexpr int blocks_together = 4;  ///< the number of blocks is a multiple of it
 
-/// Springs in blocks; entry 4 b + l is lane l of block b.  A lane that is not needed repeats another's nodes with zeros
-/// for everything it multiplies.
+/// Springs in blocks; entry 4 b + l is lane l of block b.  An unused lane repeats another's nodes with zero
+/// coefficients.
 struct ListPattern {
   long blocks = 0;
   const int* i = nullptr;  ///< per block
@@ -25,7 +26,7 @@ template <class Real>
 struct ListSprings {
   const Real* k = nullptr;   ///< [N/m]
   const Real* kL = nullptr;  ///< stiffness times rest length [N]
-  const Real* L = nullptr;   ///< rest length [m]; of dispersion only
+  const Real* L = nullptr;   ///< rest length [m]; used by dispersion only
 };
 
 /// Momentum dispersion, per entry: J_n = sum a e over the springs at n, tension += c_i J_i + c_j J_j.
@@ -37,9 +38,8 @@ struct ListDispersion {
   const Real* c_j = nullptr;
 };
 
-/// One step of semi-implicit Euler on nodes that have all their forces: s + external = v / gain, x += dt v, and for the
-/// next step s = decay (s + external), to which the forces then add up.  No array of forces is needed, and none is
-/// swept.
+/// One step of semi-implicit Euler on nodes whose forces are complete: s + external = v / gain, x += dt v, and for the
+/// next step s = decay (s + external), to which its forces are added.  No separate array of forces is needed.
 template <class Real>
 struct ListStep {
   long nodes = 0;
@@ -47,7 +47,7 @@ struct ListStep {
   const Padded<Real>* external = nullptr;  ///< [N]; the fourth number is the gain dt / m / (1 + dt damping)
   Padded<Real>* x = nullptr;
   Padded<Real>* s = nullptr;  ///< [N]
-  Padded<Real>* f = nullptr;  ///< internal forces, if they are not in s yet; 0 afterwards
+  Padded<Real>* f = nullptr;  ///< internal forces if they are not yet added to s, else nullptr; zeroed
 };
 
 /// One step of a Chebyshev smoother over 3x3 node blocks D: r -= y, z = old z + new D^-1 r, x += z, y = 0.
@@ -66,7 +66,7 @@ template <class Real>
 struct ListKernels {
   /// f += forces of the springs at x.
   void (*spring_forces)(const ListPattern&, const ListSprings<Real>&, const Padded<Real>* x, Padded<Real>* f);
-  /// J += sum a e; keeps 1 / length per entry.
+  /// J += sum a e; stores 1 / length per entry.
   void (*inflow)(const ListPattern&, const ListSprings<Real>&, const ListDispersion<Real>&, const Padded<Real>* x,
                  Real* J, Real* inverse_length);
   /// f += forces of springs and dispersion together, with the inverse lengths of inflow() at the same x.
@@ -78,7 +78,7 @@ struct ListKernels {
   // Small displacements u about a state; m = sqrt(k) times the direction, per entry.
   /// y += sum m (m . du).
   void (*stiffness)(const ListPattern&, const Padded<Real>* m, const Padded<Real>* u, Padded<Real>* y);
-  /// J += sum a t, t = m . du kept per entry.
+  /// J += sum a t, t = m . du stored per entry.
   void (*linear_inflow)(const ListPattern&, const Padded<Real>* m, const ListDispersion<Real>&, const Padded<Real>* u,
                         Real* J, Real* t);
   /// y += sum m (t + c_i J_i + c_j J_j).

@@ -76,7 +76,7 @@ ListStiffness<Real>::ListStiffness(const ListStiffness<Other>& other, double uni
   const double root = std::sqrt(unit);
   for (std::size_t e = 0; e < m_.size(); ++e)
     for (int d = 0; d < 4; ++d) m_[e].v[d] = static_cast<Real>(other.m_[e].v[d] / root);
-  for (const auto& data : other.dispersion_) dispersion_.emplace_back(data);  // what passes through J has m twice, too
+  for (const auto& data : other.dispersion_) dispersion_.emplace_back(data);  // already quadratic in m
 }
 
 template <class Real>
@@ -101,13 +101,13 @@ void ListStiffness<Real>::multiply(const Eigen::VectorXd& u, Eigen::VectorXd& y)
 
 namespace {
 
-/// What one node contributes to one sum J, and gets from it.
+/// Contribution of one node to one J, and its coefficient in the outflow.
 struct Share {
   int sink;
   Vec3 in, out;
 };
 
-/// Per place the entries that it is in.
+/// Entries that contain each place.
 struct EntriesOfPlaces {
   std::vector<int> begin, entry;
 
@@ -141,7 +141,7 @@ void ListStiffness<Real>::add_flow_blocks(std::vector<Eigen::Matrix3d>& blocks) 
     shares.assign(1, {sink(p), Vec3::Zero(), Vec3::Zero()});
     const auto add_share = [&](int to, const Vec3& in, const Vec3& out) {
       auto known = shares.begin();
-      if (to != known->sink && !of_group[to]) {  // met once
+      if (to != known->sink && !of_group[to]) {  // only one spring contributes
         blocks[p] += out * in.transpose();
         return;
       }

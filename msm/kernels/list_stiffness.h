@@ -1,5 +1,5 @@
-// The stiffness at rest of networks without a lattice, by the list kernels: one vector per spring instead of 3x3
-// blocks.
+// Matrix-free stiffness at rest of networks without a lattice, by the list kernels: one vector per spring instead of
+// 3x3 blocks.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ class ListStiffness {
   ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
                 InstructionSet set = instruction_set());
 
-  /// Another's, in units of `unit` [N/m].
+  /// Copy of another operator, in units of `unit` [N/m].
   template <class Other>
   ListStiffness(const ListStiffness<Other>& other, double unit);
 
@@ -30,7 +30,7 @@ class ListStiffness {
   /// y = K u, vectors of 3 n in the network's order.
   void multiply(const Eigen::VectorXd& u, Eigen::VectorXd& y) const;
 
-  /// The 3x3 block of each place's node with itself [N/m].
+  /// The diagonal 3x3 block of the node at each place [N/m].
   std::vector<Eigen::Matrix3d> node_blocks() const;
 
   std::shared_ptr<const SpringBlocks> blocks() const { return blocks_; }
@@ -50,7 +50,7 @@ class ListStiffness {
   mutable std::vector<Padded<Real>> u_, y_;
 };
 
-/// Vectors of 3 n in the network's order, times `factor`, to vectors by place and back.
+/// Converts vectors of 3 n in the network's order, times `factor`, to vectors by place, and back.
 template <class Real>
 void by_place(const SpringBlocks& blocks, const double* v, double factor, std::vector<Padded<Real>>& out);
 template <class Real>

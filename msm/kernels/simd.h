@@ -1,5 +1,6 @@
-// What a kernel may include besides plain structs.  Kernels are compiled with instructions that other processors lack,
-// so they must not bring inline functions of Eigen or the standard containers into the program (tests/cli/kernels.sh).
+// SIMD vectors for kernels, which may include only these and plain structs.  Kernels are compiled with instructions
+// that other processors lack, so they must not bring inline functions of Eigen or the standard containers into the
+// program (tests/cli/kernels.sh).
 #pragma once
 
 #include <experimental/simd>

@@ -5,7 +5,7 @@
 
 #include "msm/kernels/simd.h"
 
-/// The compiler finds the larger of a kernel's small functions too large.
+/// Forces inlining: the compiler considers the larger of a kernel's small functions too large for it.
 #define SPRINGPROOF_INLINE inline __attribute__((always_inline))
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
@@ -35,14 +35,15 @@ SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes
       __builtin_shuffle(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), order));
 }
 
-/// J^(-1/3) from y near it, by a step of fourth order.
+/// J^(-1/3) from an approximation y, by one step of fourth order.
 template <class Real>
 SPRINGPROOF_INLINE Lanes<Real> nearer_inverse_cube_root(const Lanes<Real>& J, const Lanes<Real>& y) {
   const Lanes<Real> e = Real(1) - J * y * y * y;  // (1 - e)^(-1/3) = 1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...
   return y + y * e * (Real(1.0 / 3) + e * (Real(2.0 / 9) + e * Real(14.0 / 81)));
 }
 
-/// J^(-1/3), of the sign of J, by two steps of fourth order from a guess in single precision (10 %) out of the bits.
+/// J^(-1/3), with the sign of J, by two steps of fourth order from a single-precision guess (10 %) derived from the
+/// bits of J.
 template <class Real>
 SPRINGPROOF_INLINE Lanes<Real> inverse_cube_root(const Lanes<Real>& J) {
   using Float = typename Builtin<float, lanes<Real>>::type;

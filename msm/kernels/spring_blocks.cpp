@@ -7,8 +7,8 @@
 namespace springproof {
 namespace {
 
-// Of a layer, of a strip in it, of a step along the strip, in mean spring lengths: nodes of three layers are what a
-// sweep through the springs has in hand, and those of three strips what it has in the nearest cache.
+// Thickness of a layer, of a strip in it, of a step along the strip, in mean spring lengths: the working set of a sweep
+// through the springs is the nodes of three layers, that in the first-level cache the nodes of three strips.
 constexpr double thickness[3] = {1.33, 3.3, 0.33};
 
 /// The axes of the body, the longest first.
@@ -18,7 +18,7 @@ std::array<int, 3> by_extent(const Eigen::RowVector3d& extent) {
   return axes;
 }
 
-/// Layer by layer along the longest axis, in a layer strip by strip.
+/// Node order: layer by layer along the longest axis, in a layer strip by strip.
 std::vector<int> spatial_order(const Network& network) {
   std::vector<int> order(network.nodes());
   std::iota(order.begin(), order.end(), 0);
@@ -40,7 +40,7 @@ struct Half {
   int spring;
 };
 
-/// Each place's springs, by place.
+/// Springs at each place, sorted by the place of the other node.
 struct Adjacency {
   std::vector<int> begin;
   std::vector<Half> halves;
@@ -72,7 +72,8 @@ SpringBlocks::SpringBlocks(const Network& network) : order(spatial_order(network
   const Adjacency adjacency(network, place);
   std::vector<char> taken(network.springs.size(), 0);
   std::vector<Half> open;
-  // A node takes its open springs in fours and leaves the rest to nodes after it; those before it have had their turn.
+  // A node takes its remaining springs in fours and leaves the rest to nodes after it, but must take those to nodes
+  // before it.
   for (int p = 0; p < nodes(); ++p) {
     open.clear();
     for (int h = adjacency.begin[p]; h < adjacency.begin[p + 1]; ++h)

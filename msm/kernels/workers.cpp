@@ -11,7 +11,7 @@ void pause() {
 #endif
 }
 
-/// Waits for a change from `old`: first at full speed, then asleep.
+/// Waits for a change from `old`: first by spinning, then asleep.
 void wait_for_change(const std::atomic<int>& value, int old) {
   for (int i = 0; i < patience; ++i) {
     if (value.load(std::memory_order_acquire) != old) return;

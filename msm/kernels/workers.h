@@ -1,4 +1,4 @@
-// Threads that stand ready: the parts of a time step are too short to start threads for.
+// Persistent worker threads: the parts of a time step are too short to start threads for.
 #pragma once
 
 #include <atomic>
@@ -30,7 +30,7 @@ class Workers {
   std::atomic<int> busy_ = 0;
 };
 
-/// Waits until `reached` is at least `value`: a short time at full speed, then giving way to others.
+/// Waits until `reached` is at least `value`: first by spinning, then yielding to other threads.
 void wait_until(const std::atomic<long>& reached, long value);
 
 }  // namespace springproof

@@ -10,8 +10,8 @@ namespace springproof {
 /// Energy sum beta/2 (phi - phi_0)^2 over the three angles of every triangle, phi_0 the angle at rest: six springs at a
 /// node inside a hexagonal lattice.  Kot et al. (2014), eq. (13); Kot and Nagahashi (2015), eq. (4) (their coefficient:
 /// docs/papers.md #14).  The angle is measured in space, so the triangles may turn and leave their plane.
-/// An angle belongs to one triangle only: triangles superpose, a boundary needs no rule.
-/// No triangle may be flat (phi = 0 or pi: no direction for the force).
+/// An angle belongs to one triangle only, so triangles superpose and a boundary needs no special rule.
+/// No triangle may be degenerate (phi = 0 or pi: no direction for the force).
 struct AngularSprings {
   static constexpr LawTraits traits = {"angular springs", Reach::springs};
 

@@ -38,7 +38,7 @@ struct Conditions {
 
   double length(std::size_t s) const { return network.springs[s].rest_length / unit; }
 
-  /// What a unit weight adds to the six conditions of its own node.
+  /// Contribution of a unit weight to the six conditions of its own node.
   Eigen::Matrix<double, 6, 1> moment(std::size_t s) const {
     const Vec3& e = direction[s];
     Eigen::Matrix<double, 6, 1> m;
@@ -94,8 +94,7 @@ struct Conditions {
     }
   }
 
-  /// Inverses of the node blocks of A D A^T, and its diagonal; the conditions of a node that can say nothing are left
-  /// out.
+  /// Inverses of the node blocks of A D A^T, slightly regularised because they may be singular, and its diagonal.
   std::vector<Block> inverse_blocks(const std::vector<double>& D, Eigen::VectorXd& diagonal) const {
     std::vector<Block> blocks(network.nodes(), Block::Zero());
     for (std::size_t s = 0; s < direction.size(); ++s)
@@ -104,14 +103,14 @@ struct Conditions {
         own << moment(s), (side == 0 ? -1.0 : 1.0) * direction[s];
         Condition pull = Condition::Zero();
         pull.tail<3>() = direction[s];
-        if (sink(s, side) != end(s, side)) {  // the moment is another node's business
+        if (sink(s, side) != end(s, side)) {  // the moment belongs to another node's conditions
           Condition elsewhere = own;
           elsewhere.tail<3>().setZero();
           blocks[sink(s, side)] += D[2 * s + side] * elsewhere * elsewhere.transpose();
           own.head<6>().setZero();
         }
         blocks[end(s, side)] += D[2 * s + side] * own * own.transpose();
-        blocks[end(s, side)] += D[2 * s + 1 - side] * pull * pull.transpose();  // the far end's weight pulls here too
+        blocks[end(s, side)] += D[2 * s + 1 - side] * pull * pull.transpose();  // the far end's weight adds here too
       }
     for (int n = 0; n < network.nodes(); ++n) diagonal.segment<per_node>(per_node * n) = blocks[n].diagonal();
     for (Block& b : blocks) {
@@ -130,8 +129,8 @@ bool is_lattice(const Network& network) {
   return true;
 }
 
-/// An eighth of each cell's volume to each of its corners, by the three edges there: per spring end k of the edges,
-/// nothing of the diagonals.
+/// Weights that assign an eighth of each cell's volume to each of its corners, by the three edges there: per spring end
+/// proportional to k for edges, 0 for diagonals.
 std::vector<double> edge_weights(const Network& network, double unit) {
   std::vector<double> w;
   double sum = 0;
@@ -144,7 +143,7 @@ std::vector<double> edge_weights(const Network& network, double unit) {
   return w;
 }
 
-/// k L, each node's scaled to its volume: trace of sum w L n n^T = d V_n.
+/// Weights k L, scaled at each node to its volume: trace of sum w L n n^T = d V_n.
 std::vector<double> stiffness_weights(const Conditions& A, const Eigen::VectorXd& target, int dimensions) {
   const auto& springs = A.network.springs;
   Eigen::VectorXd share = Eigen::VectorXd::Zero(A.network.nodes());
@@ -159,7 +158,7 @@ std::vector<double> stiffness_weights(const Conditions& A, const Eigen::VectorXd
   return w;
 }
 
-/// Least change of w, relative to w, that meets the conditions.  Returns the iterations.
+/// Applies the smallest change of w, relative to w, that meets the conditions.  Returns the number of iterations.
 int correct(const Conditions& A, const Eigen::VectorXd& target, std::vector<double>& w) {
   const std::vector<double> D = w;
   Eigen::VectorXd met, diagonal(target.size());
@@ -168,7 +167,7 @@ int correct(const Conditions& A, const Eigen::VectorXd& target, std::vector<doub
   if (!(missing.norm() > 1e-13 * target.norm())) return 0;
   const std::vector<Block> inverse = A.inverse_blocks(D, diagonal);
   std::vector<double> change;
-  double slack = 0;  // of the conditions, as a fraction of what a unit change of a node's weights does to them
+  double slack = 0;  // regularisation, as a fraction of the diagonal of A D A^T
   const Operator normal = [&](const Eigen::VectorXd& y, Eigen::VectorXd& r) {
     A.transpose(y, D, change);
     A.apply(change, r);

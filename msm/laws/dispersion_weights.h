@@ -1,4 +1,4 @@
-// Weights that make the inflow of a node its exact share of the volume change.
+// Weights of momentum dispersion that make the inflow of a node its exact share of the volume change.
 #pragma once
 
 #include <vector>
@@ -14,24 +14,24 @@ struct DispersionWeights {
   double residual = 0;  ///< |unmet conditions| / |conditions|
 };
 
-/// Nodes whose springs lie to one side (surfaces) share the J of the inner node that their shortest spring leads to: on
-/// their own they could not tell shear from a change of volume, and a constraint each would stiffen the body near nu =
-/// 1/2. Per node the node whose J it shares.
+/// Nodes whose springs lie to one side (surfaces) share the J of the inner node that their shortest spring leads to: a
+/// J of their own could not distinguish shear from a change of volume, and one constraint per node would stiffen the
+/// body near nu = 1/2.  Returns, per node, the node whose J it shares.
 std::vector<int> volume_groups(const Network& network);
 
 /// Weights w with two properties, up to a factor 10 G:
-///  - under any affine displacement, J_n = V_n div u (V_n the volume share of the group): no node answers to shear;
+///  - under any affine displacement, J_n = V_n div u (V_n the volume share of the group): no node responds to shear;
 ///  - for any displacement, sum_n J_n is the body's change of volume to first order, `volume_gradient` . u: uniform
 ///    pressure is in equilibrium at every node.
 /// With w = k L the first fails at edges and corners and on disordered nodes, the second on disordered nodes, where the
-/// network relaxes the pressure away.
+/// network relaxes the pressure.
 /// Superposed cells meet both with w = k c on their edges and none on their diagonals, in any body: each cell gives an
 /// eighth of its volume to each corner by the three edges there.  Other networks get the weights nearest to k L, in the
 /// sum of (w - k L)^2 / (k L).
 /// @param volume_gradient dV/dx of the body at the nodes [m^2], n x 3; zero for periodic networks.
 /// Planar networks: J_n = V_n (the in-plane divergence), the factor is 8 G.
-/// Nodes at the surface of a disordered network may have too few springs to meet all; then all are met as nearly as a
-/// slack of 1e-3 allows.
+/// Nodes at the surface of a disordered network may have too few springs to meet all conditions, which are then met
+/// approximately, with a slack of 1e-3.
 /// @throws std::runtime_error if the residual exceeds 0.2.
 DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus);
 

@@ -7,9 +7,9 @@
 
 namespace springproof {
 
-/// Springs make a cell's bending mode stiffness G l whatever nu and A; a beam needs G l / (3 (1 - nu)).  This law adds,
-/// per cell, the difference as a quadratic energy of the displacement's hourglass components.  The components are
-/// orthogonal to affine fields, so the patch test and the moduli are untouched.
+/// Springs give a cell's bending mode the stiffness G l for any nu and A; a beam needs G l / (3 (1 - nu)).  This law
+/// adds, per cell, the difference as a quadratic energy of the displacement's hourglass components.  The components are
+/// orthogonal to affine fields, so the patch test and the moduli are unaffected.
 /// Valid for small displacements from rest only (no corotated frame): linear kinematics.
 struct HourglassCorrection {
   static constexpr LawTraits traits = {"hourglass correction", Reach::cells, true};
@@ -23,8 +23,8 @@ struct HourglassCorrection {
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 
-  /// What is added to the normalised modes of a cell of edge l [N/m]: to each bending mode, between the two that share
-  /// a neutral plane; to each torsional mode, among all three.
+  /// Stiffness added to the normalised modes of a cell of edge l [N/m]: to each bending mode, between the two that
+  /// share a neutral plane; to each torsional mode, among all three.
   struct Stiffness {
     double bending, coupling, torsion = 0, torsion_coupling = 0;
   };

@@ -1,5 +1,5 @@
-// The one list of force laws.  A law is a plain value.  The law suite of tests fails for a law of this list that
-// it has no case for (tests/laws/law_suite_test.cpp).
+// The list of all force laws, each a plain value, and the model that they form with a network.  The law suite of tests
+// fails for a law of this list that it has no case for (tests/laws/law_suite_test.cpp).
 #pragma once
 
 #include <variant>
@@ -19,24 +19,24 @@ inline const LawTraits& traits(const ForceLaw& law) {
   return std::visit([](const auto& l) -> const LawTraits& { return l.traits; }, law);
 }
 
-/// A mass-spring model: a network and what acts in it.
+/// A mass-spring model: a network and its force laws.
 struct MassSpringModel {
   Network network;
   std::vector<ForceLaw> laws;
-  bool small_displacements_only = false;  ///< holds for linear kinematics only
+  bool small_displacements_only = false;  ///< valid for linear kinematics only
 };
 
-double energy(const MassSpringModel& model, const NodalVectors& x);  ///< elastic energy [J]; of a model that has one
+double energy(const MassSpringModel& model, const NodalVectors& x);  ///< elastic energy [J] of a conservative model
 NodalVectors forces(const MassSpringModel& model, const NodalVectors& x);  ///< internal forces -dE/dx [N]
 Tangent tangent(const MassSpringModel& model, const NodalVectors& x);      ///< -df/dx [N/m]
 
-/// Refills what tangent() made at another state, keeping its pattern.
+/// Recomputes a tangent made by tangent() at another state, keeping its sparsity pattern.
 void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent& K);
 
 /// The model's momentum dispersion; nullptr if it has none.
 const MomentumDispersion* dispersion_of(const MassSpringModel& model);
 
-/// True if the forces have an energy, so that the tangent is symmetric.
+/// Whether the forces derive from an energy, so that the tangent is symmetric.
 bool conservative(const MassSpringModel& model);
 
 }  // namespace springproof

@@ -44,7 +44,7 @@ MomentumDispersion::Coefficients MomentumDispersion::coefficients(const Network&
   Coefficients c;
   c.in.resize(springs);
   c.out.resize(springs);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());  // what each node's outflow is divided by
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());  // normalisation of each node's outflow
   for (std::size_t s = 0; s < springs; ++s) {
     const Spring& spring = network.springs[s];
     const double k = spring.stiffness, L = spring.rest_length;

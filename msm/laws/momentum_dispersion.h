@@ -11,13 +11,13 @@
 
 namespace springproof {
 
-/// What a node takes from its springs, J_n = sum_s a_sn dL_s, and what it gives back to the tension of each,
+/// Inflow of a node from its springs, J_n = sum_s a_sn dL_s, and the tension that its outflow adds to each,
 /// T_s += c_si J_i + c_sj J_j (s = (i, j), k spring constant, L rest length, dL elongation, b springs at the node).
 enum class Dispersion {
-  symmetric,             ///< a = w, c = q w / sum_n w L: the gradient of an energy; w = k L, or given per spring end
-  share_weighted,        ///< a = q k L, c = share / (L sum_n share): the paper's, right at the surface of a lattice
-  published,             ///< a = q k L, c = 1 / (b L): Kot & Nagahashi (2015), sec. 4
-  published_transposed,  ///< a = q k / L, c = L / b: its other form, for lattices of 18 springs only
+  symmetric,       ///< a = w, c = q w / sum_n w L: the gradient of an energy; w = k L, or given per spring end
+  share_weighted,  ///< a = q k L, c = share / (L sum_n share): the paper's form, correct at the surface of a lattice
+  published,       ///< a = q k L, c = 1 / (b L): Kot & Nagahashi (2015), sec. 4
+  published_transposed,  ///< a = q k / L, c = L / b: the paper's other form, for lattices of 18 springs only
 };
 
 struct MomentumDispersion {
@@ -28,24 +28,24 @@ struct MomentumDispersion {
   /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring;
   /// empty: 1.
   std::vector<double> weight = {};
-  /// Per node the node whose J takes its springs' flow; empty: its own.  Symmetric form only.
+  /// Per node, the node whose J receives its springs' inflow; empty: its own.  Symmetric form only.
   std::vector<int> group = {};
 
   bool conservative() const { return form == Dispersion::symmetric; }
 
-  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; 0 for the forms that have none
+  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; 0 for non-conservative forms
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< [N]
   void add_tangent(const Network& network, const NodalVectors& x,
-                   BlockMatrix& K) const;  ///< its part between joined nodes
+                   BlockMatrix& K) const;  ///< the part between connected nodes
 
   /// The rest of the tangent, outflow^T inflow.
   void add_flow(const Network& network, const NodalVectors& x, Tangent& K) const;
 
-  /// J_n at positions x; images of a node add to the node they are images of.
+  /// J_n at positions x; periodic images contribute to the J of their master.
   Eigen::VectorXd inflow(const Network& network, const NodalVectors& x) const;
-  /// The forces that given inflows cause at x.
+  /// Adds the forces of given inflows at x.
   void add_forces(const Network& network, const NodalVectors& x, const Eigen::VectorXd& J, NodalVectors& f) const;
-  /// What passes per spring and end, i then j.
+  /// Coefficients of inflow and outflow per spring and end, i then j.
   struct Coefficients {
     std::vector<std::array<double, 2>> in;   ///< a_si, a_sj
     std::vector<std::array<double, 2>> out;  ///< c_si, c_sj
@@ -70,10 +70,11 @@ struct MomentumDispersion {
 /// Q = (lambda - mu) / ((1 + 2/d) mu).
 double dispersed_fraction(double lame_lambda, double shear_modulus, int dimensions = 3);
 
-/// The reverse: what dispersion adds to lambda, over G.
+/// The inverse: lambda added by dispersion, divided by G.
 double added_lambda(const MomentumDispersion& law, int dimensions = 3);
 
-/// Share that each spring of a superposed lattice has of the full spring of its length inside, 0 < share <= 1.
+/// Share of each spring of a superposed lattice in the stiffness of the full spring of its length inside, 0 < share <=
+/// 1.
 std::vector<double> spring_shares(const Network& network);
 
 }  // namespace springproof

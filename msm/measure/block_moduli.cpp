@@ -9,7 +9,7 @@ namespace {
 
 constexpr double central = 0.8;
 
-/// Displacement gradient of the one affine field nearest to the displacements of the central nodes.
+/// Displacement gradient of the affine field fitted to the displacements of the central nodes by least squares.
 Eigen::Matrix3d central_gradient(const Network& network, const NodalVectors& u, const StretchedBlock& block) {
   const Vec3 middle = (block.lower + block.upper) / 2, reach = central / 2 * (block.upper - block.lower);
   std::vector<int> nodes;

@@ -22,7 +22,7 @@ bool planar(const Network& network) {
   return z.maxCoeff() - z.minCoeff() <= 1e-9 * network.X.col(0).cwiseAbs().maxCoeff();
 }
 
-/// Which fraction of the segment from `a` to `a + d` lies in the ball.
+/// Fraction of the segment from `a` to `a + d` that lies in the ball.
 double fraction_inside(const Vec3& a, const Vec3& d, const Vec3& centre, double radius) {
   const Vec3 from = a - centre;
   const double dd = d.squaredNorm(), middle = -from.dot(d) / dd;

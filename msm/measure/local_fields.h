@@ -1,4 +1,4 @@
-// Strain, stress and momentum flow at places of a network.
+// Local strain, stress and momentum flow in a network.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace springproof {
 
-/// Tension of each spring [N], positive if it pulls: its own and what momentum dispersion adds.  Forces of cells and
-/// angles are not tensions: models with those have their stress measured in part only.
+/// Tension of each spring [N], positive if it pulls: its own plus that added by momentum dispersion.  Forces of cells
+/// and angles are not tensions, so the measured stress of models with those is incomplete.
 std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVectors& u);  ///< displacement from rest
 std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVectors& x);  ///< positions
 
@@ -18,14 +18,14 @@ std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVec
 Eigen::Matrix3d displacement_gradient(const Network& network, const NodalVectors& u, const Vec3& point, double radius);
 
 /// Mean stress in a ball [Pa]: (1/V) sum_s T_s n (x) d_s over the parts d_s of the springs inside, n their direction;
-/// the bond form of Hardy (1982).  Symmetric.  x: where springs are, Network::X for a linear model.
-/// The ball must lie inside the body: what sticks out counts as material without stress.
+/// the bond form of Hardy (1982).  Symmetric.  x: node positions, Network::X for a linear model.
+/// The ball must lie inside the body: any part outside counts as material without stress.
 Eigen::Matrix3d hardy_stress(const Network& network, const NodalVectors& x, const std::vector<double>& tensions,
                              const Vec3& point, double radius);
 
-/// Force that the side of a plane towards `normal` (unit) draws on the other with [N], positive if it pulls: sum over
-/// the springs that cross it of the tension's normal part; Kot et al. (2014), sec. 5.1.  Nodes on the plane are on the
-/// side of `normal`.
+/// Force with which the side of a plane towards `normal` (unit) pulls the other side [N], positive in tension: sum over
+/// the springs that cross the plane of the normal component of their tension; Kot et al. (2014), sec. 5.1.  Nodes on
+/// the plane are on the side of `normal`.
 double momentum_flow(const Network& network, const NodalVectors& x, const std::vector<double>& tensions,
                      const Vec3& point, const Vec3& normal);
 

@@ -14,7 +14,7 @@
 namespace springproof {
 namespace {
 
-constexpr double round_off = 1e-7;  // of an eigenvalue of multiplicity: relative to the largest
+constexpr double round_off = 1e-7;  // of a multiple eigenvalue, relative to the largest
 
 Eigen::MatrixXd dense_stiffness(const MassSpringModel& model) {
   const Tangent K = tangent(model, model.network.X);
@@ -28,7 +28,7 @@ Eigen::MatrixXd dense_stiffness(const MassSpringModel& model) {
   return A;
 }
 
-/// The rows and columns of motions in the plane.
+/// Rows and columns of the in-plane unknowns.
 Eigen::MatrixXd in_plane(const Eigen::MatrixXd& K) {
   const Eigen::Index nodes = K.rows() / 3;
   Eigen::MatrixXd A(2 * nodes, 2 * nodes);

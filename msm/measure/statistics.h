@@ -1,4 +1,4 @@
-// The numbers by which Kot et al. (2014) describe a network (sec. 3.3).
+// Statistics of a network as in Kot et al. (2014), sec. 3.3.
 #pragma once
 
 #include "msm/topology/network.h"
@@ -16,15 +16,15 @@ struct NetworkStatistics {
   double density;           ///< n = N/V [1/m^3]
 };
 
-/// Of all nodes and springs; <S> = 2 springs / nodes, the surface included, where nodes have fewer.  Images of a
-/// periodic network are not nodes, so that its numbers are those of the infinite network.
+/// Statistics of all nodes and springs; <S> = 2 springs / nodes, including surface nodes, which have fewer.  Images of
+/// a periodic network are not counted as nodes, so that its statistics are those of the infinite network.
 NetworkStatistics statistics(const Network& network);
 
 /// Marks the nodes further from the region's surface than the longest spring: none of their springs is missing.
 std::vector<char> bulk_nodes(const Network& network, const Region& region);
 
-/// Of the bulk_nodes().  `springs` are those with an end there, a length counts once per such end, V is the share of
-/// these nodes. All zero (NaN for means) if there is no such node.
+/// Statistics of the bulk_nodes().  `springs` are those with an end there, a length counts once per such end, V is the
+/// volume of these nodes. All zero (NaN for means) if there is no such node.
 NetworkStatistics bulk_statistics(const Network& network, const Region& region);
 
 }  // namespace springproof

@@ -28,7 +28,7 @@ double tension_limit(const ModelParameters& parameters, const IsotropicMaterial&
 
 StrainLimits strain_limits(const ModelParameters& parameters, const IsotropicMaterial& material) {
   ModelParameters p = parameters;
-  p.row.bending_correction = p.row.torsion_correction = false;  // for small displacements only; no part in this state
+  p.row.bending_correction = p.row.torsion_correction = false;  // for small displacements only; no effect in this state
   StrainLimits limits{};
   p.volume_energy = VolumeEnergy::bounded;
   limits.bounded_energy = tension_limit(p, material);

@@ -1,4 +1,4 @@
-// The stiffness of one cell of a lattice model: what the lattice's hierarchy and time step are made of.
+// Stiffness of one cell of a lattice model, for the lattice's multigrid hierarchy and time step.
 #pragma once
 
 #include "msm/laws/laws.h"
@@ -9,7 +9,7 @@ using CellMatrix = Eigen::Matrix<double, 24, 24>;
 using CellVector = Eigen::Matrix<double, 24, 1>;
 
 /// Rest stiffness of one cell [N/m], unknown 3 * corner + axis: its share of springs, and its own cell laws; momentum
-/// dispersion, which reaches past the cell, is left out.
+/// dispersion, which couples beyond the cell, is excluded.
 /// total = without_volume + (kappa / V) gradient gradient^T.
 struct CellStiffness {
   CellMatrix total;
@@ -19,7 +19,7 @@ struct CellStiffness {
   double volume = 0;           ///< V [m^3]
 };
 
-/// Whether the rest stiffness of a model is the sum of its cells': a lattice, without what reaches past a cell.
+/// Whether the rest stiffness of a model is the sum of its cells': a lattice without laws that couple beyond a cell.
 bool consists_of_cells(const MassSpringModel& model);
 
 /// The same with G, edge and G * edge as the units of pressure, length and stiffness: entries of order one.

@@ -30,7 +30,7 @@ struct Numbering {
       if (p[d] < low[d] || p[d] >= low[d] + size[d]) return -1;
     return number[place(p)];
   }
-  /// Numbers what is marked, x fastest, and lists it.  Returns where each plane begins, and the end.
+  /// Numbers and lists the marked entries, x fastest.  Returns the first of each plane, and the end.
   std::vector<long> number_marked(std::vector<Index>& list) {
     std::vector<long> begin;
     int* at = number.data();
@@ -55,7 +55,7 @@ Numbering numbering_of_points(const LatticeLevel& level) {
   return {level.first_cell, plus(level.cells_per_side, {1, 1, 1}), level.point_index};
 }
 
-/// A level of the marked cells: numbers them and their corners, and lays out the rows.
+/// Builds a level of the marked cells: numbers them and their corners, and sets the rows.
 LatticeLevel lay_out(Numbering& cells, double edge_ratio) {
   LatticeLevel level;
   level.edge_ratio = edge_ratio;
@@ -125,7 +125,7 @@ void lay_out_finest(const Network& network, const std::vector<char>& fixed, cons
   all.levels.push_back(std::move(level));
 }
 
-/// The cells that hold those of a finer level.
+/// The coarser level, of the cells that contain those of a finer one.
 LatticeLevel coarsen(const LatticeLevel& fine) {
   Index size;
   for (int d = 0; d < 3; ++d) size[d] = (fine.cells_per_side[d] + 1) / 2;

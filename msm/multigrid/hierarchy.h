@@ -1,4 +1,4 @@
-// Coarser and coarser lattices over the cells of a network, each in compact arrays: points and cells row by row.
+// Multigrid hierarchy of lattices over the cells of a network, each in compact arrays of points and cells, row by row.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace springproof {
 
-/// How the values of one row of finer points come from coarse ones: `count` rows of them, one, two or four.
+/// Interpolation of one row of finer points from `count` rows of coarse points, one, two or four.
 struct TransferRow {
   long fine = 0;     ///< first finer point
   int length = 0;    ///< finer points
-  bool odd = false;  ///< the first stands between two coarse points
+  bool odd = false;  ///< the first lies between two coarse points
   int count = 1;
   long coarse[4] = {};
 };
@@ -26,13 +26,13 @@ struct LatticeLevel {
   std::vector<CellRow> rows;
   std::vector<long> row_begin, cell_begin, point_begin;  ///< per plane z, then the end; planes of points: one more
   std::vector<double> fill;  ///< fraction of each cell that lies in the body, 0 < fill <= 1; empty: 1
-  std::vector<int> fixed;    ///< places of fixed unknowns in a nodal field, ascending
+  std::vector<int> fixed;    ///< indices of fixed unknowns in a nodal field, ascending
   double edge_ratio = 1;     ///< cell edge / finest cell edge
   std::vector<std::array<int, 3>> cell_index, point_index;  ///< (i,j,k) of each
 
-  // Passage to the next finer level; empty on the finest.
+  // Transfer to the next finer level; empty on the finest.
   std::vector<TransferRow> transfer;
-  std::vector<int> parent;  ///< for each finer cell, the cell that holds it
+  std::vector<int> parent;  ///< for each finer cell, the cell that contains it
 
   int planes() const { return static_cast<int>(row_begin.size()) - 1; }  ///< of cells
   long cells() const { return cell_begin.back(); }
@@ -46,26 +46,26 @@ struct LatticeLevel {
   static long corner(const CellRow& row, int i, int c);
 };
 
-/// The levels of a lattice network, finest first, and where its nodes and cells stand on the finest.
+/// The levels of a lattice network, finest first, and the numbers of its nodes and cells on the finest.
 struct LatticeLevels {
   std::vector<LatticeLevel> levels;
-  std::array<int, 3> axes{0, 1, 2};  ///< the network's axis that each of the levels' axes is
+  std::array<int, 3> axes{0, 1, 2};  ///< network axis of each of the levels' axes
   std::vector<int> point_of_node, cell_of_cell;
 
-  /// A nodal field of the finest level from the network's (3 values per node), and back.
+  /// Converts the network's nodal field (3 values per node) to one of the finest level, and back.
   void to_rows(const Eigen::VectorXd& nodal, Eigen::VectorXd& rows) const;
   void from_rows(const Eigen::VectorXd& rows, Eigen::VectorXd& nodal) const;
 };
 
 /// Levels down to about `coarsest_unknowns` or a single cell per side.
-/// A coarse cell is there if any of its eight children is, with the mean of their fills; a coarse point is fixed where
+/// A coarse cell exists if any of its eight children does, with the mean of their fills; a coarse point is fixed where
 /// the point it coincides with is, or, outside the body, where a neighbouring fixed point is.
 /// `fixed`: per unknown 3 * node + axis.  `fill` is that of the network's cells, empty: 1.
-/// @throws std::invalid_argument if the network remembers no grid.
+/// @throws std::invalid_argument if the network has no grid.
 LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fixed, int coarsest_unknowns = 900,
                              const std::vector<double>& fill = {});
 
-/// Goes on from the levels there are.
+/// Adds coarser levels below the coarsest in `all`.
 void add_coarser_levels(LatticeLevels& all, int coarsest_unknowns = 900);
 
 // Parts of a block, for several processes.
@@ -73,7 +73,7 @@ void add_coarser_levels(LatticeLevels& all, int coarsest_unknowns = 900);
 /// Planes z_begin ... z_end of cells of one level of a block whose finest level has `cells`; nothing fixed.
 LatticeLevel block_level(const std::array<int, 3>& cells, int level, int z_begin, int z_end);
 
-/// The passage between two levels that are there: parents, transfer, and what is fixed of the coarser one.
+/// Sets the transfer between two existing levels: parents, transfer rows, and the fixed unknowns of the coarser one.
 void link(const LatticeLevel& fine, LatticeLevel& coarse);
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-// What a lattice level does to fields, plane by plane and without a matrix.
+// Matrix-free operators of a lattice level, applied plane by plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace springproof {
 
-/// A cell's stiffness with the level's axes in the place of the network's.
+/// A cell's stiffness, permuted from the network's axes to the level's.
 CellMatrix reorder(const CellMatrix& cell, const std::array<int, 3>& axes);
 
 /// @throws std::invalid_argument if the cell lacks the mirror planes.
@@ -19,20 +19,20 @@ template <class Real>
 CellBlocks<Real> cell_blocks(const CellMatrix& cell, double gradient);
 
 /// Assembles a level's matrix, unknown 3 * point + axis, from one cell's stiffness: K(edge) is proportional to the
-/// edge; a cell filled in part counts in part.
+/// edge; a partly filled cell is scaled by its fill.
 BlockMatrix assemble(const LatticeLevel& level, const CellMatrix& cell);
 
 /// Diagonal of that matrix, as a nodal field of the level.
 Eigen::VectorXd diagonal(const LatticeLevel& level, const CellMatrix& cell);
 
-/// K (and the gradient of cell volumes) of a level.  Fields hold three arrays of level.stride() values, or one value
-/// per cell; what lies beyond the points and cells is zero.
+/// Operator K (and the gradient of cell volumes) of a level.  Fields hold three arrays of level.stride() values, or one
+/// value per cell; values beyond the points and cells are zero.
 template <class Real>
 class LatticeOperator {
  public:
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-  /// `cell` in the level's axes, at edge 1; `gradient` = |dV/du| of a corner at edge 1, 0 if not wanted.
+  /// `cell` in the level's axes, at edge 1; `gradient` = |dV/du| of a corner at edge 1, 0 if not needed.
   LatticeOperator(const LatticeLevel& level, const CellMatrix& cell, double gradient = 0,
                   InstructionSet set = instruction_set());
 
@@ -40,18 +40,18 @@ class LatticeOperator {
   const Vector& fill() const { return fill_; }  ///< empty: 1
 
   /// One pass: calls finish(axis, begin, n, y) when y = (K u + gradient^T p) of points begin ... begin + n is complete.
-  /// What finish changes of u at these points is seen by no cell.  `p` and `divergence` (of u) may be null.
+  /// finish may change u at these points: no later cell reads them.  `p` and `divergence` (of u) may be null.
   template <class Finish>
   void pass(const Real* u, const Real* p, Real* divergence, Finish finish);
 
   /// The same of y = gradient^T p alone: finish(k, begin, n) is called when plane k of points is complete in plane(k,
-  /// axis); plane k - 1 is still there then.
+  /// axis); plane k - 1 is still stored then.
   template <class Finish>
   void gradient_pass(const Real* p, Finish finish);
 
-  /// divergence = gradient u of the cells of plane k, whose points' u stands in plane(k, axis) and plane(k + 1, axis).
+  /// divergence = gradient u of the cells of plane k, with u of their points in plane(k, axis) and plane(k + 1, axis).
   void divergence_of_planes(int k, Real* divergence);
-  /// The same of a whole field.
+  /// The same for a whole field.
   void divergence(const Real* u, Real* divergence);
 
   Real* plane(int k, int axis) { return planes_.data() + (k % 3 * 3 + axis) * plane_size_; }
@@ -68,7 +68,7 @@ class LatticeOperator {
   CellBlocks<Real> blocks_;
   Vector fill_;
   long stride_ = 0, plane_size_ = 0;
-  Vector planes_;  ///< what three planes of points have collected, three components each
+  Vector planes_;  ///< accumulated values of three planes of points, three components each
 };
 
 template <class Real>

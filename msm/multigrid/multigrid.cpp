@@ -21,7 +21,7 @@ void solve_coarsest(const DirectSolver& factors, SmoothingLevel& level) {
     for (int a = 0; a < 3; ++a) level.x[a * stride + n] = static_cast<float>(x[3 * n + a]);
 }
 
-/// Whether the fixed unknowns of a level leave none of the six rigid motions.
+/// Whether the fixed unknowns of a level constrain all six rigid motions.
 bool holds_rigid_motions(const LatticeLevel& level) {
   Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
   const double size = *std::max_element(level.cells_per_side.begin(), level.cells_per_side.end());
@@ -29,7 +29,7 @@ bool holds_rigid_motions(const LatticeLevel& level) {
     const int a = static_cast<int>(place / level.stride());
     const auto& at = level.point_index[place % level.stride()];
     const Vec3 x = Vec3(at[0], at[1], at[2]) / size;
-    Eigen::Matrix<double, 6, 1> motion;  // a-component of three shifts and three turns at x
+    Eigen::Matrix<double, 6, 1> motion;  // a-component of three translations and three rotations at x
     motion << Vec3::Unit(a), x.cross(Vec3::Unit(a));
     sum += motion * motion.transpose();
   }
@@ -56,7 +56,7 @@ void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float
   const std::vector<char> fixed = fixed_by_point(level);
   const bool held = holds_rigid_motions(level);
   if (!may_float && !holds_rigid_motions(lattice.levels[0])) throw std::runtime_error("the body is not held");
-  // What a lattice's free motions would be given is all that single precision could hold.
+  // Without supports, pivots at the level of single precision are those of rigid motions.
   if (coarsest.factor(K, fixed, held ? 1e-14 : 1e-7)) return;
   if (!may_float && held) throw std::runtime_error("the coarsest lattice is singular: the model has zero-energy modes");
   const double anchor = 1e-3 * K.diagonal().mean();
@@ -114,8 +114,8 @@ void SmoothingLevel::find_thin_parts(const CellMatrix& cell) {
   if (thin->empty()) thin.reset();
 }
 
-/// Lanczos in the inner product of diag(K), from a rough vector.  The largest Ritz value and its residual are together
-/// seen to bound the spectrum from above (Zhou and Saad's bound for Chebyshev filters).
+/// Lanczos in the inner product of diag(K), from a pseudo-random vector.  The sum of the largest Ritz value and its
+/// residual is observed to bound the spectrum from above (Zhou and Saad's bound for Chebyshev filters).
 void SmoothingLevel::bound_eigenvalues(double at_most) {
   const long stride = K.stride();
   const Eigen::ArrayXf D = (inverse_diagonal.array() > 0).select(inverse_diagonal.array().inverse(), 0);
@@ -152,7 +152,7 @@ void SmoothingLevel::bound_eigenvalues(double at_most) {
   z.setZero();
 }
 
-/// Steps `first` ... `last`, each after the residual of the step before.
+/// Chebyshev steps `first` ... `last`, each after the residual update of the step before.
 void SmoothingLevel::smooth(int first, int last) {
   const long stride = K.stride();
   for (int k = first; k <= last; ++k) {

@@ -12,18 +12,18 @@
 
 namespace springproof {
 
-/// Unknowns 3 * point + axis of a level that are fixed.
+/// Marks the fixed unknowns 3 * point + axis of a level.
 std::vector<char> fixed_by_point(const LatticeLevel& level);
 
-/// Factors the matrix of the coarsest level.  Where it has lost the hold that the body has (a patch smaller than its
-/// cells), or if the lattice `may_float`, its rigid motions are anchored softly.
-/// @throws std::runtime_error if the body is not held, or the model has zero-energy modes.
+/// Factors the matrix of the coarsest level.  If it is singular because this level has lost the supports of the body (a
+/// patch smaller than its cells), or because the lattice `may_float`, a small multiple of the identity is added.
+/// @throws std::runtime_error if the body is not supported, or the model has zero-energy modes.
 void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float, DirectSolver& coarsest);
 
 /// Adds the restriction of a finer field to a coarse one, component by component.
 void restrict_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, long fine_stride, const float* fine,
                     float* field);
-/// The finer field that a coarse one interpolates to.
+/// Interpolates a coarse field to the finer level.
 void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, const float* field,
                       long fine_stride, float* fine);
 
@@ -41,10 +41,10 @@ struct SmoothingLevel {
   /// `cell` in the level's axes and a unit in which its entries are of order one.
   SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell);
 
-  void before_coarse(int degree);  ///< x = what smoothing makes of r; r becomes the residual, zero on fixed unknowns
-  void after_coarse(int degree);   ///< x, r on with z, the correction from the coarser level
+  void before_coarse(int degree);  ///< pre-smoothing: x from r; r becomes the residual, zero on fixed unknowns
+  void after_coarse(int degree);   ///< post-smoothing of x and r after adding z, the coarse correction
 
-  /// Lanczos steps for largest_eigenvalue, at most `at_most`.
+  /// Estimates largest_eigenvalue by Lanczos steps, at most `at_most`.
   void bound_eigenvalues(double at_most);
   void find_thin_parts(const CellMatrix& cell);
 
@@ -54,7 +54,7 @@ struct SmoothingLevel {
   double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
   std::unique_ptr<ThinParts> thin;   ///< null: none
   std::function<void(Eigen::VectorXf&)>
-      complete;  ///< gives a field what other processes know of it; empty: they know nothing
+      complete;  ///< sets a field's ghost values from other processes; empty: there are none
 
  private:
   void smooth(int first, int last);
@@ -64,13 +64,13 @@ struct SmoothingLevel {
 /// Largest eigenvalue of diag(K)^-1 K of one cell: a bound for every lattice of such cells.
 double largest_scaled_eigenvalue(const CellMatrix& cell);
 
-/// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; no matrix above the
-/// coarsest level.  The cycle works in single precision, what it preconditions in double.
-/// A lattice that `may_float` needs no hold of its own.
+/// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; matrix-free above the
+/// coarsest level.  The cycle works in single precision, the Krylov method that it preconditions in double.
+/// With `may_float` the lattice needs no supports.
 /// Its smoother's eigenvalue bound comes from a few Lanczos steps on each level; it is at most the largest eigenvalue
-/// of diag(K_cell)^-1 K_cell, which bounds every lattice of such cells. Thin parts of the body
-/// (msm/multigrid/thin_parts.h) are corrected on every level beside the next coarser lattice. Vectors hold 3 values per
-/// node of the network.
+/// of diag(K_cell)^-1 K_cell, which bounds every lattice of such cells.  Thin parts of the body
+/// (msm/multigrid/thin_parts.h) are corrected on every level in addition to the next coarser lattice.  Vectors hold 3
+/// values per node of the network.
 class Multigrid {
  public:
   Multigrid(LatticeLevels levels, const CellMatrix& cell, int smoothing_degree = 3, bool may_float = false);
@@ -83,8 +83,8 @@ class Multigrid {
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
   double largest_diagonal() const { return largest_diagonal_; }
 
-  /// The finest level and the cycle on it, x of r, in units of the mean diagonal entry of the cell: for cycles that go
-  /// on above it.
+  /// The finest level and the cycle on it, x from r, in units of the mean diagonal entry of the cell: for outer cycles
+  /// with finer levels.
   SmoothingLevel& finest() { return levels_[0]; }
   void cycle() { cycle(0); }
 
@@ -95,7 +95,7 @@ class Multigrid {
 
   LatticeLevels lattice_;
   double largest_diagonal_ = 0;
-  double unit_ = 1;  ///< 1 / that of the stiffness: the cycle works with entries of order one
+  double unit_ = 1;  ///< 1 / unit of stiffness: the cycle works with entries of order one
   int degree_;
   std::vector<SmoothingLevel> levels_;
   LatticeOperator<double> K_;

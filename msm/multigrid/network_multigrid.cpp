@@ -10,12 +10,12 @@ namespace springproof {
 namespace {
 
 constexpr double auxiliary_spacings = 1.75;  // cell edge over mean node distance: 1.5 to 2 differ little
-constexpr double largest_kappa = 8;          // times G: beyond it the lattice's own cycle suffers
+constexpr double largest_kappa = 8;          // times G: above it the lattice's own cycle converges badly
 constexpr double smallest_fill = 0.1;
 
 using Index = std::array<int, 3>;
 
-/// The auxiliary lattice: its cells hold all nodes of the network.
+/// The auxiliary lattice: its cells contain all nodes of the network.
 struct Auxiliary {
   Network network;  ///< cells and grid only
   std::vector<double> fill;
@@ -89,7 +89,7 @@ Passage passage(const Network& above, const Auxiliary& aux) {
   return level;
 }
 
-/// A lattice node is held where most of what it moves is held.
+/// Fixes the lattice unknowns at least half of whose weight acts on fixed unknowns.
 void hold(const std::vector<char>& fixed, Passage& level) {
   Eigen::VectorXd held = Eigen::VectorXd::Zero(3 * level.points), all = held;
   for (std::size_t n = 0; n + 1 < level.weight_begin.size(); ++n)

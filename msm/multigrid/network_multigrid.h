@@ -1,4 +1,5 @@
-// Multigrid for networks without cells of their own: the network above, an auxiliary lattice of HybMSS cells below.
+// Multigrid for networks without cells of their own: the finest level is the network, the coarser ones an auxiliary
+// lattice of HybMSS cells.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,7 @@
 
 namespace springproof {
 
-/// How the displacements of a lattice pass to the nodes of a network among its points.
+/// Transfer between a lattice and the nodes of a network in its cells.
 struct Passage {
   int points = 0;                 ///< of the lattice
   std::vector<char> fixed;        ///< per unknown 3 * point + axis
@@ -24,12 +25,12 @@ struct Passage {
   void restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed, Eigen::VectorXd& r_lattice) const;
 };
 
-/// Symmetric cycle for the rest state of a conservative model: smoothing on the network itself, in between one V-cycle
-/// of a lattice with cells of `spacings` mean node distances that fills the same body, with the network's affine shear
-/// modulus and the bulk modulus that momentum dispersion adds.
+/// Symmetric cycle for the rest state of a conservative model: smoothing on the network itself before and after one
+/// V-cycle of a lattice that fills the same body, with cells of 1.75 mean node distances (lattices of cells: two
+/// edges), with the network's affine shear modulus and the bulk modulus that momentum dispersion adds.
 class NetworkMultigrid {
  public:
-  /// `list`: the model's stiffness at rest, if ListStiffness covers it; null: smooths over the assembled tangent.
+  /// `list`: the model's stiffness at rest, if ListStiffness covers it; null: smooths with the assembled tangent.
   NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed, const ListStiffness<double>* list);
 
   /// z = M^-1 r, symmetric positive definite; zero on the fixed unknowns.

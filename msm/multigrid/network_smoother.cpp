@@ -8,7 +8,7 @@ namespace {
 
 constexpr int degree = 3;
 constexpr int power_steps = 15;
-constexpr double power_margin = 1.1;  // on what power iterations have not reached yet
+constexpr double power_margin = 1.1;  // safety factor for unconverged power iterations
 
 double old_part(int k) { return k == 1 ? 0 : (2.0 * k - 3) / (2.0 * k + 1); }
 double new_part(int k, double largest_eigenvalue) { return (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue); }
@@ -27,7 +27,7 @@ Eigen::Matrix3d inverse_block(Eigen::Matrix3d block, const char* fixed) {
   return inverse;
 }
 
-/// A rough vector to start power iterations from.
+/// Pseudo-random start vector of power iterations.
 Eigen::VectorXd rough(Eigen::Index size) {
   Eigen::VectorXd v(size);
   unsigned state = 1;
@@ -50,7 +50,7 @@ class ListSmoother : public NetworkSmoother {
       for (int a = 0; a < 3; ++a)
         for (int d = 0; d < 3; ++d) inverse_[3 * p + a].v[d] = static_cast<float>(inverse(a, d));
     }
-    // Of springs alone k (n . du)^2 <= 2 k ((n . u_i)^2 + (n . u_j)^2).
+    // For springs alone k (n . du)^2 <= 2 k ((n . u_i)^2 + (n . u_j)^2).
     largest_eigenvalue_ = dispersion_of(model) ? power_margin * power_estimate() : 2;
   }
 
@@ -74,7 +74,7 @@ class ListSmoother : public NetworkSmoother {
     by_place(*blocks_, correction.data(), unit_ / scale_, z_);
     for (std::size_t p = 0; p < x_.size(); ++p)
       for (int d = 0; d < 3; ++d) x_[p].v[d] += z_[p].v[d];
-    K_.add(z_.data(), y_.data());  // beside what before() left there
+    K_.add(z_.data(), y_.data());  // in addition to K z from before()
     for (int k = 1; k <= degree; ++k) {
       smooth(k);
       if (k < degree) K_.add(z_.data(), y_.data());
@@ -125,7 +125,7 @@ class ListSmoother : public NetworkSmoother {
 
   double unit_;
   std::shared_ptr<const SpringBlocks> blocks_;
-  ListStiffness<float> K_;  ///< in units of the mean spring, so that single precision holds any numbers
+  ListStiffness<float> K_;  ///< in units of the mean spring, against overflow in single precision
   std::vector<Padded<float>> inverse_, z_, x_, r_, y_;
   double largest_eigenvalue_ = 0, scale_ = 1;
 };

@@ -41,14 +41,14 @@ std::vector<double> unit_directions() {
 
 bool same_row(const std::array<int, 3>& a, const std::array<int, 3>& b) { return a[1] == b[1] && a[2] == b[2]; }
 
-/// What a spring adds to a row of B: `weight` times the elongation of spring i to j.
+/// Contribution of a spring to a row of B: `weight` times the elongation of spring i to j.
 struct RowEntry {
   long i, j;
   int direction;
   double weight;
 };
 
-/// One row of B after the other, each unknown once.
+/// Rows of B, each as a list of the contributions of springs.
 struct Rows {
   std::vector<long> begin;
   std::vector<RowEntry> entries;

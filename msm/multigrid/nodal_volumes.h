@@ -10,19 +10,20 @@
 
 namespace springproof {
 
-/// The rows of B by springs, in the points of a lattice's finest level.
+/// The rows of B by springs, on the points of a lattice's finest level.
 struct NodalVolumes {
   std::vector<SpringRun> runs;
   std::vector<double> directions;            ///< unit vectors in the level's axes, three components each
   std::vector<double> weight_i, weight_j;    ///< per spring of the runs, of either end [edge^2]
-  std::vector<std::array<long, 2>> members;  ///< point, and the point whose volume takes its springs
+  std::vector<std::array<long, 2>> members;  ///< point, and the point whose volume includes its springs
   Eigen::VectorXd compliance;                ///< C per point [edge^3 / G]; 0: the point has no volume of its own
 
-  /// Of a model with the energy form of dispersion, q > 0, on a lattice of cells; G the springs' shear modulus [Pa].
+  /// For a model with the symmetric form of dispersion, q > 0, on a lattice of cells; G the springs' shear modulus
+  /// [Pa].
   /// @throws std::invalid_argument for any other.
   NodalVolumes(const MassSpringModel& model, const LatticeLevels& lattice, double G);
 
-  /// Whether a model is one of those.
+  /// Whether the constructor accepts a model.
   static bool covers(const MassSpringModel& model);
 
   /// Diagonal of B D B^T, D a nodal field of the level.
@@ -39,7 +40,7 @@ class NodalVolumeOperator {
 
   /// J = B u.
   void change(const Real* u, Real* J) const;
-  /// y += B^T p; what p holds at points without a volume is not looked at.
+  /// y += B^T p; p is ignored at points without a volume.
   void add_forces(const Real* p, Real* y) const;
 
  private:
@@ -47,7 +48,7 @@ class NodalVolumeOperator {
   std::vector<SpringRun> runs_;
   std::vector<std::array<long, 2>> members_;
   Vector directions_, weight_i_, weight_j_;
-  mutable Vector pressure_;  ///< with that of the members
+  mutable Vector pressure_;  ///< including that of the members
   long stride_;
 };
 

@@ -9,10 +9,10 @@ namespace {
 
 using Index = std::array<int, 3>;
 
-constexpr int thickness = 4;       // cells: what holds a cube of so many is bulky
-constexpr int reach = 2;           // cells from bulk: staircases of a curved surface are no thin parts
+constexpr int thickness = 4;       // cells: parts that contain a cube of this edge are bulky
+constexpr int reach = 2;           // cells from bulk: staircases of a curved surface are not thin parts
 constexpr int overlap = 3;         // cells by which a thin part reaches into the bulk
-constexpr int most_blocks = 1000;  // beyond it larger ones, of at most
+constexpr int most_blocks = 1000;  // above it larger ones, of at most
 constexpr int largest_block = 4;   // points along each side
 constexpr double regularisation = 1e-6;
 
@@ -77,7 +77,7 @@ Marks thin_cells(const LatticeLevel& level) {
   return thin;
 }
 
-/// The six rigid motions of a block at one of its points: columns are three shifts and three turns.
+/// The six rigid motions of a block at one of its points: columns are three translations and three rotations.
 Eigen::Matrix<double, 3, 6> rigid_motions(const Eigen::Vector3f& arm, const bool* free) {
   Eigen::Matrix<double, 3, 6> Z;
   Z << 1, 0, 0, 0, arm[2], -arm[1], 0, 1, 0, -arm[2], 0, arm[0], 0, 0, 1, arm[1], -arm[0], 0;
@@ -199,7 +199,7 @@ void ThinParts::factor(const std::vector<int>& number, const CellMatrix& cell) {
       for (int t = 0; t < (row == column ? s + 1 : 6); ++t)
         entries.emplace_back(6 * row + s, 6 * column + t, part(s, t));
   }
-  // A block of few points, or held ones, has motions that move nothing.
+  // A block of few or fixed points has rigid motions that move none of them.
   const double small = regularisation * cell.diagonal().mean();
   for (long i = 0; i < 6 * blocks_; ++i) entries.emplace_back(i, i, small);
   Eigen::SparseMatrix<double> A(6 * blocks_, 6 * blocks_);

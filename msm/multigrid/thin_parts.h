@@ -1,4 +1,4 @@
-// What a lattice's hierarchy cannot see: sheets and rods a few cells thick, which coarser cells make too stiff in
+// Correction for thin parts of a body: sheets and rods a few cells thick, which coarser lattices make too stiff in
 // bending.
 #pragma once
 
@@ -26,7 +26,7 @@ class ThinParts {
   struct Point {
     long place = 0;  ///< of its x component in a nodal field
     int block = 0;
-    Eigen::Vector3f arm = Eigen::Vector3f::Zero();  ///< from the block's middle, in cell edges
+    Eigen::Vector3f arm = Eigen::Vector3f::Zero();  ///< from the block's centre, in cell edges
     bool free[3] = {true, true, true};
   };
 

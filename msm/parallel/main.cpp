@@ -1,4 +1,4 @@
-// springproof-lattice: a block lattice of a case file on several processes, each with a slab of it.
+// springproof-lattice: the block lattice of a case file on several processes, each with a slab of it.
 #include <fmt/format.h>
 #include <petsc.h>
 
@@ -29,7 +29,8 @@ struct Options {
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// This process' slab of the block, with one plane of its neighbour's cells below; its patches are those of the whole.
+/// This process' slab of the block, with one plane of its neighbour's cells below; its patches are those of the whole
+/// block.
 Mesh slab_mesh(const Vec3& size, const std::array<int, 3>& cells, const LatticeLevel& slab) {
   const double edge = size[2] / cells[2];
   Mesh mesh = block_mesh({size[0], size[1], edge * slab.planes()}, {cells[0], cells[1], slab.planes()});
@@ -66,7 +67,7 @@ CellMatrix one_cell(const ModelParameters& model, double edge, const IsotropicMa
   return cell_stiffness(build_model(model, block_mesh(Vec3::Constant(edge), {1, 1, 1}), material)).total;
 }
 
-/// What one process finds wrong, all do.
+/// Runs step(); an InputError of any process is thrown by all.
 template <class Step>
 void agree(const std::string& file, MPI_Comm communicator, Step step) {
   std::string message;
@@ -99,7 +100,7 @@ struct Sum {
   }
 };
 
-/// What every process needs of the case before its slab is made.
+/// Case data that every process needs before its slab is built.
 struct BlockCase {
   Experiment experiment;
   std::array<int, 3> cells;
@@ -119,7 +120,7 @@ BlockCase read_case(const Options& options) {
   return c;
 }
 
-/// What is said of every run.
+/// Results common to all runs.
 nlohmann::json describe(const Options& options, const BlockCase& c, MPI_Comm communicator) {
   int processes;
   MPI_Comm_size(communicator, &processes);
@@ -293,7 +294,7 @@ int parse_and_run(int argc, char** argv) {
   } catch (const InputError& e) {
     if (rank == 0) fmt::print(stderr, "{}\n", e.what());
     return 2;
-  } catch (const std::invalid_argument& e) {  // found by all processes alike, as the next
+  } catch (const std::invalid_argument& e) {  // thrown by all processes alike, as is the next
     if (rank == 0) fmt::print(stderr, "{}: {}\n", options.case_file, e.what());
     return 2;
   } catch (const std::runtime_error& e) {

@@ -8,7 +8,7 @@ namespace springproof {
 namespace {
 
 constexpr int smoothing_degree = 3;
-constexpr long shared_unknowns = 60000;  // a lattice of so many is on every process
+constexpr long shared_unknowns = 60000;  // a lattice of so many is replicated on every process
 
 template <class Real>
 constexpr MPI_Datatype mpi_type() {
@@ -132,7 +132,7 @@ SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<c
   MPI_Allgather(&begin, 1, MPI_INT, begins_.data(), 1, MPI_INT, communicator);
   below_r_ = below_x_ = Eigen::VectorXf::Zero(3 * slabs_.back().lattice.stride());
 
-  // The bound of the lattice below, a smaller block of the same cells, and a margin.
+  // Eigenvalue bound of the replicated lattice, a smaller block of the same cells, and a margin.
   const double at_most = largest_scaled_eigenvalue(cell), found = below_->finest().largest_eigenvalue;
   const double bound = found > 0 ? std::min(at_most, 1.05 * found) : at_most;
   for (const SlabLevel& slab : slabs_) exchanges_.emplace_back(slab, communicator);
@@ -144,13 +144,13 @@ SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<c
   K_ = std::make_unique<LatticeOperator<double>>(finest, cell);
 }
 
-/// Number in the lattice below of the first point of this process' part.
+/// Number in the replicated lattice of the first point of this process' part.
 long SlabMultigrid::place_below() const {
   const LatticeLevel& part = slabs_.back().lattice;
   return part.first_cell[2] * (part.point_begin[1] - part.point_begin[0]);
 }
 
-/// What is fixed of the lattice below, from all processes.
+/// Gathers the fixed unknowns of the replicated lattice from all processes.
 void SlabMultigrid::gather_fixed(LatticeLevel& whole) const {
   const SlabLevel& part = slabs_.back();
   std::vector<char> held(3 * whole.points(), 0);
@@ -165,7 +165,7 @@ void SlabMultigrid::gather_fixed(LatticeLevel& whole) const {
       if (held[a * whole.points() + n]) whole.fixed.push_back(static_cast<int>(a * whole.stride() + n));
 }
 
-/// Every process takes the whole right-hand side and does the same.
+/// Every process gathers the whole right-hand side and runs the same cycle.
 void SlabMultigrid::cycle_below() {
   const SlabLevel& part = slabs_.back();
   SmoothingLevel& whole = below_->finest();
@@ -218,7 +218,7 @@ void SlabMultigrid::multiply(Eigen::VectorXd& x, Eigen::VectorXd& y) {
 
 namespace {
 
-/// Own points of a nodal field, as PETSc's vectors have them.
+/// Copies the own points of nodal fields from and to PETSc's vectors.
 struct Shell {
   SlabMultigrid* multigrid;
   Eigen::VectorXd x, y;
@@ -292,7 +292,7 @@ KrylovResult SlabMultigrid::solve(const Eigen::VectorXd& b, double tolerance, in
   PetscInt iterations;
   check(KSPGetConvergedReason(ksp, &reason));
   check(KSPGetIterationNumber(ksp, &iterations));
-  // The residual anew.
+  // Recompute the residual.
   PetscReal scale, residual;
   Vec r;
   check(VecDuplicate(rhs, &r));

@@ -1,4 +1,4 @@
-// A block lattice shared out to processes in slabs across its last axis: static equilibrium over MPI and PETSc.
+// Static equilibrium of a block lattice distributed over MPI processes in slabs across its last axis, with PETSc.
 #pragma once
 
 #include <mpi.h>
@@ -8,7 +8,7 @@
 
 namespace springproof {
 
-/// The planes of one level that this process has: its own, and one beside them that others own.
+/// The planes of one level on this process: its own and the ghost planes on either side, which others own.
 struct SlabLevel {
   LatticeLevel lattice;
   int own_begin = 0, own_end = 0;  ///< its own planes of points, counted from the lattice's first
@@ -17,7 +17,7 @@ struct SlabLevel {
   long own_points() const { return lattice.point_begin[own_end] - own_first(); }
 };
 
-/// Planes of points next to a slab, from the processes that own them.
+/// Exchange of the ghost planes of a slab with the processes that own them.
 class PlaneExchange {
  public:
   PlaneExchange(const SlabLevel& level, MPI_Comm communicator);
@@ -26,7 +26,8 @@ class PlaneExchange {
   void complete(LatticeMotion& motion) const;  ///< positions and velocities
 
  private:
-  /// Sends own end planes and receives those beyond: pack(begin, end, buffer) and unpack of points begin ... end.
+  /// Sends the outermost own planes and receives the ghost planes: pack(begin, end, buffer) and unpack of points begin
+  /// ... end.
   template <class Real, class Pack, class Unpack>
   void exchange(int values_per_point, Pack pack, Unpack unpack) const;
 
@@ -35,10 +36,10 @@ class PlaneExchange {
   int below_, above_;  ///< processes, MPI_PROC_NULL at the ends
 };
 
-/// How a block is shared out: each process has whole planes of cells of the coarsest level in slabs.
+/// Distribution of a block: each process owns whole planes of cells of the coarsest level in slabs.
 struct SlabPartition {
   std::array<int, 3> cells{};
-  int levels = 0;              ///< of slabs; the lattice below them is on every process
+  int levels = 0;              ///< number of levels in slabs; the lattice below them is replicated on every process
   int z_begin = 0, z_end = 0;  ///< own planes of cells of that lattice
 
   /// @throws std::invalid_argument if there are more processes than planes to share.
@@ -46,8 +47,8 @@ struct SlabPartition {
   SlabLevel level(int l, MPI_Comm communicator) const;
 };
 
-/// Displacement form of HybMSS (the cycle of Multigrid): levels of slabs above, the rest of the hierarchy on every
-/// process.
+/// Displacement form of HybMSS (the cycle of Multigrid): distributed levels of slabs above, the rest of the hierarchy
+/// replicated on every process.
 class SlabMultigrid {
  public:
   /// `fixed`: per unknown 3 * point + axis of this process' finest level.
@@ -55,9 +56,10 @@ class SlabMultigrid {
                 MPI_Comm communicator);
 
   const SlabLevel& finest() const { return slabs_[0]; }
-  /// u of K u = b, u = 0 on fixed unknowns; nodal fields of the finest level, right on own points, u also beside them.
+  /// Solves K u = b, u = 0 on fixed unknowns; nodal fields of the finest level, valid on own points, u also on ghost
+  /// planes.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u);
-  /// y = K x on own points; completes x.
+  /// y = K x on own points; updates the ghost planes of x.
   void multiply(Eigen::VectorXd& x, Eigen::VectorXd& y);
   /// z = M^-1 r on own points.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);

@@ -14,7 +14,7 @@ double sum_kL2(const Network& network) {
   return sum;
 }
 
-/// Per node, half of sum k L^2 over its springs [J]: the node's part of sum_kL2(); an image's is its master's.
+/// Per node, half of sum k L^2 over its springs [J]: the node's part of sum_kL2(); an image counts for its master.
 Eigen::VectorXd shares_of_kL2(const Network& network) {
   Eigen::VectorXd share = Eigen::VectorXd::Zero(network.nodes());
   for (const Spring& s : network.springs) {

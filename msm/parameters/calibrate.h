@@ -1,25 +1,25 @@
-// One formula calibrates every network: G = sum k L^2 / (d (d + 2) V) in d dimensions.
+// Calibration of spring constants to a shear modulus, G = sum k L^2 / (d (d + 2) V) in d dimensions for every network.
 #pragma once
 
 #include "msm/topology/network.h"
 
 namespace springproof {
 
-/// Shear modulus [Pa] of a network under affine strain, averaged over directions: sum k L^2 / (d (d + 2) V), d = 3,
-/// d = 2 for planar
-/// networks (Network::triangles); Kot et al. (2014), eqs. (12) and (20) in terms of G.  Exact for isotropic
-/// cell-superposed lattices (it contains Golec et al. 2019, eq. (5.11)), an upper bound for disordered networks.
+/// Shear modulus [Pa] of a network under affine strain, averaged over directions: sum k L^2 / (d (d + 2) V), where d =
+/// 3, or d = 2 for planar networks (Network::triangles); Kot et al. (2014), eqs. (12) and (20) in terms of G.  Exact
+/// for isotropic cell-superposed lattices (it contains Golec et al. 2019, eq. (5.11)), an upper bound for disordered
+/// networks.
 double affine_shear_modulus(const Network& network);
 
 /// Scales all spring constants so that affine_shear_modulus(network) == G.
 void calibrate(double shear_modulus, Network& network);
 
-/// Gives every node the stiffness that its volume asks for: near the surface nodes lack springs, or lie closer
+/// Makes the stiffness of every node proportional to its volume: near the surface nodes lack springs, or lie closer
 /// together. A node's factor is V_i c / (sum k L^2 / 2 over its springs); springs are scaled by the mean factor of
 /// their ends, five times over, each by no more than a factor of 4 in all.  c is the material's value, from the nodes
 /// marked in `bulk` (bulk_nodes(); empty, or none marked: from those with at least the mean number of springs).
-/// Afterwards sum k L^2 = c V, that of a bulk network of the same volume.  Periodic networks get what the inside of a
-/// body gets.
+/// Afterwards sum k L^2 = c V, that of a bulk network of the same volume.  Periodic networks are corrected like the
+/// inside of a body.
 void correct_surface(Network& network, const std::vector<char>& bulk = {});
 
 }  // namespace springproof

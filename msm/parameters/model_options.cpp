@@ -1,4 +1,4 @@
-// What a case file may choose of a model: one row per option.
+// Model options of a case file: one row per option.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,13 +13,13 @@ namespace {
 
 using Value = std::variant<bool, double, std::string>;
 
-/// An option, and how it is taken; the setter returns what is allowed if the value is not.
+/// An option and its setter, which returns the allowed values if the given one is invalid.
 struct Option {
   const char* name;
   std::function<std::optional<std::string>(const Value&, ModelParameters&)> set;
 };
 
-/// A name out of a list of names and what they stand for.
+/// An option whose value is a name from a list of names and their meanings.
 template <class T>
 Option choice(const char* name, T ModelParameters::*member, std::vector<std::pair<std::string, T>> allowed) {
   return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
@@ -55,7 +55,7 @@ Option flag(const char* name, std::function<void(bool, ModelParameters&)> set) {
           }};
 }
 
-/// A number in a range, put where `set` says.
+/// A number in a range, stored by `set`.
 Option number(const char* name, double low, double high, std::function<void(double, ModelParameters&)> set) {
   return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
             const double* given = std::get_if<double>(&value);

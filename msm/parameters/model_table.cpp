@@ -40,8 +40,7 @@ std::optional<double> own_poisson_ratio(const ModelRow& row) {
 }
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {
-  // Angular springs leave the planar bulk modulus lambda + G to the springs, which have twice their shear modulus for
-  // it.
+  // With angular springs the planar bulk modulus lambda + G is that of the springs, which is twice their shear modulus.
   if (p.has(angular_springs)) return (lame_lambda(material) + shear_modulus(material)) / 2;
   const bool as_if_quarter = p.paper_e_form || p.row.calibration == Calibration::youngs_modulus;
   return as_if_quarter ? 0.4 * material.youngs_modulus : shear_modulus(material);

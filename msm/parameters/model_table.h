@@ -12,7 +12,7 @@
 
 namespace springproof {
 
-/// Where the nodes are and which of them are joined.
+/// Positions of the nodes and which of them are connected.
 enum class Topology {
   cells,      ///< cubic lattice by superposition of cells: nodes are the corners of the mesh's cubes
   centres,    ///< cubic lattice with a node in the middle of each cube
@@ -20,13 +20,13 @@ enum class Topology {
   hexagonal,  ///< triangles in the plane z = const, for plane strain
 };
 
-/// What gives the springs, whose own Poisson's ratio is 1/4, another one.
+/// Extension that gives the springs, whose own Poisson's ratio is 1/4, another one.
 enum class Extension { none, volume_correction, momentum_dispersion, angular_springs };
 
 /// Which modulus the springs reproduce when their own Poisson's ratio (1/4) is not the material's.
 enum class Calibration {
-  shear_modulus,   ///< G = E / (2 (1 + nu)): what an extension needs
-  youngs_modulus,  ///< E, as if nu were 1/4 (G = 2 E / 5): how a classic mass-spring model is set up
+  shear_modulus,   ///< G = E / (2 (1 + nu)): required by an extension
+  youngs_modulus,  ///< E, as if nu were 1/4 (G = 2 E / 5): as in a classic mass-spring model
 };
 
 struct ModelRow {
@@ -43,14 +43,13 @@ struct ModelRow {
 
 const std::vector<ModelRow>& model_table();
 
-/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4; empty: it takes
-/// any.
+/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4; empty: any.
 std::optional<double> own_poisson_ratio(const ModelRow& row);
 
-/// Whether the model holds under finite kinematics; hourglass corrections are those of small displacements.
+/// Whether the model is valid under finite kinematics; hourglass corrections are for small displacements only.
 inline bool holds_at_large_displacement(const ModelRow& row) { return !row.bending_correction; }
 
-/// A model choice with every option settled.
+/// A model choice with all options resolved.
 struct ModelParameters {
   ModelRow row;
   double face_to_cube = 2;
@@ -59,12 +58,12 @@ struct ModelParameters {
   Dispersion dispersion = Dispersion::symmetric;
   std::optional<bool> exact_volumes;   ///< dispersion weights: exact nodal volumes (msm/laws/dispersion_weights.h) or w
                                        ///< = k L; empty: exact where q >= 0
-  bool homogenised = true;             ///< random networks: calibrated as measured in bulk; false: by eq. (20)
+  bool homogenised = true;             ///< random networks: calibrated by homogenisation in bulk; false: by eq. (20)
   RandomParameters random{};           ///< of random networks; its spacing follows from the mesh
   std::optional<double> node_density;  ///< of random networks [1/m^3]; empty: one node per cube
   std::optional<double> grip;          ///< depth in node spacings to which supports hold nodes that are not the mesh's
-  bool hold_rigid_motions = false;     ///< those that the loads leave free, instead of refusing
-  int seeds = 1;                       ///< random networks to take the mean of: random.seed and those after it
+  bool hold_rigid_motions = false;     ///< constrains those that the loads leave free, instead of an error
+  int seeds = 1;                       ///< number of random networks to average: random.seed and those after it
 
   bool has(Extension extension) const { return row.extension == extension; }
 };

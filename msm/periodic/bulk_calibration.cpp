@@ -15,7 +15,7 @@ namespace springproof {
 namespace {
 
 constexpr int sample_nodes = 1331;
-constexpr std::uint64_t sample_seed = 1ull << 32;  // beyond those of case files: nobody measures the sample itself
+constexpr std::uint64_t sample_seed = 1ull << 32;  // beyond those of case files: no case measures this sample
 constexpr double wanted = 1e-3;
 constexpr int most_rounds = 12;
 constexpr double largest_step = 2, largest_x = 12;  // of log(1 + 2 q)
@@ -28,7 +28,8 @@ MassSpringModel sample_of(ModelParameters p) {
   return periodic_random_model(p, {1, 0}, 1, sample_nodes);
 }
 
-/// q with K/G as wanted, by secants on log(K/G) over log(1 + 2 q): K is nearly proportional to 1 + 2 q, and q > -1/2.
+/// q for the required K/G, by the secant method on log(K/G) over log(1 + 2 q): K is nearly proportional to 1 + 2 q, and
+/// q > -1/2.
 BulkCalibration fit_dispersion(const ModelParameters& p, const IsotropicMaterial& m, double least_q) {
   MassSpringModel sample = sample_of(p);
   double& q = std::get<MomentumDispersion>(sample.laws.back()).q;
@@ -51,20 +52,20 @@ BulkCalibration fit_dispersion(const ModelParameters& p, const IsotropicMaterial
 
 BulkCalibration fit(ModelParameters p, const IsotropicMaterial& m) {
   if (!p.has(Extension::momentum_dispersion)) return {m.youngs_modulus / measured(sample_of(p)).youngs_modulus, 0};
-  // Weights chosen by the sign of q must get that sign, to the last bit: with q >= 0 exact volumes are a sum of
-  // squares.
+  // If the weights are chosen by the sign of q, q must have that sign, to the last bit: with q >= 0 exact volumes are a
+  // sum of squares.
   const bool sum_of_squares = p.dispersion == Dispersion::symmetric && !p.exact_volumes && exact_volumes(p, m);
   if (p.dispersion == Dispersion::symmetric) p.exact_volumes = exact_volumes(p, m);
   return fit_dispersion(p, m, sum_of_squares ? 0 : -0.5);
 }
 
-/// What the bulk of a random network depends on.
+/// Key of the parameters that determine the bulk of a random network.
 std::string key_of(const RandomParameters& r) {
   return fmt::format("{} {} {} {} {}", r.min_length, r.max_length.value_or(0), r.max_length ? 0 : r.springs_per_node,
                      r.stiffness_exponent, r.surface_nodes);
 }
 
-/// compute(), once per key in the life of the program.
+/// Result of compute(), cached by key for the lifetime of the program.
 template <class Value, class Compute>
 Value kept(const std::string& key, const Compute& compute) {
   static std::mutex one_at_a_time;

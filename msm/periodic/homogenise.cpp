@@ -13,7 +13,7 @@
 namespace springproof {
 namespace {
 
-constexpr double inner_tolerance = 1e-6;  // of the companion's solves; what they leave, GMRES makes up after a restart
+constexpr double inner_tolerance = 1e-6;  // of the companion's solves; GMRES removes their error after a restart
 
 using Strains = std::vector<Eigen::Matrix3d>;
 
@@ -25,7 +25,7 @@ Eigen::Matrix3d unit_strain(int i, int j) {
   return strain;
 }
 
-/// The tangent at rest seen by the masters: w -> P^T K P w.
+/// The tangent at rest as an operator on the masters: w -> P^T K P w.
 class PeriodicStiffness {
  public:
   explicit PeriodicStiffness(const MassSpringModel& model)
@@ -36,7 +36,7 @@ class PeriodicStiffness {
 
   void multiply(const Eigen::VectorXd& u, Eigen::VectorXd& Ku) const { K_.multiply(u, Ku); }
 
-  /// P^T f: the forces of images on their masters.
+  /// P^T f: adds the forces on images to their masters.
   Eigen::VectorXd gather(Eigen::VectorXd f) const {
     for (int n = 0; n < network_.nodes(); ++n) {
       const int master = network_.master(n);
@@ -65,7 +65,7 @@ class PeriodicStiffness {
     return [this](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = inverse_diagonal_.cwiseProduct(r); };
   }
 
-  /// Takes the net force off, which no equilibrium bears: round-off in exact loads.
+  /// Removes the net force, which cannot be in equilibrium: round-off in exact loads.
   Eigen::VectorXd balanced(Eigen::VectorXd f) const {
     Vec3 net = Vec3::Zero();
     int masters = 0;
@@ -78,7 +78,7 @@ class PeriodicStiffness {
     return f;
   }
 
-  /// Size of the forces that a displacement causes before they cancel.
+  /// Magnitude of the forces that a displacement causes before they cancel.
   double force_scale(const Eigen::VectorXd& u) const { return K_.diagonal().cwiseProduct(u).norm(); }
 
  private:

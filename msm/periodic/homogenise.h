@@ -1,13 +1,13 @@
-// Effective stiffness of the infinite network of a periodic cell: homogenisation with relaxed nodes.
+// Homogenisation with relaxed nodes: effective stiffness of the infinite network of a periodic cell.
 #pragma once
 
 #include "msm/laws/laws.h"
 
 namespace springproof {
 
-/// Makes the opposite faces of a network one: each node gets the first node that lies whole boxes away as its master
-/// (Network::image_of), and springs that become the same are merged, stiffnesses added.  The halves and quarters that a
-/// superposed lattice has on its faces so make full springs.  A box edge of 0: not periodic along that axis.
+/// Identifies the opposite faces of a network: each node gets the first node that lies whole boxes away as its master
+/// (Network::image_of), and springs that become the same are merged, stiffnesses added.  The half and quarter springs
+/// on the faces of a superposed lattice thus become full springs.  A box edge of 0: not periodic along that axis.
 /// @throws std::invalid_argument if no two nodes are a box edge apart along an axis.
 void make_periodic(const Vec3& box, Network& network);
 
@@ -19,7 +19,7 @@ struct Homogenised {
   double youngs_modulus;          ///< [Pa]
   double poisson_ratio;
   double anisotropy;  ///< |C - C_isotropic| / |C|, Kelvin's norm (that of the tensor)
-  double asymmetry;   ///< |C - C^T| / |C|; 0 if there is an energy
+  double asymmetry;   ///< |C - C^T| / |C|; 0 if conservative
   int iterations;     ///< of the linear solver, all strains together
   double residual;    ///< largest |unbalanced force| / |force of the unrelaxed nodes|
 };
@@ -41,11 +41,11 @@ struct HomogeniseOptions {
   int max_iterations = 20000;  ///< per strain
 };
 
-/// Linear response at rest of a network with periodic images.  Displacement eps X + w, w the same at a node and its
-/// images and in equilibrium for each of the six unit strains; C_ab V = (E_a X)^T K (E_b X + w_b), V the sum of the
-/// volume shares.  Symmetric models by conjugate gradients, the others by GMRES over their symmetric companion. Modes
-/// of zero energy do not hinder: no load works on them, and C does not depend on them.
-/// @throws std::invalid_argument if the network has no images; std::runtime_error if a mode of negative energy is met
+/// Linear response at rest of a network with periodic images.  Displacement eps X + w, w periodic and in equilibrium
+/// for each of the six unit strains; C_ab V = (E_a X)^T K (E_b X + w_b), V the sum of the volume shares.  Symmetric
+/// models by conjugate gradients, the others by GMRES preconditioned by their symmetric companion.  Zero-energy modes
+/// are harmless: no load does work on them, and C does not depend on them.
+/// @throws std::invalid_argument if the network has no images; std::runtime_error if a mode of negative energy is found
 ///   or the iteration does not converge.
 Homogenised homogenise(const MassSpringModel& model, const HomogeniseOptions& options = {});
 HomogenisedPlane homogenise_plane(const MassSpringModel& model, const HomogeniseOptions& options = {});

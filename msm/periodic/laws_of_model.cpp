@@ -9,7 +9,7 @@ namespace {
 
 AngularSprings angular(const Network& network, const IsotropicMaterial& material) {
   const double lambda = lame_lambda(material), planar_nu = lambda / (lambda + 2 * shear_modulus(material));
-  double k = 0;  // of a spring inside: the boundary has halves
+  double k = 0;  // of an interior spring: those of the boundary have half
   for (const Spring& s : network.springs) k = std::max(k, s.stiffness);
   return {angular_stiffness(k, network.cell_edge, planar_nu)};
 }

@@ -1,17 +1,17 @@
-// The one recipe from a row of the model table to its force laws, for bodies and for periodic cells.
+// Force laws of a row of the model table, for bodies and for periodic cells.
 #pragma once
 
 #include "msm/periodic/bulk_calibration.h"
 
 namespace springproof {
 
-/// The laws of a calibrated network.  `volume_gradient`: of the body's volume by the positions of the nodes [m^2]; zero
-/// without a surface.
+/// The laws of a calibrated network.  `volume_gradient`: derivative of the body's volume with respect to the positions
+/// of the nodes [m^2]; zero without a surface.
 /// @throws as bulk_calibration() if the model has momentum dispersion.
 std::vector<ForceLaw> laws_of(const ModelParameters& p, const Network& network, const IsotropicMaterial& material,
                               const BulkCalibration& calibration, const NodalVectors& volume_gradient);
 
-/// Of eMSM; symmetric dispersion with p.exact_volumes settled (empty: k L).
+/// Momentum dispersion of eMSM; symmetric dispersion with p.exact_volumes resolved (empty: k L).
 MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,
                                   const NodalVectors& volume_gradient);
 

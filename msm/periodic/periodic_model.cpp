@@ -26,7 +26,7 @@ Network periodic_lattice(const ModelParameters& p, double spacing, int nodes) {
 MassSpringModel periodic_random_model(const ModelParameters& p, const BulkCalibration& c, double spacing, int nodes) {
   RandomParameters random = p.random;
   random.spacing = spacing;
-  random.windows = false;  // they make up for walls, of which there are none
+  random.windows = false;  // they compensate for walls, which a periodic cell does not have
   MassSpringModel model{periodic_random_network(spacing * std::cbrt(nodes) * Vec3::Ones(), random), {Springs{}}};
   if (random.surface_nodes) correct_surface(model.network);
   calibrate(c.spring_shear_modulus, model.network);

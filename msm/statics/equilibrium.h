@@ -1,4 +1,4 @@
-// Static equilibrium: what the two solvers take and give.
+// Static equilibrium: options, results and functions of the linear and the large-displacement solver.
 #pragma once
 
 #include <functional>
@@ -12,11 +12,11 @@ namespace springproof {
 
 struct Equilibrium {
   bool ok = false;
-  std::string message;        ///< why there is no result, with the load reached
+  std::string message;        ///< why there is no result, and the load reached
   NodalVectors displacement;  ///< [m]
   NodalVectors support;       ///< force of the supports on each node [N], zero on free unknowns
-  std::string solver;         ///< what solved it
-  int iterations = 0;         ///< of the linear solver, all steps together
+  std::string solver;         ///< description of the solver
+  int iterations = 0;         ///< of the linear solver (solve_finite(): of Newton's method, all steps together)
   double residual = 0;        ///< |unbalanced force| / |force scale|, of the returned state
   double load_reached = 1;    ///< fraction of the load
   double seconds = 0;         ///< CPU time of the thread
@@ -28,7 +28,7 @@ enum class LinearSolver { automatic, cholesky, multigrid, mixed_multigrid };
 
 struct LinearOptions {
   LinearSolver solver = LinearSolver::automatic;  ///< Cholesky when small, else multigrid; lattices with a volume
-                                                  ///< correction or the energy form of dispersion mixed above nu = 0.4
+                                                  ///< correction or symmetric dispersion: mixed above nu = 0.4
   double tolerance = 1e-10;                       ///< relative residual
   int max_iterations = 2000;
 };
@@ -47,7 +47,7 @@ struct NewtonOptions {
 /// Boundary conditions at a fraction of the load (rotations are not linear in it).
 using LoadPath = std::function<BoundaryConditions(double factor)>;
 
-/// Large-displacement equilibrium: Newton with load steps that halve themselves and a line search on the energy.
+/// Large-displacement equilibrium: Newton's method with adaptive load steps and a line search on the energy.
 /// A state is accepted only if its tangent is positive definite and no cell is inverted; otherwise ok = false, with
 /// the load reached and the reason (limit point or buckling, inverted cell, no convergence).
 Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options = {});

@@ -16,7 +16,7 @@ namespace springproof {
 namespace {
 
 constexpr long lattice_cholesky_limit = 1000;  // free unknowns; above it multigrid is faster
-constexpr long judge_limit = 20000;            // up to it a factorisation tells what the iteration could not
+constexpr long judge_limit = 20000;            // up to it a factorisation is tried where the iteration fails
 
 NodalVectors nodal(const Eigen::VectorXd& v) { return Eigen::Map<const NodalVectors>(v.data(), v.size() / 3, 3); }
 
@@ -67,7 +67,7 @@ void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
   finish(p, u, Ku, result);
 }
 
-/// `unit` of stiffness, `volumes` how many pressures there are.
+/// `unit`: that of stiffness; `volumes`: number of pressures.
 template <class Mixed>
 void solve_mixed(const LinearProblem& p, Mixed&& multigrid, double unit, std::size_t volumes, Equilibrium& result) {
   // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
@@ -81,7 +81,7 @@ void solve_mixed(const LinearProblem& p, Mixed&& multigrid, double unit, std::si
   finish(p, u, unit * multigrid.force(u, pressure), result);
 }
 
-/// A pressure per node of a lattice with momentum dispersion, else one per cell.
+/// Mixed form with a pressure per node of a lattice with momentum dispersion, else one per cell.
 void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Equilibrium& result) {
   const Network& network = p.model.network;
   const double l = network.cell_edge, unit = G * l;
@@ -92,7 +92,7 @@ void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Eq
                 network.cells.size(), result);
 }
 
-/// What the springs leave to a volume term of a lattice [Pa], where there is a mixed multigrid for it.
+/// Stiffness of the volume term [Pa] of a lattice for which there is a mixed multigrid.
 double volume_stiffness(const MassSpringModel& model, const CellStiffness& cell, double G) {
   return NodalVolumes::covers(model) ? added_lambda(*dispersion_of(model)) * G : cell.kappa;
 }

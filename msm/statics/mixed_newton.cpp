@@ -137,7 +137,7 @@ bool MixedNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
       return fmt::format("{} unknowns, Newton step {} at this load, residual {:.1e}", x.size(), k + 1, relative);
     });
     Eigen::VectorXd r = at.force, h = at.mismatch, moved = Eigen::VectorXd::Zero(x.size());
-    if (k == 0) {  // what the supports move is known
+    if (k == 0) {  // the displacements of the supports are known
       Eigen::VectorXd Ku;
       K_.multiply(du, Ku);
       r -= Ku;

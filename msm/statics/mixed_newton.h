@@ -9,24 +9,24 @@
 namespace springproof {
 
 /// Finds x and p of   f_springs(x) + sum_c p_c dV_c/dx = external,   psi'(V_c/V) = p_c / kappa
-/// (msm/laws/volume_correction.h).  A guess with a wrong volume then meets no stiffness of kappa times the error, which
-/// is what the form without p stumbles over.  Steps are solved by GMRES over the mixed multigrid of the rest state.
+/// (msm/laws/volume_correction.h).  A guess with a wrong volume then causes no forces of kappa times the error, which
+/// impede the form without p.  Steps are solved by GMRES preconditioned by the mixed multigrid of the rest state.
 class MixedNewton {
  public:
-  /// Whether the model is a lattice of springs with a volume correction large enough to be worth it.
+  /// Whether the model is a lattice of springs with a volume correction for which this form is worthwhile.
   static bool suits(const MassSpringModel& model);
 
   MixedNewton(const MassSpringModel& model, const std::vector<char>& fixed);
 
-  /// From x, and the pressures of the step accepted last, to balance under the conditions.
-  /// @return false if it is not reached in so many iterations.
+  /// Moves x, from the pressures of the step accepted last, to equilibrium under the conditions.
+  /// @return false if it is not reached in max_iterations.
   bool step(const BoundaryConditions& conditions, double tolerance, int max_iterations, NodalVectors& x);
-  void accept() { accepted_p_ = p_; }  ///< the last step
+  void accept() { accepted_p_ = p_; }  ///< accepts the last step
   int iterations() const { return iterations_; }
 
  private:
   struct Linearised;
-  Linearised linearise(const NodalVectors& x, const Eigen::VectorXd& external);  ///< and K_
+  Linearised linearise(const NodalVectors& x, const Eigen::VectorXd& external);  ///< also assembles K_
   void solve(const Linearised& at, const Eigen::VectorXd& r, const Eigen::VectorXd& g, double tolerance,
              Eigen::VectorXd& du, Eigen::VectorXd& dp);
 
@@ -34,7 +34,7 @@ class MixedNewton {
   VolumeCorrection volume_;
   std::vector<char> fixed_;
   double unit_length_ = 1, unit_pressure_ = 1;
-  BlockMatrix K_;  ///< stiffness of everything but the change of pressures [N/m]
+  BlockMatrix K_;  ///< stiffness at constant pressures [N/m]
   std::unique_ptr<MixedMultigrid> multigrid_;
   Eigen::VectorXd p_, accepted_p_;
   int iterations_ = 0;

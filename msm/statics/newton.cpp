@@ -15,7 +15,7 @@ namespace {
 
 constexpr long dispersive_limit = 4000;  // the factors of momentum dispersion are several times as large
 
-/// One load step either lands on a stable state or says why not.
+/// Outcome of one load step: a stable state, or the reason for the failure.
 enum class Outcome { accepted, unstable, inverted, not_converged };
 
 struct Newton {
@@ -23,7 +23,7 @@ struct Newton {
   const LoadPath& path;
   const NewtonOptions& options;
   const std::vector<char> fixed;
-  TangentSolver K;                     ///< tangent at the state taken over last
+  TangentSolver K;                     ///< tangent at the state of the last take()
   std::unique_ptr<MixedNewton> mixed;  ///< near nu = 1/2; null: the form without pressures
   double stiffness = 0;                ///< largest diagonal entry at rest [N/m]
   int iterations = 0;
@@ -38,8 +38,8 @@ struct Newton {
       mixed = std::make_unique<MixedNewton>(m, fixed_unknowns);
   }
 
-  /// Unbalanced force on free unknowns, relative to the forces that are in balance (or, for motions that need next
-  /// to none, a thousandth of stiffness times displacement).
+  /// Unbalanced force on free unknowns, relative to the reactions and external forces (or, for motions that need almost
+  /// none, a thousandth of stiffness times displacement).
   double residual(const NodalVectors& x, const NodalVectors& external, Eigen::VectorXd& r) const {
     r = flat(forces(model, x)) + flat(external);
     double on_fixed = 0, on_free = 0;
@@ -52,7 +52,7 @@ struct Newton {
     return scale > 0 ? std::sqrt(on_free) / scale : std::sqrt(on_free);
   }
 
-  /// du = K^-1 b; false if K is seen not to be positive definite.
+  /// du = K^-1 b; false if K is found not to be positive definite.
   bool solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& du) const {
     return !K.solve(b, tolerance, 4000, du).negative_curvature;
   }
@@ -94,7 +94,7 @@ struct Newton {
     return false;
   }
 
-  /// What a state in balance is worth; x becomes it if it is accepted.
+  /// Checks the stability of a state in equilibrium; x becomes it if it is accepted.
   Outcome judge(const NodalVectors& trial, bool definite, NodalVectors& x) const {
     if (!definite || !K.stable()) return Outcome::unstable;
     if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}, {}}, trial) <= 0)

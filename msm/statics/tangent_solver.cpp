@@ -6,7 +6,7 @@
 namespace springproof {
 namespace {
 
-constexpr double worst_residual = 1e-6;   // that round-off can excuse: a mechanism's motion has any
+constexpr double worst_residual = 1e-6;   // attributed to round-off; for mechanisms the estimate is unbounded
 constexpr double inner_tolerance = 1e-6;  // of the symmetric solves that precondition GMRES
 
 }  // namespace
@@ -40,7 +40,7 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
 }
 
 bool TangentSolver::take(const NodalVectors& x) {
-  at_rest_ = (lattice_ || list_) && x == model_.network.X;  // then the multigrid or the list has the tangent
+  at_rest_ = (lattice_ || list_) && x == model_.network.X;  // the multigrid or the list provides the tangent
   if (at_rest_) return true;
   if (K_.local.nodes() == 0) K_.local = BlockMatrix(coupled_nodes(model_.network));
   update_tangent(model_, x, K_);
@@ -98,13 +98,13 @@ KrylovResult TangentSolver::iterate(const Stiffness& K, bool symmetric, const Ei
   if (symmetric) {
     KrylovResult result = conjugate_gradients(apply, condition, free, tolerance, max_iterations, u);
     if (result.converged || result.negative_curvature) return result;
-    // Near nu = 1/2 forces cancel in the product, and no solution in these digits leaves a smaller residual.
+    // Near nu = 1/2 forces cancel in the product, and no solution in double precision leaves a smaller residual.
     const double round_off =
         64 * std::numeric_limits<double>::epsilon() * diagonal().cwiseProduct(u).norm() / free.norm();
     result.converged = result.residual <= std::min(round_off, worst_residual);
     return result;
   }
-  // A cycle alone leaves the soft motions of a body held at few points to GMRES, which forgets them at a restart.
+  // A cycle alone would leave the soft modes of a body held at few points to GMRES, which loses them at a restart.
   const Operator solved = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     direct_ ? precondition(r, z) : void(iterate(symmetric_stiffness(), true, r, inner_tolerance, max_iterations, z));
   };

@@ -1,4 +1,5 @@
-// Solves with the tangent of a model: directly when small, else by a Krylov method over the rest state's multigrid.
+// Linear solver for the tangent of a model: direct when small, else a Krylov method preconditioned by the rest state's
+// multigrid.
 #pragma once
 
 #include <memory>
@@ -10,25 +11,25 @@
 
 namespace springproof {
 
-/// The model with the energy form of momentum dispersion in place of one without: what preconditions the latter.
+/// The model with the symmetric form of momentum dispersion, which preconditions models with a non-conservative form.
 MassSpringModel symmetric_companion(const MassSpringModel& model);
 
 class TangentSolver {
  public:
-  /// `direct_limit`: up to so many free unknowns the tangent is factored.
+  /// `direct_limit`: largest number of free unknowns for which the tangent is factored.
   TangentSolver(const MassSpringModel& model, const std::vector<char>& fixed, long direct_limit);
 
-  /// Takes over the tangent at x.  @return false if it is seen not to be positive definite (not conservative: its
-  /// symmetric companion).
+  /// Sets the tangent to that at x.
+  /// @return false if it (not conservative: that of its symmetric companion) is found not to be positive definite.
   bool take(const NodalVectors& x);
 
   /// u = K^-1 b on the free unknowns, 0 on the fixed; converged also where the residual is round-off.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) const;
 
-  /// y = K x with the tangent taken over last, all unknowns.
+  /// y = K x with the current tangent, all unknowns.
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
 
-  /// Positive definiteness of the tangent (of the companion's) taken over last.
+  /// Positive definiteness of the current tangent (not conservative: of the companion's).
   bool stable() const;
 
   double largest_diagonal() const;
@@ -36,7 +37,7 @@ class TangentSolver {
   std::string name() const;  ///< "Cholesky", "CG + multigrid", ...
 
  private:
-  /// A stiffness: that of a list at rest if there is one, else what was assembled.
+  /// A stiffness operator: that of a list at rest if there is one, else the assembled matrix.
   struct Stiffness {
     const Tangent& assembled;
     const ListStiffness<double>* at_rest;
@@ -56,7 +57,7 @@ class TangentSolver {
   std::unique_ptr<MassSpringModel> companion_;  ///< of a model that is not conservative
   Tangent K_, companion_K_;
   bool direct_ = false;
-  bool at_rest_ = false;  ///< of lattice_ or list_: K_ is left empty
+  bool at_rest_ = false;  ///< lattice_ or list_ provides the tangent, K_ is not updated
   DirectSolver factors_;
   std::unique_ptr<Multigrid> lattice_;
   std::unique_ptr<NetworkMultigrid> network_;

@@ -84,7 +84,7 @@ std::vector<Bond> bonds_within(const std::vector<Vec3>& points, const PointCells
 
 double length_for(double springs_per_node, const std::vector<Vec3>& points, const Vec3& box) {
   const std::size_t wanted = static_cast<std::size_t>(springs_per_node * double(points.size()) / 2);
-  // A ball that holds S + 1 nodes at the mean density has (3 (S + 1) / (4 pi n))^(1/3); look a little beyond.
+  // A ball that contains S + 1 nodes at the mean density has (3 (S + 1) / (4 pi n))^(1/3); look a little beyond.
   double reach = 1.2 * std::cbrt(0.239 * (springs_per_node + 1) * box.prod() / double(points.size()));
   std::vector<double> squares;
   for (; squares.size() <= wanted; reach *= 1.2) {

@@ -1,4 +1,4 @@
-// Springs between nodes that are close, and the volume that each node stands for.
+// Connection of nearby nodes by springs, and the volume share of each node.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 
 namespace springproof {
 
-/// Two nodes i < j to be joined, j perhaps by its image at j + shift * box.
+/// Two nodes i < j to be connected, j possibly by its image at j + shift * box.
 struct Bond {
   int i, j;
   std::array<int, 3> shift;
@@ -21,12 +21,12 @@ std::vector<Vec3> spatially_sorted(const std::vector<Vec3>& points, double edge)
 std::vector<Bond> bonds_within(const std::vector<Vec3>& points, const PointCells& cells, double max_length,
                                const std::function<bool(const Vec3&)>& inside);
 
-/// The length that joins each point of a periodic box with `springs_per_node` others on the mean [m].
+/// Length [m] up to which each point of a periodic box has `springs_per_node` neighbours on average.
 double length_for(double springs_per_node, const std::vector<Vec3>& points, const Vec3& box);
 
 /// Volume nearest to each point [m^3], by a lattice of about `step` [m] through the box of the cells; the sum is
-/// `volume`. `inside` (empty: everywhere) tells which lattice points count; a point that gets none counts as half of
-/// one.
+/// `volume`. `inside` (empty: everywhere) determines which lattice points count; a point that gets none is given half
+/// of one.
 std::vector<double> nearest_volumes(const std::vector<Vec3>& points, const PointCells& cells, double step,
                                     double volume, const std::function<bool(const Vec3&)>& inside);
 

@@ -27,7 +27,7 @@ double cube_edge(const Mesh& mesh) {
 
 namespace {
 
-/// The springs of all cells, what they share merged: 13 slots per lattice point, one for each direction away from it.
+/// The springs of all cells, shared ones merged: 13 slots per lattice point, one for each direction away from it.
 std::vector<Spring> superposed(const Network& network) {
   const Grid& grid = *network.grid;
   const std::array<int, 3> points = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
@@ -35,7 +35,7 @@ std::vector<Spring> superposed(const Network& network) {
     return (std::size_t(p[2]) * points[1] + p[1]) * points[0] + p[0];
   };
   struct Part {
-    std::size_t from;  ///< of the cell's lowest corner's point
+    std::size_t from;  ///< start of the spring, relative to the cell's lowest corner
     int slot, i, j;
     double stiffness, rest_length;
   };

@@ -1,4 +1,5 @@
-// Cubic lattices by superposition of cells: what cells share merges, so boundaries follow by themselves.
+// Cubic lattices by superposition of cells: springs that cells share are merged, so boundaries need no special
+// treatment.
 #pragma once
 
 #include "msm/topology/network.h"
@@ -14,17 +15,17 @@ struct CubicPattern {
 };
 
 /// Isotropic pattern of face-to-cube ratio A = k_f / k_c with unit k_c (unit k_f for A = infinity): eq. (5.10).
-/// Its size is set by calibrate().
+/// Its magnitude is set by calibrate().
 /// A = 0: 14 springs per node (edges, cube diagonals); A = infinity: the classic 18 (edges, face diagonals);
 /// anything between: 26.  Kot et al. (2014), sec. 3.2.
 /// @throws std::invalid_argument if A < 0 or NaN.
 CubicPattern isotropic_pattern(double face_to_cube);
 
 /// Edge [m] of the cubes that a mesh is cut into.
-/// @throws std::invalid_argument if it is not cut into equal cubes (says the edge lengths found).
+/// @throws std::invalid_argument if it is not cut into equal cubes (the message gives the edge lengths).
 double cube_edge(const Mesh& mesh);
 
-/// Network of a mesh of equal cubes: each cell gives its edges k_e/4, face diagonals k_f/2 and cube diagonals k_c
+/// Network of a mesh of equal cubes: each cell contributes edges k_e/4, face diagonals k_f/2 and cube diagonals k_c
 /// (Golec et al. 2019, sec. 5.4).
 /// @throws std::invalid_argument as cube_edge().
 Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern);

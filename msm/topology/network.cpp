@@ -12,7 +12,7 @@ std::vector<Spring> merge_springs(std::vector<Spring> springs) {
     if (s.i > s.j) std::swap(s.i, s.j);
     nodes = std::max(nodes, s.i + 1);
   }
-  // By first node in linear time; the few springs of a node by comparison.
+  // Sorted by first node in linear time, and the few springs of a node by comparison.
   std::vector<std::size_t> end(nodes + 1, 0);
   for (const Spring& s : springs) ++end[s.i + 1];
   for (int i = 0; i < nodes; ++i) end[i + 1] += end[i];

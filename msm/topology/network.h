@@ -1,4 +1,4 @@
-// The network: point masses joined by springs, and the cells that the springs came from.
+// The network: point masses connected by springs, and the cells that the springs came from.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ struct Network {
   std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
   std::vector<Hexahedron> cells;     ///< cubic cells, empty for networks without
   double cell_edge = 0;              ///< l [m] of the cells
-  std::vector<Spring> cell_springs;  ///< what one cell contributed: springs between its corners 0..7
-  Eigen::VectorXd volume;            ///< share of each node in the body [m^3]
+  std::vector<Spring> cell_springs;  ///< contribution of one cell: springs between its corners 0..7
+  Eigen::VectorXd volume;            ///< volume share of each node in the body [m^3]
   std::optional<Grid> grid;          ///< the lattice of the cells
   std::vector<int> image_of;         ///< per node the node it is a periodic image of (itself if none); empty: no images
   std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise

@@ -7,7 +7,8 @@ namespace springproof {
 
 /// One node at the centre of each cell of a mesh of equal cubes, with the cell's volume; springs of the pattern, all at
 /// full stiffness, between cells that share a face (k_e), an edge (k_f) or a corner (k_c).  Kot et al. (2014),
-/// sec. 5.3. The surface lacks springs, so the size of k must follow from calibrate(), which takes the sum as it is.
+/// sec. 5.3. The surface lacks springs, so the magnitude of k must follow from calibrate(), which sums over the springs
+/// present.
 /// @throws std::invalid_argument as cube_edge().
 Network node_lattice(const Mesh& mesh, const CubicPattern& pattern);
 

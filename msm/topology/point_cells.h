@@ -1,4 +1,4 @@
-// A cell list: which points are near a place, in constant time.
+// Cell list that finds the points near a position in constant time.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ struct PointCells {
   Vec3 lower, size;          ///< box [m]
   bool periodic;             ///< the box repeats along every axis
   std::array<int, 3> count;  ///< cells along each axis, none narrower than the edge asked for
-  std::vector<int> first;    ///< of a cell, -1: empty
+  std::vector<int> first;    ///< first point of each cell, -1: empty
   std::vector<int> next;     ///< point in the same cell, -1: last
 
-  /// A periodic box needs three cells along each axis, or a neighbour would be met twice.
+  /// A periodic box needs three cells along each axis, or a neighbour would be visited twice.
   PointCells(const Vec3& low, const Vec3& high, double edge, bool repeats)
       : lower(low), size(high - low), periodic(repeats) {
     for (int a = 0; a < 3; ++a) count[a] = static_cast<int>(std::clamp(std::floor(size[a] / edge), 1.0, 1e6));
@@ -42,7 +42,7 @@ struct PointCells {
     head = static_cast<int>(next.size()) - 1;
   }
 
-  /// The difference of two places, between nearest images if the box is periodic [m].
+  /// Difference of two positions, between nearest images if the box is periodic [m].
   Vec3 nearest_image(Vec3 d) const {
     if (periodic)
       for (int a = 0; a < 3; ++a) {

@@ -16,7 +16,7 @@ std::size_t draw_index(std::mt19937_64& random, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(uniform(random) * double(count)));
 }
 
-/// One exclusion ball covers all the corners, so the convex part between them.
+/// Whether one exclusion ball covers all the corners, and so their convex hull.
 template <class Corners>
 bool is_covered(const Sample& sample, const Corners& corners) {
   const double reach = sample.min_distance * sample.min_distance;
@@ -27,7 +27,7 @@ bool is_covered(const Sample& sample, const Corners& corners) {
   });
 }
 
-/// Equal boxes, by their place in a lattice that halves with each level.
+/// Equal boxes, by their index in a lattice whose edge halves with each level.
 struct Boxes {
   Vec3 lower, edge;
   const std::function<bool(const Vec3&)>& inside;
@@ -106,7 +106,7 @@ std::array<std::array<Vec3, 3>, 4> pieces(const std::array<Vec3, 3>& t) {
 template <class Simplex>
 struct Simplices {
   std::vector<Simplex> parts;
-  std::vector<double> sums;  // of the measures up to each part
+  std::vector<double> sums;  // cumulative measures of the parts
 
   explicit Simplices(std::vector<Simplex> all) : parts(std::move(all)) { add_up(); }
 

@@ -12,7 +12,7 @@ namespace springproof {
 struct Sample {
   PointCells cells;
   double min_distance;     ///< minL [m]
-  std::mt19937_64 random;  ///< the standard fixes its bits; its distributions are left to libraries and are not used
+  std::mt19937_64 random;  ///< the standard fixes its bits; its distributions depend on the library and are not used
   std::vector<Vec3> points;
 
   Sample(const Vec3& lower, const Vec3& upper, double distance, bool periodic, std::uint64_t seed)
@@ -25,12 +25,12 @@ struct Sample {
 /// Uniform in [0, 1), from the upper 53 bits.
 double uniform(std::mt19937_64& random);
 
-// Each adds points, uniform over what the present points leave free, until `wanted` are added or nothing is left
-// free, and returns how many it added.  How: parts of the domain that one exclusion ball covers are dropped, points
-// are drawn in the rest, which is subdivided when few draws succeed.  So jamming is known and takes O(N).
-// What stays uncovered below 2^-16 of the first parts counts as covered.
+// Each adds points, uniform over the space that the present points leave free, until `wanted` are added or nothing is
+// left free, and returns how many it added.  Method: parts of the domain that one exclusion ball covers are dropped,
+// points are drawn in the rest, which is subdivided when few draws succeed.  So jamming is detected, in O(N).
+// Uncovered parts below 2^-16 of the first ones are treated as covered.
 
-/// In a box; `inside` (empty: everywhere) tells where points may lie.  Parts with corners and centre outside are
+/// In a box; `inside` (empty: everywhere) determines where points may lie.  Parts with corners and centre outside are
 /// dropped.
 int fill_box(Sample& sample, const Vec3& lower, const Vec3& upper, const std::function<bool(const Vec3&)>& inside,
              long wanted);

@@ -1,5 +1,5 @@
-// Disordered networks: random sequential addition of nodes, springs between all that are close (Kot et al. 2014,
-// sec. 3.3).
+// Disordered networks: random sequential addition of nodes, springs between all nearby nodes (Kot et al. 2014, sec.
+// 3.3).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct RandomParameters {
   bool surface_nodes = true;  ///< nodes on the surface first; false: the surface cuts the sample, as in the paper
 };
 
-/// Nodes removed because the network cannot hold them.
+/// Nodes removed because they are insufficiently connected.
 struct NetworkRepair {
   int floppy_nodes = 0;    ///< fewer than 4 springs, or springs so badly spread that the smallest eigenvalue of
                            ///< sum n n^T is below 0.05 of a third of its trace
@@ -33,8 +33,8 @@ struct NetworkRepair {
 /// springs_per_node.  Volume shares: nearest node of each point of a lattice of l/3, scaled to the body's volume.
 /// With surface nodes: corners, sharp edges and faces are filled first, to one node per l, l^2; then the inside, to the
 /// number that gives the density 1/l^3 far from the surface.
-/// @throws std::invalid_argument: parameters out of range; more nodes than random addition can place (says the largest
-///   minL/l there is room for); more than 20 % of the nodes removed as floppy or detached.
+/// @throws std::invalid_argument: parameters out of range; more nodes than random addition can place (the message gives
+///   the largest possible minL/l); more than 20 % of the nodes removed as floppy or detached.
 Network random_network(const Region& region, const RandomParameters& parameters, NetworkRepair* repaired = nullptr);
 
 /// Network of the periodic box [0, box], N = V/l^3 nodes.  maxL follows from the network's own pairs, so <S> is exact.

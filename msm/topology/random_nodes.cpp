@@ -14,18 +14,18 @@
 namespace springproof {
 namespace {
 
-/// How many nodes of the inside a node of a face replaces, per minL/l: with it the density far from the surface is that
-/// of the sample without surface.  Measured on cubes of 24 l: 0.14, 0.26, 0.37, 0.44, 0.46, 0.50 nodes at minL/l = 0.3,
-/// 0.5, 0.7, 0.8, 0.85, 0.88.
+/// Number of interior nodes that a node of a face replaces, per minL/l: with it the density far from the surface is
+/// that of the sample without surface.  Measured on cubes of 24 l: 0.14, 0.26, 0.37, 0.44, 0.46, 0.50 nodes at minL/l =
+/// 0.3, 0.5, 0.7, 0.8, 0.85, 0.88.
 constexpr double surface_weight = 0.54;
 
 /// Number of nodes for so many lengths, areas or volumes of l.
 long count_for(double amount) { return std::lround(amount); }
 
-/// `placed` of `wanted` nodes found room beside `others` that had been placed before.
+/// Throws unless all `wanted` nodes were placed beside `others` that had been placed before.
 void require_placed(long placed, long wanted, const RandomParameters& parameters, long others = 0) {
   if (placed >= wanted) return;
-  // A jammed sample holds so many nodes per minL^3.
+  // The number of nodes per minL^3 is the same in all jammed samples.
   const double largest = parameters.min_length * std::cbrt(double(placed) / double(wanted));
   throw std::invalid_argument(
       fmt::format("min_length: minL/l = {:.4g} was asked for, but random addition jams at {} of {} nodes; "
@@ -96,7 +96,7 @@ std::vector<Vec3> nodes_cut_by_surface(const Region& region, const RandomParamet
   const double density = 1 / (parameters.spacing * parameters.spacing * parameters.spacing);
   const Vec3 lower = region.lower - Vec3::Constant(margin), upper = region.upper + Vec3::Constant(margin);
   const long wanted = count_for((upper - lower).prod() * density);
-  // Walls would draw nodes to themselves; a periodic sample has none.  Windows leave their walls outside the box.
+  // Walls would attract nodes; a periodic sample has none.  Windows leave their walls outside the box.
   Sample sample(lower, upper, parameters.min_length * parameters.spacing, !parameters.windows, parameters.seed);
   if (parameters.windows) fill_windows(sample, lower, upper, density);
   const auto in_box = [&](const Vec3& x) {

@@ -24,7 +24,7 @@ std::pair<Vec3, Vec3> box_of(const RayParity& s, const std::array<int, 3>& t) {
 }
 
 /// Whether the projected edge runs past p on the side of larger x.  The edge is taken from its lower point number to
-/// the higher, so that both of its triangles get the same answer to the last bit: then parities cannot contradict.
+/// the higher, so that both of its triangles get the same result to the last bit and parities are consistent.
 bool edge_to_the_right(const RayParity& s, int i, int j, const Vec3& p) {
   if (i > j) std::swap(i, j);
   const Vec3 &a = s.points[i], &b = s.points[j];

@@ -1,4 +1,4 @@
-// Is a point inside a closed triangulated surface?
+// Test whether a point lies inside a closed triangulated surface.
 #pragma once
 
 #include <array>

@@ -29,7 +29,7 @@ Region region_of(const Mesh& mesh);
 /// @throws std::invalid_argument if the radius is not positive.
 Region ball(const Vec3& centre, double radius);
 
-/// Which points are closer than `distance` [m] to the region's surface.
+/// Marks the points closer than `distance` [m] to the region's surface.
 std::vector<char> near_surface(const Region& region, const std::vector<Vec3>& points, double distance);
 
 }  // namespace springproof

@@ -14,7 +14,8 @@ struct Sums {
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0;  // of n n^T
 };
 
-/// Smallest eigenvalue below the limit: by the signs of the leading minors, which are the same on every machine.
+/// Whether the smallest eigenvalue is below the limit: by the signs of the leading minors, which are the same on every
+/// machine.
 bool is_floppy(const Sums& s) {
   if (s.springs < fewest_springs) return true;
   const double limit = least_spread * (s.xx + s.yy + s.zz) / 3;

@@ -1,4 +1,4 @@
-// A network without nodes that hang loose.
+// Removal of insufficiently connected nodes from a network.
 #pragma once
 
 #include "msm/topology/connect.h"

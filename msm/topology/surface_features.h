@@ -1,4 +1,4 @@
-// Corners and edges of a body: what the hull of its network must keep.
+// Corners and sharp edges of a body, which its network must represent.
 #pragma once
 
 #include "msm/topology/region.h"

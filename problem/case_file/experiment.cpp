@@ -45,7 +45,7 @@ constexpr Key section_schema[] = {{"point_m", "[x, y, z]"}, {"normal", "[x, y, z
 constexpr Key probe_schema[] = {{"name", "a name"}, {"at_m", "[x, y, z], a rest position"}};
 constexpr Key reference_schema[] = {{"cells"}, {"elements"}, {"grading"}, {"edge_m"}, {"smooth"}};
 
-/// A modulus of the file and where it goes.
+/// A key of [material] and the modulus that it sets.
 struct ModulusKey {
   const char* key;
   std::optional<double> Moduli::*member;
@@ -122,8 +122,8 @@ Body read_body(const TomlValue& value) {
   return body;
 }
 
-/// Two moduli, each a number or a list; a single number is held fixed while the other runs through its list,
-/// and two lists of the same length are read in pairs.
+/// Two moduli, each a number or a list; a single number is kept fixed while the other runs through its list, and two
+/// lists of the same length are read in pairs.
 std::vector<IsotropicMaterial> read_materials(const TomlValue& value) {
   const TomlTable table(value, material_schema);
   double density = 1000;
@@ -202,7 +202,7 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   return reference;
 }
 
-/// A weight needs a mass.
+/// Gravity requires a density.
 void require_density(const TomlTable& document, const Experiment& experiment) {
   const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
                                   [](const Load& load) { return std::holds_alternative<Gravity>(load); });

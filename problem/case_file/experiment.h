@@ -27,24 +27,24 @@ struct Section {
   Vec3 normal = Vec3::UnitZ();
 };
 
-/// Line along which strain and stress are held against Kelvin's solution (Kot et al. 2014, sec. 5.2).
+/// Line along which strain and stress are compared with Kelvin's solution (Kot et al. 2014, sec. 5.2).
 struct Line {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]
   int points = 100;                             ///< point i of 1 ... points lies at from + (i / points) (to - from)
-  std::array<int, 2> middle = {15, 80};         ///< first and last of the points that deviations are the mean over
+  std::array<int, 2> middle = {15, 80};  ///< first and last point of the range over which deviations are averaged
 };
 
-/// Place [m] of a point of the line, numbered from 1.
+/// Position [m] of a point of the line, numbered from 1.
 Vec3 point_of(const Line& line, int number);
 
 /// How the finite element reference is computed.
 struct ReferenceChoice {
   Cells cells = {0, 0, 0};  ///< finest of three grids; {0,0,0} = chosen from the body's cells
   std::vector<std::string> elements = {
-      "q2"};             ///< each run on the three grids; the first is the reference; none: the case goes without
+      "q2"};             ///< each run on the three grids; the first is the reference; none: no reference
   double grading = 1.5;  ///< exponent that draws elements towards the faces of the block; 1 = uniform
-  double edge = 0;       ///< [m] of the tetrahedra of a body of voxels, finest of three meshes; 0 = chosen
-  bool smooth = false;   ///< the exact solution has no singularity: the elements' own order may be trusted
+  double edge = 0;       ///< [m] edge length of the tetrahedra for a body of voxels, finest of three meshes; 0 = chosen
+  bool smooth = false;   ///< the exact solution is smooth: the elements' theoretical order may be assumed
 };
 
 /// Elements of the reference: hexahedra "q1", "q2", tetrahedra "p1", "p2".
@@ -53,7 +53,7 @@ std::vector<std::string> element_names();
 enum class Source { analytic, extrapolated_fem, published, regression };
 std::string to_string(Source source);
 
-/// A value that must hold.  It becomes the verdict of the case.
+/// An expected value of a measure; it decides the verdict of the case.
 struct Expectation {
   std::string model;  ///< label of a model in [compare], "fem" (the extrapolated reference), or
                       ///< "fem_<element>": that element of [compare] at the models' resolutions, or the
@@ -70,7 +70,7 @@ struct Expectation {
   SourceLocation location;
 };
 
-/// A printed value shown beside ours, not gated.
+/// A published value shown beside ours, without influence on the verdict.
 struct PublishedValue {
   std::string model;
   double poisson_ratio = 0;
@@ -78,11 +78,11 @@ struct PublishedValue {
   std::string measure;
   double value = 0;
   std::string where;   ///< "Table 3"
-  std::string remark;  ///< why it cannot be reproduced, where it cannot
+  std::string remark;  ///< why it cannot be reproduced, if so
   SourceLocation location;
 };
 
-/// A case: one body, what is done to it, the materials and models it is run with, and what should come out.
+/// A case: one body, its loads, the materials and models it is run with, and the expected results.
 struct Experiment {
   std::string name;    ///< the file's stem
   std::string folder;  ///< name of the folder that holds it, e.g. "golec_2019"
@@ -92,14 +92,14 @@ struct Experiment {
   std::string kinematics = "linear";  ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke",
                                       ///< "neo_hooke_isochoric", "st_venant_kirchhoff"
   Body body;
-  std::vector<PatchRule> patches;            ///< named by rules, besides those that the body brings
+  std::vector<PatchRule> patches;            ///< defined by rules, in addition to those of the body itself
   std::vector<IsotropicMaterial> materials;  ///< in the file's order, each Poisson's ratio once
   std::vector<Load> loads;
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
   std::vector<std::string> elements = {"q1"};  ///< finite elements compared beside the models, at the same resolutions
-  double max_unknowns = 0;  ///< runs of models and elements with about more than these are left out; 0: none
-  bool cost = false;        ///< the runs' times are compared: short ones are repeated, all stop at one residual
+  double max_unknowns = 0;  ///< models and elements with more than about this many unknowns are not run; 0: no limit
+  bool cost = false;        ///< run times are compared: short runs are repeated, all stop at the same residual
                             ///< (problem/system/run_cost.h)
   std::string exact;        ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
   std::vector<std::string> measures;
@@ -121,10 +121,11 @@ Experiment read_experiment(const std::filesystem::path& file);
 /// As read_experiment, from text; `file` is used for messages and relative paths.
 Experiment parse_experiment(const std::string& text, const std::filesystem::path& file);
 
-/// Kelvin's solution of the case's point force; empty: there is not exactly one point force, or several materials.
+/// Kelvin's solution of the case's point force; empty unless there are exactly one point force and one material, and
+/// the kinematics are linear.
 std::optional<KelvinSolution> kelvin_of(const Experiment& experiment);
 
-/// @throws InputError at the load that acts on a patch that is not among `patches`, those of the body.
+/// @throws InputError at the first load on a patch that is not among `patches`, those of the body.
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches);
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-// What is wrong with a case as a whole.
+// Checks of a case as a whole.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 namespace springproof {
 namespace {
 
-/// Whether a load leaves the displacement along an axis 0, and the same for all places along it.
+/// Whether a load keeps the displacement along an axis 0 and all displacements constant along it.
 struct LeavesPlane {
   int axis;
 
@@ -29,8 +29,7 @@ struct LeavesPlane {
   }
 };
 
-/// Plane strain: both faces across the axis are held along it and nothing else is done to them, and no load acts along
-/// it.
+/// Plane strain: both faces normal to the axis are fixed along it and otherwise free, and no load acts along it.
 bool is_plane_strain(const std::vector<Load>& loads, int axis) {
   const std::string faces[] = {std::string(1, "xyz"[axis]) + "_min", std::string(1, "xyz"[axis]) + "_max"};
   int held = 0;
@@ -47,7 +46,7 @@ bool is_plane_strain(const std::vector<Load>& loads, int axis) {
   return held == 3;
 }
 
-/// Memory [byte] that the finest grid takes at least: matrix-free quadratic elements take 450 bytes per unknown.
+/// Lower bound of the memory [byte] of the finest grid: matrix-free quadratic elements take 450 bytes per unknown.
 double memory_for(const Cells& cells, const std::vector<std::string>& elements) {
   const bool quadratic =
       std::any_of(elements.begin(), elements.end(), [](const std::string& e) { return e.ends_with('2'); });
@@ -62,14 +61,14 @@ std::array<bool, 3> held_by(const Load& load) {
   return {u[0].has_value(), u[1].has_value(), u[2].has_value()};
 }
 
-/// What a load pulls with along the axes.
+/// Components of a traction or patch force; zero for other loads.
 Vec3 pull_of(const Load& load) {
   if (const auto* t = std::get_if<Traction>(&load)) return t->traction;
   if (const auto* f = std::get_if<PatchForce>(&load)) return f->force;
   return Vec3::Zero();
 }
 
-/// Two loads on one patch that cannot both be.
+/// Refuses two loads on one patch that contradict each other.
 void check_pair(const Experiment& e, std::size_t i, std::size_t j) {
   const Load &first = e.loads[i], &second = e.loads[j];
   const std::string* patch = patch_of(first);
@@ -97,7 +96,7 @@ void check_contradictions(const Experiment& e) {
     for (std::size_t i = 0; i < j; ++i) check_pair(e, i, j);
 }
 
-/// A body force is known for small strains, and only the finite elements take it.
+/// The body force of an exact field is defined for small strains, and only the finite elements support it.
 void check_body_forces(const Experiment& experiment) {
   for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
     if (!std::holds_alternative<FieldBodyForce>(experiment.loads[i])) continue;

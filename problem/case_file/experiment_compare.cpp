@@ -39,7 +39,7 @@ bool is_fem(const std::string& model) {
          (model.starts_with("fem_") && std::find(elements.begin(), elements.end(), model.substr(4)) != elements.end());
 }
 
-/// Finite element results that a case has.
+/// Names of the finite element results of a case.
 std::vector<std::string> fem_names(const Experiment& experiment) {
   std::vector<std::string> names = {"fem"};
   const auto add = [&](const std::vector<std::string>& elements) {
@@ -80,7 +80,7 @@ ModelChoice read_model(const TomlValue& value) {
   if (!table) {
     choice.name = as_text(value);
   } else {
-    // Options are the business of the table of models, so any key is taken here.
+    // Options are checked by the table of models, so any key is accepted here.
     const toml::node* name = table->get("model");
     if (!name) refuse({value.node, value.key + ".model", value.file}, "is missing", "the name of a model");
     choice.name = as_text({name, value.key + ".model", value.file});
@@ -97,7 +97,7 @@ ModelChoice read_model(const TomlValue& value) {
   return choice;
 }
 
-/// Labels are names of files too.
+/// Labels also serve as file names.
 void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others) {
   const bool unseen = std::any_of(label.begin(), label.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
   if (unseen || label.size() > longest_file_name)
@@ -112,7 +112,7 @@ void refuse_label(const TomlValue& item, const std::string& label, const std::ve
   }
 }
 
-/// An empty list is a case for the reference alone, which must then name its elements.
+/// An empty list means a case of the reference alone; [reference] must then name its elements.
 std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& document) {
   std::vector<ModelChoice> models;
   if (const auto* array = value.node->as_array(); array && array->empty()) {
@@ -151,7 +151,7 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
   return measures;
 }
 
-/// The material's own value, so that results can be found by comparing numbers.
+/// The material's own value, so that results can be looked up by exact comparison.
 double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) {
   const double nu = as_number(value);
   std::vector<double> known;
@@ -166,7 +166,7 @@ bool asks_for(const Experiment& experiment, const std::string& measure) {
   return std::find(experiment.measures.begin(), experiment.measures.end(), measure) != experiment.measures.end();
 }
 
-/// Whether it is a row of mean_displacement.  Of which patch, the body will tell once it is meshed.
+/// Whether it is a row of mean_displacement.  Whether the body has its patch is known only once it is meshed.
 bool is_mean_displacement(const std::string& row) {
   const std::string patch = patch_of_mean_displacement(row);
   const auto components = {".x", ".y", ".z", ".magnitude"};
@@ -191,7 +191,7 @@ std::string read_judged_model(const TomlValue& value, const Experiment& experime
   return as_choice(value, labels);
 }
 
-/// Resolution of a row.  A model of ours must run at it; the reference has grids of its own.
+/// Resolution of a row.  A mass-spring model must be run at it; the reference has its own grids.
 Cells read_row_cells(const TomlValue& value, const std::string& model, const Experiment& experiment) {
   const Cells cells = as_cells(value);
   const auto& known = experiment.body.cells;
@@ -274,7 +274,7 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
   experiment.measures = default_measures;
   if (const auto value = document.find("compare")) read_compare_table(*value, document, experiment);
-  // Displacements alone cannot judge a body that its supports move.
+  // Displacement errors alone are not enough for a body that is moved by its supports.
   if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
     experiment.measures.emplace_back("reaction_error");
 }

@@ -17,7 +17,7 @@ int as_whole(const TomlValue& value, int low, int high) {
   return static_cast<int>(n->get());
 }
 
-/// What a case needs for Kelvin's solution and lacks; nullptr: nothing.
+/// The requirement of Kelvin's solution that a case does not meet; nullptr: none.
 const char* missing_for_kelvin(const Experiment& experiment) {
   if (experiment.materials.size() != 1) return "one material";
   const auto forces = std::count_if(experiment.loads.begin(), experiment.loads.end(),

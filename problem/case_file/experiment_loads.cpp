@@ -92,12 +92,12 @@ Load read_body_force(const TomlTable& table, const std::string&) {
 
 /// A kind of load is recognised by its keys and then read with its own schema.
 struct LoadKind {
-  const char* marks[2];  ///< keys that must all be there (nullptr: no second)
+  const char* marks[2];  ///< keys that must all be present (nullptr: no second)
   std::span<const Key> schema;
   Load (*read)(const TomlTable&, const std::string& on);
 };
 
-// The first kind that fits is taken: the affine one before plain displacement, the point before the patch
+// The first matching kind is used, so the affine kind precedes the plain displacement and the point force the patch
 // force.
 const LoadKind load_kinds[] = {
     {{"displacement_gradient", nullptr}, affine_schema, read_affine},

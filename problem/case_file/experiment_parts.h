@@ -6,7 +6,7 @@
 
 namespace springproof {
 
-/// One [[load]]: as many loads as `on` names patches.
+/// One [[load]]: one load for each patch named by `on`, or a single one without `on`.
 std::vector<Load> read_load(const TomlValue& value);
 
 /// The [[patch]] tables, in order.
@@ -18,20 +18,19 @@ std::vector<std::string> read_elements(const TomlValue& value, const std::vector
 /// [line]; loads, materials and kinematics must have been read.
 void read_line(const TomlTable& document, Experiment& experiment);
 
-/// Gives the loads of the field "kelvin" their solution.
-/// @throws InputError at such a load if the case has no such solution, or a finite element reference.
+/// Sets the solution of the loads with the field "kelvin".
+/// @throws InputError at such a load if the case has no such solution.
 void settle_kelvin(Experiment& experiment);
 
-/// Held against each other, before any body is known; loads, kinematics and models must have been read.
+/// Checks the loads against each other, before the body is meshed; loads, kinematics and models must have been read.
 /// @throws InputError at a load that cannot be applied, or contradicts another one.
 void check_loads(const Experiment& experiment);
 
-/// The three grids of the reference are halved twice, and no larger than what this machine holds; `value` is
-/// [reference].
+/// Checks that the reference's grid can be halved twice and fits into this machine's memory; `value` is [reference].
 void check_reference_cells(const TomlValue& value, const Experiment& experiment);
 
-/// [compare] and, held against it, [[expect]] and [[published]].  Body, materials, loads, probes, section and
-/// reference of the experiment must have been read.
+/// [compare], and [[expect]] and [[published]], which are checked against it.  Body, materials, loads, probes, section
+/// and reference of the experiment must have been read.
 void read_compare(const TomlTable& document, Experiment& experiment);
 void read_expectations(const TomlTable& document, Experiment& experiment);
 void read_published(const TomlTable& document, Experiment& experiment);

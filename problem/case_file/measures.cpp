@@ -24,7 +24,7 @@ bool moves(const Load& load) {
   return std::holds_alternative<PrescribedField>(load);
 }
 
-/// Patches of the loads that do this, in the file's order, each once.
+/// Patches of the loads for which `does` is true, in the file's order, each once.
 std::vector<std::string> patches_of(const Experiment& experiment, bool (*does)(const Load&)) {
   std::vector<std::string> patches;
   for (const Load& load : experiment.loads) {
@@ -44,7 +44,7 @@ std::vector<std::string> reaction_rows(const Experiment& experiment) {
   return rows;
 }
 
-/// Those whose names the case file holds.
+/// Rows for the patches named in the case file.
 std::vector<std::string> mean_displacement_rows(const Experiment& experiment) {
   std::set<std::string> patches;
   for (const Load& load : experiment.loads)
@@ -88,7 +88,7 @@ std::vector<std::string> line_rows(const Experiment& experiment) {
   return rows;
 }
 
-/// How much of a row's name a name of the table is; 0: nothing.
+/// Length of `name` if it equals the row's name or is its prefix before a dot; otherwise 0.
 std::size_t common(const std::string& row, const std::string& name) {
   return row == name || row.starts_with(name + '.') ? name.size() : 0;
 }

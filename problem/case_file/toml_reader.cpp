@@ -50,7 +50,7 @@ void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::
   }
 }
 
-/// Walks over TOML, knowing strings and comments, and counts how deep keys, tables and lists lead.
+/// Scans TOML, skipping strings and comments, and limits the nesting depth of keys, tables and lists.
 class DepthCounter {
  public:
   DepthCounter(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -80,7 +80,7 @@ class DepthCounter {
                        fmt::format("more than {} {} (allowed: no more)", deepest, what));
   }
 
-  // A string that does not end is the parser's to complain about.
+  // An unterminated string is left to the parser to report.
   void skip_string(char quote) {
     const bool several_lines = text_.substr(at_, 3) == std::string(3, quote);
     const std::string end = several_lines ? std::string(3, quote) : std::string(1, quote);
@@ -123,7 +123,7 @@ SourceLocation location_of(const TomlValue& value) {
 
 double as_number(const TomlValue& value, const Range& range) {
   if (!value.node->is_number()) wrong_type(value, range.words);
-  const auto* integer = value.node->as_integer();  // value<double>() has nothing for one that no double holds exactly
+  const auto* integer = value.node->as_integer();  // value<double>() is empty where no double is exact
   const double x = integer ? static_cast<double>(integer->get()) : value.node->ref<double>();
   if (!range.contains(x)) refuse(value, fmt::format("is {}", x), range.words);
   if (x != 0 && (std::abs(x) < smallest_number || std::abs(x) > largest_number))
@@ -177,7 +177,7 @@ Vec3 as_vector(const TomlValue& value, const Range& range) {
 Vec3 as_direction(const TomlValue& value) {
   const Vec3 direction = as_vector(value);
   if (direction.isZero(0)) refuse(value, "is the zero vector", "[x, y, z] with a direction");
-  // A vector of length 1 is kept as it is, so that what is written reads back to the same bits.
+  // A vector of length 1 is returned unchanged, so that a direction that was written is read back bit for bit.
   const double length = direction.stableNorm();
   if (std::abs(length - 1) <= 4 * std::numeric_limits<double>::epsilon()) return direction;
   return direction.stableNormalized();

@@ -1,5 +1,5 @@
-// Reading TOML with a schema: every unknown key, missing key, wrong type and value out of range becomes an
-// InputError that says where it stands and what is allowed.
+// Reading TOML with a schema: every unknown key, missing key, wrong type and value out of range raises an InputError
+// with its location and what is allowed.
 #pragma once
 
 #include <toml++/toml.h>
@@ -22,7 +22,7 @@ struct TomlValue {
   std::string file;
 };
 
-/// An interval of numbers; an end belongs to it where `low_in` or `high_in` says so.  Never holds inf or nan.
+/// An interval of numbers; `low_in` and `high_in` include its ends.  Never contains inf or nan.
 struct Range {
   const char* words;  ///< "> 0"
   double low = -std::numeric_limits<double>::infinity();
@@ -33,7 +33,7 @@ struct Range {
   bool contains(double x) const { return (x > low || (low_in && x == low)) && (x < high || (high_in && x == high)); }
 };
 
-/// Numbers that are not 0 lie between these in size: squares and products of a few of them are numbers too.
+/// Magnitudes of nonzero numbers lie between these, so that products of a few of them neither overflow nor underflow.
 inline constexpr double smallest_number = 1e-30, largest_number = 1e30;
 
 inline constexpr Range any_number{"a finite number"};
@@ -43,7 +43,7 @@ inline constexpr Range not_negative{"a finite number >= 0", 0, std::numeric_limi
 /// A line of a table's schema: {"what"} is optional, {"geo", "a file"} is required.
 struct Key {
   const char* name;
-  const char* required = nullptr;  ///< what it holds, for the message when it is missing; null: it may be
+  const char* required = nullptr;  ///< description for the message when it is missing; null: the key is optional
 };
 
 /// @throws InputError "FILE:LINE:COLUMN: key: what is wrong (allowed: ...)"; `hint` follows, e.g. "; did you
@@ -53,8 +53,8 @@ struct Key {
 
 SourceLocation location_of(const TomlValue& value);
 
-/// Refuses what a parser would run out of stack or patience with: files beyond 4 MiB, keys of more than 16 parts,
-/// tables and lists more than 16 deep.
+/// Refuses input that would exhaust the parser's stack or take it too long: files beyond 4 MiB, keys of more than 16
+/// parts, tables and lists more than 16 deep.
 /// @throws InputError
 void require_bounded(std::string_view text, const std::string& file);
 
@@ -71,7 +71,7 @@ Cells as_cells(const TomlValue& value);     ///< three integers 1..1000
 /// The value itself, or its items if it is a list: for keys that take one or several.
 std::vector<TomlValue> one_or_several(const TomlValue& value);
 
-/// A table whose keys have been held against a schema.
+/// A table whose keys have been checked against a schema.
 class TomlTable {
  public:
   /// @throws InputError if the value is no table, has a key that the schema lacks or lacks a required one.

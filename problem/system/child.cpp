@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The programs under way, for interrupt_children(): a list that grows and never shrinks, so that a signal handler may
-// walk it.
+// Process ids of the running children, for interrupt_children(): a list that only grows, so that a signal handler may
+// traverse it.
 struct Children {
   std::array<std::atomic<pid_t>, 64> pids{};
   std::atomic<Children*> next = nullptr;
@@ -56,10 +56,10 @@ class ChildSlot {
   std::atomic<pid_t>& slot_;
 };
 
-// Between fork and exec only calls that a signal handler may make: other threads may hold any lock.
+// Between fork and exec only async-signal-safe calls: other threads may hold any lock.
 [[noreturn]] void become(const Child& child, char** argv, pid_t parent) {
   if (child.group) setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer of a caller that is gone
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // the child ends with its caller
   if (getppid() != parent) _exit(not_started);
   const auto redirect = [](const fs::path& to, int stream) {
     if (!to.empty()) dup2(open(to.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), stream);
@@ -82,7 +82,7 @@ pid_t start(const Child& child) {
   return pid;
 }
 
-// Waits without reaping, so that its number is not another's while interrupt_children() may use it.
+// Waits without reaping, so that the process id is not reused while interrupt_children() may signal it.
 bool has_ended(pid_t pid, bool wait) {
   siginfo_t info{};
   while (waitid(P_PID, pid, &info, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG)) < 0)
@@ -90,7 +90,7 @@ bool has_ended(pid_t pid, bool wait) {
   return info.si_pid == pid;
 }
 
-/// False: it had to be killed.
+/// False if the child was killed at its time limit.
 bool wait_for(pid_t pid, const Child& child) {
   if (!(child.time_limit > 0)) return has_ended(pid, true);
   using Clock = std::chrono::steady_clock;
@@ -108,7 +108,7 @@ bool wait_for(pid_t pid, const Child& child) {
   return true;
 }
 
-/// The folder that the running executable lies in.
+/// The folder of the running executable.
 fs::path own_folder() {
   std::error_code ignored;
   return fs::read_symlink("/proc/self/exe", ignored).parent_path();
@@ -118,7 +118,7 @@ fs::path own_folder() {
 
 namespace {
 
-constexpr std::string_view folder_prefix = "springproof-temporary-";  // no name that anybody gives a folder of results
+constexpr std::string_view folder_prefix = "springproof-temporary-";  // no likely name for a folder of results
 
 /// Where temporary folders are made.
 fs::path temporary_place() {
@@ -131,7 +131,8 @@ fs::path temporary_place() {
                            at.string(), std::strerror(error)));
 }
 
-/// The folder, locked as long as this process lives; -1: another one lives in it, or it is not ours.
+/// Locks the folder until the descriptor returned is closed or the process ends; -1: another process holds the lock, or
+/// the folder belongs to another user.
 int lock_folder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   struct stat owner {};
@@ -144,7 +145,7 @@ int lock_folder(const fs::path& folder) {
 
 }  // namespace
 
-// Folders named like ours that nobody holds.
+// Removes folders named like ours that no process has locked.
 void remove_orphans() {
   std::error_code error;
   for (fs::directory_iterator entry(temporary_place(), error), end; !error && entry != end; entry.increment(error)) {
@@ -157,7 +158,7 @@ void remove_orphans() {
   }
 }
 
-// It gets its name once it is locked, so that nobody takes it for an orphan.
+// The folder gets its final name after it is locked, so that no process takes it for an orphan.
 TemporaryFolder::TemporaryFolder() {
   const fs::path place = temporary_place();
   static std::once_flag first;
@@ -192,7 +193,7 @@ ChildEnd run_child(const Child& child) {
   bool in_time;
   {
     const ChildSlot slot(pid);
-    if (interrupts != before) kill(pid, SIGTERM);  // the handler may not have seen it
+    if (interrupts != before) kill(pid, SIGTERM);  // the signal handler may have run before the child was registered
     in_time = wait_for(pid, child);
   }
   int status = 0;

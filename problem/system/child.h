@@ -1,4 +1,4 @@
-// Other programs run from here, which can neither hang their caller nor take it down.
+// Runs other programs as child processes that can neither hang their caller (time limit) nor take it down.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace springproof {
 
-/// The folder for temporary files ($TMPDIR) is not there, full or closed: nothing that a case could help.
+/// The folder for temporary files ($TMPDIR) is missing, full or not writable; not an error of the case.
 class NoRoom : public InputError {
  public:
   using InputError::InputError;
@@ -25,7 +25,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-  /// For when something failed that writes there.
+  /// To be called after a failure of something that writes there.
   /// @throws NoRoom if nothing can be written.
   void require_room() const;
 
@@ -35,20 +35,20 @@ class TemporaryFolder {
   int lock_ = -1;  ///< of the folder, held by this process alone
 };
 
-/// Removes the temporary folders of programs that were killed; the first TemporaryFolder of a process does.
+/// Removes the temporary folders of programs that were killed; called by the first TemporaryFolder of a process.
 void remove_orphans();
 
-/// A program to be run.  Empty paths: as the caller has it.
+/// A program to be run.  Empty paths: inherited from the caller.
 struct Child {
   std::filesystem::path program;
   std::vector<std::string> arguments;
   std::filesystem::path folder;          ///< to run in
   std::filesystem::path output, errors;  ///< files for standard output and standard error; may be the same
   double time_limit = 0;                 ///< wall time [s]; 0: none
-  bool group = false;                    ///< the limit ends also what it started itself (a process group of its own)
+  bool group = false;                    ///< runs in a process group of its own, and the limit ends the whole group
 };
 
-/// How it ended.
+/// How a child process ended.
 struct ChildEnd {
   enum Kind { exited, killed, out_of_time } kind = exited;
   int status = 0;      ///< exit status or signal
@@ -60,14 +60,14 @@ struct ChildEnd {
 /// Exit status of a program that could not be started.
 inline constexpr int not_started = 127;
 
-/// Runs it to its end, at most for its time limit; it does not outlive the thread that waits for it.
+/// Runs the program to its end, at most for its time limit; it does not outlive the calling thread.
 /// @throws std::runtime_error if it cannot be started.
 ChildEnd run_child(const Child& child);
 
-/// Ends every program under way (SIGTERM); may be called in a signal handler.
+/// Sends SIGTERM to every running child; may be called in a signal handler.
 void interrupt_children();
 
-/// True once that has been called.
+/// True once interrupt_children() has been called.
 bool children_interrupted();
 
 /// "was killed by signal 11 (Segmentation fault)", "failed with status 1", "took longer than 120 s and was ended".
@@ -76,14 +76,14 @@ std::string words_for(const ChildEnd& end, double time_limit = 0);
 /// The program named by the environment variable, else `name` beside the running executable; empty: there is none.
 std::filesystem::path find_program(const std::string& name, const char* variable);
 
-/// The folder of data of an installed program, ../share/springproof/NAME seen from it; else `source`, that of the
-/// source tree.
+/// The data folder of an installed program, ../share/springproof/NAME relative to the executable's folder; otherwise
+/// `source`, that of the source tree.
 std::filesystem::path data_folder(const std::string& name, const std::filesystem::path& source);
 
 /// The program of that name on PATH; empty: there is none.
 std::filesystem::path program_on_path(const std::string& name);
 
-/// What it answers to --version, without white space at the end; empty: it is not there, or does not know.
+/// The output of --version, without trailing white space; empty: the program is missing, or the call fails.
 std::string version_of(const std::filesystem::path& program);
 
 }  // namespace springproof

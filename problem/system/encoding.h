@@ -1,4 +1,4 @@
-// Bytes and text as other formats want them.
+// Base64 encoding and XML escaping.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@ namespace springproof {
 /// RFC 4648, with padding.
 std::string base64(const void* bytes, std::size_t count);
 
-/// Back; ends at the first character that is no digit.
+/// Decodes base64; stops at the first character that is no base64 digit.
 std::string from_base64(std::string_view text);
 
-/// With &amp; &lt; &gt; &quot; for the characters that XML and HTML reserve.
+/// Replaces the characters reserved in XML and HTML by &amp; &lt; &gt; &quot;.
 std::string xml_escaped(std::string_view text);
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-// Names that a user gives as names of files.
+// File names made from names that a user gives.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 namespace springproof {
 
-/// The name with "_" for what has a meaning in paths or none to see: no name leads out of a folder or is hidden in it.
+/// The name with "_" for characters special in paths, white space, control characters and a leading dot, so that no
+/// file lies outside its folder or is hidden.
 inline std::string file_name(std::string name) {
   const auto special = [](char c) {
     return static_cast<unsigned char>(c) <= ' ' || c == 0x7f ||
@@ -18,7 +19,7 @@ inline std::string file_name(std::string name) {
   return name;
 }
 
-/// The same for names that a file system may take for the same: file_name in lower case.
+/// Equal for names that a case-insensitive file system does not distinguish: file_name in lower case.
 inline std::string file_name_key(const std::string& name) {
   std::string key = file_name(name);
   std::transform(key.begin(), key.end(), key.begin(),
@@ -26,6 +27,6 @@ inline std::string file_name_key(const std::string& name) {
   return key;
 }
 
-inline constexpr std::size_t longest_file_name = 120;  ///< bytes, which leaves room for what is put behind
+inline constexpr std::size_t longest_file_name = 120;  ///< bytes, which leaves room for suffixes
 
 }  // namespace springproof

@@ -14,7 +14,7 @@ std::string text_of_file(const std::filesystem::path& file);
 /// @throws std::runtime_error naming the file and the reason.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
-/// Without white space at the end.
+/// The text without trailing white space.
 std::string trimmed(std::string text);
 
 }  // namespace springproof

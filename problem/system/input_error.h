@@ -1,4 +1,4 @@
-// What is wrong with an input, and where.
+// Errors in an input, with their location.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace springproof {
 
-/// Where in a case file something stands; line and column count from 1, 0 = unknown.
+/// Location in a case file; line and column count from 1, 0 = unknown.
 struct SourceLocation {
   std::string file;
   int line = 0;

@@ -1,4 +1,4 @@
-// How values of other libraries travel as JSON and CBOR: optional values, variants, vectors and matrices.
+// Serialisation of types of other libraries to JSON and CBOR: optional values, variants, vectors and matrices.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +36,7 @@ struct adl_serializer<std::variant<T...>> {
   }
 };
 
-/// Its numbers in the order of its storage, of as many rows as there are numbers for.
+/// The entries in storage order; the number of rows follows from their count.
 template <int rows, int columns, int options>
 struct adl_serializer<Eigen::Matrix<double, rows, columns, options>> {
   using Matrix = Eigen::Matrix<double, rows, columns, options>;

@@ -23,7 +23,8 @@ inline std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-/// "; did you mean 'x'?" with the nearest of `known`, or "" if none is near (more than half of the name differs).
+/// "; did you mean 'x'?" with the nearest of `known`, or "" if none is within an edit distance of half the name's
+/// length plus one.
 inline std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
   const std::string* best = nullptr;
   std::size_t distance = name.size() / 2 + 1;

@@ -1,5 +1,5 @@
-// What a long run is at: said where the work is done, heard by whoever shows it.  Without a listener it costs next to
-// nothing.
+// Progress of long runs, reported where the work is done to a listener that displays it.  Without a listener the cost
+// is negligible.
 #pragma once
 
 #include <condition_variable>
@@ -12,11 +12,11 @@
 
 namespace springproof::progress {
 
-/// Told the phase that the work is in, "finite elements 2 of 5, q2 on 12 x 12 x 12 cells", and how far it is in it,
-/// "120 iterations" (may be empty).  Called from the thread that works, and from a Relay's.
+/// Called with the current phase, "finite elements 2 of 5, q2 on 12 x 12 x 12 cells", and the progress within it, "120
+/// iterations" (may be empty), from the working thread or from that of a Relay.
 using Listener = std::function<void(const std::string& phase, const std::string& detail)>;
 
-/// This thread's listener to the end of the scope; then that from before.
+/// Sets this thread's listener until the end of the scope, then restores the previous one.
 class Listening {
  public:
   explicit Listening(Listener listener);
@@ -33,23 +33,23 @@ class Listening {
 /// Begins a phase.
 void phase(const std::string& text);
 
-/// How far this thread is in its phase.
+/// Reports the progress of this thread within its phase.
 void detail(const std::string& text);
 
-/// True if this thread has a listener and the last detail was said a tenth of a second ago.
+/// True if this thread has a listener and its last report is at least a tenth of a second old.
 bool due();
 
-/// detail(describe()), not more often than it can be read.
+/// detail(describe()), if due().
 template <class Describe>
 requires std::is_invocable_v<Describe>
 void detail(const Describe& describe) {
   if (due()) detail(std::string(describe()));
 }
 
-/// Writes what it is told into a file, whole each time.
+/// A listener that replaces the contents of a file at each report.
 Listener into_file(const std::filesystem::path& file);
 
-/// Passes on to this thread's listener what another program writes by into_file(), to the end of the scope.
+/// Forwards what another program reports by into_file() to this thread's listener, until the end of the scope.
 class Relay {
  public:
   explicit Relay(std::filesystem::path file);

@@ -22,7 +22,7 @@ double status_MiB(const std::string& name) {
 
 MemoryGrowth::MemoryGrowth() {
   malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";  // the most so far becomes what there is now
+  std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak resident set to its current size
   before_MiB_ = status_MiB("VmRSS:");
 }
 

@@ -1,4 +1,4 @@
-// What a run costs, counted alike for every solver.
+// CPU time and memory of a run, measured alike for every solver.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 namespace springproof {
 
 double cpu_seconds();      ///< CPU time of the calling thread [s]
-double peak_memory_MiB();  ///< largest resident memory of this program so far
+double peak_memory_MiB();  ///< peak resident set of this process so far
 
 /// CPU time of one run [s].
 struct RunTimes {
@@ -18,7 +18,7 @@ struct RunTimes {
 // Runs whose times are compared stop at this relative residual.
 inline constexpr double compared_residual = 1e-8;
 
-/// The least times of a run that has taken `first` and is repeated by `again` until five or 0.2 s are over.
+/// The shortest times of a run that took `first` and is repeated by `again`, up to five runs or 0.2 s in all.
 template <class Again>
 RunTimes least_times(RunTimes first, const Again& again) {
   double spent = first.set_up + first.solve;
@@ -30,12 +30,12 @@ RunTimes least_times(RunTimes first, const Again& again) {
   return first;
 }
 
-/// By how much this program's resident memory grows, once unused memory has been given back.  Of the whole program: for
-/// one run at a time.
+/// Growth of this process's resident memory, after unused memory has been returned to the system.  It counts the whole
+/// process: measure one run at a time.
 class MemoryGrowth {
  public:
   MemoryGrowth();
-  double most_MiB() const;  ///< since construction; 0 where the system does not tell
+  double most_MiB() const;  ///< since construction; 0 if the system does not report it
 
  private:
   double before_MiB_;

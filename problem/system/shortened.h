@@ -1,11 +1,11 @@
-// Messages of a length that is read.
+// Shortens error messages.
 #pragma once
 
 #include <string>
 
 namespace springproof {
 
-/// Words of more than 100 letters by their beginning, "aaaa... (5000 letters)"; line breaks as spaces.
+/// Cuts words of more than 100 letters to their beginning, "aaaa... (5000 letters)"; line breaks become spaces.
 std::string shortened(const std::string& message);
 
 }  // namespace springproof

@@ -1,4 +1,5 @@
-// What the bench runs once per instruction set: loops that find the limits of a core, and the plain loop over springs.
+// Bench kernels, compiled once per instruction set: loops that measure the limits of a core, and the plain loop over
+// springs.
 #pragma once
 
 namespace springproof::bench {
@@ -16,10 +17,10 @@ struct PlainSpring {
 
 struct BenchKernels {
   int lanes64, lanes32;  ///< numbers in a vector
-  /// Rounds of fma_per_round vector multiply-adds, none of which waits for another.
+  /// Rounds of fma_per_round vector multiply-adds, independent of each other.
   void (*fma64)(long rounds, double* sink);
   void (*fma32)(long rounds, float* sink);
-  /// Rounds of roots_per_round vectors c / sqrt(a), none of which waits for another.
+  /// Rounds of roots_per_round vectors c / sqrt(a), independent of each other.
   void (*root64)(long rounds, double* sink);
   void (*root32)(long rounds, float* sink);
   /// Sum of n numbers, n a multiple of 64, a aligned to 64 bytes.

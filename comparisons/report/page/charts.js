@@ -112,7 +112,7 @@ function bandDataset(points) {
           borderWidth: 1, borderDash: [2, 3], pointRadius: 0, pointHitRadius: 0, pointStyle: 'rect', order: 10};
 }
 
-/// How many spring models some cases have.
+/// Number of spring models in some cases.
 const springCount = chosen => distinct(chosen.flatMap(c => c.models)).filter(model => !isFem(model)).length;
 
 function poissonTooltip(unit) {
@@ -216,7 +216,7 @@ function poissonSection(section) {
     if (!measureChoice.value) return;
     const drawing = measure => poissonDrawing(chosen, measure, resolutionChoice.value, axisChoice.value === 'even');
     plot.draw(drawing(measureChoice.value));
-    // The two errors that the question is about stand together.
+    // The two main errors are shown together.
     const together = measureChoice.value === 'displacement_error' && measureChoices(chosen).some(([m]) => m === 'volume_change');
     volumePlot.node.hidden = !together;
     if (together) volumePlot.draw({...drawing('volume_change'), notes: []});

@@ -3,7 +3,7 @@
 
 const costCases = cases.filter(result => result.experiment.cost);
 
-/// What a run may be paid in: of(run) > 0.
+/// Cost measures of a run: of(run) > 0.
 const costs = {
   time: {text: 'set-up and solve', axis: 'CPU time of set-up and solve [s]', of: run => run.set_up_seconds + run.seconds},
   solve: {text: 'solve alone', axis: 'CPU time of the solve [s]', of: run => run.seconds},
@@ -28,7 +28,7 @@ function costPoints({result, measure}, nu, cost) {
 
 const costLine = (points, model) => points.filter(point => point.model === model).sort((a, b) => cellCount(a.row.cells) - cellCount(b.row.cells));
 
-/// Points that no other beats in both, from cheap to dear.
+/// The Pareto front: points that no other beats in both, in order of cost.
 function paretoFront(points) {
   const front = [];
   for (const point of [...points].sort((a, b) => a.x - b.x || a.y - b.y))
@@ -36,7 +36,7 @@ function paretoFront(points) {
   return front;
 }
 
-/// What it costs on a model's line to have no more than this error from there on: {x, unknowns}, null where the line ends above.
+/// Cost on a model's line from which on the error is at most this: {x, unknowns}, null where the line ends above.
 function costToReach(line, level) {
   const first = line.findIndex((_, i) => line.slice(i).every(point => point.y <= level));
   if (first < 0) return null;
@@ -70,7 +70,7 @@ function costPanels(cost, width) {
   });
 }
 
-/// A little more than the values, not whole decades: room is dear in a small figure.
+/// A little more than the values, not whole decades: space is scarce in a small figure.
 function decadeRange(values) {
   const low = Math.min(...values), high = Math.max(...values);
   return {min: low / 1.4, max: high * 1.4};
@@ -134,7 +134,7 @@ function strokePath(ctx, points) {
   ctx.stroke();
 }
 
-/// Where the reference cannot tell.
+/// Shades errors below the uncertainty of the reference.
 function drawDoubt(ctx, panel) {
   const doubt = Math.max(0, ...panel.points.map(point => point.row.reference_uncertainty ?? 0));
   const {box, y} = panel;
@@ -144,7 +144,7 @@ function drawDoubt(ctx, panel) {
   ctx.fillRect(box.left, top, box.width, box.top + box.height - top);
 }
 
-/// The front as a stair: what can be had for so much and no more.
+/// Draws the front as a staircase.
 function drawFront(ctx, panel) {
   const front = paretoFront(panel.points.filter(point => claims(panel.result, point.model, panel.nu))).map(point => placeOf(panel, point)), {box} = panel;
   const stair = front.flatMap(([x, y], i) => i === 0 ? [[x, box.top], [x, y]] : [[x, front[i - 1][1]], [x, y]]);
@@ -283,8 +283,8 @@ const costLevels = [0.1, 0.03, 0.01, 0.003];
 
 const shortTime = t => t < 0.1 ? number(1e3 * t, 2) + ' ms' : seconds(t);
 
-/// The cheapest models that reach a level, cheapest first [{model, x, unknowns}].  Off the Poisson's ratio that it claims a model has a
-/// small error by accident only.
+/// The cheapest models that reach a level, cheapest first [{model, x, unknowns}].  At other Poisson's ratios than the
+/// one it is valid for, a model has a small error by accident only.
 function cheapest(result, nu, points, level) {
   return costModels().filter(model => claims(result, model, nu)).map(model => ({model, ...costToReach(costLine(points, model), level)}))
     .filter(entry => entry.x > 0).sort((a, b) => a.x - b.x);

@@ -136,7 +136,7 @@ function seconds(t) {
   return t < 60 ? number(t, 2) + ' s' : `${Math.floor(t / 60)} min ${Math.round(t % 60)} s`;
 }
 
-/// A length of this size is best read in ...
+/// The unit that suits a length of this size.
 function lengthUnit(size) {
   for (const [factor, unit] of [[1, 'm'], [1e3, 'mm'], [1e6, 'µm'], [1e9, 'nm']])
     if (size * factor >= 1) return {factor, unit};

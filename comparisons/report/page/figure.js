@@ -33,7 +33,7 @@ const paperScale = 2;        // pixels of a PNG for each of the page
 const paperWidth = 1120;
 const paperFont = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
-/// Runs something in the colours of paper, whatever the reader's are.
+/// Calls `work` with the colours of paper, whatever the reader's theme.
 function onPaper(work) {
   const before = document.documentElement.dataset.theme;
   document.documentElement.dataset.theme = 'light';
@@ -145,7 +145,7 @@ function hasInk(ctx, left, top, width, height) {
 }
 
 /// Instead of the page: the drawings of a case, or those with `only` in their name, as <pre data-name>, base64 of a PNG.
-/// What cannot be drawn is said in <p class="png-failed">.  (springproof pictures)
+/// Failures are reported in <p class="png-failed">.  (springproof pictures)
 function writePictures(result, sections, only = '') {
   const drawings = sections.flatMap(section => section.drawings ? section.drawings(result) : []).filter(({name}) => name.includes(only));
   const items = drawings.map(drawing => {

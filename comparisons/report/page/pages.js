@@ -179,7 +179,7 @@ function referencePart(result) {
     minorFold(measures.filter(m => result.minor.has(m)), tables), deformationTable(result)];
 }
 
-/// How far the reference is deformed; amber where linear theory does not hold.
+/// Size of the deformation of the reference; amber where linear theory does not hold.
 function deformationTable(result) {
   if (result.deformations.length === 0) return null;
   const limits = {principal_strain: 0.05, rotation_deg: 5};
@@ -270,7 +270,7 @@ function checksTable(checks) {
     right('of the tolerance'), right('uncertainty of the reference'), 'source'], checks.map(checkRow));
 }
 
-/// All of a few; of many, those that hold are folded away.
+/// All checks if they are few; if many, those that pass are folded away.
 function checksPart(result) {
   const checks = [...result.checks].sort((a, b) => verdictOrder.indexOf(a.verdict) - verdictOrder.indexOf(b.verdict));
   const open = checks.length > 16 ? checks.filter(check => check.verdict !== 'pass') : checks;

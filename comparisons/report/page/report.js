@@ -1,5 +1,5 @@
 'use strict';
-// Builds the page.  A section that cannot be built says so and leaves the others alone.
+// Builds the page.  A section that cannot be built shows an error and does not affect the others.
 
 function build(id, make) {
   const section = document.getElementById(id);
@@ -12,7 +12,7 @@ function build(id, make) {
   }
 }
 
-/// A section that this kind of run has nothing for is left out; a run of nothing says so.
+/// Leaves out a section without data in this kind of run; an empty run shows a notice.
 const needsCases = make => section => {
   if (cases.length > 0) return make(section);
   if (verifications.length > 0) return leaveOut(section);

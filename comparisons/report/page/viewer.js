@@ -24,7 +24,7 @@ class Viewer {
     this.camera.up.set(0, 0, 1);
     this.controls = new THREE.OrbitControls(this.camera, this.node);
     this.controls.enableKeys = false;
-    this.controls.enableZoom = false;   // until clicked: the wheel belongs to the page
+    this.controls.enableZoom = false;   // until clicked, the wheel scrolls the page
     this.controls.addEventListener('change', () => this.request());
     this.node.addEventListener('pointerdown', () => { this.controls.enableZoom = true; });
     this.node.addEventListener('pointerleave', () => { this.controls.enableZoom = false; this.onhover(null); });
@@ -112,7 +112,7 @@ class Viewer {
     });
   }
 
-  /// What is on the page.
+  /// Draws the panels on the page.
   render() {
     if (this.panels.length === 0 || !this.ready()) return;
     const frame = this.node.getBoundingClientRect();
@@ -160,7 +160,7 @@ class Viewer {
     this.renderer.setScissorTest(false);
     this.renderer.clear();
     this.renderer.setScissorTest(true);
-    const lamp = this.camera.position.clone().sub(this.controls.target).normalize();   // moves with the eye
+    const lamp = this.camera.position.clone().sub(this.controls.target).normalize();   // moves with the camera
     lamp.add(new THREE.Vector3(0, 0, 0.6));
     for (const {panel, box} of views) {
       panel.lamp.position.copy(lamp);
