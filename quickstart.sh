@@ -25,13 +25,16 @@ progress='
   /tests passed,/             { summary = 1 }
   failing || summary          { print; fflush() }'
 
+by_line=(awk)  # mawk, Debian's awk, would wait for 4 KiB of lines
+awk -W version </dev/null 2>/dev/null | grep -q '^mawk' && by_line=(awk -W interactive)
+
 # step NAME WHAT COMMAND ...: what is done, how far it is, and where all of its output is; the end of that where it fails.
 step() {
   local log=build/log/$1.log what=$2 status=0 start=$SECONDS
   shift 2
   mkdir -p build/log
   echo "$what (log: $log)"
-  "$@" 2>&1 | tee "$log" | awk "$progress" || status=$?
+  "$@" 2>&1 | tee "$log" | "${by_line[@]}" "$progress" || status=$?
   if [ $status -ne 0 ]; then
     echo "quickstart.sh: this failed after $((SECONDS - start)) s: $*" >&2
     grep -q 'tests passed,' "$log" || tail -n 25 "$log" >&2
