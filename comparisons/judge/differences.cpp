@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/judge/reference_value.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"
 
@@ -41,19 +42,13 @@ std::string run_of(const Row& row) {
 
 std::string key_of(const Row& row) { return run_of(row) + '|' + row.measure; }
 
-/// "force.z_max" of "force.z_max.x"; the measure itself where it is no component.
-std::string vector_of(const std::string& measure) {
-  const std::size_t dot = measure.rfind('.');
-  return dot == std::string::npos ? measure : measure.substr(0, dot);
-}
-
 double size_of(double x) { return std::isfinite(x) ? std::abs(x) : 0; }
 
 /// Per vector of a run the largest of its components.
 std::map<std::string, double> sizes(const ResultsFolder& folder) {
   std::map<std::string, double> largest;
   for (const Row& row : folder.rows) {
-    double& size = largest[run_of(row) + '|' + vector_of(row.measure)];
+    double& size = largest[run_of(row) + '|' + without_component(row.measure)];
     size = std::max({size, size_of(row.value), size_of(row.reference.value_or(0))});
   }
   return largest;
@@ -103,7 +98,7 @@ Differences differences(const ResultsFolder& first, const ResultsFolder& second,
     const Row& b = *found->second;
     others.erase(found);
     ++all.in_both;
-    const std::string vector = run_of(a) + '|' + vector_of(a.measure);
+    const std::string vector = run_of(a) + '|' + without_component(a.measure);
     const double size = std::max(sizes_first.at(vector), sizes_second.at(vector));
     const double uncertainty = std::max(a.reference_uncertainty.value_or(0), b.reference_uncertainty.value_or(0));
     const auto compare = [&](const char* what, double x, double y) {

@@ -53,11 +53,6 @@ double weighted_product(const NodalVectors& u, const NodalVectors& v, const Eige
   return weights.dot(u.cwiseProduct(v).rowwise().sum()) / weights.sum();
 }
 
-/// "force.z_max" of "force.z_max.x"; measures without components are returned unchanged.
-std::string vector_of(const std::string& measure) {
-  return measure.substr(0, measure.find('.') == std::string::npos ? std::string::npos : measure.rfind('.'));
-}
-
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -66,6 +61,8 @@ double median(std::vector<double> values) {
 }
 
 }  // namespace
+
+std::string without_component(const std::string& measure) { return measure.substr(0, measure.rfind('.')); }
 
 double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) {
   return std::sqrt(weighted_product(u, u, weights));
@@ -114,14 +111,16 @@ std::string kind_of(const std::string& measure) {
 void raise_to_usual(std::map<std::string, ReferenceValue>& limits) {
   std::map<std::string, double> size;  // of the vector or tensor; a tensor's shear components count once
   for (const auto& [measure, limit] : limits)
-    if (!measure.ends_with(".magnitude")) size[vector_of(measure)] = std::hypot(size[vector_of(measure)], limit.value);
+    if (!measure.ends_with(".magnitude"))
+      size[without_component(measure)] = std::hypot(size[without_component(measure)], limit.value);
   std::map<std::string, std::vector<double>> relative;
   for (const auto& [measure, limit] : limits)
-    if (limit.sequence != Sequence::equal && !measure.ends_with(".magnitude") && size[vector_of(measure)] > 0)
-      relative[kind_of(measure)].push_back(limit.uncertainty / size[vector_of(measure)]);
+    if (limit.sequence != Sequence::equal && !measure.ends_with(".magnitude") && size[without_component(measure)] > 0)
+      relative[kind_of(measure)].push_back(limit.uncertainty / size[without_component(measure)]);
   for (auto& [measure, limit] : limits)
     if (limit.sequence != Sequence::equal)
-      limit.uncertainty = std::max(limit.uncertainty, median(relative[kind_of(measure)]) * size[vector_of(measure)]);
+      limit.uncertainty =
+          std::max(limit.uncertainty, median(relative[kind_of(measure)]) * size[without_component(measure)]);
 }
 
 double doubt_of(const std::map<std::string, ReferenceValue>& limits) {

@@ -23,6 +23,9 @@ struct ReferenceValue {
   bool matters = true;  ///< false if less than a tenth of the scale set by the body's forces, stresses or displacements
 };
 
+/// "force.z_max" of "force.z_max.x"; measures without components are returned unchanged.
+std::string without_component(const std::string& measure);
+
 inline constexpr double solver_noise = 1e-7;       ///< of a value or field, relative to its scale
 inline constexpr double safety_factor = 1.25;      ///< Fs for three grids (Roache)
 inline constexpr double coarse_safety_factor = 3;  ///< Fs for two grids, and for three that are hardly refined
