@@ -88,7 +88,12 @@ TEST(FemRequest, NumbersThatMakeNoMatrixAreRefused) {
   EXPECT_THROW(nlohmann::json({1, 2}).get<Vec3>(), std::runtime_error);
   EXPECT_THROW(nlohmann::json({1, 2, 3, 4}).get<NodalVectors>(), std::runtime_error);
   EXPECT_EQ(nlohmann::json({1, 2, 3, 4, 5, 6}).get<NodalVectors>().rows(), 2);
-  EXPECT_THROW(nlohmann::json({10, nullptr}).get<Load>(), std::exception);
+}
+
+TEST(FemRequest, ALoadOfNoKindIsRefused) {
+  nlohmann::json broken = to_json(fem::Request{});
+  broken["loads"] = nlohmann::json::array({nlohmann::json::array({10, nullptr})});
+  EXPECT_THROW(fem::request_from_json(broken), std::exception);
 }
 
 }  // namespace
