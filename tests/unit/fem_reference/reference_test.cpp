@@ -43,7 +43,7 @@ measures = ["volume_change"]
 
 fem::Request request(const std::string& patch = "z_max") {
   const Experiment experiment = parse_experiment(squeezed_cube(patch), "cube.toml");
-  fem::Request request = request_of(experiment, experiment.materials.front());
+  fem::Request request = fem::request_of(experiment, experiment.materials.front());
   request.grids = {{{4, 4, 4}, "q2", 1.0}, {{6, 6, 6}, "q1", 1.5}};
   request.points = Eigen::RowVector3d(1, 2, 3);
   return request;
