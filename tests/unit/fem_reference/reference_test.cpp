@@ -114,7 +114,7 @@ TEST(FemReference, OddAnswersAreOneSentenceThatNamesProgramAndCase) {
   answers("nonsense", "cannot be read");
   answers("\\200", "does not fit the question");  // []
   answers("\\202\\240\\240", "cannot be read");   // [{}, {}]
-  answers("\\366", "does not fit the question");  // null
+  answers("\\366", "cannot be read");             // null
   EXPECT_NE(with_program("exit 0").find("cube.toml: the answer of springproof-fem ("), std::string::npos);
   EXPECT_EQ(with_program("echo out of luck >&2; kill -SEGV $$"),
             "cube.toml: springproof-fem was killed by signal 11 (Segmentation fault): out of luck");
