@@ -4,6 +4,11 @@
 #include <Eigen/Core>
 #include <array>
 
+// Eigen's allocator depends on its alignment: a program and the libraries that it passes vectors to must agree.
+#if EIGEN_DEFAULT_ALIGN_BYTES != 64 || EIGEN_MAX_STATIC_ALIGN_BYTES != 16
+#error "compile with -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 (CMake: link springproof::msm)"
+#endif
+
 namespace springproof {
 
 /// A point, displacement or force in space.

@@ -20,7 +20,7 @@ for module in "${!below[@]}"; do
     allowed=no
     [[ " ${below[$module]} " == *" $other "* ]] && allowed=yes
     compiles=no
-    echo "#include \"${header[$other]}\"" | "$compiler" -std=c++20 "${paths[@]}" -fsyntax-only -x c++ - 2>/dev/null && compiles=yes
+    echo "#include \"${header[$other]}\"" | "$compiler" -std=c++20 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 "${paths[@]}" -fsyntax-only -x c++ - 2>/dev/null && compiles=yes
     if [ $allowed != $compiles ]; then
       echo "FAILED: in $module, an include of ${header[$other]} compiles: $compiles, allowed: $allowed"
       failures=$((failures + 1))

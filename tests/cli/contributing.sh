@@ -29,15 +29,30 @@ command=$(awk '/^```sh$/ { getline; print; exit }' "$page")
 bash -c "$command" >log 2>&1 || fail "$command: status $?: $(cat log)"
 grep -q '^1 of 1 expectations hold' log || fail "the case is not judged: $(cat log)"
 
+# The unit of the build that SOURCE belongs to, compiled with EDITED in its place.   compile_with SOURCE EDITED OBJECT
+compile_with() {
+  local module=${1%%/*} object unity command
+  object=$module/CMakeFiles/$module.dir/${1#*/}.o
+  unity=$(grep -lF "/$1\"" "$binary/$module/CMakeFiles/$module.dir/Unity/"*.cxx 2>/dev/null | head -1)
+  cp "$2" "$3.cpp"
+  if [ -n "$unity" ]; then
+    object=${unity#"$binary/"}.o
+    sed "s|\"[^\"]*/$1\"|\"$work/$2\"|" "$unity" >"$3.cpp"
+  fi
+  command=$(ninja -C "$binary" -t commands "$object" | tail -1)
+  (cd "$binary" && bash -c "$(sed -E "s| -O3 | -O1 |; s| -MF [^ ]+||; s| -MD -MT [^ ]+||; s| -o [^ ]+ -c [^ ]+| -o $work/$3 -c $work/$3.cpp|" <<<"$command")")
+}
+
 # A model: the row of the page in the table, and the same by an option of hybmss.
 row=$(awk '/^```cpp$/ { getline; print; exit }' "$page")
 awk -v row="$row" '{ print } /^const std::vector<ModelRow> table = \{/ { print row }' "$source/msm/parameters/model_table.cpp" >model_table.cpp
-flags=(-std=c++20 -O0 -I"$binary/arrows/msm" -I"$binary/arrows/meshes" -I"$binary/arrows/problem" "${includes[@]/#/-isystem}")
+flags=(-std=c++20 -O0 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -I"$binary/arrows/msm" -I"$binary/arrows/meshes" -I"$binary/arrows/problem" "${includes[@]/#/-isystem}")
 libraries=(-L"$binary/msm" -lmsm -L"$binary/meshes" -lmeshes -L"$binary/problem" -lproblem -ltomlplusplus -lfmt -lz)
 sed -e 's/int main()/int main(int count, char**)/' \
     -e 's/resolve({.*});/resolve(count > 1 ? ModelChoice{"hybmss_1", {}, "", {}} : ModelChoice{"hybmss", {{"face_to_cube", 1.0}}, "", {}});/' \
     "$source/examples/embed_msm.cpp" >bar.cpp
-if "$compiler" "${flags[@]}" bar.cpp model_table.cpp "${libraries[@]}" -o bar; then
+if compile_with msm/parameters/model_table.cpp model_table.cpp model_table.o &&
+   "$compiler" "${flags[@]}" bar.cpp model_table.o "${libraries[@]}" -o bar; then
   added=$(./bar added)
   chosen=$(./bar)
   [ -n "$added" ] || fail "the new model prints nothing"
@@ -51,8 +66,7 @@ snippet() { awk -v wanted="$1" '/^```cpp$/ { n++; getline; if (n == wanted) { pr
 awk -v row="$(snippet 2)" '{ print } /^  static const std::vector<Measure> table = \{/ { print row }' "$source/problem/case_file/measures.cpp" >table.cpp
 awk -v line="$(snippet 3)" '{ print } /out = \{\{"volume_change"/ { print line }' "$source/comparisons/judge/measures.cpp" >judge.cpp
 link=$(ninja -C "$binary" -t commands springproof | tail -1)
-flags=(-std=c++20 -O0 -DFMT_SHARED -I"$binary/arrows/comparisons" -I"$binary/arrows/fem_reference" "${flags[@]:2}")
-if "$compiler" "${flags[@]}" -c table.cpp -o table.o && "$compiler" "${flags[@]}" -c judge.cpp -o judge.o &&
+if compile_with problem/case_file/measures.cpp table.cpp table.o && compile_with comparisons/judge/measures.cpp judge.cpp judge.o &&
    (cd "$binary" && bash -c "${link/ -o springproof / $work/table.o $work/judge.o -o $work/bin/springproof }"); then
   case=share/springproof/experiments/bodies/wedge.toml
   sed -i 's/measures = \[/measures = ["volume_ratio", /' "$case"
