@@ -18,7 +18,7 @@ ln -s ../bin build/release
 awk '
   match($0, /Save as `[a-z_\/.]+`/) { name = substr($0, RSTART + 9, RLENGTH - 10) }
   /^```/ { if (inside) name = ""; inside = !inside; next }
-  inside && name != "" {
+  inside && name ~ /^(meshes|comparisons)/ {
     file = name
     sub(/^meshes\/geo/, "share/springproof/geo", file); sub(/^comparisons\/experiments/, "share/springproof/experiments", file)
     print > file
@@ -44,7 +44,13 @@ compile_with() {
 }
 
 # A model: the row of the page in the table, and the same by an option of hybmss.
-row=$(awk '/^```cpp$/ { getline; print; exit }' "$page")
+# The first line of the Nth block of code of a section.   snippet SECTION N
+snippet() {
+  awk -v section="## $1" -v wanted="$2" '
+    /^## / { inside = $0 == section; n = 0 }
+    inside && /^ *```cpp$/ { n++; getline; if (n == wanted) { print; exit } }' "$page"
+}
+row=$(snippet "A model" 1)
 awk -v row="$row" '{ print } /^const std::vector<ModelRow> table = \{/ { print row }' "$source/msm/parameters/model_table.cpp" >model_table.cpp
 flags=(-std=c++20 -O0 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -I"$binary/arrows/msm" -I"$binary/arrows/meshes" -I"$binary/arrows/problem" "${includes[@]/#/-isystem}")
 libraries=(-L"$binary/msm" -lmsm -L"$binary/meshes" -lmeshes -L"$binary/problem" -lproblem -ltomlplusplus -lfmt -lz)
@@ -62,9 +68,8 @@ else
 fi
 
 # A measure: the row and the line of the page, compiled into springproof, and expected of the new case.
-snippet() { awk -v wanted="$1" '/^```cpp$/ { n++; getline; if (n == wanted) { print; exit } }' "$page"; }
-awk -v row="$(snippet 2)" '{ print } /^  static const std::vector<Measure> table = \{/ { print row }' "$source/problem/case_file/measures.cpp" >table.cpp
-awk -v line="$(snippet 3)" '{ print } /out = \{\{"volume_change"/ { print line }' "$source/comparisons/judge/measures.cpp" >judge.cpp
+awk -v row="$(snippet "A measure" 1)" '{ print } /^  static const std::vector<Measure> table = \{/ { print row }' "$source/problem/case_file/measures.cpp" >table.cpp
+awk -v line="$(snippet "A measure" 2)" '{ print } /out = \{\{"volume_change"/ { print line }' "$source/comparisons/judge/measures.cpp" >judge.cpp
 link=$(ninja -C "$binary" -t commands springproof | tail -1)
 if compile_with problem/case_file/measures.cpp table.cpp table.o && compile_with comparisons/judge/measures.cpp judge.cpp judge.o &&
    (cd "$binary" && bash -c "${link/ -o springproof / $work/table.o $work/judge.o -o $work/bin/springproof }"); then
