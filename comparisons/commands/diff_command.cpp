@@ -19,9 +19,10 @@ std::string times_uncertainty(const Difference& d) {
 void print_csv(const Differences& all) {
   fmt::print("case,kinematics,model,poisson_ratio,cells,measure,what,first,second,unit,relative,of_uncertainty\n");
   for (const Difference& d : all.changed)
-    fmt::print("{},{},{},{},{},{},{},{},{},{},{:.3g},{}\n", d.row.case_name, d.row.kinematics, d.row.model,
-               d.row.poisson_ratio, cells_text(d.row.cells), d.row.measure, d.what, d.first, d.second, d.row.unit,
-               d.relative, times_uncertainty(d));
+    fmt::print("{},{},{},{},{},{},{},{},{},{},{:.3g},{}\n", csv_text(d.row.case_name), csv_text(d.row.kinematics),
+               csv_text(d.row.model), csv_number(d.row.poisson_ratio), cells_text(d.row.cells), csv_text(d.row.measure),
+               d.what, csv_number(d.first), csv_number(d.second), csv_text(d.row.unit), d.relative,
+               times_uncertainty(d));
 }
 
 /// Rows that have no partner, counted by case and model.

@@ -4,11 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "comparisons/judge/differences.h"
 #include "comparisons/report/png_page.h"
-#include "comparisons/report/results.h"
 #include "comparisons/run/status.h"
 #include "problem/case_file/experiment.h"
 #include "problem/system/files.h"
@@ -17,27 +15,6 @@ namespace springproof {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Names of the report's cases, in its order.
-std::vector<std::string> cases_of(const fs::path& folder) {
-  for (const char* name : {"report.html", "results.json"})
-    if (!fs::exists(folder / name))
-      throw InputError(
-          fmt::format("{}: no {} here; give the folder that `springproof compare` wrote", folder.string(), name));
-  try {
-    std::ifstream in(folder / "results.json");
-    std::vector<std::string> names;
-    const nlohmann::json document = nlohmann::json::parse(in);
-    for (const auto& result : document.at("cases")) {
-      const auto& e = result.at("experiment");
-      const std::string group = e.at("folder"), name = e.at("name");
-      names.push_back(group.empty() ? name : group + "/" + name);
-    }
-    return names;
-  } catch (const nlohmann::json::exception& e) {
-    throw InputError(fmt::format("{}: {}", (folder / "results.json").string(), e.what()));
-  }
-}
 
 /// Percent-encodes text for a URL fragment.
 std::string escaped(const std::string& text) {
@@ -67,7 +44,10 @@ void PicturesCommand::add_options(CLI::App& command) {
 }
 
 int PicturesCommand::run() const {
-  const std::vector<std::string> cases = cases_of(folder_);
+  if (!fs::exists(folder_ / "report.html"))
+    throw InputError(
+        fmt::format("{}: no report.html here; give the folder that `springproof compare` wrote", folder_.string()));
+  const std::vector<std::string> cases = read_results(folder_).cases;
   const fs::path chromium = find_chromium();
   if (chromium.empty())
     throw InputError(

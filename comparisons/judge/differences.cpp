@@ -44,13 +44,14 @@ std::string key_of(const Row& row) { return run_of(row) + '|' + row.measure; }
 
 double size_of(double x) { return std::isfinite(x) ? std::abs(x) : 0; }
 
-/// Per vector of a run the largest of its components.
-std::map<std::string, double> sizes(const ResultsFolder& folder) {
+/// Per vector of a run the largest of its components in either folder.
+std::map<std::string, double> sizes(const ResultsFolder& first, const ResultsFolder& second) {
   std::map<std::string, double> largest;
-  for (const Row& row : folder.rows) {
-    double& size = largest[run_of(row) + '|' + without_component(row.measure)];
-    size = std::max({size, size_of(row.value), size_of(row.reference.value_or(0))});
-  }
+  for (const ResultsFolder* folder : {&first, &second})
+    for (const Row& row : folder->rows) {
+      double& size = largest[run_of(row) + '|' + without_component(row.measure)];
+      size = std::max({size, size_of(row.value), size_of(row.reference.value_or(0))});
+    }
   return largest;
 }
 
@@ -70,12 +71,12 @@ ResultsFolder read_results(const std::filesystem::path& folder) {
         fmt::format("{}: no results.json here; give a folder that `springproof compare` wrote", folder.string()));
   try {
     const json document = json::parse(in);
-    ResultsFolder found{document.at("program").at("version"), document.at("generated"), {}};
+    ResultsFolder found{document.at("program").at("version"), document.at("generated"), {}, {}};
     for (const json& result : document.at("cases")) {
       const json& experiment = result.at("experiment");
       const std::string group = experiment.at("folder"), name = experiment.at("name");
-      for (const json& row : result.at("rows"))
-        found.rows.push_back(row_of(row, group.empty() ? name : group + '/' + name));
+      found.cases.push_back(group.empty() ? name : group + '/' + name);
+      for (const json& row : result.at("rows")) found.rows.push_back(row_of(row, found.cases.back()));
     }
     return found;
   } catch (const json::exception& e) {
@@ -85,7 +86,7 @@ ResultsFolder read_results(const std::filesystem::path& folder) {
 
 Differences differences(const ResultsFolder& first, const ResultsFolder& second, double tolerance) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::map<std::string, double> sizes_first = sizes(first), sizes_second = sizes(second);
+  const std::map<std::string, double> size_of_vector = sizes(first, second);
   std::map<std::string, const Row*> others;
   for (const Row& row : second.rows) others[key_of(row)] = &row;
   Differences all;
@@ -98,8 +99,7 @@ Differences differences(const ResultsFolder& first, const ResultsFolder& second,
     const Row& b = *found->second;
     others.erase(found);
     ++all.in_both;
-    const std::string vector = run_of(a) + '|' + without_component(a.measure);
-    const double size = std::max(sizes_first.at(vector), sizes_second.at(vector));
+    const double size = size_of_vector.at(run_of(a) + '|' + without_component(a.measure));
     const double uncertainty = std::max(a.reference_uncertainty.value_or(0), b.reference_uncertainty.value_or(0));
     const auto compare = [&](const char* what, double x, double y) {
       const double relative = relative_difference(x, y, size);

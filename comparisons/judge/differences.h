@@ -9,10 +9,11 @@
 
 namespace springproof {
 
-/// The rows of a folder that `springproof compare` wrote.
+/// What a folder that `springproof compare` wrote holds.
 struct ResultsFolder {
   std::string version, generated;  ///< of the program; when
-  std::vector<Row> rows;           ///< case_name: with the folder of the case, "golec_2019/bending"
+  std::vector<Row> rows;           ///< case_name: as in `cases`
+  std::vector<std::string> cases;  ///< in the order of the report, with their folders: "golec_2019/bending"
 };
 
 /// @throws InputError if FOLDER/results.json is missing or no document of results; the message names file and reason.

@@ -202,20 +202,6 @@ Json json_of(const CaseResult& result) {
       {"text", e.text}};
 }
 
-// ---- CSV
-
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  std::string out = "\"";
-  for (char c : field) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
-}
-
-std::string csv_number(const std::optional<double>& x) { return x && std::isfinite(*x) ? fmt::format("{}", *x) : ""; }
-
 }  // namespace
 
 std::string to_string(Verdict verdict) {
@@ -266,15 +252,27 @@ Json to_json(const CaseResult& result) {
           {"notes", result.notes}};
 }
 
+std::string csv_text(const std::string& field) {
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string out = "\"";
+  for (char c : field) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string csv_number(const std::optional<double>& x) { return x && std::isfinite(*x) ? fmt::format("{}", *x) : ""; }
+
 std::string to_csv(const std::vector<CaseResult>& results) {
   std::string out =
       "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error,samples,"
       "spread\n";
   for (const CaseResult& result : results)
     for (const Row& r : result.rows)
-      out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.case_name), quoted(r.kinematics),
-                         quoted(r.model), csv_number(r.poisson_ratio), cells_text(r.cells), quoted(r.measure),
-                         csv_number(r.value), quoted(r.unit), csv_number(r.reference),
+      out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_text(r.case_name), csv_text(r.kinematics),
+                         csv_text(r.model), csv_number(r.poisson_ratio), cells_text(r.cells), csv_text(r.measure),
+                         csv_number(r.value), csv_text(r.unit), csv_number(r.reference),
                          csv_number(r.reference_uncertainty), csv_number(r.error), r.samples, csv_number(r.spread));
   return out;
 }

@@ -185,8 +185,12 @@ nlohmann::json to_json(const CaseResult& result);
 /// @throws std::invalid_argument if the arrays of a picture do not fit each other.
 nlohmann::json pictures_to_json(const CaseResult& result);
 
-/// results.csv: one line per row of every case, numbers with as many digits as read back exactly, empty where not
-/// known; quoted by RFC 4180.
+/// A field of a CSV file: text quoted by RFC 4180 where needed; a number with as many digits as read back exactly,
+/// empty if not finite.
+std::string csv_text(const std::string& field);
+std::string csv_number(const std::optional<double>& x);
+
+/// results.csv: one line per row of every case.
 std::string to_csv(const std::vector<CaseResult>& results);
 
 }  // namespace springproof
