@@ -163,9 +163,8 @@ std::vector<double> expected(const std::vector<Task>& tasks) {
 }
 
 /// The order in which tasks are started: none of the long ones is left for the end, when other processors idle.
-std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
-  const std::vector<double> seconds = expected(tasks);
-  std::vector<std::size_t> order(tasks.size());
+std::vector<std::size_t> longest_first(const std::vector<double>& seconds) {
+  std::vector<std::size_t> order(seconds.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
   return order;
@@ -174,9 +173,9 @@ std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
 /// Shows the running parts and prints those finished, with the time left; thread-safe.
 class Progress {
  public:
-  Progress(const std::vector<Task>& tasks, int jobs, bool quiet)
+  Progress(const std::vector<Task>& tasks, const std::vector<double>& expected_seconds, int jobs, bool quiet)
       : tasks_(tasks),
-        time_left_(expected(tasks), jobs),
+        time_left_(expected_seconds, jobs),
         status_(quiet, [this] { return time_left_.at(now()); }),
         quiet_(quiet) {
     const std::size_t parts = tasks.size(), at_once = std::min<std::size_t>(parts, jobs);
@@ -225,9 +224,10 @@ std::optional<Part> kept_part(const Task& task) try {
 void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
   const int jobs =
       options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const std::vector<std::size_t> order = longest_first(tasks);
+  const std::vector<double> seconds = expected(tasks);
+  const std::vector<std::size_t> order = longest_first(seconds);
   std::atomic<std::size_t> next = 0;
-  Progress progress(tasks, jobs, options.quiet);
+  Progress progress(tasks, seconds, jobs, options.quiet);
   std::mutex failure_mutex;
   std::exception_ptr failure;
   const auto work = [&] {
