@@ -10,7 +10,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 page=$source/docs/contributing.md
-cp -r "$source/msm" "$source/tests" "$source/comparisons" "$source/examples" .
+cp -r "$source/msm" "$source/tests" "$source/comparisons" .
 mkdir -p views/msm views/comparisons objects
 ln -s "$work/msm" views/msm/msm
 ln -s "$work/comparisons" views/comparisons/comparisons
@@ -35,27 +35,33 @@ insert_after msm/parameters/model_table.cpp 'const std::vector<ModelRow> table =
 insert_after msm/periodic/laws_of_model.cpp 'if (p.has(angular_springs))' "$(line 'StiffeningSprings{10});' | grep has)"
 insert_after tests/laws/law_suite_test.cpp 'all.push_back({"SpringsOfASheet"' "$(line 'all.push_back({"Stiffening"')"
 
-# again OBJECT: its command of the build, with the sources of this folder.
+# adapted COMMAND OBJECT: it compiles the sources and headers of this folder.
+adapted() {
+  sed -E "s# -O3 # -O1 #; s# -MF [^ ]+##; s# -MD -MT [^ ]+##; s# -o [^ ]+ -c# -o $2 -c#; s#$source/tests#$work/tests#g
+          s#$binary/arrows/(msm|comparisons) #$work/views/\1 #g; s#-c $source/(msm|comparisons)/#-c $work/\1/#" <<<"$1"
+}
+# again OBJECT: compiles it from this folder.
 again() {
   local object=$1 copy=$work/objects/${1//\//_} command
   command=$(ninja -C "$binary" -t commands "$object" | tail -1)
   if [[ $object == */Unity/* ]]; then
-    sed -E "s#$source/(msm|comparisons|examples)/#$work/\1/#" "$binary/${object%.o}" >"${copy%.o}.cpp"
-    case $object in */unity_0_cxx.cxx.o) [[ $object != msm/* ]] || echo '#include "msm/laws/stiffening_springs.cpp"' >>"${copy%.o}.cpp" ;; esac
+    sed -E "s#$source/(msm|comparisons)/#$work/\1/#" "$binary/${object%.o}" >"${copy%.o}.cpp"
     command=$(sed -E "s# -c [^ ]+# -c ${copy%.o}.cpp#" <<<"$command")
   fi
-  (cd "$binary" && bash -c "$(sed -E "s# -O3 # -O1 #; s# -MF [^ ]+##; s# -MD -MT [^ ]+##; s# -o [^ ]+ -c# -o $copy -c#; s#$binary/arrows/(msm|comparisons) #$work/views/\1 #g; s#$source/tests#$work/tests#g; s#-c $source/(msm|comparisons)/#-c $work/\1/#" <<<"$command")") &&
-    echo "$object" >>"$work/compiled"
+  (cd "$binary" && bash -c "$(adapted "$command" "$copy")") && echo "$object" >>"$work/compiled"
 }
-export -f again
+export -f again adapted
 export binary source work
 ninja -C "$binary" -t deps | awk '
   /^[^ ].*: #deps/ { object = $1; sub(/:$/, "", object) }
   /msm\/laws\/laws.h|msm\/parameters\/model_table.h/ { if (!(object in seen)) print object; seen[object] }' |
   grep -E '^(msm/CMakeFiles/msm.dir|comparisons/CMakeFiles/(comparisons|springproof).dir|tests/CMakeFiles/test_msm.dir/laws)/' >objects_of_law
-grep -q '/Unity/' objects_of_law || echo "msm/CMakeFiles/msm.dir/laws/springs.cpp.o" >>objects_of_law
 xargs -P "$jobs" -I{} bash -c 'again "$1"' again {} <objects_of_law
 [ "$(sort -u compiled 2>/dev/null | wc -l)" = "$(sort -u objects_of_law | wc -l)" ] || { fail "what depends on the laws does not compile"; exit 1; }
+
+command=$(ninja -C "$binary" -t commands "$(grep -m1 '^msm/' objects_of_law)" | tail -1)  # the flags of msm/
+command=$(sed -E "s# -c [^ ]+# -c $work/msm/laws/stiffening_springs.cpp#" <<<"$command")
+(cd "$binary" && bash -c "$(adapted "$command" "$work/objects/msm_new_law.o")") || fail "the law does not compile"
 
 # The law suite, and springproof.
 link() {  # TARGET OBJECTS...
