@@ -104,4 +104,14 @@ void write_vtu(const std::filesystem::path& file, const Field& field,
   write_file(file, out.view());
 }
 
+void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<double, std::string>>& series) {
+  std::ostringstream out;
+  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
+         "<Collection>\n";
+  for (const auto& [time, vtu] : series)
+    out << "    <DataSet timestep=\"" << time << "\" file=\"" << xml_escaped(vtu) << "\"/>\n";
+  out << "  </Collection>\n</VTKFile>\n";
+  write_file(file, out.view());
+}
+
 }  // namespace springproof

@@ -32,4 +32,8 @@ struct Field {
 void write_vtu(const std::filesystem::path& file, const Field& field,
                const std::vector<std::pair<std::string, NodalVectors>>& extra = {});
 
+/// Writes a ParaView collection: the time [s] and the name of each VTU file of a series, beside which it lies.
+/// @throws std::runtime_error if the file cannot be written.
+void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<double, std::string>>& series);
+
 }  // namespace springproof

@@ -15,6 +15,7 @@ struct ModelChoice {
   std::map<std::string, std::variant<bool, double, std::string>> options;  ///< e.g. face_to_cube = 1.0
   std::string label;                                                       ///< "hybmss" or "hybmss A=1 paper_e_form"
   SourceLocation where;
+  bool in_motion = false;  ///< integrated in time as [dynamics] says, not solved for its equilibrium
 };
 
 }  // namespace springproof

@@ -237,6 +237,9 @@ class Collector {
     large_ = string_of(experiment, "kinematics") != "linear";
     const Json& measures = list_of(experiment, "measures");
     compares_displacement_ = std::find(measures.begin(), measures.end(), "displacement_error") != measures.end();
+    motions_.clear();
+    for (const Json& model : list_of(experiment, "models"))
+      if (model.value("in_motion", false)) motions_.insert(string_of(model, "label"));
     for (const Json& check : list_of(result, "checks")) add_check(check);
     for (const Json& run : list_of(result, "runs")) add_run(run);
     append(headline_.failures, failures_of(result));
@@ -281,7 +284,8 @@ class Collector {
   void add_run(const Json& run) {
     const std::string model = string_of(run, "model");
     if (string_of(run, "kind") == "fem") fem_.insert(model);
-    if (compares_displacement_ && string_of(run, "kind") == "msm") models_[{large_, model}];
+    if (compares_displacement_ && string_of(run, "kind") == "msm" && !motions_.contains(model))
+      models_[{large_, model}];
     order_of(model);
     if (!run.value("ok", false)) headline_.failed_runs.push_back(run_line(case_name_, run));
   }
@@ -309,6 +313,7 @@ class Collector {
     const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
     const bool displacement = measure == "displacement_error", reaction = measure == "reaction_error";
     if (!nu || !error || !(displacement || reaction || measure == "volume_change")) return;
+    if (motions_.contains(model)) return;
     const double uncertainty = number_of(row, "reference_uncertainty").value_or(0);
     ModelErrors& errors = models_[{large_, model}];
     ByNu& kind = displacement ? errors.displacement : reaction ? errors.reaction : errors.volume;
@@ -339,6 +344,7 @@ class Collector {
   bool large_ = false, compares_displacement_ = false;
   std::map<std::pair<bool, std::string>, ModelErrors> models_;
   std::set<std::string> fem_;
+  std::set<std::string> motions_;  ///< models of the case that are in motion: shown, not judged
   std::vector<std::string> order_;
 };
 

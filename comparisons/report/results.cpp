@@ -41,7 +41,7 @@ Json json_of(const ModelChoice& model) {
   Json options = Json::object();
   for (const auto& [key, value] : model.options)
     options[key] = std::visit([](const auto& x) { return Json(x); }, value);
-  return {{"name", model.name}, {"label", model.label}, {"options", options}};
+  return {{"name", model.name}, {"label", model.label}, {"options", options}, {"in_motion", model.in_motion}};
 }
 
 Json json_of(const Probe& probe) { return {{"name", probe.name}, {"at", vector(probe.at)}}; }
@@ -127,6 +127,15 @@ Json json_of(const LineRecord& l) {
           {"stress", numbers(l.stress)},
           {"exact_strain", numbers(l.exact_strain)},
           {"exact_stress", numbers(l.exact_stress)}};
+}
+
+Json json_of(const HistoryRecord& h) {
+  Json values = Json::array();
+  for (const std::vector<double>& of_one : h.values) values.push_back(numbers(of_one));
+  return {{"model", h.model},        {"poisson_ratio", number(h.poisson_ratio)},
+          {"cells", h.cells},        {"time_step", number(h.time_step)},
+          {"time", numbers(h.time)}, {"names", h.names},
+          {"units", h.units},        {"values", values}};
 }
 
 Json json_of(const ErrorSplit& s) {
@@ -240,15 +249,11 @@ Json to_json(const CaseResult& result) {
     const auto own = result.own_poisson_ratios.find(model["label"]);
     model["own_poisson_ratio"] = own == result.own_poisson_ratios.end() ? Json(nullptr) : number(own->second);
   }
-  return {{"experiment", experiment},
-          {"runs", list(result.runs)},
-          {"rows", list(result.rows)},
-          {"references", list(result.references)},
-          {"checks", list(result.checks)},
-          {"published", list(result.published)},
-          {"lines", list(result.lines)},
-          {"splits", list(result.splits)},
-          {"deformations", list(result.deformations)},
+  return {{"experiment", experiment},      {"runs", list(result.runs)},
+          {"rows", list(result.rows)},     {"references", list(result.references)},
+          {"checks", list(result.checks)}, {"published", list(result.published)},
+          {"lines", list(result.lines)},   {"histories", list(result.histories)},
+          {"splits", list(result.splits)}, {"deformations", list(result.deformations)},
           {"notes", result.notes}};
 }
 

@@ -121,6 +121,8 @@ struct Picture : RunKey {
   std::vector<int> quads;            ///< 4 surface-node numbers per facet; of a triangle the last is -1
   std::vector<float> volume_change;  ///< V'/V - 1, mean over the cells at each surface node [1]
   std::string surface = "cells";  ///< "cells": outer facets of the mesh; "smooth": the true surface, carried by voxels
+  std::vector<double> frame_times = {};         ///< of the animation of a motion [s]
+  std::vector<std::vector<float>> frames = {};  ///< displacement at each of these times, as `displacement` [m]
 };
 
 /// xx yy zz xy yz xz at each point of a line, one point after the other.
@@ -133,6 +135,15 @@ struct LineRecord : RunKey {
   LineTensors strain;                      ///< [1]
   LineTensors stress;                      ///< [Pa]; empty: the model has forces other than spring tensions
   LineTensors exact_strain, exact_stress;  ///< Kelvin's
+};
+
+/// What is recorded of a motion at one time after the other; of several networks, of the first.
+struct HistoryRecord : RunKey {
+  double time_step = 0;            ///< [s]
+  std::vector<double> time;        ///< [s]
+  std::vector<std::string> names;  ///< of the quantities: "kinetic_energy", "force.z_max.z", "displacement.tip.z", ...
+  std::vector<std::string> units;
+  std::vector<std::vector<double>> values;  ///< of each quantity, one per time
 };
 
 /// Size of the deformation of a case's reference at one Poisson's ratio (comparisons/judge/deformation.h).
@@ -149,6 +160,7 @@ struct Part {
   std::vector<ReferenceRecord> references;
   std::vector<Picture> pictures;
   std::vector<LineRecord> lines;
+  std::vector<HistoryRecord> histories;
   std::vector<ErrorSplit> splits;
   std::vector<Deformation> deformations;
 };

@@ -94,6 +94,10 @@ Json pictures_to_json(const CaseResult& result) {
                         {"displacement", shorts_json(p.displacement)},
                         {"difference", shorts_json(p.difference)},
                         {"volume_change", shorts_json(p.volume_change)}});
+    if (p.frames.empty()) continue;
+    std::vector<float> frames;  // one after the other, with one scale
+    for (const std::vector<float>& frame : p.frames) frames.insert(frames.end(), frame.begin(), frame.end());
+    pictures.back()["frames"] = {{"time", p.frame_times}, {"displacement", shorts_json(frames)}};
   }
   return {{"case", result.experiment.name},
           {"folder", result.experiment.folder},

@@ -222,6 +222,10 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
   add_distances(run, blank, of_samples, of_sample(doubt, values_of(reference->scalars, 1)));
 }
 
+std::string vtu_stem(const RunKey& key) {
+  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
+}
+
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
   const auto& reference = run.reference[lattice];
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
@@ -235,9 +239,30 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu_folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  const std::string name =
-      fmt::format("{}_nu{}_{}.vtu", file_name(model), key.poisson_ratio, fmt::join(key.cells, "x"));
-  write_vtu(run.vtu_folder / name, field, extra);
+  write_vtu(run.vtu_folder / (vtu_stem(key) + ".vtu"), field, extra);
+}
+
+/// The history of a motion; its frames become those of the first lattice's pictures, and a series of VTU files.
+void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Field field, MotionRecord motion) {
+  const RunKey key = run.key(model, lattice);
+  static_cast<RunKey&>(motion.history) = key;
+  run.part.histories.push_back(std::move(motion.history));
+  std::vector<std::pair<double, std::string>> series;
+  for (auto& [time, displacement] : motion.frames) {
+    field.displacement = std::move(displacement);
+    if (!run.vtu_folder.empty()) {
+      series.emplace_back(time, fmt::format("{}_{:04}.vtu", vtu_stem(key), series.size() + 1));
+      write_vtu(run.vtu_folder / series.back().second, field);
+    }
+    for (Picture& p : run.part.pictures) {
+      if (!same_run(p, key)) continue;
+      p.frame_times.push_back(time);
+      p.frames.push_back(p.surface == "cells"
+                             ? picture(key, field, nullptr).displacement
+                             : smooth_picture(key, field, *run.prepared.tetrahedra.back(), nullptr).displacement);
+    }
+  }
+  if (!series.empty()) write_pvd(run.vtu_folder / (vtu_stem(key) + ".pvd"), series);
 }
 
 void add_line(PartRun& run, std::size_t lattice, const std::string& model, LineRecord line) {
@@ -271,6 +296,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     if (fields.empty()) {
       save(run, lattice, label, sample.field);
       if (sample.line) add_line(run, lattice, label, *sample.line);
+      if (e.models[number].in_motion) add_motion(run, lattice, label, sample.field, sample.motion);
     }
     fields.push_back(sample.field.displacement);
     scalars.push_back(sample.scalars);

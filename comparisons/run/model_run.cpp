@@ -54,15 +54,16 @@ struct Solved {
   BoundaryConditions conditions;
   Equilibrium state;
   RunTimes times;
+  MotionRecord motion;
 };
 
 Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                     const IsotropicMaterial& material) {
+                     const IsotropicMaterial& material, bool in_motion) {
   const Experiment& e = prepared.experiment;
   const Kinematics kinematics = e.model_kinematics();
   const Mesh& mesh = *lattice.mesh;
   const double start = cpu_seconds();
-  Solved s{build_embedded(parameters, mesh, material, lattice.region.get()), {}, {}, {}};
+  Solved s{build_embedded(parameters, mesh, material, lattice.region.get()), {}, {}, {}, {}};
   const LoadPath path = [&](double factor) {
     BoundaryConditions bc =
         transfer(prepared.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
@@ -73,36 +74,39 @@ Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const
   const double ready = cpu_seconds();
   LinearOptions options;
   if (e.cost) options.tolerance = compared_residual;
-  s.state = kinematics == Kinematics::linear ? solve_linear(s.built.model, s.conditions, options)
-                                             : solve_finite(s.built.model, path);
+  s.state = in_motion                          ? move(prepared, lattice, s.built, material, path, s.motion)
+            : kinematics == Kinematics::linear ? solve_linear(s.built.model, s.conditions, options)
+                                               : solve_finite(s.built.model, path);
   s.times = {ready - start, cpu_seconds() - ready};
   return s;
 }
 
 /// Solves with times that can be compared, and the memory of this run alone.
 Solved solve_and_count(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                       const IsotropicMaterial& material) {
+                       const IsotropicMaterial& material, bool in_motion) {
   if (&lattice == &prepared.lattices.front())
-    solve_network(prepared, lattice, parameters, material);  // memory retained between runs is not counted
+    solve_network(prepared, lattice, parameters, material, in_motion);  // memory retained between runs is not counted
   const MemoryGrowth memory;
-  Solved s = solve_network(prepared, lattice, parameters, material);
+  Solved s = solve_network(prepared, lattice, parameters, material, in_motion);
   s.state.memory_MiB = memory.most_MiB();
   if (s.state.ok)
-    s.times = least_times(s.times, [&] { return solve_network(prepared, lattice, parameters, material).times; });
+    s.times =
+        least_times(s.times, [&] { return solve_network(prepared, lattice, parameters, material, in_motion).times; });
   return s;
 }
 
 /// One network of the model, solved and measured.
 ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                       const IsotropicMaterial& material) {
+                       const IsotropicMaterial& material, bool in_motion) {
   const Experiment& e = prepared.experiment;
   const auto& mesh = lattice.mesh;
   const auto solve = e.cost ? solve_and_count : solve_network;
-  const auto [built, conditions, state, times] = solve(prepared, lattice, parameters, material);
+  auto [built, conditions, state, times, motion] = solve(prepared, lattice, parameters, material, in_motion);
   const Network& network = built.model.network;
   ModelSample sample;
   sample.state = state;
   sample.times = times;
+  sample.motion = std::move(motion);
   if (!sample.state.ok) return sample;
   sample.field =
       to_field(sample.state, mesh, built.embedding, network, prepared.loads, conditions, e.model_kinematics());
@@ -124,12 +128,13 @@ std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice
                                      const IsotropicMaterial& material) {
   std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
+  const bool in_motion = prepared.experiment.models[number].in_motion;
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
     progress::phase(
         fmt::format("{} on {} cells{}", prepared.experiment.models[number].label, cells_text(lattice.cells, " x "),
                     parameters.seeds > 1 ? fmt::format(", network {} of {}", seed + 1, parameters.seeds) : ""));
     try {
-      samples.push_back(run_sample(prepared, lattice, parameters, material));
+      samples.push_back(run_sample(prepared, lattice, parameters, material, in_motion));
     } catch (const InputError&) {
       throw;
     } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "comparisons/report/results.h"
+#include "comparisons/run/motion_run.h"
 #include "comparisons/run/prepared_case.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/system/run_cost.h"
@@ -20,6 +21,7 @@ struct ModelSample {
   Field field;                            ///< on the lattice's mesh; empty where state.ok is false
   std::map<std::string, double> scalars;  ///< every measure that has a value of its own
   std::optional<LineRecord> line;         ///< where the case has one
+  MotionRecord motion;                    ///< empty: the model is solved for its equilibrium
 };
 
 /// Solves model `number` of the case on a lattice; one sample per seed.

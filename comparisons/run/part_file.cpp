@@ -19,14 +19,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Run, model, kind, poisson_ratio, cells, kinem
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, poisson_ratio, measure, unit, cells, values, observed_order, value,
                                    uncertainty, note, element, converging, correlation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Picture, model, poisson_ratio, cells, rest, displacement, difference, quads,
-                                   volume_change, surface)
+                                   volume_change, frame_times, frames, surface)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LineRecord, model, poisson_ratio, cells, first, last, distance, strain, stress,
                                    exact_strain, exact_stress)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HistoryRecord, model, poisson_ratio, cells, time_step, time, names, units, values)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorSplit, model, poisson_ratio, cells, voxel_edge, measure, unit, total,
                                    model_error, discretisation_error, geometry_error, voxel_uncertainty,
                                    body_uncertainty)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain, rotation_deg)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, splits, deformations)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations)
 
 namespace {
 

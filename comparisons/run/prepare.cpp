@@ -8,6 +8,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/results.h"
 #include "comparisons/run/case_checks.h"
+#include "comparisons/run/motion_run.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
 #include "meshes/mesher/mesher.h"
@@ -53,6 +54,11 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   const Mesh& mesh = *lattice.mesh;
   const auto [model, embedding] =
       build_chosen(experiment.models[number], parameters, mesh, experiment.materials.front(), lattice.region.get());
+  if (experiment.models[number].in_motion)
+    for (const IsotropicMaterial& material : experiment.materials)
+      check_motion(*experiment.dynamics,
+                   build_chosen(experiment.models[number], parameters, mesh, material, lattice.region.get()).model,
+                   material);
   if (parameters.row.topology == Topology::cells) return;
   const BoundaryConditions bc =
       transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());

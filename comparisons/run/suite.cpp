@@ -267,6 +267,7 @@ void append(const Part& from, Part& to) {
   append(from.references, to.references);
   append(from.pictures, to.pictures);
   append(from.lines, to.lines);
+  append(from.histories, to.histories);
   append(from.splits, to.splits);
   append(from.deformations, to.deformations);
 }

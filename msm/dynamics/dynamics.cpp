@@ -192,13 +192,15 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       motion->set_conditions(bc);
       ramping = factor < 1;
     }
-    const long steps = ramping || options.after_step ? 1 : std::min(steps_between_looks, last - result.steps);
+    const long to_stop = options.after_step ? options.stride - result.steps % options.stride : steps_between_looks;
+    const long steps = ramping ? 1 : std::min({steps_between_looks, to_stop, last - result.steps});
     const ForceNorms norms = motion->advance(steps);
     result.steps += steps;
-    if (options.after_step) options.after_step(result.steps * dt, motion->positions(), motion->velocities());
+    if (options.after_step && (result.steps % options.stride == 0 || result.steps == last))
+      options.after_step(result.steps * dt, motion->positions(), motion->velocities(), bc);
     const double scale = std::max(norms.support, bc.external.norm());
     state.residual = scale > 0 ? norms.unbalanced / scale : 0;
-    if (!std::isfinite(state.residual)) {
+    if (!std::isfinite(norms.unbalanced) || !std::isfinite(norms.support)) {
       state.message = fmt::format("the motion diverged at t = {:.4g} s", result.steps * dt);
       return result;
     }

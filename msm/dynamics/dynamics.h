@@ -19,8 +19,11 @@ struct DynamicsOptions {
   Precision precision = Precision::float64;  ///< of the kernels; the plain loops use float64
   int threads = 1;                           ///< of the kernels; the plain loops and momentum dispersion use one
   bool lagged = false;  ///< dispersion uses the J of the previous step; Kot & Nagahashi (2015), sec. 7
-  /// Called after every step with the time, positions [m] and the velocity of the step [m/s].
-  std::function<void(double time, const NodalVectors& x, const NodalVectors& v)> after_step = {};
+  /// Called after every `stride` steps and after the last, with the time, the positions [m], the velocity of the step
+  /// [m/s] and the boundary conditions then.
+  std::function<void(double time, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& conditions)>
+      after_step = {};
+  long stride = 1;
 };
 
 struct DynamicsResult {

@@ -50,6 +50,18 @@ struct ReferenceChoice {
 /// Elements of the reference: hexahedra "q1", "q2", tetrahedra "p1", "p2".
 std::vector<std::string> element_names();
 
+/// Motion in time of the models, from rest ([dynamics]): semi-implicit Euler, Golec et al. (2019), sec. 3 and 6.1.
+struct MotionChoice {
+  double duration = 0;              ///< [s]
+  std::optional<double> time_step;  ///< [s]; empty: 0.95 of the bound of each model
+  double damping = 0;               ///< mass-proportional [1/s]
+  double ramp = 0;                  ///< the loads grow linearly over this time [s]; 0: they act at once
+  bool equilibrium = true;          ///< each model is also solved for its equilibrium
+  int samples = 200;                ///< of each history
+  int frames = 40;                  ///< of the animation; 0: none
+  SourceLocation where;             ///< of time_step_s, or of the table
+};
+
 enum class Source { analytic, extrapolated_fem, published, regression };
 std::string to_string(Source source);
 
@@ -106,6 +118,7 @@ struct Experiment {
   std::vector<Probe> probes;
   std::optional<Section> section;
   std::optional<Line> line;
+  std::optional<MotionChoice> dynamics;
   ReferenceChoice reference;
   std::vector<Expectation> expectations;
   std::vector<PublishedValue> published;

@@ -274,6 +274,7 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
   experiment.measures = default_measures;
   if (const auto value = document.find("compare")) read_compare_table(*value, document, experiment);
+  if (experiment.dynamics) experiment.models = with_motions(experiment.models, *experiment.dynamics);
   // Displacement errors alone are not enough for a body that is moved by its supports.
   if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
     experiment.measures.emplace_back("reaction_error");

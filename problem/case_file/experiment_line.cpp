@@ -9,14 +9,6 @@ namespace {
 
 constexpr Key line_schema[] = {{"from_m", "[x, y, z]"}, {"to_m", "[x, y, z]"}, {"points"}, {"middle"}};
 
-int as_whole(const TomlValue& value, int low, int high) {
-  const std::string words = fmt::format("an integer from {} to {}", low, high);
-  const auto* n = value.node->as_integer();
-  if (!n || n->get() < low || n->get() > high)
-    refuse(value, n ? fmt::format("is {}", n->get()) : "is no integer", words);
-  return static_cast<int>(n->get());
-}
-
 /// The requirement of Kelvin's solution that a case does not meet; nullptr: none.
 const char* missing_for_kelvin(const Experiment& experiment) {
   if (experiment.materials.size() != 1) return "one material";

@@ -18,6 +18,13 @@ std::vector<std::string> read_elements(const TomlValue& value, const std::vector
 /// [line]; loads, materials and kinematics must have been read.
 void read_line(const TomlTable& document, Experiment& experiment);
 
+/// [dynamics]; the kinematics must have been read.
+void read_dynamics(const TomlTable& document, Experiment& experiment);
+
+/// The models of a case with [dynamics]: each one's equilibrium, unless it is left out, and its motion, labelled
+/// "NAME in motion".
+std::vector<ModelChoice> with_motions(const std::vector<ModelChoice>& models, const MotionChoice& motion);
+
 /// Sets the solution of the loads with the field "kelvin".
 /// @throws InputError at such a load if the case has no such solution.
 void settle_kelvin(Experiment& experiment);

@@ -196,6 +196,14 @@ Cells as_cells(const TomlValue& value) {
   return cells;
 }
 
+int as_whole(const TomlValue& value, int low, int high) {
+  const std::string words = fmt::format("an integer from {} to {}", low, high);
+  const auto* n = value.node->as_integer();
+  if (!n || n->get() < low || n->get() > high)
+    refuse(value, n ? fmt::format("is {}", n->get()) : "is no integer", words);
+  return static_cast<int>(n->get());
+}
+
 std::vector<TomlValue> one_or_several(const TomlValue& value) {
   if (!value.node->is_array()) return {value};
   return as_list(value, "one value or a list that is not empty");

@@ -59,6 +59,7 @@ SourceLocation location_of(const TomlValue& value);
 void require_bounded(std::string_view text, const std::string& file);
 
 double as_number(const TomlValue& value, const Range& range = any_number);
+int as_whole(const TomlValue& value, int low, int high);  ///< an integer from `low` to `high`
 bool as_flag(const TomlValue& value);
 std::string as_text(const TomlValue& value);  ///< not empty
 std::string as_choice(const TomlValue& value, const std::vector<std::string>& names);

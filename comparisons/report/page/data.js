@@ -194,7 +194,7 @@ function prepareCase(data) {
     linear: experiment.kinematics === 'linear',
     verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
-    checks: data.checks || [], published: data.published || [], lines: data.lines || [],
+    checks: data.checks || [], published: data.published || [], lines: data.lines || [], histories: data.histories || [],
     splits: data.splits || [], deformations: data.deformations || [],
   };
   const at = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;

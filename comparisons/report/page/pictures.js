@@ -106,6 +106,13 @@ function norms(vectors) {
     Math.hypot(vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2]));
 }
 
+/// Displacements of a motion, one array per frame; null: the picture is of one state.
+function framesOf({frames}, surface) {
+  if (!frames) return null;
+  const all = shortsOf(frames.displacement), length = all.length / frames.time.length;
+  return frames.time.map((_, i) => surface.restOf(all.slice(i * length, (i + 1) * length)));
+}
+
 const decoded = new Map();
 
 /// {surface, rest, displacement, size, difference, volume_change}: values per node of the surface as it is drawn.
@@ -114,7 +121,7 @@ function decode(file, picture) {
   const surface = surfaceOf(file.meshes[picture.mesh], picture.surface === 'smooth');
   const scalars = packed => !packed ? [] : surface.source ? taken(shortsOf(packed), surface.source, 1) : shortsOf(packed);
   const displacement = surface.restOf(shortsOf(picture.displacement).map(u => Number.isFinite(u) ? u : 0));
-  const shape = {surface, rest: surface.rest, displacement, size: norms(displacement),
+  const shape = {surface, rest: surface.rest, displacement, size: norms(displacement), frames: framesOf(picture, surface),
                  difference: scalars(picture.difference), volume_change: scalars(picture.volume_change)};
   decoded.set(picture, shape);
   return shape;
@@ -167,7 +174,11 @@ function deformedSurface(shape) {
     objects.push(new THREE.LineSegments(lines, new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.22})));
   }
   for (const object of objects) object.frustumCulled = false;
-  return {body, position, objects, paint(amplification, colouring, top) {
+  return {body, position, objects, place(amplification, displacement) {
+    for (let i = 0; i < position.array.length; ++i) position.array[i] = shape.rest[i] + amplification * displacement[i];
+    position.needsUpdate = true;
+    if (smooth) geometry.computeVertexNormals();
+  }, paint(amplification, colouring, top) {
     const values = colouring && colouring.values(shape);
     for (let i = 0; i < position.array.length; ++i)
       position.array[i] = shape.rest[i] + amplification * shape.displacement[i];

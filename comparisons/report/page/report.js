@@ -86,6 +86,7 @@ function start() {
   const cost = build('cost', costSection);
   const splits = build('splits', splitsSection);
   const shapes = build('shapes', shapesSection);
+  const motion = build('motion', motionSection);
   const line = build('line', lineSection);
   build('verification', verificationSection);
   build('fem-column', femColumnSection);

@@ -158,6 +158,9 @@ function shapesSection(section) {
   const colorChoice = select('Colour', Object.entries(colourings).map(([key, {text, symbol}]) => [key, `${text} ${symbol}`]), paint);
   const ghostBox = el('input', {type: 'checkbox', checked: true, onchange: build});
   const slider = el('input', {type: 'range', min: 0, max: 4, step: 0.01, oninput: () => paint(), onchange: () => aimAtAll()});
+  const playButton = el('button', {type: 'button', class: 'png', onclick: () => playing ? stop() : play()}, 'Play the motion');
+  const clock = el('output', {});
+  let playing = null;
   const factor = el('output', {}), modelBoxes = el('div', {class: 'boxes'}), left = new Set();   // models taken out
   let panels = [], hovered = null, top = 0;
 
@@ -191,7 +194,29 @@ function shapesSection(section) {
     }}), name === 'fem' ? el('span', {class: 'model'}, swatch('fem'), 'FEM reference') : modelName(name))));
     build();
   }
+  const framed = () => panels.filter(panel => !panel.rest && panel.shape.frames);
+  /// Frame after frame, twenty a second, again and again; models without a motion stay as they are.
+  function play() {
+    let number = 0;
+    playButton.textContent = 'Stop';
+    playing = setInterval(() => {
+      const moving = framed();
+      if (moving.length === 0) return stop();
+      const {time} = moving[0].picture.frames, i = number++ % time.length;
+      for (const {surface, shape} of moving) surface.place(amplification(), shape.frames[Math.min(i, shape.frames.length - 1)]);
+      clock.textContent = ` t = ${time[i].toPrecision(3)} s`;
+      viewer.request();
+    }, 50);
+  }
+  function stop() {
+    clearInterval(playing);
+    playing = null;
+    playButton.textContent = 'Play the motion';
+    clock.textContent = '';
+    paint();
+  }
   function build() {
+    if (playing) stop();
     dispose(panels);
     const pictures = picturesAt(result(), view());
     const chosen = pictures.filter(p => !left.has(p.model));
@@ -201,6 +226,7 @@ function shapesSection(section) {
     paint();
     if (viewer.newCase && panels.length > 0) aimAtAll();
     viewer.newCase = false;
+    playButton.parentNode.hidden = framed().length === 0;
   }
   function aimAtAll() {
     aimAtPanels(viewer, panels, amplification());
@@ -237,7 +263,7 @@ function shapesSection(section) {
        'a double click brings the first view back.'),
     el('div', {class: 'choices'}, caseChoice.node, nuChoice.node, cellsChoice.node, surfaceChoice.node, colorChoice.node,
        el('label', {class: 'choice amplification'}, el('span', {}, 'Displacements drawn ', factor), slider),
-       el('label', {class: 'ghost'}, ghostBox, 'body at rest')),
+       el('label', {class: 'ghost'}, ghostBox, 'body at rest'), el('span', {}, playButton, clock)),
     modelBoxes, viewer.node, bar.node, el('div', {class: 'below'}, caption, png));
   update();
   charts.push(() => viewer.render());

@@ -1,0 +1,133 @@
+// Motions of a case, from its file to its rows and histories.
+#include "comparisons/run/motion_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "comparisons/run/case_run.h"
+#include "comparisons/run/part_file.h"
+#include "comparisons/run/prepare.h"
+#include "support/case_file.h"
+
+namespace springproof {
+namespace {
+
+/// A cube held below and pulled above; `more` is the rest of [dynamics].
+Experiment pulled_cube(const std::string& models, const std::string& more) {
+  return parse_experiment(R"(kinematics = "hencky"
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [3, 3, 3]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+force_N = [100, 0, 300]
+[[probe]]
+name = "corner"
+at_m = [1, 1, 1]
+[compare]
+models = [)" + models + R"(]
+measures = ["volume_change", "reaction", "probe"]
+[reference]
+elements = []
+[dynamics]
+)" + more,
+                          "cube.toml");
+}
+
+Part run_of(const Experiment& e, const std::filesystem::path& vtu = {}) { return run_part(prepare(e), 0, vtu); }
+
+const HistoryRecord& history(const Part& part) {
+  EXPECT_EQ(part.histories.size(), 1u);
+  return part.histories.front();
+}
+
+const std::vector<double>& series(const HistoryRecord& h, const std::string& name) {
+  const auto at = std::find(h.names.begin(), h.names.end(), name);
+  EXPECT_NE(at, h.names.end()) << name;
+  return h.values[at - h.names.begin()];
+}
+
+TEST(MotionRun, AtRestIsTheEquilibrium) {
+  for (const char* model : {"\"hybmss\"", "\"emsm\"", "{ model = \"msm_random\", label = \"random\" }"}) {
+    const Part part = run_of(pulled_cube(model, "duration_s = 25\ndamping_1_s = 3\n"));
+    int compared = 0;
+    for (const Row& still : part.rows)
+      for (const Row& moved : part.rows)
+        if (moved.model == still.model + " in motion" && moved.measure == still.measure) {
+          const double scale = still.measure.starts_with("force") || still.measure.starts_with("torque") ? 300
+                               : still.measure.starts_with("volume")                                     ? 1e-2
+                                                                                                         : 0.03;
+          EXPECT_NEAR(moved.value, still.value, 1e-6 * scale) << model << " " << still.measure;
+          ++compared;
+        }
+    EXPECT_GE(compared, 13) << model;
+  }
+}
+
+/// Largest error of the energy of an undamped motion from `from` to `to` [s], in steps of `step` [s].
+double energy_error(const std::string& step, double from, double to) {
+  const Part part = run_of(
+      pulled_cube("\"hybmss\"", "duration_s = 4\nequilibrium = false\nsamples = 2000\ntime_step_s = " + step + "\n"));
+  const HistoryRecord& h = history(part);
+  double most = 0;
+  for (std::size_t i = 0; i < h.time.size(); ++i)
+    if (h.time[i] > from && h.time[i] < to)
+      most = std::max(most, std::abs(series(h, "kinetic_energy")[i] + series(h, "elastic_energy")[i] +
+                                     series(h, "load_potential")[i]));
+  return most;
+}
+
+// Velocities are half a step behind the positions.
+TEST(MotionRun, EnergyErrorIsOfFirstOrderInTheStepAndDoesNotGrow) {
+  const double early = energy_error("0.004", 0, 2);
+  EXPECT_NEAR(early / energy_error("0.002", 0, 2), 2, 0.2);
+  EXPECT_LT(energy_error("0.004", 2, 4), 1.2 * early);
+}
+
+TEST(MotionRun, LargerStepIsRefusedWithItsBoundBeforeAnythingIsRun) {
+  const Experiment e = pulled_cube("\"hybmss\"", "duration_s = 2\ntime_step_s = 0.5\n");
+  try {
+    prepare(e);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.rfind("cube.toml:25:15: dynamics.time_step_s: 0.5 s is not safe", 0), 0u) << message;
+    EXPECT_NE(message.find("allowed: up to 0.0"), std::string::npos) << message;
+  }
+}
+
+TEST(MotionRun, TooManyStepsAreRefused) {
+  EXPECT_THROW(prepare(pulled_cube("\"hybmss\"", "duration_s = 1e9\n")), InputError);
+}
+
+TEST(MotionRun, WritesFramesAndTheirSeries) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "springproof_motion";
+  fs::remove_all(folder);
+  const Part part =
+      run_of(pulled_cube("\"hybmss\"", "duration_s = 1\nequilibrium = false\nsamples = 20\nframes = 5\n"), folder);
+  ASSERT_EQ(part.pictures.size(), 1u);
+  EXPECT_EQ(part.pictures[0].frames.size(), part.pictures[0].frame_times.size());
+  EXPECT_EQ(part.pictures[0].frames.size(), 5u);
+  EXPECT_TRUE(fs::exists(folder / "hybmss_in_motion_nu0.3_3x3x3.pvd"));
+  EXPECT_TRUE(fs::exists(folder / "hybmss_in_motion_nu0.3_3x3x3_0005.vtu"));
+  save_part(folder / "part.cbor", "stamp", part);
+  const auto again = load_part(folder / "part.cbor", "stamp");
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->histories[0].values, part.histories[0].values);
+  EXPECT_EQ(again->pictures[0].frames, part.pictures[0].frames);
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace springproof
