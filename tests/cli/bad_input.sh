@@ -119,6 +119,12 @@ for name in own.msh own.step own.brep own.stl; do
 done
 [ -e "$work/trace" ] && { echo "FAILED: a command was run"; failures=$((failures + 1)); }
 
+moving=$(printf 'kinematics = "hencky"\n%s\n[dynamics]' "$good")
+printf '%s\nduration_s = 0\n' "$moving" >"$work/no_time.toml"
+expect "no duration" "no_time.toml:[0-9]+:14: dynamics.duration_s: is 0 .allowed: a finite number > 0" compare "$work/no_time.toml" --out "$work/out"
+printf '%s\nduration_s = 2\ntime_step_s = 1\n' "$moving" >"$work/long_step.toml"
+expect "an unsafe step" "long_step.toml:[0-9]+:15: dynamics.time_step_s: 1 s is not safe .* up to 0.[0-9]+ s" compare "$work/long_step.toml" --out "$work/out"
+
 expect "differences of no results" "/nowhere: no results.json here" diff /nowhere "$work"
 echo '{"cases": 1}' >"$work/results.json"
 expect "differences of other files" "results.json: not the results" diff "$work" "$work"
