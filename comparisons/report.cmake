@@ -29,6 +29,7 @@ set(report_assets
     report_js=${report_dir}/report/page/data.js
     report_js=${report_dir}/report/page/figure.js
     report_js=${report_dir}/report/page/charts.js
+    report_js=${report_dir}/report/page/first.js
     report_js=${report_dir}/report/page/line.js
     report_js=${report_dir}/report/page/motion.js
     report_js=${report_dir}/report/page/cost.js

@@ -93,6 +93,21 @@ ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
   return out;
 }
 
+/// Those by which the closest model is found: without the auxetic ones, where there are others.
+ByNu ranked(const ModelErrors& errors, const ByNu& by_nu) {
+  ByNu all = claimed(errors, by_nu), ordinary = all;
+  std::erase_if(ordinary, [](const auto& entry) { return entry.first < 0; });
+  return ordinary.empty() ? all : ordinary;
+}
+
+std::string auxetic_clause(const ModelErrors& errors) {
+  ByNu auxetic = claimed(errors, errors.rank);
+  if (auxetic.empty() || auxetic.rbegin()->first < 0) return "";
+  std::erase_if(auxetic, [](const auto& entry) { return entry.first >= 0; });
+  if (auxetic.empty()) return "";
+  return fmt::format("; {}: {} %", range_text(auxetic), percent(largest(auxetic).second.error));
+}
+
 std::string own_ratio_clause(const ModelErrors& errors) {
   const ByNu own = claimed(errors, errors.displacement);
   if (!errors.own_nu || own.size() == errors.displacement.size()) return "";
@@ -156,7 +171,7 @@ struct Candidate {
 std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models) {
   std::vector<Candidate> all;
   for (const auto& [key, errors] : models)
-    if (Candidate c{key.name, &errors, claimed(errors, errors.rank)};
+    if (Candidate c{key.name, &errors, ranked(errors, errors.rank)};
         !key.large_deformation && !key.fem && !c.rank.empty())
       all.push_back(c);
   if (all.empty()) return all;
@@ -176,18 +191,19 @@ std::string where_text(const Candidate& c) {
 std::string closest_text(const Candidate& best) {
   const ModelErrors& e = *best.errors;
   std::string within = fmt::format("its displacements stay within {} % of finite elements",
-                                   percent(largest(claimed(e, e.displacement)).second.error));
-  if (const ByNu springs = claimed(e, e.springs); e.wholes && e.parts)
+                                   percent(largest(ranked(e, e.displacement)).second.error));
+  if (const ByNu springs = ranked(e, e.springs); e.wholes && e.parts)
     within =
         fmt::format("its largest error, of bodies of voxels the springs' own part, is {} %", percent(best.error()));
   else if (!springs.empty())
     within = fmt::format(
         "its springs stay within {} % of finite elements on the same cubes ({} % of the reference with coarse cells "
         "and staircase)",
-        percent(largest(springs).second.error), percent(largest(claimed(e, e.displacement)).second.error));
-  if (const ByNu reaction = claimed(e, e.reaction); !reaction.empty())
+        percent(largest(springs).second.error), percent(largest(ranked(e, e.displacement)).second.error));
+  if (const ByNu reaction = ranked(e, e.reaction); !reaction.empty())
     within += fmt::format(", the reactions of moved supports within {} %", percent(largest(reaction).second.error));
-  return fmt::format("Of the spring models {} comes closest: {} {}.", best.name, within, where_text(best));
+  return fmt::format("Of the spring models {} comes closest: {} {}{}.", best.name, within, where_text(best),
+                     auxetic_clause(e));
 }
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
@@ -212,7 +228,8 @@ std::string no_claim_text(const std::map<ModelKey, ModelErrors>& models) {
   return fmt::format("No spring model was compared at a Poisson's ratio that it claims: {}.", listed(names));
 }
 
-std::string answer(const std::map<ModelKey, ModelErrors>& models) {
+/// The answer; the models that it names are added to `closest`.
+std::string answer(const std::map<ModelKey, ModelErrors>& models, std::vector<std::string>& closest) {
   std::vector<Candidate> all = candidates(models);
   if (all.empty()) return no_claim_text(models);
   const Candidate& best = all.front();
@@ -222,6 +239,7 @@ std::string answer(const std::map<ModelKey, ModelErrors>& models) {
     const double doubt = std::max(best.uncertainty(), c.uncertainty());
     if (&c != &best && c.error() - best.error() > doubt) continue;
     tied.push_back(c);
+    closest.push_back(c.name);
     uncertainty = std::max(uncertainty, doubt);
   }
   return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
@@ -259,7 +277,7 @@ class Collector {
     }
     for (const auto& [key, errors] : sorted)
       headline_.models.push_back({key.name, key.fem, key.large_deformation, sentence(errors)});
-    headline_.answer = answer(sorted);
+    headline_.answer = answer(sorted, headline_.closest);
     return headline_;
   }
 

@@ -19,6 +19,7 @@ struct Headline {
   std::string doubt;   ///< where the reference does not converge or is uncertain by more than 5 %; empty: nowhere.
                        ///< Printed first
   std::string answer;  ///< which spring model comes closest in the linear cases; empty: none was compared
+  std::vector<std::string> closest;  ///< that model, or those that cannot be told apart
   std::vector<ModelVerdict> models;  ///< springs first, then finite elements; linear cases before large deformation
   std::vector<std::string> deformations;  ///< per case the reference's largest principal strain and rotation at each nu
   std::vector<std::string> warnings;      ///< linear cases to which linear theory does not apply, with what to do
@@ -38,8 +39,8 @@ inline constexpr const char* large_title =
 /// Judges each model by its largest "displacement_error", "reaction_error" and "volume_change" error over the cases and
 /// Poisson's ratios, at the finest resolution of each case.  The closest is found at the Poisson's ratios that a model
 /// is valid for, by the larger of displacement and reaction error, on a body of voxels by the parts of these due to the
-/// springs; models that differ by less than the reference's uncertainty are named together.  `results` is the document
-/// of results.json.
+/// springs; auxetic solids (nu < 0) are named apart where others were run.  Models that differ by less than the
+/// reference's uncertainty are named together.  `results` is the document of results.json.
 Headline headline(const nlohmann::json& results);
 
 /// "31 of 36 expectations hold, 2 fail, for 3 the reference is too coarse."

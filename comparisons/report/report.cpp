@@ -1,6 +1,7 @@
 #include "comparisons/report/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -71,18 +72,25 @@ std::string model_list_html(const Headline& head, bool large_deformation) {
   return items.empty() ? "" : "<ul class=\"verdicts\">\n" + items + "</ul>\n";
 }
 
-std::string verdicts_html(const Headline& head) {
+/// The sentences on every model, folded.
+std::string words_html(const Headline& head) {
   const std::string linear = model_list_html(head, false), large = model_list_html(head, true);
+  std::string out;
+  if (!linear.empty())
+    out += fmt::format("<details class=\"words\"><summary>{}</summary>\n{}</details>\n", linear_title, linear);
+  if (!large.empty())
+    out += fmt::format("<details class=\"words\"{}><summary>{}</summary>\n{}</details>\n",
+                       linear.empty() ? " open" : "", large_title, large);
+  return out;
+}
+
+std::string answer_html(const Headline& head) {
   std::string out;
   const std::string doubt =
       head.doubt.empty() ? "" : fmt::format("<span class=\"amber\">{}</span> ", xml_escaped(head.doubt));
   if (const std::string first = doubt + xml_escaped(head.answer); !first.empty())
     out += fmt::format("<p class=\"answer\">{}</p>\n", first);
   for (const std::string& line : head.warnings) out += fmt::format("<p class=\"amber\">{}</p>\n", xml_escaped(line));
-  if (!linear.empty()) out += fmt::format("<h2>{}</h2>\n{}", linear_title, linear);
-  if (!large.empty())
-    out += fmt::format("<details{}><summary>{}</summary>\n{}</details>\n", linear.empty() ? " open" : "", large_title,
-                       large);
   return out;
 }
 
@@ -90,19 +98,29 @@ std::string count_html(const char* verdict, int count, const char* words) {
   return count == 0 ? "" : fmt::format("<span class=\"chip {}\">{} {}</span> ", verdict, count, words);
 }
 
-std::string headline_html(const Json& results) {
-  const Headline head = headline(results);
-  std::string out = verdicts_html(head);
-  out += fmt::format("<p class=\"counts\" title=\"{}\">Expectations: ", xml_escaped(expectations_sentence(head)));
+std::string counts_html(const Headline& head) {
   const std::string chips = count_html("pass", head.held, "hold") + count_html("fail", head.failed, "fail") +
                             count_html("coarse", head.reference_too_coarse, "reference too coarse") +
                             count_html("none", head.no_reference, "no reference") +
                             count_html("none", head.no_result, "no result");
-  out += (chips.empty() ? "none stated" : chips) + "</p>\n";
-  out += folded_html("failures", fmt::format("Expectations that fail: {}", head.failed), head.failed_checks);
-  out += folded_html("failures", fmt::format("Not compared: {}", head.failures.size()), head.failures);
-  out += folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()), head.failed_runs);
-  return out;
+  return fmt::format("<p class=\"counts\" title=\"{}\">Expectations: {}</p>\n",
+                     xml_escaped(expectations_sentence(head)), chips.empty() ? "none stated" : chips);
+}
+
+std::string failures_html(const Headline& head) {
+  return folded_html("failures", fmt::format("Expectations that fail: {}", head.failed), head.failed_checks) +
+         folded_html("failures", fmt::format("Not compared: {}", head.failures.size()), head.failures) +
+         folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()), head.failed_runs);
+}
+
+/// The first screen: the answer with its facts, two bodies and the plot of dots (filled in by first.js), then failures
+/// and the sentences.
+std::string headline_html(const Json& results) {
+  const Headline head = headline(results);
+  return "<div class=\"first\">\n<div>\n" + answer_html(head) + "<dl id=\"first-facts\"></dl>\n" + counts_html(head) +
+         fmt::format("</div>\n<div id=\"first-bodies\" data-closest=\"{}\"></div>\n</div>\n",
+                     xml_escaped(fmt::format("{}", fmt::join(head.closest, "\n")))) +
+         "<div id=\"first-plot\"></div>\n" + failures_html(head) + words_html(head);
 }
 
 }  // namespace

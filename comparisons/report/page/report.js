@@ -77,6 +77,7 @@ function preparePrinting() {
 
 function start() {
   decorateHead();
+  firstScreen();
   Chart.defaults.font.family = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
   Chart.defaults.font.size = 13;
   build('cases', needsCases(casesSection));

@@ -47,6 +47,18 @@ TEST(Headline, TakesTheWorstOfAllCasesAtTheFinestCells) {
             "from 0 to 0.4, in 2 linear cases.");
 }
 
+TEST(Headline, AuxeticSolidsAreNamedApartWhereThereAreOthers) {
+  const std::vector<CaseResult> cases = {with_errors("shear", "hybmss", {{-0.5, 10, 0.3}, {0, 10, 0.02}}),
+                                         with_errors("shear", "emsm", {{-0.5, 10, 0.1}, {0, 10, 0.05}})};
+  const Headline h = headline_of(cases);
+  EXPECT_EQ(h.answer,
+            "Of the spring models hybmss comes closest: its displacements stay within 2 % of finite elements at ν = 0, "
+            "in 2 linear cases; at ν = −0.5: 30 %.");
+  EXPECT_EQ(h.closest, std::vector<std::string>{"hybmss"});
+  const Headline alone = headline_of({with_errors("shear", "hybmss", {{-0.5, 10, 0.3}})});
+  EXPECT_NE(alone.answer.find("within 30 % of finite elements at ν = −0.5, in"), std::string::npos) << alone.answer;
+}
+
 TEST(Headline, TetrahedraAndLongPoissonsRatiosAreReadable) {
   CaseResult c = with_errors("hand", "hybmss", {{0.4999750012499375, 10, 0.5}});
   c.runs[0].ok = false;

@@ -1,0 +1,154 @@
+'use strict';
+// The first screen: two bodies, a dot for every model and case, and what the closest model costs.
+
+const closestModels = () => (document.getElementById('first-bodies').dataset.closest || '').split('\n').filter(Boolean);
+const smallStrain = () => cases.filter(result => result.linear);
+
+// ---- two bodies
+
+/// The case, Poisson's ratio and pictures to show: a body of its own shape rather than a block, near nu = 0.4.
+function firstPictures(model) {
+  const offers = (smallStrain().length > 0 ? smallStrain() : cases).flatMap(result => {
+    const {pictures} = picturesOf(result);
+    const nus = distinct(pictures.map(p => p.poisson_ratio)).filter(nu => claims(result, model, nu))
+      .sort((a, b) => Math.abs(a - 0.4) - Math.abs(b - 0.4));
+    const surface = pictures.some(p => p.surface === 'smooth') ? 'smooth' : 'cells';
+    const at = name => pictures.find(p => p.model === name && p.poisson_ratio === nus[0] && (p.surface || 'cells') === surface);
+    return at('fem') && at(model) ? [{result, nu: nus[0], surface, pictures: [at('fem'), at(model)]}] : [];
+  });
+  return offers.find(offer => offer.surface === 'smooth') || offers[0] || null;
+}
+
+/// Finite elements and the closest model, the latter coloured by the difference.
+function firstBodies(model) {
+  const box = document.getElementById('first-bodies'), offer = model && firstPictures(model);
+  if (!offer) return box.remove();
+  const viewer = new Viewer(), bar = colorBar(), colouring = colourings.difference;
+  const all = makePanels(picturesOf(offer.result), offer.pictures, true), panels = all.slice(1);
+  const amplification = fittingAmplification(offer.result, all), top = paintPanels(all, colouring, amplification);
+  for (const panel of panels) {
+    const {title, text} = panelWords(panel, colouring);
+    panel.label.append(el('span', {class: 'model'}, swatch(panel.picture.model), title), el('small', {}, text));
+  }
+  viewer.canvas.setAttribute('role', 'img');
+  viewer.canvas.setAttribute('aria-label', `${offer.result.name}, deformed: finite elements and ${model}`);
+  viewer.show(panels);
+  aimAtPanels(viewer, panels, amplification);
+  bar.show(colouring, top);
+  charts.push(() => viewer.render());
+  box.append(viewer.node, bar.node, el('p', {class: 'note'}, `${offer.result.name}, ν = ${nuText(offer.nu)}` +
+    (amplification === 1 ? '' : `, displacements drawn ${number(amplification, 3)} times as large`) + '. Drag to turn.'));
+}
+
+// ---- a dot per model and case
+
+const caseGlyphs = ['●', '▲', '■', '◆', '★', '▼', '✚', '✖'];
+
+/// The springs' own part of an error on a body of voxels [%]; null: there is none.
+function ownPart(result, row) {
+  const split = result.splits.find(s => s.measure === row.measure && s.model === row.model && s.poisson_ratio === row.poisson_ratio &&
+    cellsText(s.cells) === cellsText(row.cells));
+  return split && isNumber(split.model_error) ? 100 * Math.abs(split.model_error) : null;
+}
+
+/// Largest displacement error of a model in a case, among these Poisson's ratios that the model claims: `error` [%], by
+/// which models are ranked, and `whole`, which on a body of voxels includes coarse cells and staircase.
+function dotOf(result, model, nus) {
+  const rows = rowsAt(result, 'displacement_error').filter(row => row.model === model && nus.includes(row.poisson_ratio) &&
+    claims(result, model, row.poisson_ratio));
+  const dots = rows.map(row => {
+    const whole = scaledError(result, row), own = ownPart(result, row);
+    return {result, row, whole, own, error: own ?? whole, uncertainty: scaledUncertainty(result, row)};
+  }).filter(dot => dot.whole !== null);
+  return dots.length === 0 ? null : dots.reduce((a, b) => b.error > a.error ? b : a);
+}
+
+/// Whether a label is another form of a model that has a row under its plain name.
+const isVariant = model => smallStrain().some(({experiment}) => (experiment.models || []).some(m =>
+  m.label === model && m.name !== model && (experiment.models || []).some(other => other.label === m.name)));
+
+function dotPlot() {
+  const box = document.getElementById('first-plot');
+  const shown = smallStrain().filter(result => result.measures.includes('displacement_error'));
+  if (shown.length === 0) return box.remove();
+  const nus = distinct(shown.flatMap(result => result.nus)).sort((a, b) => a - b);
+  const ordinary = nus.filter(nu => nu >= 0), several = ordinary.length > 0 ? ordinary : nus;
+  const names = models.filter(model => shown.some(result => result.models.includes(model)));
+  const axis = el('div', {class: 'dots'}), said = el('output', {});
+  const slider = el('input', {type: 'range', min: 0, max: nus.length, value: 0, step: 1, 'aria-label': 'Poisson’s ratio', oninput: draw});
+  const variants = el('input', {type: 'checkbox', onchange: draw}), anyVariant = names.some(isVariant);
+
+  function draw() {
+    const choice = Number(slider.value), wanted = choice === 0 ? several : [nus[choice - 1]];
+    said.textContent = choice > 0 ? `at ν = ${nuText(nus[choice - 1])}`
+      : several.length === 1 ? `at ν = ${nuText(several[0])}` : `the largest for ν from ${nuText(several[0])} to ${nuText(several[several.length - 1])}`;
+    const lines = names.filter(model => variants.checked || !isVariant(model))
+      .map(model => ({model, dots: shown.map(result => dotOf(result, model, wanted)).filter(Boolean)}))
+      .filter(line => line.dots.length > 0)
+      .map(line => ({...line, worst: Math.max(...line.dots.map(dot => dot.error))}))
+      .sort((a, b) => b.dots.length - a.dots.length || a.worst - b.worst);   // those in most cases first
+    const all = lines.flatMap(line => line.dots.flatMap(dot => [dot.error, dot.whole])).filter(error => error > 0);
+    const low = Math.floor(Math.log10(Math.min(1, ...all))), high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(1, ...all))));
+    const at = error => `${100 * Math.min(1, Math.max(0, (Math.log10(Math.max(error, 1e-12)) - low) / (high - low)))}%`;
+    const ticks = Array.from({length: high - low + 1}, (_, i) => 10 ** (low + i));
+    const doubt = Math.max(0, ...lines.flatMap(line => line.dots.map(dot => dot.uncertainty || 0)));
+    const marks = () => [doubt > 0 ? el('span', {class: 'doubt', style: {width: at(doubt)}}) : null,
+                         ...ticks.map(tick => el('span', {class: 'tick', style: {left: at(tick)}}))];
+    axis.replaceChildren(
+      ...lines.flatMap(({model, dots, worst}) => [
+        el('div', {class: 'dot-name'}, modelName(model)),
+        el('div', {class: 'dot-track'}, marks(), dots.map(({result, row, error, own, whole}) => {
+          const text = `${model}, ${result.name}: ${percent(error)} at ν = ${nuText(row.poisson_ratio)}` +
+            (own === null ? '' : ` by its springs, ${percent(whole)} with coarse cells and staircase`);
+          const mark = (at, kind) => el('span', {class: kind, role: 'img', title: text, 'aria-label': text, style: {left: at, color: modelStyle(model).color}},
+                                        caseGlyphs[shown.indexOf(result) % caseGlyphs.length]);
+          return [own === null ? null : mark(at(whole), 'dot pale'), mark(at(error), 'dot')];
+        })),
+        el('div', {class: 'dot-worst'}, percent(worst))]),
+      el('div', {}, ''), el('div', {class: 'dot-track scale'}, ticks.map(tick => el('span', {class: 'tick-text', style: {left: at(tick)}}, `${number(tick, 1)} %`))), el('div', {}, ''));
+  }
+  box.append(el('div', {class: 'dot-head'},
+      el('b', {}, 'Displacement error against finite elements, '), said,
+      nus.length > 1 ? el('label', {class: 'choice'}, slider) : null,
+      anyVariant ? el('label', {class: 'ghost'}, variants, 'variants') : null,
+      el('span', {class: 'dot-legend'}, shown.map((result, i) => el('span', {}, caseGlyphs[i % caseGlyphs.length], ' ', result.name)),
+         el('span', {}, el('i', {class: 'doubt-sample'}), 'uncertainty of the reference'))),
+    axis,
+    shown.some(result => result.splits.length > 0) ? el('p', {class: 'note'}, 'On a body of cubes a dot is the springs’ own part of the error, the pale one the whole with coarse cells and staircase.') : '');
+  draw();
+}
+
+// ---- what it holds for, and costs
+
+const listedErrors = (model, nus) => smallStrain().map(result => dotOf(result, model, nus)).filter(Boolean)
+  .map(({result, own, whole}) => `${result.name} ${percent(whole)}${own === null ? '' : ` (its springs ${percent(own)})`}`).join(', ').replace(/ %/g, '\u00a0%');
+
+/// The middle of the CPU times of a model's solutions at the finest cells.
+function middleSeconds(model) {
+  const times = smallStrain().flatMap(result => result.runs.filter(run => run.model === model && run.ok &&
+    cellsText(run.cells) === cellsText(result.cells[result.cells.length - 1])).map(run => run.seconds + (run.set_up_seconds || 0)));
+  return times.sort((a, b) => a - b)[times.length >> 1];
+}
+
+function firstFacts(model) {
+  const box = document.getElementById('first-facts');
+  if (!model || smallStrain().length === 0) return box.remove();
+  const nus = distinct(smallStrain().flatMap(result => result.nus)), fact = (term, text) => text ? [el('dt', {}, term), el('dd', {}, text)] : [];
+  const doubts = smallStrain().flatMap(result => rowsAt(result, 'displacement_error').map(row => scaledUncertainty(result, row))).filter(isNumber);
+  const ours = middleSeconds(model), fem = middleSeconds('fem_q1');
+  box.append(...fact('Displacement of ' + model, listedErrors(model, nus.filter(nu => nu >= 0))),
+    ...fact('The same for auxetic solids, ν < 0', listedErrors(model, nus.filter(nu => nu < 0))),
+    ...fact('Reference', doubts.length > 0 ? `uncertain by up to ${percent(Math.max(...doubts))}` : ''),
+    ...fact('One solution', isNumber(ours) ? `${seconds(ours)}${isNumber(fem) ? `; trilinear finite elements on the same cells ${seconds(fem)}` : ''} (CPU, middle of all)` : ''));
+}
+
+function firstScreen() {
+  const [model] = closestModels();
+  for (const part of [() => firstFacts(model), dotPlot, () => firstBodies(model)]) {
+    try {
+      part();
+    } catch (error) {
+      console.error(error);
+    }
+  }
+}
