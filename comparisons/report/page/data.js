@@ -341,9 +341,20 @@ const dashes = [[], [7, 4], [2, 3]];
 const femStyles = {fem_q1: {color: '#8a8f98', marker: 'rectRot'}, fem_q2: {color: '#555d69', marker: 'rect'},
                    fem_p1: {color: '#b0b5bd', marker: 'triangle'}, fem_p2: {color: '#6d7580', marker: 'circle'}};
 
+/// These have the same colour in every report; the others take the following ones in their order.
+const namedModels = ['hybmss', 'emsm', 'emsm_random', 'msm_18', 'msm_random', 'hybmss_bt', 'hybmss A=1', 'hybmss_fd', 'hybmss_cf', 'hybmss_b'];
+
+/// A model in motion has the style of its equilibrium.
+function styleIndex(model) {
+  const still = name => name.replace(/ in motion$/, ''), name = still(model);
+  if (namedModels.includes(name)) return namedModels.indexOf(name);
+  const others = distinct(models.map(still)).filter(other => !namedModels.includes(other) && !isFem(other));
+  return namedModels.length + Math.max(0, others.indexOf(name));
+}
+
 function modelStyle(model) {
   if (isFem(model)) return {...(femStyles[model] || femStyles.fem_q1), dash: [6, 4]};
-  const index = Math.max(0, models.indexOf(model));
+  const index = styleIndex(model);
   return {color: palette[index % palette.length], marker: markers[index % markers.length],
           dash: dashes[Math.min(2, Math.floor(index / markers.length))]};
 }
