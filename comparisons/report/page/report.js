@@ -42,6 +42,7 @@ function aboutSection(section) {
 function decorateHead() {
   document.getElementById('generated').textContent = [results.program && results.program.version, results.generated]
     .filter(Boolean).join(' · ');
+  if (cases.length === 0 && verifications.length > 0) document.querySelector('#head h1').textContent = 'Are the reference’s finite elements right?';
   for (const item of document.querySelectorAll('.verdicts li')) item.prepend(swatch(item.dataset.model));
 }
 
