@@ -158,7 +158,7 @@ function shapesSection(section) {
   const colorChoice = select('Colour', Object.entries(colourings).map(([key, {text, symbol}]) => [key, `${text} ${symbol}`]), paint);
   const ghostBox = el('input', {type: 'checkbox', checked: true, onchange: build});
   const slider = el('input', {type: 'range', min: 0, max: 4, step: 0.01, oninput: () => paint(), onchange: () => aimAtAll()});
-  const playButton = el('button', {type: 'button', class: 'png', onclick: () => playing ? stop() : play()}, 'Play the motion');
+  const playButton = el('button', {type: 'button', class: 'play', onclick: () => playing ? stop() : play()}, 'Play the motion');
   const clock = el('output', {});
   let playing = null;
   const factor = el('output', {}), modelBoxes = el('div', {class: 'boxes'}), left = new Set();   // models taken out

@@ -350,6 +350,9 @@ class FiguresInBrowser : public ReportInBrowser {
   }
 };
 
+/// What a script of open_with() said.
+std::string said(const std::string& dom) { return dom.substr(std::min(dom.find("<p class=\"said\">"), dom.size())); }
+
 // Colours of a canvas of the page, of any kind, as numbers; and what a test wants to say.
 const std::string tools = R"js(
   const pixelsOf = canvas => {
@@ -385,9 +388,34 @@ TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
   EXPECT_NE(dom.find("<b>1.5000</b>"), std::string::npos) << "total of the finer cells in percent, in the table";
 }
 
+TEST_F(FiguresInBrowser, FirstScreenShowsTwoBodiesAndADotPerModelAndCase) {
+  const std::string dom = open_with(tools + R"js(
+    const look = left => {
+      const canvas = document.querySelector('#first-bodies canvas');
+      if (left > 0 && coloursOf(canvas) <= 20) return setTimeout(look, 100, left - 1);
+      say('bodies ' + (coloursOf(canvas) > 20 ? 'drawn' : 'blank') + ' in ' + document.querySelectorAll('#first-bodies .panel').length);
+      const dots = () => [...document.querySelectorAll('.dot:not(.pale)')].map(dot => dot.title).join('; ');
+      const slider = document.querySelector('#first-plot input[type=range]');
+      say('worst: ' + dots());
+      slider.value = 1;
+      slider.dispatchEvent(new Event('input'));
+      say('first: ' + dots());
+      say('facts: ' + document.querySelector('#first-facts').textContent);
+    };
+    setTimeout(look, 1000, 500);
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("bodies drawn in 2"), std::string::npos) << said(dom);
+  EXPECT_NE(dom.find("worst: fem_p1, compress: 1.0 % at ν = 0.4; hybmss, compress: 2.0 % at ν = 0.4<"),
+            std::string::npos)
+      << said(dom);
+  EXPECT_NE(dom.find("first: hybmss, compress: 0.50 % at ν = 0.25"), std::string::npos) << said(dom);
+  EXPECT_NE(dom.find("facts: Displacement of hybmsscompress"), std::string::npos) << said(dom);
+}
+
 TEST_F(FiguresInBrowser, OneDragTurnsAllBodies) {
   const std::string dom = open_with(tools + R"js(
-    const viewer = document.querySelector('.viewer'), canvas = viewer.querySelector('canvas');
+    const viewer = document.querySelector('#shapes .viewer'), canvas = viewer.querySelector('canvas');
     const panels = () => [...viewer.querySelectorAll('.panel')].map(panel => {
       const all = viewer.getBoundingClientRect(), box = panel.getBoundingClientRect(), scale = canvas.width / all.width;
       const copy = document.createElement('canvas');
