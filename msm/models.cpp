@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "meshes/volume.h"
+#include "msm/exchange/springs_file.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
@@ -32,6 +34,7 @@ Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* reg
     case hexagonal:
       return hexagonal_lattice(mesh, mean_edge(mesh));
     case random:
+    case file:
       break;
   }
   RandomParameters random = p.random;
@@ -39,7 +42,63 @@ Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* reg
   return random_network(region ? *region : region_of(mesh), random);
 }
 
-/// Depth [m] to which a support holds nodes: the surface, the outermost layer, or the case's value.
+std::string box_words(const NodalVectors& x) {
+  const auto corner = [](const Eigen::RowVector3d& v) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", v[0], v[1], v[2]);
+  };
+  return fmt::format("{} to {} m", corner(x.colwise().minCoeff()), corner(x.colwise().maxCoeff()));
+}
+
+/// @throws InputError unless the boxes of the mesh and of the network agree to two distances of nodes, and each node of
+///   the mesh has one of the network as near.
+void require_reached(const std::string& name, const Mesh& mesh, const Network& network, const Embedding* embedding) {
+  const double reach = 2 * std::cbrt(network.volume.sum() / network.nodes());
+  const double low = (mesh.nodes.colwise().minCoeff() - network.X.colwise().minCoeff()).cwiseAbs().maxCoeff();
+  const double high = (mesh.nodes.colwise().maxCoeff() - network.X.colwise().maxCoeff()).cwiseAbs().maxCoeff();
+  if (network.triangles.empty() && !(std::max(low, high) <= reach))
+    throw InputError(
+        fmt::format("{}: /nodes/position_m: the network reaches from {}, the body from {} (allowed: ends "
+                    "that differ by up to two distances of nodes, {:.3g} m)",
+                    name, box_words(network.X), box_words(mesh.nodes), reach));
+  if (!embedding || !network.triangles.empty()) return;
+  for (int m = 0; m < mesh.nodes.rows(); ++m) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (decltype(embedding->weights)::InnerIterator at(embedding->weights, m); at; ++at)
+      nearest = std::min(nearest, (network.X.row(at.col()) - mesh.nodes.row(m)).norm());
+    if (!(nearest <= reach))
+      throw InputError(
+          fmt::format("{}: /nodes/position_m: the body at ({:.4g}, {:.4g}, {:.4g}) m is {:.3g} m from the "
+                      "nearest node of the network (allowed: up to {:.3g} m)",
+                      name, mesh.nodes(m, 0), mesh.nodes(m, 1), mesh.nodes(m, 2), nearest, reach));
+  }
+}
+
+/// @throws InputError unless the volumes of the mesh and of the network differ by up to a factor of two.
+void require_volume(const std::string& name, const Mesh& mesh, const Network& network) {
+  const double of_mesh = volume(mesh, mesh.nodes), own = network.volume.sum();
+  if (!(own < 2 * of_mesh && own > of_mesh / 2))
+    throw InputError(
+        fmt::format("{}: /nodes/mass_kg: the masses over the density make {:.4g} m^3, the body has {:.4g} m^3 "
+                    "(allowed: half of it to twice)",
+                    name, own, of_mesh));
+}
+
+EmbeddedModel build_from_file(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material,
+                              const Region* region) {
+  require_material(p, material);
+  EmbeddedModel built;
+  built.model = p.springs->model;
+  const Network& network = built.model.network;
+  require_reached(p.row.name, mesh, network, nullptr);
+  require_volume(p.row.name, mesh, network);
+  const double grip = p.grip ? mean_edge(mesh) * *p.grip : p.springs->grip;
+  built.embedding = embed_at_nodes(mesh, network, grip, p.springs->grip_from_cells ? nullptr : region);
+  require_reached(p.row.name, mesh, network, &built.embedding);
+  return built;
+}
+
+}  // namespace
+
 double grip_of(const ModelParameters& p, const Mesh& mesh) {
   const double layer = p.row.topology == centres || p.row.topology == hexagonal ? 0.51
                        : p.random.surface_nodes                                 ? 0.0
@@ -48,10 +107,25 @@ double grip_of(const ModelParameters& p, const Mesh& mesh) {
   return spacing * p.grip.value_or(layer);
 }
 
-}  // namespace
+void require_material(const ModelParameters& p, const IsotropicMaterial& m) {
+  if (!p.springs || !p.springs->material) return;
+  const IsotropicMaterial& own = *p.springs->material;
+  const auto equal = [](double a, double b) { return std::abs(a - b) <= 1e-9 * std::abs(b); };
+  if (equal(own.youngs_modulus, m.youngs_modulus) && same_poisson_ratio(own.poisson_ratio, m.poisson_ratio) &&
+      equal(own.density, m.density))
+    return;
+  const auto words = [](const IsotropicMaterial& of) {
+    return fmt::format("E = {:g} Pa, nu = {:g}, {:g} kg/m^3", of.youngs_modulus, of.poisson_ratio, of.density);
+  };
+  throw InputError(
+      fmt::format("{}: /material: the springs are those of {} (allowed: the case's, {}; or a file without a "
+                  "material)",
+                  p.row.name, words(own), words(m)));
+}
 
 EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region) try {
+  if (p.springs) return build_from_file(p, mesh, material, region);
   EmbeddedModel built;
   auto& [network, laws, small_displacements_only] = built.model;
   network = network_of(p, mesh, region);

@@ -13,10 +13,20 @@ struct EmbeddedModel {
 };
 
 /// Builds the model of a body.  Disordered networks fill `region`, if given, which the mesh's cells only approximate.
-/// @throws InputError if the mesh does not suit the model; std::runtime_error if the network cannot have the material's
+/// Topology::file: the network as it is, embedded at the mesh's nodes if it has those, else as a disordered one.
+/// @throws InputError if the mesh or the material does not suit the model; std::runtime_error if the network cannot
+/// have the material's
 ///   moduli.
 EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region = nullptr);
+
+/// The network of a springs file stands for one material.
+/// @throws InputError if the model is a springs file of another one.
+void require_material(const ModelParameters& parameters, const IsotropicMaterial& material);
+
+/// Depth [m] to which a support holds nodes of a model that are not the mesh's: the surface, the outermost layer, or
+/// the case's value.
+double grip_of(const ModelParameters& parameters, const Mesh& mesh);
 
 /// The same without its embedding.
 inline MassSpringModel build_model(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material) {

@@ -1,6 +1,7 @@
 // A mass-spring model as named by the user.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <variant>
@@ -15,6 +16,7 @@ struct ModelChoice {
   std::map<std::string, std::variant<bool, double, std::string>> options;  ///< e.g. face_to_cube = 1.0
   std::string label;                                                       ///< "hybmss" or "hybmss A=1 paper_e_form"
   SourceLocation where;
+  std::filesystem::path file = {};  ///< a springs file instead of a row of the table; empty: the row `name`
   bool in_motion = false;  ///< integrated in time as [dynamics] says, not solved for its equilibrium
 };
 

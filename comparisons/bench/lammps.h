@@ -31,7 +31,7 @@ class Lammps {
   double seconds_of(const std::string& commands) const;  ///< CPU time of the whole process
 
   TemporaryFolder folder_;
-  double cutoff_, time_step_;
+  std::string set_up_;  ///< the commands before those that run
   long nodes_, springs_;
 };
 

@@ -1,7 +1,6 @@
-// The subcommands that use CalculiX: export and cross-check.
+// The subcommand `springproof cross-check`, which uses CalculiX.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,19 +11,6 @@ class App;
 }
 
 namespace springproof {
-
-/// `springproof export CASE --to calculix`: the case as an input deck.
-class ExportCommand {
- public:
-  void add_options(CLI::App& command);
-  /// @return 0.  @throws InputError, std::runtime_error if the file cannot be written.
-  int run() const;
-
- private:
-  std::string case_, to_, out_;
-  std::optional<double> poisson_ratio_;
-  std::vector<int> cells_;
-};
 
 /// `springproof cross-check CASE`.
 class CrossCheckCommand {

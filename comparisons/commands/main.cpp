@@ -10,6 +10,7 @@
 #include "comparisons/commands/calculix_command.h"
 #include "comparisons/commands/describe.h"
 #include "comparisons/commands/diff_command.h"
+#include "comparisons/commands/export_command.h"
 #include "comparisons/commands/homogenise_command.h"
 #include "comparisons/commands/material_command.h"
 #include "comparisons/commands/pictures_command.h"
@@ -107,7 +108,8 @@ int main(int argc, char** argv) try {
   homogenisation.add_options(*homogenise_command);
 
   ExportCommand export_case;
-  CLI::App* export_command = app.add_subcommand("export", "A case as an input deck for another program");
+  CLI::App* export_command = app.add_subcommand(
+      "export", "A case, or a body alone, for another program: the springs of its body, or an input deck");
   export_case.add_options(*export_command);
 
   CrossCheckCommand second_opinion;

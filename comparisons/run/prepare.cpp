@@ -47,6 +47,17 @@ EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& par
   throw InputError(choice.where, fmt::format("compare.models: {}", e.what()));
 }
 
+/// @throws InputError at a springs file that stands for another material than the case's.
+void check_own_models(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    for (const IsotropicMaterial& material : e.materials) try {
+        require_material(prepared.models[m], material);
+      } catch (const InputError& error) {
+        throw InputError(e.models[m].where, fmt::format("compare.models: {}", error.what()));
+      }
+}
+
 /// Builds the model and applies the loads, to find errors in either.
 void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number) try {
   const Experiment& experiment = prepared.experiment;
@@ -114,40 +125,58 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
     require_supported(transfer(lattice_loads(prepared), mesh, 1000, e.model_kinematics()), mesh.nodes);
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    if (prepared.models[m].row.topology == Topology::cells || &lattice == &prepared.lattices.front())
+    if (const Topology t = prepared.models[m].row.topology;
+        t == Topology::cells || t == Topology::file || &lattice == &prepared.lattices.front())
       try_model(prepared, lattice, m);
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);
   at_measured_points(prepared, lattice, u);
 }
 
-}  // namespace
-
-PreparedCase prepare(const Experiment& experiment) try {
-  PreparedCase prepared;
-  prepared.experiment = experiment;
-  prepared.loads = experiment.loads;
-  prepared.size = experiment.body.size;
-  check_expectations(experiment);
-  for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
-  check_kinematics(experiment, prepared.models);
-  prepared.geo = find_geo(experiment.body, experiment.file);
-  progress::phase("cutting the body");
-  experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
-  for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);
-  sample_patches(prepared);
-  for (const Lattice& lattice : prepared.lattices) {
-    progress::phase(fmt::format("trying loads and models on {} cells", cells_text(lattice.cells, " x ")));
-    try_lattice(prepared, lattice);
-  }
-  return prepared;
+/// Calls `prepare_it`; error messages name the case.
+template <class Prepare>
+PreparedCase naming(const Experiment& experiment, const Prepare& prepare_it) try {
+  return prepare_it();
 } catch (const NoRoom&) {  // no fault of the case
   throw;
 } catch (const InputError& e) {
   const std::string message = e.what(), file = experiment.file.string();
   throw InputError(message.starts_with(file) ? message : file + ": " + message);
 } catch (const std::runtime_error& e) {
-  throw std::runtime_error(experiment.file.string() + ": " + e.what());
+  const std::string message = e.what(), file = experiment.file.string();
+  throw std::runtime_error(message.starts_with(file) ? message : file + ": " + message);
+}
+
+}  // namespace
+
+PreparedCase prepare_lattices(const Experiment& experiment) {
+  return naming(experiment, [&] {
+    PreparedCase prepared;
+    prepared.experiment = experiment;
+    prepared.loads = experiment.loads;
+    prepared.size = experiment.body.size;
+    for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
+    check_own_models(prepared);
+    check_kinematics(experiment, prepared.models);
+    prepared.geo = find_geo(experiment.body, experiment.file);
+    progress::phase("cutting the body");
+    experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
+    for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);
+    return prepared;
+  });
+}
+
+PreparedCase prepare(const Experiment& experiment) {
+  return naming(experiment, [&] {
+    check_expectations(experiment);
+    PreparedCase prepared = prepare_lattices(experiment);
+    sample_patches(prepared);
+    for (const Lattice& lattice : prepared.lattices) {
+      progress::phase(fmt::format("trying loads and models on {} cells", cells_text(lattice.cells, " x ")));
+      try_lattice(prepared, lattice);
+    }
+    return prepared;
+  });
 }
 
 }  // namespace springproof

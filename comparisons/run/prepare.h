@@ -8,4 +8,9 @@ namespace springproof {
 /// @throws InputError for every error in the input, before any long work starts.
 PreparedCase prepare(const Experiment& experiment);
 
+/// The first part of prepare(): the body meshed, its lattices cut and its models resolved; loads and measures are not
+/// looked at.
+/// @throws InputError for errors in the body and the models.
+PreparedCase prepare_lattices(const Experiment& experiment);
+
 }  // namespace springproof

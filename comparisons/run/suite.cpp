@@ -24,15 +24,14 @@
 #include "comparisons/report/headline.h"
 #include "comparisons/report/report.h"
 #include "comparisons/run/case_run.h"
-#include "comparisons/run/checksum.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/folder_lock.h"
+#include "comparisons/run/input_checksum.h"
 #include "comparisons/run/part_file.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/status.h"
 #include "comparisons/run/time_left.h"
 #include "fem_reference/reference.h"
-#include "meshes/mesher/script_files.h"
 #include "problem/system/child.h"
 #include "problem/system/file_name.h"
 #include "problem/system/files.h"
@@ -55,13 +54,6 @@ std::string key_of(const fs::path& file) {
   std::string key = case_name(file);
   std::replace(key.begin(), key.end(), '/', '-');
   return file_name(key);
-}
-
-/// Checksum of all files from which a case is computed.
-std::string checksum_of(const PreparedCase& p) {
-  std::string all = checksum(p.experiment.text);
-  for (const fs::path& file : files_behind(p.geo)) all += file.filename().string() + checksum(text_of_file(file));
-  return checksum(all);
 }
 
 /// One part of one case: the unit of work.
@@ -93,7 +85,7 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
   std::vector<Task> tasks;
   const std::string fem = fem::version();
   for (const PreparedCase& p : prepared) {
-    const std::string sum = checksum_of(p);
+    const std::string sum = input_checksum(p);
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
       const std::string key = key_of(p.experiment.file);
       const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);

@@ -67,12 +67,13 @@ double cell_frequency_squared(const MassSpringModel& model, double density) {
 double safe_time_step(const MassSpringModel& model, double density, bool lagged) {
   const Network& network = model.network;
   const Eigen::VectorXd mass = checked_masses(network, density);
-  const bool cells = std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);
+  const bool cells =
+      !network.cell_springs.empty() && std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);
   NodeBlocks blocks(network.nodes(), Eigen::Matrix3d::Zero());
   for (const ForceLaw& law : model.laws) {
     if (const auto* dispersion = std::get_if<MomentumDispersion>(&law))
       add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
-    else if (belongs_to_cells(law) || (cells && std::holds_alternative<Springs>(law)))
+    else if (cells && (belongs_to_cells(law) || std::holds_alternative<Springs>(law)))
       continue;  // part of the cell's stiffness
     else if (std::holds_alternative<Springs>(law)) {
       std::vector<double> k;

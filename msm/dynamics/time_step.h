@@ -10,7 +10,8 @@ namespace springproof {
 ///  - springs: k dL^2 <= sum over both ends of k (1 + sqrt(m / m_other)) (n . u)^2, which leaves one 3x3 block per
 ///    node;
 ///  - momentum dispersion: additional springs k (R_i + R_j), with R_n of MomentumDispersion::stiffness_bound();
-///  - volume and hourglass corrections: with the springs, the stiffest single cell (Irons and Treharne);
+///  - volume and hourglass corrections of a lattice of equal cells: with the springs, the stiffest single cell (Irons
+///    and Treharne);
 ///  - any other law: the norms of the 3x3 blocks of its stiffness.
 /// A non-conservative form of dispersion can have complex frequencies, whose flutter only damping prevents, no time
 /// step; its bound is that of their real part.

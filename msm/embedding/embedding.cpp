@@ -124,6 +124,24 @@ std::vector<int> held_by(const Patch& patch, const Point& point, const Network& 
   return nodes;
 }
 
+constexpr double same_place = 1e-9;  // of the extent
+
+/// The number of the network's node at each node of the mesh, if they have all their nodes in common.
+std::optional<std::vector<int>> common_nodes(const Mesh& mesh, const Network& network) {
+  if (mesh.nodes.rows() != network.X.rows()) return {};
+  const Vec3 extent = (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()).transpose();
+  const double size = extent.maxCoeff();
+  const Neighbourhood neighbourhood(network.X, size / std::max(1.0, std::cbrt(network.nodes())) + same_place * size);
+  std::vector<int> number;
+  std::vector<char> taken(network.nodes(), 0);
+  for (int m = 0; m < mesh.nodes.rows(); ++m) {
+    const std::vector<int> here = neighbourhood.near(mesh.nodes.row(m).transpose(), same_place * size);
+    if (here.size() != 1 || taken[here[0]]++) return {};
+    number.push_back(here[0]);
+  }
+  return number;
+}
+
 }  // namespace
 
 Embedding nodes_of_mesh(const Mesh& mesh) {
@@ -164,6 +182,20 @@ Embedding embed(const Mesh& mesh, const Network& network, double grip, const Reg
   for (const Patch& p : mesh.patches) e.held[p.name] = held_by(p, node, network, neighbourhood, slack);
   if (region)
     for (const Patch& p : region->patches) e.held[p.name] = held_by(p, surface_point, network, neighbourhood, slack);
+  return e;
+}
+
+Embedding embed_at_nodes(const Mesh& mesh, const Network& network, double grip, const Region* region) {
+  const auto number = common_nodes(mesh, network);
+  if (!number) return embed(mesh, network, grip, region);
+  Embedding e = nodes_of_mesh(mesh);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int m = 0; m < mesh.nodes.rows(); ++m) entries.emplace_back(m, (*number)[m], 1.0);
+  e.weights.setFromTriplets(entries.begin(), entries.end());
+  for (auto& [patch, nodes] : e.held) {
+    for (int& n : nodes) n = (*number)[n];
+    std::sort(nodes.begin(), nodes.end());
+  }
   return e;
 }
 

@@ -27,4 +27,7 @@ Embedding nodes_of_mesh(const Mesh& mesh);
 /// @throws std::invalid_argument if the nodes span no volume (no area, for a network in a plane z = const).
 Embedding embed(const Mesh& mesh, const Network& network, double grip, const Region* region = nullptr);
 
+/// nodes_of_mesh() if there is a node of the network at each node of the mesh and no other, in any order; else embed().
+Embedding embed_at_nodes(const Mesh& mesh, const Network& network, double grip, const Region* region = nullptr);
+
 }  // namespace springproof

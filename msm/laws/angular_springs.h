@@ -17,6 +17,11 @@ struct AngularSprings {
 
   double beta = 0;  ///< stiffness of an angle [N m]
 
+  template <class Fields>
+  void fields(Fields& f) {
+    f.number("beta_Nm", beta);
+  }
+
   double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]

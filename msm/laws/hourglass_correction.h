@@ -19,6 +19,14 @@ struct HourglassCorrection {
   double face_to_cube = 2;  ///< A of the springs it corrects
   bool torsion = false;     ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
 
+  template <class Fields>
+  void fields(Fields& f) {
+    f.number("shear_modulus_Pa", shear_modulus);
+    f.number("poisson_ratio", poisson_ratio, -1, 0.5);
+    f.number("face_to_cube", face_to_cube, 0);
+    f.flag("torsion", torsion);
+  }
+
   double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]

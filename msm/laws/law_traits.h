@@ -1,4 +1,8 @@
 // Properties of a force law that solvers, kernels and the time step use: a constant of each law, next to its forces.
+//
+// Beside its traits a law has a function `fields` that names its parameters, for springs files (msm/exchange/):
+// number(KEY, value, least, largest), flag(KEY, value), choice(KEY, enumerator, names in the order of the enumerators),
+// of_springs(KEY, one or two numbers per spring), of_nodes(KEY, a node per node).
 #pragma once
 
 namespace springproof {

@@ -31,6 +31,14 @@ struct MomentumDispersion {
   /// Per node, the node whose J receives its springs' inflow; empty: its own.  Symmetric form only.
   std::vector<int> group = {};
 
+  template <class Fields>
+  void fields(Fields& f) {
+    f.number("q", q);
+    f.choice("form", form, {"symmetric", "share_weighted", "published", "published_transposed"});
+    f.of_springs("weight", weight);
+    f.of_nodes("group", group);
+  }
+
   bool conservative() const { return form == Dispersion::symmetric; }
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; 0 for non-conservative forms

@@ -11,6 +11,9 @@ namespace springproof {
 struct Springs {
   static constexpr LawTraits traits = {"springs", Reach::springs, true, true};
 
+  template <class Fields>
+  void fields(Fields&) {}
+
   double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]

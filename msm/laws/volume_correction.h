@@ -21,6 +21,12 @@ struct VolumeCorrection {
   double kappa = 0;  ///< lambda - G [Pa]
   VolumeEnergy form = VolumeEnergy::bounded;
 
+  template <class Fields>
+  void fields(Fields& f) {
+    f.number("kappa_Pa", kappa);
+    f.choice("form", form, {"paper", "bounded"});
+  }
+
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if J <= 0 (bounded)
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]

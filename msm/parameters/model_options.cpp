@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "msm/exchange/springs_file.h"
 #include "msm/parameters/model_table.h"
 #include "problem/system/nearest_name.h"
 
@@ -96,15 +97,23 @@ std::vector<Option> random_options() {
       flag("windows", [](bool on, ModelParameters& p) { p.random.windows = on; })};
 }
 
+Option hold_option() {
+  return flag("hold_rigid_motions", [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; });
+}
+
+Option grip_option() {
+  return number("grip", 0, 100, [](double v, ModelParameters& p) { p.grip = v; });
+}
+
 /// The options that a model has.
 std::vector<Option> options_of(const ModelRow& row) {
+  if (row.topology == Topology::file) return {hold_option(), grip_option()};
   std::vector<Option> options = {flag("paper_e_form", [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
   if (row.topology == Topology::cells || row.topology == Topology::centres)
     options.push_back({"face_to_cube", set_face_to_cube});
   if (row.topology == Topology::random) options = random_options();
-  options.push_back(flag("hold_rigid_motions", [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; }));
-  if (row.topology != Topology::cells)
-    options.push_back(number("grip", 0, 100, [](double v, ModelParameters& p) { p.grip = v; }));
+  options.push_back(hold_option());
+  if (row.topology != Topology::cells) options.push_back(grip_option());
   if (row.extension == Extension::volume_correction)
     options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
                                            {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));
@@ -127,9 +136,8 @@ std::vector<Option> options_of(const ModelRow& row) {
   throw InputError(choice.where, fmt::format("models: {}: {}", choice.name, message));
 }
 
-}  // namespace
-
-ModelParameters resolve(const ModelChoice& choice) {
+/// @throws InputError for a name that is not in the table.
+const ModelRow& row_of(const ModelChoice& choice) {
   const auto& table = model_table();
   const auto row = std::find_if(table.begin(), table.end(), [&](const ModelRow& r) { return r.name == choice.name; });
   if (row == table.end()) {
@@ -138,10 +146,39 @@ ModelParameters resolve(const ModelChoice& choice) {
     throw InputError(choice.where, fmt::format("models: unknown model '{}' (allowed: {}){}", choice.name,
                                                fmt::join(names, ", "), did_you_mean(choice.name, names)));
   }
+  return *row;
+}
+
+/// A springs file instead of a row of the table.
+ModelParameters read_own_model(const ModelChoice& choice) try {
   ModelParameters p;
-  p.row = *row;
-  p.face_to_cube = row->face_to_cube;
-  const std::vector<Option> options = options_of(*row);
+  p.springs = std::make_shared<SpringsFile>(read_springs(choice.file));
+  p.row = {choice.name,
+           "springs of a file",
+           Topology::file,
+           0,
+           false,
+           Extension::none,
+           p.springs->model.small_displacements_only,
+           false,
+           Calibration::shear_modulus};
+  return p;
+} catch (const InputError& e) {
+  throw InputError(choice.where, fmt::format("compare.models: {}", e.what()));
+}
+
+ModelParameters of_row(const ModelRow& row) {
+  ModelParameters p;
+  p.row = row;
+  p.face_to_cube = row.face_to_cube;
+  return p;
+}
+
+}  // namespace
+
+ModelParameters resolve(const ModelChoice& choice) {
+  ModelParameters p = choice.file.empty() ? of_row(row_of(choice)) : read_own_model(choice);
+  const std::vector<Option> options = options_of(p.row);
   std::vector<std::string> known;
   for (const Option& option : options) known.emplace_back(option.name);
   for (const auto& [key, value] : choice.options) {

@@ -36,7 +36,7 @@ const std::vector<ModelRow> table = {
 const std::vector<ModelRow>& model_table() { return table; }
 
 std::optional<double> own_poisson_ratio(const ModelRow& row) {
-  return row.extension == none ? std::optional(0.25) : std::nullopt;
+  return row.extension == none && row.topology != file ? std::optional(0.25) : std::nullopt;
 }
 
 double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& material) {

@@ -1,6 +1,7 @@
 // THE table of models: name -> topology + pattern + laws.  A new model is a new row.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,12 +13,15 @@
 
 namespace springproof {
 
+struct SpringsFile;
+
 /// Positions of the nodes and which of them are connected.
 enum class Topology {
   cells,      ///< cubic lattice by superposition of cells: nodes are the corners of the mesh's cubes
   centres,    ///< cubic lattice with a node in the middle of each cube
   random,     ///< random sequential addition, one node per cube of the mesh on average
   hexagonal,  ///< triangles in the plane z = const, for plane strain
+  file,       ///< those of a springs file
 };
 
 /// Extension that gives the springs, whose own Poisson's ratio is 1/4, another one.
@@ -43,7 +47,8 @@ struct ModelRow {
 
 const std::vector<ModelRow>& model_table();
 
-/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4; empty: any.
+/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4; empty: any (of
+/// a springs file: not known).
 std::optional<double> own_poisson_ratio(const ModelRow& row);
 
 /// Whether the model is valid under finite kinematics; hourglass corrections are for small displacements only.
@@ -64,6 +69,7 @@ struct ModelParameters {
   std::optional<double> grip;          ///< depth in node spacings to which supports hold nodes that are not the mesh's
   bool hold_rigid_motions = false;     ///< constrains those that the loads leave free, instead of an error
   int seeds = 1;                       ///< number of random networks to average: random.seed and those after it
+  std::shared_ptr<const SpringsFile> springs = {};  ///< of Topology::file: network, laws and material as read
 
   bool has(Extension extension) const { return row.extension == extension; }
 };

@@ -55,7 +55,7 @@ std::vector<std::string> fem_names(const Experiment& experiment) {
 const std::vector<std::string> default_measures = {"displacement_error", "volume_change", "reaction"};
 
 std::string label_of(const ModelChoice& choice) {
-  std::string label = choice.name;
+  std::string label = choice.file.empty() ? choice.name : choice.file.stem().string();
   for (const auto& [name, value] : choice.options) {
     if (const bool* flag = std::get_if<bool>(&value); flag && *flag) {
       label += " " + name;
@@ -81,15 +81,18 @@ ModelChoice read_model(const TomlValue& value) {
     choice.name = as_text(value);
   } else {
     // Options are checked by the table of models, so any key is accepted here.
-    const toml::node* name = table->get("model");
-    if (!name) refuse({value.node, value.key + ".model", value.file}, "is missing", "the name of a model");
-    choice.name = as_text({name, value.key + ".model", value.file});
+    const toml::node *name = table->get("model"), *file = table->get("file");
+    if (!name == !file)
+      refuse({value.node, value.key + ".model", value.file}, name ? "stands beside file" : "is missing",
+             "the name of a model, or file = \"a springs file\"");
+    choice.name = as_text({name ? name : file, value.key + (name ? ".model" : ".file"), value.file});
+    if (file) choice.file = std::filesystem::path(value.file).parent_path() / choice.name;
     for (const auto& [key, node] : *table) {
       const std::string option(key.str());
       const TomlValue option_value{&node, value.key + "." + option, value.file};
       if (option == "label")
         choice.label = as_text(option_value);
-      else if (option != "model")
+      else if (option != "model" && option != "file")
         choice.options[option] = read_option(option_value);
     }
   }

@@ -33,18 +33,22 @@ grep -q '^complete ' share/bash-completion/completions/springproof || fail "no c
 
 # Another program finds the library, and nothing of it in the source tree.
 grep -rl "$source" lib/cmake >paths && fail "paths of the source tree in $(cat paths)"
-mkdir other && cp "$source/examples/embed_msm.cpp" other
+mkdir other && cp "$source"/examples/*.cpp other
 cat >other/CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(other LANGUAGES C CXX)
 set(CMAKE_CXX_STANDARD 20)
 find_package(springproof REQUIRED)
-add_executable(embed_msm embed_msm.cpp)
-target_link_libraries(embed_msm PRIVATE springproof::msm)
+foreach(program embed_msm drop_springs)
+  add_executable(${program} ${program}.cpp)
+  target_link_libraries(${program} PRIVATE springproof::msm)
+endforeach()
 END
 # With this machine's instructions: vectors of Eigen are handed over to a library that has been built without them.
 if "$cmake" -S other -B other/build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_FLAGS="-O2 -march=native" >log 2>&1 && "$cmake" --build other/build >>log 2>&1; then
   other/build/embed_msm | grep '^tip ' || fail "the program that embeds springproof::msm"
+  "$springproof" export only_here.geo --size 0.1 0.1 0.1 --cells 4 4 4 -E 1e5 --nu 0.45 --to springs --out springs.json >log 2>&1 || fail "no springs of an installed case: $(cat log)"
+  other/build/drop_springs springs.json | grep ' rebounds by ' || fail "the program that loads a springs file"
 else
   cat log; fail "springproof::msm cannot be used"
 fi

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "msm/exchange/springs_file.h"
 #include "msm/laws/laws.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
@@ -49,6 +50,19 @@ std::vector<Case> cases() {
     all.push_back({"Angular" + std::string(beta < 0 ? "Negative" : "Positive"), {sheet, {AngularSprings{beta}}}, true});
   all.push_back({"SpringsOfASheet", {sheet, {Springs{}}}, true});
   return all;
+}
+
+TEST(LawSuiteCases, KeepTheirForcesInASpringsFile) {
+  for (const Case& c : cases()) {
+    SpringsFile file;
+    file.model = c.model;
+    file.model.laws.emplace_back(Springs{});
+    if (std::holds_alternative<Springs>(c.model.laws[0])) file.model.laws.pop_back();
+    const NodalVectors x = c.model.network.X + test::noise(c.model.network.nodes(), 0.01);
+    const NodalVectors expected = forces(file.model, x);
+    const SpringsFile read = parse_springs(springs_as_json(file), c.name);
+    EXPECT_LE((forces(read.model, x) - expected).norm(), 1e-12 * expected.norm()) << c.name;
+  }
 }
 
 TEST(LawSuiteCases, HaveEveryLawOfTheList) {

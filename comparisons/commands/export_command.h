@@ -1,0 +1,39 @@
+// The subcommand `springproof export`: a case, or a body alone, for another program.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/material.h"
+
+namespace CLI {
+class App;
+}
+
+namespace springproof {
+
+struct Experiment;
+
+/// What the command line asks for.
+struct ExportRequest {
+  std::string what, to, out, model;  ///< out, model: empty: chosen
+  Moduli moduli;                     ///< of a body alone; of a case the Poisson's ratio selects one of the case's
+  double density = 1000, scale = 1;
+  std::vector<double> size;
+  std::vector<int> cells;
+  std::optional<int> voxels;
+};
+
+/// `springproof export CASE --to FORM`.
+class ExportCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return 0.  @throws InputError, std::runtime_error if the file cannot be written.
+  int run() const;
+
+ private:
+  ExportRequest request_;
+};
+
+}  // namespace springproof

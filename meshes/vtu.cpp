@@ -1,0 +1,75 @@
+#include "meshes/vtu.h"
+
+#include <zlib.h>
+
+#include <bit>
+#include <new>
+#include <sstream>
+
+#include "problem/system/encoding.h"
+
+namespace springproof {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the VTU header says LittleEndian");
+
+/// As VTK's vtkZLibDataCompressor wants inline binary: number of blocks, size of a block, of a last and shorter one
+/// (none), of each compressed; then the blocks.  All bytes are one block.
+template <class T>
+std::string encoded(const T* data, std::size_t count) {
+  const std::uint64_t size = count * sizeof(T);
+  uLongf packed_size = compressBound(size);
+  std::vector<unsigned char> packed(packed_size);
+  if (size > 0 &&
+      compress2(packed.data(), &packed_size, reinterpret_cast<const Bytef*>(data), size, Z_BEST_SPEED) != Z_OK)
+    throw std::bad_alloc();
+  const std::uint64_t header[] = {size > 0 ? 1u : 0u, size, 0, packed_size};
+  const std::size_t header_size = sizeof header - (size > 0 ? 0 : sizeof *header);
+  return base64(header, header_size) + base64(packed.data(), size > 0 ? packed_size : 0);
+}
+
+template <class T>
+void write_array(std::ostream& out, const std::string& name, const char* type, int components, const T* data,
+                 std::size_t count) {
+  out << "        <DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << components
+      << "\" format=\"binary\">" << encoded(data, count) << "</DataArray>\n";
+}
+
+template <class T>
+void write_integers(std::ostream& out, const std::string& name, const char* type, const std::vector<T>& values) {
+  write_array(out, name, type, 1, values.data(), values.size());
+}
+
+/// The first array of the list is the one that is shown first.
+void write_data(std::ostream& out, const char* element, const char* shown, const std::vector<VtuArray>& arrays) {
+  out << "      <" << element;
+  if (!arrays.empty()) out << " " << shown << "=\"" << xml_escaped(arrays.front().name) << "\"";
+  out << ">\n";
+  for (const VtuArray& a : arrays)
+    write_array(out, xml_escaped(a.name), "Float64", a.components, a.values.data(), a.values.size());
+  out << "      </" << element << ">\n";
+}
+
+}  // namespace
+
+std::string text_of(const VtuFile& vtu) {
+  std::ostringstream out;
+  out << "<?xml version=\"1.0\"?>\n"
+         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
+         "  <UnstructuredGrid>\n"
+      << "    <Piece NumberOfPoints=\"" << vtu.points.rows() << "\" NumberOfCells=\"" << vtu.types.size() << "\">\n";
+  const bool vectors = !vtu.point_data.empty() && vtu.point_data.front().components == 3;
+  write_data(out, "PointData", vectors ? "Vectors" : "Scalars", vtu.point_data);
+  write_data(out, "CellData", "Scalars", vtu.cell_data);
+  out << "      <Points>\n";
+  write_array(out, "position", "Float64", 3, vtu.points.data(), static_cast<std::size_t>(vtu.points.size()));
+  out << "      </Points>\n      <Cells>\n";
+  write_integers(out, "connectivity", "Int32", vtu.connectivity);
+  write_integers(out, "offsets", "Int32", vtu.offsets);
+  write_integers(out, "types", "UInt8", vtu.types);
+  out << "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+  return std::move(out).str();
+}
+
+}  // namespace springproof

@@ -1,0 +1,37 @@
+// VTK's XML file of an unstructured grid, compressed binary.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "problem/vector.h"
+
+namespace springproof {
+
+/// One value of `components` numbers per point or cell.
+struct VtuArray {
+  std::string name;
+  int components;
+  std::vector<double> values;
+};
+
+struct VtuFile {
+  NodalVectors points;                     ///< [m]
+  std::vector<std::int32_t> connectivity;  ///< the points of all cells
+  std::vector<std::int32_t> offsets;       ///< of each cell: where its points end
+  std::vector<std::uint8_t> types;         ///< VTK's numbers of cell types
+  std::vector<VtuArray> point_data, cell_data;
+
+  template <class Nodes>
+  void add_cell(const Nodes& nodes, std::uint8_t type) {
+    connectivity.insert(connectivity.end(), nodes.begin(), nodes.end());
+    offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
+    types.push_back(type);
+  }
+};
+
+std::string text_of(const VtuFile& vtu);
+
+}  // namespace springproof

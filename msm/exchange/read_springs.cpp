@@ -1,0 +1,321 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "msm/exchange/json_place.h"
+#include "msm/exchange/lattice_of_cells.h"
+#include "msm/exchange/springs_document.h"
+#include "problem/system/files.h"
+#include "problem/system/input_error.h"
+#include "problem/system/shortened.h"
+
+namespace springproof {
+namespace {
+
+using nlohmann::json;
+
+constexpr double smallest_of_file = 1e-30, farthest_node = 1e9;  // [m]
+constexpr std::size_t largest_file = std::size_t{1} << 31;       // bytes
+constexpr double unbalanced = 1e-6;                              // force at rest over the sum of k L at a node
+
+/// Reads the parameters that a law names by its function `fields`.
+class LawReader {
+ public:
+  LawReader(const JsonPlace& law, std::size_t nodes, std::size_t springs)
+      : law_(law), nodes_(nodes), springs_(springs) {}
+
+  void number(const char* key, double& value, double least = -largest_number_of_file,
+              double largest = largest_number_of_file) {
+    known_.emplace_back(key);
+    value = law_.at(key).number(least, largest);
+  }
+  void flag(const char* key, bool& value) {
+    known_.emplace_back(key);
+    value = law_.at(key).flag();
+  }
+  template <class Enum>
+  void choice(const char* key, Enum& value, std::initializer_list<const char*> names) {
+    known_.emplace_back(key);
+    value = static_cast<Enum>(law_.at(key).choice(names));
+  }
+  void of_springs(const char* key, std::vector<double>& values) {
+    known_.emplace_back(key);
+    if (const auto place = law_.find(key)) values = place->numbers(place->first_is_list() ? 2 : 1, springs_, "springs");
+  }
+  void of_nodes(const char* key, std::vector<int>& values) {
+    known_.emplace_back(key);
+    if (const auto place = law_.find(key)) values = place->integers(1, static_cast<int>(nodes_) - 1, nodes_, "nodes");
+  }
+  void refuse_others() const { law_.require_known(known_); }
+
+ private:
+  JsonPlace law_;
+  std::size_t nodes_, springs_;
+  std::vector<std::string> known_;
+};
+
+/// Puts one or two numbers per spring into another order of the springs; of those turned around the two are exchanged.
+class SpringOrder {
+ public:
+  explicit SpringOrder(const std::vector<Spring>& springs) : number_(springs.size()), turned_(springs.size()) {
+    std::iota(number_.begin(), number_.end(), 0);
+    const auto ends = [&](std::size_t s) { return std::minmax(springs[s].i, springs[s].j); };
+    std::stable_sort(number_.begin(), number_.end(), [&](std::size_t a, std::size_t b) { return ends(a) < ends(b); });
+    for (std::size_t s = 0; s < springs.size(); ++s) turned_[s] = springs[number_[s]].i > springs[number_[s]].j;
+  }
+
+  std::size_t number(std::size_t place) const { return number_[place]; }
+
+  std::vector<Spring> operator()(const std::vector<Spring>& springs) const {
+    std::vector<Spring> sorted;
+    for (const std::size_t s : number_) sorted.push_back(springs[s]);
+    for (Spring& s : sorted)
+      if (s.i > s.j) std::swap(s.i, s.j);
+    return sorted;
+  }
+
+  void sort(std::vector<double>& values) const {
+    const std::size_t each = number_.empty() ? 0 : values.size() / number_.size();
+    std::vector<double> sorted;
+    for (std::size_t s = 0; s < number_.size(); ++s)
+      for (std::size_t end = 0; end < each; ++end)
+        sorted.push_back(values[each * number_[s] + (turned_[s] ? each - 1 - end : end)]);
+    values = std::move(sorted);
+  }
+
+ private:
+  std::vector<std::size_t> number_;
+  std::vector<char> turned_;
+};
+
+NodalVectors vectors(const JsonPlace& place) {
+  const std::vector<double> x = place.numbers(3, 0, nullptr, -farthest_node, farthest_node);
+  return Eigen::Map<const NodalVectors>(x.data(), static_cast<Eigen::Index>(x.size() / 3), 3);
+}
+
+template <std::size_t n>
+std::vector<std::array<int, n>> rows(const JsonPlace& place, int largest) {
+  const std::vector<int> flat = place.integers(static_cast<int>(n), largest);
+  std::vector<std::array<int, n>> all(flat.size() / n);
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    std::copy_n(flat.begin() + static_cast<std::ptrdiff_t>(n * r), n, all[r].begin());
+    std::array<int, n> sorted = all[r];
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+      place.refuse(fmt::format("number {} names a node twice", r), fmt::format("{} different nodes", n));
+  }
+  return all;
+}
+
+void read_nodes(const JsonPlace& document, SpringsFile& file) {
+  file.density = document.at("density_kg_m3").number(smallest_of_file, largest_number_of_file);
+  const JsonPlace nodes = document.at("nodes");
+  nodes.require_known({"position_m", "mass_kg"});
+  Network& network = file.model.network;
+  network.X = vectors(nodes.at("position_m"));
+  if (network.nodes() == 0) nodes.at("position_m").refuse("is empty", "at least one node");
+  const std::vector<double> mass =
+      nodes.at("mass_kg").numbers(1, static_cast<std::size_t>(network.nodes()), "nodes", smallest_of_file);
+  network.volume =
+      Eigen::Map<const Eigen::VectorXd>(mass.data(), static_cast<Eigen::Index>(mass.size())) / file.density;
+}
+
+/// In the order of the file.
+std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVectors& X) {
+  const JsonPlace place = document.at("springs");
+  place.require_known({"nodes", "stiffness_N_m", "rest_length_m"});
+  const auto ends = rows<2>(place.at("nodes"), static_cast<int>(X.rows()) - 1);
+  const auto stiffness = place.at("stiffness_N_m").numbers(1, ends.size(), "springs", smallest_of_file);
+  const auto length = place.at("rest_length_m").numbers(1, ends.size(), "springs", smallest_of_file, farthest_node);
+  std::vector<Spring> springs;
+  for (std::size_t s = 0; s < ends.size(); ++s) {
+    if (X.row(ends[s][0]) == X.row(ends[s][1]))
+      place.at("nodes").refuse(fmt::format("spring {} connects two nodes at the same place", s),
+                               "springs with a direction");
+    springs.push_back({ends[s][0], ends[s][1], stiffness[s], length[s]});
+  }
+  return springs;
+}
+
+void read_cells(const JsonPlace& document, Network& network) {
+  const int last = network.nodes() - 1;
+  if (const auto triangles = document.find("triangles")) network.triangles = rows<3>(*triangles, last);
+  const auto cells = document.find("cells");
+  if (!cells) return;
+  cells->require_known({"nodes", "edge_m"});
+  network.cells = rows<8>(cells->at("nodes"), last);
+  network.cell_edge = cells->at("edge_m").number(smallest_of_file, farthest_node);
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    for (int n = 0; n < 8; ++n) {
+      const Vec3 corner(hexahedron_corners[n][0], hexahedron_corners[n][1], hexahedron_corners[n][2]);
+      const Vec3 at = (network.X.row(network.cells[c][n]) - network.X.row(network.cells[c][0])).transpose();
+      if ((at - network.cell_edge * corner).cwiseAbs().maxCoeff() > 1e-6 * network.cell_edge)
+        cells->at("nodes").refuse(fmt::format("cell {} is no cube of edge_m in the order of corners", c),
+                                  "axis-aligned cubes, corners (0,0,0) (1,0,0) (1,1,0) (0,1,0) (0,0,1) (1,0,1) (1,1,1) "
+                                  "(0,1,1)");
+    }
+  if (!network.cells.empty()) recognise_lattice(network);
+}
+
+/// Calls `act` with a default value of each law of the list.
+template <class Act, class... Laws>
+void for_each_law(std::variant<Laws...>*, const Act& act) {
+  (act(Laws{}), ...);
+}
+
+void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
+  if (traits(law).reach == Reach::cells && network.cells.empty())
+    place.refuse("has no cells to act on", "beside cells");
+  if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
+    place.refuse("has no triangles to act on", "beside triangles");
+}
+
+void read_laws(const JsonPlace& document, const SpringOrder& order, MassSpringModel& model) {
+  const JsonPlace laws = document.at("laws");
+  const Network& network = model.network;
+  std::vector<std::string> known;
+  for_each_law(static_cast<ForceLaw*>(nullptr), [&](auto law) {
+    known.push_back(key_of_law(law.traits));
+    const auto place = laws.find(known.back());
+    if (!place) return;
+    LawReader reader(*place, static_cast<std::size_t>(network.nodes()), network.springs.size());
+    law.fields(reader);
+    reader.refuse_others();
+    if constexpr (std::is_same_v<decltype(law), MomentumDispersion>) order.sort(law.weight);
+    if constexpr (std::is_same_v<decltype(law), HourglassCorrection>) model.small_displacements_only = true;
+    require_its_parts(law, network, *place);
+    model.laws.emplace_back(std::move(law));
+  });
+  laws.require_known(known);
+}
+
+/// The internal forces vanish at rest.
+void require_rest(const JsonPlace& document, const MassSpringModel& model) {
+  const Network& network = model.network;
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(network.nodes());
+  for (const Spring& s : network.springs) {
+    scale[s.i] += s.stiffness * s.rest_length;
+    scale[s.j] += s.stiffness * s.rest_length;
+  }
+  const NodalVectors f = forces(model, network.X);
+  for (int n = 0; n < network.nodes(); ++n)
+    if (const double force = f.row(n).norm(); !(force <= unbalanced * scale[n]))
+      document.at("nodes").refuse(fmt::format("node {} is not at rest: a force of {:.3g} N acts on it", n, force),
+                                  "positions at which all forces balance, as where rest lengths are distances");
+  for (int n = 0; n < network.nodes(); ++n)
+    if (scale[n] == 0) document.at("springs").refuse(fmt::format("node {} has no spring", n), "one at least");
+}
+
+void read_patches(const JsonPlace& document, SpringsFile& file) {
+  const auto patches = document.find("patches");
+  if (!patches) return;
+  for (const std::string& name : patches->keys()) {
+    std::vector<int> nodes = patches->at(name).integers(1, file.model.network.nodes() - 1);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    file.patches[name] = std::move(nodes);
+  }
+}
+
+void read_surface(const JsonPlace& document, SpringsFile& file) {
+  const auto place = document.find("surface");
+  if (!place) return;
+  place->require_known({"position_m", "facets", "first", "nodes", "weights"});
+  EmbeddedSurface& surface = file.surface;
+  surface.vertices = vectors(place->at("position_m"));
+  const auto vertices = static_cast<std::size_t>(surface.vertices.rows());
+  surface.facets = rows<3>(place->at("facets"), static_cast<int>(vertices) - 1);
+  const std::vector<int> nodes = place->at("nodes").integers(1, file.model.network.nodes() - 1);
+  const std::vector<double> weights = place->at("weights").numbers(1, nodes.size(), "nodes of vertices");
+  const std::vector<int> first =
+      place->at("first").integers(1, static_cast<int>(nodes.size()), vertices + 1, "vertices and one more");
+  if (first.front() != 0 || first.back() != static_cast<int>(nodes.size()) ||
+      !std::is_sorted(first.begin(), first.end()))
+    place->at("first").refuse("does not ascend from 0 to the number of nodes",
+                              "where each vertex's nodes begin, and the end");
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t v = 0; v < vertices; ++v)
+    for (int at = first[v]; at < first[v + 1]; ++at) entries.emplace_back(static_cast<int>(v), nodes[at], weights[at]);
+  surface.weights.resize(surface.vertices.rows(), file.model.network.nodes());
+  surface.weights.setFromTriplets(entries.begin(), entries.end());
+}
+
+void require_format(const JsonPlace& document) {
+  if (const auto format = document.find("format"); !format || format->text() != springs_format)
+    document.refuse("is no springs file", fmt::format("\"format\": \"{}\"", springs_format));
+  document.at("version").number(springs_version, springs_version);
+  document.require_known({"format", "version", "origin", "material", "density_kg_m3", "grip_m", "grip_from", "derived",
+                          "laws", "nodes", "springs", "cells", "triangles", "patches", "surface", "check"});
+}
+
+SpringsFile read_document(const JsonPlace& document) {
+  require_format(document);
+  SpringsFile file;
+  read_nodes(document, file);
+  Network& network = file.model.network;
+  if (const auto material = document.find("material")) {
+    material->require_known({"youngs_modulus_Pa", "poisson_ratio"});
+    file.material =
+        IsotropicMaterial{material->at("youngs_modulus_Pa").number(smallest_of_file, largest_number_of_file),
+                          material->at("poisson_ratio").number(-1, 0.5), file.density};
+  }
+  if (const auto grip = document.find("grip_m")) file.grip = grip->number(0, farthest_node);
+  if (const auto from = document.find("grip_from")) file.grip_from_cells = from->choice({"surface", "cells"}) == 1;
+  const std::vector<Spring> unsorted = read_springs_of(document, network.X);
+  const SpringOrder order(unsorted);
+  network.springs = order(unsorted);
+  for (std::size_t s = 1; s < network.springs.size(); ++s)
+    if (const Spring& a = network.springs[s - 1], &b = network.springs[s]; a.i == b.i && a.j == b.j)
+      document.at("springs").at("nodes").refuse(
+          fmt::format("springs {} and {} connect the same nodes", order.number(s - 1), order.number(s)),
+          "one spring for each pair of nodes");
+  read_cells(document, network);
+  read_laws(document, order, file.model);
+  require_rest(document, file.model);
+  read_patches(document, file);
+  read_surface(document, file);
+  return file;
+}
+
+SourceLocation location_of_byte(std::string_view text, std::size_t byte, const std::string& name) {
+  const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
+  const auto line = std::count(before.begin(), before.end(), '\n');
+  const std::size_t start = before.rfind('\n');  // npos + 1 = 0
+  return {name, static_cast<int>(line) + 1, static_cast<int>(before.size() - (start + 1)) + 1};
+}
+
+}  // namespace
+
+SpringsFile parse_springs(std::string_view text, const std::string& name) {
+  json document;
+  try {
+    document = json::parse(text.begin(), text.end());
+  } catch (const json::parse_error& e) {
+    const std::string words = e.what();
+    const std::size_t end = words.rfind(" - ");
+    throw InputError(location_of_byte(text, e.byte, name),
+                     shortened(fmt::format("not valid JSON: {} (allowed: a springs file, docs/springs_file.md; NaN and "
+                                           "Infinity are no numbers of JSON)",
+                                           end == std::string::npos ? words : words.substr(end + 3))));
+  } catch (const json::exception& e) {
+    throw InputError({name, 0, 0}, shortened(fmt::format("not valid JSON: {}", e.what())));
+  }
+  return read_document({document, "", name});
+}
+
+SpringsFile read_springs(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  const SourceLocation where{file.string(), 0, 0};
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw InputError(where, "no such file");
+  if (!fs::is_regular_file(status)) throw InputError(where, "is no regular file (allowed: a springs file, NAME.json)");
+  if (fs::file_size(file, error) > largest_file) throw InputError(where, "is larger than 2 GiB (allowed: up to 2 GiB)");
+  return parse_springs(text_of_file(file), file.string());
+}
+
+}  // namespace springproof

@@ -1,0 +1,198 @@
+#include "msm/exchange/springs_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Keys = std::vector<std::string>;
+
+class DocumentWriter {
+ public:
+  Json& at(const Keys& keys) {
+    Json* place = &document.head;
+    for (const std::string& key : keys) place = &(*place)[key];
+    return *place;
+  }
+
+  template <class T>
+  void array(const Keys& keys, std::vector<std::size_t> shape, std::vector<T> values) {
+    const std::string name = fmt::format("{}", fmt::join(keys, "."));
+    at(keys) = "npy:" + name;
+    document.arrays.push_back({name, std::move(shape), std::move(values)});
+  }
+
+  void vectors(const Keys& keys, const NodalVectors& x) {
+    array<double>(keys, {static_cast<std::size_t>(x.rows()), 3}, {x.data(), x.data() + x.size()});
+  }
+
+  void numbers(const Keys& keys, std::vector<double> values) {
+    const std::size_t count = values.size();
+    array<double>(keys, {count}, std::move(values));
+  }
+
+  void indices(const Keys& keys, const std::vector<int>& values) {
+    array<std::int32_t>(keys, {values.size()}, {values.begin(), values.end()});
+  }
+
+  template <std::size_t n>
+  void rows(const Keys& keys, const std::vector<std::array<int, n>>& values) {
+    std::vector<std::int32_t> flat;
+    for (const auto& row : values) flat.insert(flat.end(), row.begin(), row.end());
+    array<std::int32_t>(keys, {values.size(), n}, std::move(flat));
+  }
+
+  SpringsDocument document;
+};
+
+/// Writes the parameters that a law names by its function `fields`.
+class LawWriter {
+ public:
+  LawWriter(DocumentWriter& writer, Keys law, std::size_t springs)
+      : writer_(writer), law_(std::move(law)), springs_(springs) {
+    writer_.at(law_) = Json::object();
+  }
+
+  void number(const char* key, double value, double = 0, double = 0) {
+    if (!std::isfinite(value)) throw std::invalid_argument(fmt::format("{} of a law is {}", key, value));
+    writer_.at(law_)[key] = value;
+  }
+  void flag(const char* key, bool value) { writer_.at(law_)[key] = value; }
+  template <class Enum>
+  void choice(const char* key, Enum value, std::initializer_list<const char*> names) {
+    writer_.at(law_)[key] = names.begin()[static_cast<std::size_t>(value)];
+  }
+  void of_springs(const char* key, const std::vector<double>& values) {
+    if (values.empty()) return;
+    if (values.size() == springs_)
+      writer_.numbers(with(key), values);
+    else
+      writer_.array<double>(with(key), {springs_, values.size() / springs_}, values);
+  }
+  void of_nodes(const char* key, const std::vector<int>& values) {
+    if (!values.empty()) writer_.indices(with(key), values);
+  }
+
+ private:
+  Keys with(const char* key) const {
+    Keys keys = law_;
+    keys.emplace_back(key);
+    return keys;
+  }
+
+  DocumentWriter& writer_;
+  Keys law_;
+  std::size_t springs_;
+};
+
+Json origin_json(const SpringsOrigin& origin) {
+  Json options = Json::object();
+  for (const auto& [key, value] : origin.options) std::visit([&, &k = key](const auto& v) { options[k] = v; }, value);
+  return {{"program", origin.program},
+          {"model", origin.model},
+          {"options", options},
+          {"input", origin.input},
+          {"checksum_xxh3_128", origin.checksum}};
+}
+
+void add_network(const Network& network, double density, DocumentWriter& out) {
+  out.vectors({"nodes", "position_m"}, network.X);
+  const Eigen::VectorXd mass = masses(network, density);
+  out.numbers({"nodes", "mass_kg"}, {mass.begin(), mass.end()});
+  std::vector<std::array<int, 2>> ends;
+  std::vector<double> stiffness, rest_length;
+  for (const Spring& s : network.springs) {
+    ends.push_back({s.i, s.j});
+    stiffness.push_back(s.stiffness);
+    rest_length.push_back(s.rest_length);
+  }
+  out.rows({"springs", "nodes"}, ends);
+  out.numbers({"springs", "stiffness_N_m"}, std::move(stiffness));
+  out.numbers({"springs", "rest_length_m"}, std::move(rest_length));
+  if (!network.cells.empty()) {
+    out.at({"cells", "edge_m"}) = network.cell_edge;
+    out.rows({"cells", "nodes"}, network.cells);
+  }
+  if (!network.triangles.empty()) out.rows({"triangles"}, network.triangles);
+}
+
+void add_laws(const MassSpringModel& model, DocumentWriter& out) {
+  out.at({"laws"}) = Json::object();
+  for (const ForceLaw& law : model.laws) {
+    const Keys keys = {"laws", key_of_law(traits(law))};
+    if (out.at({"laws"}).contains(keys.back()))
+      throw std::invalid_argument(fmt::format("a springs file has one {} only", traits(law).name));
+    LawWriter writer(out, keys, model.network.springs.size());
+    std::visit([&](auto l) { l.fields(writer); }, law);
+  }
+}
+
+void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
+  if (surface.vertices.rows() == 0) return;
+  out.vectors({"surface", "position_m"}, surface.vertices);
+  out.rows({"surface", "facets"}, surface.facets);
+  std::vector<int> first = {0}, nodes;
+  std::vector<double> weights;
+  for (Eigen::Index v = 0; v < surface.weights.rows(); ++v) {
+    for (decltype(surface.weights)::InnerIterator at(surface.weights, v); at; ++at) {
+      nodes.push_back(static_cast<int>(at.col()));
+      weights.push_back(at.value());
+    }
+    first.push_back(static_cast<int>(nodes.size()));
+  }
+  out.indices({"surface", "first"}, first);
+  out.indices({"surface", "nodes"}, nodes);
+  out.numbers({"surface", "weights"}, std::move(weights));
+}
+
+}  // namespace
+
+std::string key_of_law(const LawTraits& traits) {
+  std::string key = traits.name;
+  std::replace(key.begin(), key.end(), ' ', '_');
+  return key;
+}
+
+NodalVectors check_positions(const NodalVectors& X) {
+  NodalVectors x = X;
+  const Eigen::RowVector3d low = X.colwise().minCoeff(), extent = X.colwise().maxCoeff() - low;
+  const double size = extent.maxCoeff();
+  for (Eigen::Index n = 0; n < X.rows(); ++n) {
+    const Eigen::RowVector3d s = size > 0 ? Eigen::RowVector3d((X.row(n) - low) / size) : Eigen::RowVector3d::Zero();
+    x(n, 0) += 0.01 * size * (s[0] * s[1] - s[2] / 2);
+    x(n, 1) += 0.01 * size * (s[1] * s[1] * s[2] + s[0] / 3);
+    if (extent[2] > 0) x(n, 2) += 0.01 * size * (s[0] * s[2] - s[1] * s[1]);
+  }
+  return x;
+}
+
+SpringsDocument document_of(const SpringsFile& springs) {
+  DocumentWriter out;
+  const Network& network = springs.model.network;
+  out.document.head = {{"format", springs_format}, {"version", springs_version}};
+  out.at({"origin"}) = origin_json(springs.origin);
+  if (springs.material)
+    out.at({"material"}) = {{"youngs_modulus_Pa", springs.material->youngs_modulus},
+                            {"poisson_ratio", springs.material->poisson_ratio}};
+  out.at({"density_kg_m3"}) = springs.density;
+  out.at({"grip_m"}) = springs.grip;
+  out.at({"grip_from"}) = springs.grip_from_cells ? "cells" : "surface";
+  out.at({"derived"}) = springs.derived;
+  add_laws(springs.model, out);
+  add_network(network, springs.density, out);
+  out.at({"patches"}) = Json::object();
+  for (const auto& [name, nodes] : springs.patches) out.indices({"patches", name}, nodes);
+  add_surface(springs.surface, out);
+  const NodalVectors x = check_positions(network.X);
+  out.vectors({"check", "position_m"}, x);
+  out.vectors({"check", "force_N"}, forces(springs.model, x));
+  return std::move(out.document);
+}
+
+}  // namespace springproof

@@ -1,0 +1,34 @@
+// A springs file as a tree of keys with its arrays apart: what is written as JSON or as arrays of NumPy.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "msm/exchange/springs_file.h"
+
+namespace springproof {
+
+/// Row by row.
+struct NamedArray {
+  std::string name;  ///< its keys, "nodes.position_m"
+  std::vector<std::size_t> shape;
+  std::variant<std::vector<double>, std::vector<std::int32_t>> values;
+};
+
+struct SpringsDocument {
+  nlohmann::ordered_json head;  ///< where an array belongs: the text "npy:" and its name
+  std::vector<NamedArray> arrays;
+};
+
+SpringsDocument document_of(const SpringsFile& springs);
+
+/// The name of a law as a key, "volume_correction".
+std::string key_of_law(const LawTraits& traits);
+
+inline constexpr const char* springs_format = "springproof springs";
+inline constexpr int springs_version = 1;
+
+}  // namespace springproof

@@ -1,0 +1,68 @@
+// A body's springs as a file, for programs that step them without this library: docs/springs_file.md.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "msm/laws/laws.h"
+#include "problem/material.h"
+
+namespace springproof {
+
+/// The true surface of the body, which the network carries: vertex v is displaced by the sum of weight (v, n) times the
+/// displacement of node n.
+struct EmbeddedSurface {
+  NodalVectors vertices = NodalVectors(0, 3);            ///< at rest [m]
+  std::vector<std::array<int, 3>> facets;                ///< outward by the right-hand rule
+  Eigen::SparseMatrix<double, Eigen::RowMajor> weights;  ///< vertices x nodes; rows sum to 1
+};
+
+/// Where a springs file comes from.  Not read back.
+struct SpringsOrigin {
+  std::string program, model;  ///< model: its name in the table
+  std::map<std::string, std::variant<bool, double, std::string>> options;
+  std::string input, checksum;  ///< the body's file and the checksum of all files that the springs follow from
+};
+
+struct SpringsFile {
+  MassSpringModel model;
+  double density = 1000;                      ///< [kg/m^3]; a node's mass is this times its volume share
+  std::optional<IsotropicMaterial> material;  ///< what the springs stand for; empty: not known
+  double grip = 0;  ///< depth [m] to which a support holds nodes, for nodes that are no mesh's
+  bool grip_from_cells =
+      false;  ///< measured from the surface of the cells that the body is cut into, not from the true one
+  std::map<std::string, std::vector<int>> patches;  ///< name -> nodes that its supports hold, ascending
+  EmbeddedSurface surface;                          ///< no vertices: none
+  SpringsOrigin origin;
+  std::map<std::string, double> derived;  ///< what follows from the rest, as "safe_time_step_s".  Not read back.
+};
+
+/// Reads a springs file (JSON).  Checked: the schema, that every number is finite and in range, every index a node,
+/// every mass positive, every pair of nodes connected once, and that the network is in equilibrium at rest.  A network
+/// of equal cells whose springs are superposed from them is recognised and gets the kernels and solvers of lattices.
+/// @throws InputError "FILE: /pointer: what is wrong (allowed: ...)", or with line and column where it is no JSON.
+SpringsFile read_springs(const std::filesystem::path& file);
+
+/// As read_springs, from text; `name` is used for messages.
+SpringsFile parse_springs(std::string_view text, const std::string& name);
+
+/// Writes .json, .npz (the same as arrays of NumPy) or .vtu (lines for ParaView), by the ending of the name.
+/// @throws InputError for any other ending; std::runtime_error if the file cannot be written.
+void write_springs(const std::filesystem::path& file, const SpringsFile& springs);
+
+/// @throws InputError unless write_springs() knows the name's ending.
+void require_springs_ending(const std::filesystem::path& file);
+
+std::string springs_as_json(const SpringsFile& springs);
+
+/// Smooth positions near rest [m], the same on every machine, whose forces a springs file states: what an
+/// implementation of its laws is tested with.
+NodalVectors check_positions(const NodalVectors& X);
+
+}  // namespace springproof

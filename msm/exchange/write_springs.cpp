@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <iterator>
+#include <map>
+
+#include "meshes/vtu.h"
+#include "msm/exchange/npz.h"
+#include "msm/exchange/springs_document.h"
+#include "problem/system/files.h"
+#include "problem/system/input_error.h"
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void append(double value, std::string& out) {
+  const std::size_t start = out.size();
+  fmt::format_to(std::back_inserter(out), "{}", value);
+  if (out.find_first_of(".e", start) == std::string::npos) out += ".0";  // readers tell it from an integer
+}
+void append(std::int32_t value, std::string& out) { fmt::format_to(std::back_inserter(out), "{}", value); }
+
+/// In one line.
+void append(const NamedArray& array, std::string& out) {
+  const bool flat = array.shape.size() == 1;
+  const std::size_t rows = array.shape[0], columns = flat ? 1 : array.shape[1];
+  std::visit(
+      [&](const auto& values) {
+        out += '[';
+        for (std::size_t r = 0; r < rows; ++r) {
+          if (r > 0) out += ',';
+          if (!flat) out += '[';
+          for (std::size_t c = 0; c < columns; ++c) {
+            if (c > 0) out += ',';
+            append(values[r * columns + c], out);
+          }
+          if (!flat) out += ']';
+        }
+        out += ']';
+      },
+      array.values);
+}
+
+/// One key per line.
+void append(const Json& value, const std::map<std::string, const NamedArray*>& arrays, int depth, std::string& out) {
+  if (value.is_object() && !value.empty()) {
+    const char* before = "{\n";
+    for (const auto& [key, member] : value.items()) {
+      out += before;
+      out.append(depth + 1, ' ');
+      out += Json(key).dump() + ": ";
+      append(member, arrays, depth + 1, out);
+      before = ",\n";
+    }
+    out += '\n';
+    out.append(depth, ' ');
+    out += '}';
+    return;
+  }
+  const auto array = value.is_string() ? arrays.find(value.get_ref<const std::string&>()) : arrays.end();
+  array != arrays.end() ? append(*array->second, out) : void(out += value.dump());
+}
+
+std::string springs_as_npz(const SpringsFile& springs) {
+  const SpringsDocument document = document_of(springs);
+  std::vector<std::pair<std::string, std::string>> files = {{"springs.json", document.head.dump(1)}};
+  for (const NamedArray& array : document.arrays) files.emplace_back(array.name + ".npy", npy(array));
+  return zip(files);
+}
+
+std::string springs_as_vtu(const SpringsFile& springs) {
+  constexpr std::uint8_t line = 3;
+  const Network& network = springs.model.network;
+  VtuFile vtu{network.X, {}, {}, {}, {}, {}};
+  VtuArray stiffness{"stiffness_N_m", 1, {}}, rest_length{"rest_length_m", 1, {}};
+  for (const Spring& s : network.springs) {
+    vtu.add_cell(std::array{s.i, s.j}, line);
+    stiffness.values.push_back(s.stiffness);
+    rest_length.values.push_back(s.rest_length);
+  }
+  const Eigen::VectorXd mass = masses(network, springs.density);
+  vtu.point_data = {{"mass_kg", 1, {mass.begin(), mass.end()}}};
+  vtu.cell_data = {std::move(stiffness), std::move(rest_length)};
+  return text_of(vtu);
+}
+
+struct SpringsForm {
+  const char* ending;
+  std::string (*write)(const SpringsFile&);
+};
+constexpr SpringsForm springs_forms[] = {
+    {".json", springs_as_json}, {".npz", springs_as_npz}, {".vtu", springs_as_vtu}};
+
+const SpringsForm& form_of(const std::filesystem::path& file) {
+  for (const SpringsForm& form : springs_forms)
+    if (file.extension() == form.ending) return form;
+  throw InputError(fmt::format("{}: is no name of a springs file (allowed: a name that ends in .json, .npz or .vtu)",
+                               file.string()));
+}
+
+}  // namespace
+
+std::string springs_as_json(const SpringsFile& springs) {
+  const SpringsDocument document = document_of(springs);
+  std::map<std::string, const NamedArray*> arrays;
+  for (const NamedArray& array : document.arrays) arrays["npy:" + array.name] = &array;
+  std::string out;
+  append(document.head, arrays, 0, out);
+  return out + "\n";
+}
+
+void require_springs_ending(const std::filesystem::path& file) { form_of(file); }
+
+void write_springs(const std::filesystem::path& file, const SpringsFile& springs) {
+  write_file(file, form_of(file).write(springs));
+}
+
+}  // namespace springproof

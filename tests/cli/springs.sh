@@ -1,0 +1,181 @@
+#!/usr/bin/env bash
+# Springs files: written in every form, by the schema, with our forces in another program; read back as a model of a case.
+#   springs.sh PROGRAM SOURCE-FOLDER [PYTHON]
+# Without numpy, jsonschema or lmp what needs them is left out, and said.
+set -u
+program=$1 source=$2
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+python_with() { for p in python3 /usr/bin/python3; do "$p" -W ignore -c "import $1" 2>/dev/null && { echo "$p"; return; }; done; }
+numpy=$(python_with numpy) jsonschema=$(python_with jsonschema) lmp=${SPRINGPROOF_LAMMPS:-$(command -v lmp)}
+
+cat >case.toml <<'END'
+[body]
+geo = "block.geo"
+size_m = [0.2, 0.1, 0.1]
+cells = [[4, 2, 2], [8, 4, 4]]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = [0.25, 0.4]
+density_kg_m3 = 1100
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "x_max"
+force_N = [0, 0, -0.1]
+[compare]
+models = ["hybmss", { model = "hybmss", face_to_cube = 1, label = "A1" }]
+END
+export_to() { "$program" export "$@" >log 2>&1 || fail "export $*: status $?: $(cat log)"; }
+
+# Every model of the table, in every form.
+awk '/^```python$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$source/docs/springs_file.md" >springs.py
+for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { inside = 0 } inside { print $1 }'); do
+  cells="4 2 2"
+  [[ $model != *hexagonal && $model != kirkwood ]] || cells="4 2 1"
+  for form in json npz; do
+    # shellcheck disable=SC2086
+    export_to case.toml --to springs --model "$model" --cells $cells --out "$model.$form"
+    if [ -n "$numpy" ]; then
+      off=$("$numpy" springs.py "$model.$form" | awk '{ print $3 }')
+      awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-9) }' || fail "forces of $model.$form by docs/springs_file.md: off by '$off'"
+    fi
+  done
+done
+models=$(ls -- *.json | wc -l)
+[ "$models" -ge 15 ] || fail "only $models models"
+[ -n "$numpy" ] || echo "without numpy: forces in Python are not checked"
+if [ -n "$jsonschema" ]; then
+  "$jsonschema" -W ignore - "$source/docs/springs.schema.json" ./*.json <<'END' || fail "a file is not what the schema says"
+import json, sys, jsonschema
+schema = json.load(open(sys.argv[1]))
+jsonschema.Draft202012Validator.check_schema(schema)
+for name in sys.argv[2:]:
+    jsonschema.validate(json.load(open(name)), schema)
+broken = json.load(open(sys.argv[2]))
+broken["nodes"]["mass_kg"][0] = 0
+try:
+    jsonschema.validate(broken, schema)
+    sys.exit("the schema accepts a node without mass")
+except jsonschema.ValidationError:
+    pass
+END
+else
+  echo "without jsonschema: the schema is not checked"
+fi
+export_to case.toml --to springs --model msm_18 --out lines.vtu
+grep -q 'Name="stiffness_N_m"' lines.vtu && grep -q 'NumberOfPoints="45"' lines.vtu || fail "lines.vtu"
+
+# Of a case the model by its label, a Poisson's ratio and a resolution; of a body alone its material.
+export_to case.toml --to springs --model A1 --nu 0.4 --cells 8 4 4 --out a1.json
+grep -q '"face_to_cube": 1.0' a1.json || fail "the model by its label has not its options"
+grep -q '"poisson_ratio": 0.4' a1.json || fail "the Poisson's ratio is another"
+cp "$source/comparisons/experiments/calibration/icosahedron.stl" .
+export_to icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 300 --model hybmss_bt --to springs --out body.json
+grep -q '"density_kg_m3": 900.0' body.json || fail "the density is another"
+
+# As a model of a case: the same rows as the built-in model that it was exported from.
+cat >template.toml <<'END'
+[body]
+geo = "block.geo"
+size_m = [0.2, 0.1, 0.1]
+cells = [4, 2, 2]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.4
+density_kg_m3 = 1100
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "x_max"
+force_N = [0, 0, -0.1]
+[compare]
+models = ["MODEL", { file = "MODEL.json", label = "mine" }]
+measures = ["displacement_error", "volume_change", "reaction", "network"]
+[reference]
+elements = []
+END
+for model in hybmss hybmss_bt emsm emsm_random msm_centred; do
+  sed "s/MODEL/$model/g" template.toml >own.toml
+  export_to own.toml --model $model --to springs --out $model.json
+  "$program" compare own.toml --out own --quiet >log 2>&1
+  rows=$(awk -F, -v model="$model" '
+    $3 == model { built_in[$6] = $7 } $3 == "mine" { own[$6] = $7 }
+    END { for (m in built_in) { ++n; d = own[m] - built_in[m]; if (!(m in own) || d > 1e-10 || d < -1e-10) print m, built_in[m], own[m] } print n }' own/results.csv)
+  [ "$(wc -l <<<"$rows")" -eq 1 ] && [ "$rows" -ge 8 ] || fail "$model from its file has other rows: $rows"
+done
+
+# A changed file is another input: its part is not taken back.
+sed 's/MODEL/hybmss/g' template.toml >own.toml
+"$program" compare own.toml --out own --quiet >log 2>&1
+"$program" compare own.toml --out own --resume 2>&1 | grep -q 'kept from before' || fail "an unchanged part is computed again"
+sed -i 's/"version": 1/"version":  1/' hybmss.json
+"$program" compare own.toml --out own --resume 2>&1 | grep -q 'kept from before' && fail "a part of another springs file is kept"
+
+# refused PATTERN SED-EXPRESSION: the file of hybmss, spoilt
+cp hybmss.json good.json
+refused() {
+  sed -E "$2" good.json >hybmss.json
+  cmp -s good.json hybmss.json && fail "nothing is spoilt by $2"
+  "$program" compare own.toml --out refused >log 2>&1
+  local status=$?
+  [ $status -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log && [ ! -e refused ] || fail "$2: status $status: $(head -c 600 log)"
+}
+refused 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
+refused 'own.toml:16:.*hybmss.json: /version: is 2 \(allowed' 's/"version":  1/"version": 2/'
+refused 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
+refused 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
+refused 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'
+refused 'hybmss.json: /nodes/mass_kg: has 44 numbers \(allowed: 45, as there are nodes' 's/("mass_kg": \[)[^,]*,/\1/'
+refused 'hybmss.json: /springs/rest_length_m/0: is -0.05 ' 's/("rest_length_m": \[)[^,]*/\1-0.05/'
+refused 'hybmss.json: /springs/stiffness_N_m/0: is null ' 's/("stiffness_N_m": \[)[^,]*/\1null/'
+refused 'hybmss.json: /nodes: node 0 is not at rest' 's/("rest_length_m": \[)[^,]*/\10.06/'
+refused 'hybmss.json: /material: the springs are those of E = 10000 Pa, nu = 0.3.*nu = 0.4' 's/"poisson_ratio": 0.4/"poisson_ratio": 0.3/'
+refused "hybmss.json: /laws/volume_corection: is an unknown key.*did you mean 'volume_correction'" 's/volume_correction/volume_corection/'
+refused 'hybmss.json: /density: is an unknown key' 's/density_kg_m3/density/'
+cp good.json hybmss.json
+sed -i 's/hybmss.json/none.json/' own.toml
+"$program" compare own.toml --out refused >log 2>&1
+[ $? -eq 2 ] && grep -q 'none.json: no such file' log || fail "a file that is missing: $(cat log)"
+sed -i 's/none.json/hybmss.json/; s/0\.2, 0\.1, 0\.1/20, 10, 10/' own.toml
+"$program" compare own.toml --out refused >log 2>&1
+[ $? -eq 2 ] && grep -q 'the network reaches from .* the body from' log || fail "a body outside the network: $(cat log)"
+"$program" export case.toml --to springs --out springs.txt >log 2>&1
+[ $? -eq 2 ] && grep -q 'allowed: a name that ends in .json, .npz or .vtu' log || fail "another ending: $(cat log)"
+"$program" export icosahedron.stl --to springs >log 2>&1
+[ $? -eq 2 ] && grep -q 'a body alone needs -E and --nu' log || fail "a body without a material: $(cat log)"
+
+# LAMMPS: its forces are ours, at a state that it has moved to.
+"$program" export case.toml --to lammps --model emsm --out springs.data >log 2>&1
+[ $? -eq 2 ] && grep -q 'emsm has forces that LAMMPS does not compute (allowed: msm_18, .*hybmss_cf' log || fail "a model that LAMMPS has not: $(cat log)"
+for model in msm_18 hybmss_cf msm_random; do
+  export_to case.toml --to lammps --model $model --out springs.data
+  export_to case.toml --to springs --model $model --out springs.npz
+  if [ -z "$lmp" ] || [ -z "$numpy" ]; then echo "without lmp or numpy: LAMMPS' forces are not checked"; break; fi
+  sed 's/^run 0$//' springs.in >moved.in
+  cat >>moved.in <<'END'
+displace_atoms all ramp x 0.0 0.01 z 0.0 0.1 units box
+displace_atoms all ramp y 0.0 0.02 x 0.0 0.2 units box
+dump 1 all custom 1 moved id x y z fx fy fz mass
+dump_modify 1 sort id format float %.17g
+run 0
+END
+  "$lmp" -in moved.in -log none >log 2>&1 || fail "lmp: $(tail -3 log)"
+  "$numpy" - <<'END' || fail "LAMMPS has other forces of $model"
+import numpy as np, sys
+sys.argv = ["", "springs.npz"]
+from springs import load, forces
+s = load("springs.npz")
+theirs = np.loadtxt("moved", skiprows=9)
+ours = forces(s, theirs[:, 1:4])
+assert abs(ours).max() > 1e-3
+assert abs(theirs[:, 4:7] - ours).max() < 1e-9 * abs(ours).max(), abs(theirs[:, 4:7] - ours).max() / abs(ours).max()
+END
+done
+if [ -z "$numpy$jsonschema" ] && [ $failures -eq 0 ]; then exit 77; fi
+exit $((failures > 0))
