@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "msm/parameters/model_table.h"
 #include "problem/system/nearest_name.h"
@@ -102,6 +103,9 @@ std::vector<Option> options_of(const ModelRow& row) {
   if (row.topology == Topology::cells || row.topology == Topology::centres)
     options.push_back({"face_to_cube", set_face_to_cube});
   if (row.topology == Topology::random) options = random_options();
+  if (row.topology == Topology::centres)
+    options.push_back(
+        number("turned_deg", -90, 90, [](double v, ModelParameters& p) { p.turned = v * std::numbers::pi / 180; }));
   options.push_back(flag("hold_rigid_motions", [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; }));
   if (row.topology != Topology::cells)
     options.push_back(number("grip", 0, 100, [](double v, ModelParameters& p) { p.grip = v; }));
