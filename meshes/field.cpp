@@ -18,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the VTU header says LittleEndian");
 
-constexpr int vtk_tetrahedron = 10, vtk_hexahedron = 12;
+constexpr int vtk_line = 3, vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
 /// As VTK's vtkZLibDataCompressor wants inline binary: number of blocks, size of a block, of a last and shorter one
 /// (none), of each compressed; then the blocks.  All bytes are one block.
@@ -51,21 +51,46 @@ void write_integers(std::ostream& out, const std::string& name, const char* type
   write_array(out, name, type, 1, values.data(), values.size());
 }
 
-void write_cells(std::ostream& out, const Mesh& mesh) {
+/// Cells of any VTK types.
+struct CellArrays {
   std::vector<std::int32_t> connectivity, offsets;
   std::vector<std::uint8_t> types;
-  auto add = [&](const auto& cell, int type) {
-    connectivity.insert(connectivity.end(), cell.begin(), cell.end());
-    offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
-    types.push_back(static_cast<std::uint8_t>(type));
-  };
-  for (const Hexahedron& cell : mesh.hexahedra) add(cell, vtk_hexahedron);
-  for (const Tetrahedron& cell : mesh.tetrahedra) add(cell, vtk_tetrahedron);
-  out << "      <Cells>\n";
-  write_integers(out, "connectivity", "Int32", connectivity);
-  write_integers(out, "offsets", "Int32", offsets);
-  write_integers(out, "types", "UInt8", types);
-  out << "      </Cells>\n";
+
+  template <class Cell>
+  void add(const std::vector<Cell>& cells, int type) {
+    for (const Cell& cell : cells) {
+      connectivity.insert(connectivity.end(), cell.begin(), cell.end());
+      offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
+      types.push_back(static_cast<std::uint8_t>(type));
+    }
+  }
+};
+
+CellArrays cells_of(const Mesh& mesh) {
+  CellArrays cells;
+  cells.add(mesh.hexahedra, vtk_hexahedron);
+  cells.add(mesh.tetrahedra, vtk_tetrahedron);
+  return cells;
+}
+
+void write_head(std::ostream& out, Eigen::Index points, std::size_t cells) {
+  out << "<?xml version=\"1.0\"?>\n"
+         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
+         "  <UnstructuredGrid>\n"
+      << "    <Piece NumberOfPoints=\"" << points << "\" NumberOfCells=\"" << cells << "\">\n"
+      << "      <PointData Vectors=\"displacement\">\n";
+}
+
+/// Points and cells, to the end of the document.
+void write_rest(std::ostream& out, const NodalVectors& points, const CellArrays& cells) {
+  out << "      </CellData>\n      <Points>\n";
+  write_vectors(out, "position", points);
+  out << "      </Points>\n      <Cells>\n";
+  write_integers(out, "connectivity", "Int32", cells.connectivity);
+  write_integers(out, "offsets", "Int32", cells.offsets);
+  write_integers(out, "types", "UInt8", cells.types);
+  out << "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
 }
 
 void write_document(std::ostream& out, const Field& field,
@@ -73,21 +98,12 @@ void write_document(std::ostream& out, const Field& field,
   const Mesh& mesh = *field.mesh;
   const Eigen::VectorXd rest = cell_volumes(mesh, mesh.nodes);
   const Eigen::VectorXd change = (cell_volumes(mesh, mesh.nodes + field.displacement) - rest).cwiseQuotient(rest);
-  out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-         "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
-         "  <UnstructuredGrid>\n"
-      << "    <Piece NumberOfPoints=\"" << mesh.nodes.rows() << "\" NumberOfCells=\"" << rest.size() << "\">\n"
-      << "      <PointData Vectors=\"displacement\">\n";
+  write_head(out, mesh.nodes.rows(), static_cast<std::size_t>(rest.size()));
   write_vectors(out, "displacement", field.displacement);
   for (const auto& [name, values] : extra) write_vectors(out, xml_escaped(name), values);
   out << "      </PointData>\n      <CellData Scalars=\"relative_volume_change\">\n";
   write_array(out, "relative_volume_change", "Float64", 1, change.data(), static_cast<std::size_t>(change.size()));
-  out << "      </CellData>\n      <Points>\n";
-  write_vectors(out, "position", mesh.nodes);
-  out << "      </Points>\n";
-  write_cells(out, mesh);
-  out << "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+  write_rest(out, mesh.nodes, cells_of(mesh));
 }
 
 }  // namespace
@@ -101,6 +117,24 @@ void write_vtu(const std::filesystem::path& file, const Field& field,
 
   std::ostringstream out;
   write_document(out, field, extra);
+  write_file(file, out.view());
+}
+
+void write_lines_vtu(const std::filesystem::path& file, const NodalVectors& points, const NodalVectors& displacement,
+                     const std::vector<std::array<int, 2>>& lines,
+                     const std::vector<std::pair<std::string, std::vector<double>>>& values) {
+  if (displacement.rows() != points.rows()) throw std::invalid_argument("write_lines_vtu: one displacement per point");
+  CellArrays cells;
+  cells.add(lines, vtk_line);
+  std::ostringstream out;
+  write_head(out, points.rows(), lines.size());
+  write_vectors(out, "displacement", displacement);
+  out << "      </PointData>\n      <CellData>\n";
+  for (const auto& [name, numbers] : values) {
+    if (numbers.size() != lines.size()) throw std::invalid_argument("write_lines_vtu: one number per line");
+    write_array(out, xml_escaped(name), "Float64", 1, numbers.data(), numbers.size());
+  }
+  write_rest(out, points, cells);
   write_file(file, out.view());
 }
 

@@ -32,4 +32,10 @@ struct Field {
 void write_vtu(const std::filesystem::path& file, const Field& field,
                const std::vector<std::pair<std::string, NodalVectors>>& extra = {});
 
+/// Writes lines between points: displacement of the points, one number of each name per line.
+/// @throws std::runtime_error if the file cannot be written; std::invalid_argument if the sizes do not fit.
+void write_lines_vtu(const std::filesystem::path& file, const NodalVectors& points, const NodalVectors& displacement,
+                     const std::vector<std::array<int, 2>>& lines,
+                     const std::vector<std::pair<std::string, std::vector<double>>>& values);
+
 }  // namespace springproof
