@@ -56,8 +56,9 @@ Network node_lattice(const Mesh& mesh, const CubicPattern& pattern) {
 Network node_lattice(const Region& region, double edge, double angle, const CubicPattern& pattern) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
   const Vec3 size = region.upper - region.lower, middle = (region.upper + region.lower) / 2;
-  const int across = static_cast<int>(std::ceil(size.head<2>().norm() / edge)) + 1,
-            high = std::max(1, static_cast<int>(std::lround(size.z() / edge)));
+  const int high = std::max(1, static_cast<int>(std::lround(size.z() / edge)));
+  int across = std::max(1, static_cast<int>(std::lround(size.x() / edge)));
+  while (across * edge < size.head<2>().norm()) across += 2;  // with angle 0 the lattice that is not turned
   const Vec3 extent = edge * Vec3(across, across, high);
   const auto in_body = [&](const Vec3& p) -> Vec3 { return middle + turn * (p - extent / 2); };
   Mesh cubes = block_mesh(extent, {across, across, high});
