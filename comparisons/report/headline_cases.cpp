@@ -97,7 +97,8 @@ bool every_run_failed(const Json& result) {
 }
 
 bool anything_compared(const Json& result) {
-  return any_of(list_of(result, "rows"), [](const Json& row) { return number_of(row, "error").has_value(); }) ||
+  return !list_of(result, "cracks").empty() ||  // there is nothing to compare them with
+         any_of(list_of(result, "rows"), [](const Json& row) { return number_of(row, "error").has_value(); }) ||
          any_of(list_of(result, "checks"),
                 [](const Json& check) { return number_of(check, "computed").has_value(); }) ||
          any_of(list_of(result, "published"), [](const Json& p) { return number_of(p, "computed").has_value(); });

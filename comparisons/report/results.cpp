@@ -150,6 +150,18 @@ Json json_of(const Deformation& d) {
           {"rotation_deg", number(d.rotation_deg)}};
 }
 
+Json json_of(const CrackRecord& c) {
+  return {{"model", c.model},
+          {"poisson_ratio", number(c.poisson_ratio)},
+          {"cells", c.cells},
+          {"shrinkage", numbers(c.shrinkage)},
+          {"broken", numbers(c.broken)},
+          {"fragments", numbers(c.fragments)},
+          {"stored", numbers(c.stored)},
+          {"released", numbers(c.released)},
+          {"directions", numbers(c.directions)}};
+}
+
 Json json_of(const PublishedRow& p) {
   return {{"model", p.model},
           {"poisson_ratio", number(p.poisson_ratio)},
@@ -249,6 +261,7 @@ Json to_json(const CaseResult& result) {
           {"lines", list(result.lines)},
           {"splits", list(result.splits)},
           {"deformations", list(result.deformations)},
+          {"cracks", list(result.cracks)},
           {"notes", result.notes}};
 }
 

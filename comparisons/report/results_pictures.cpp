@@ -95,10 +95,14 @@ Json pictures_to_json(const CaseResult& result) {
                         {"difference", shorts_json(p.difference)},
                         {"volume_change", shorts_json(p.volume_change)}});
   }
+  Json cracks = Json::array();
+  for (const CrackRecord& c : result.cracks)
+    cracks.push_back({{"model", c.model}, {"poisson_ratio", c.poisson_ratio}, {"cells", c.cells}, {"svg", c.svg}});
   return {{"case", result.experiment.name},
           {"folder", result.experiment.folder},
           {"meshes", meshes},
-          {"pictures", pictures}};
+          {"pictures", pictures},
+          {"cracks", cracks}};
 }
 
 }  // namespace springproof

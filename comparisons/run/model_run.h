@@ -22,6 +22,9 @@ struct ModelSample {
   std::optional<LineRecord> line;         ///< where the case has one
 };
 
+/// Rows of the measure `network`.
+void add_network(const Network& network, std::map<std::string, double>& out);
+
 /// Solves model `number` of the case on a lattice; one sample per seed.
 std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material);

@@ -8,6 +8,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/results.h"
 #include "comparisons/run/case_checks.h"
+#include "comparisons/run/fracture_run.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
 #include "meshes/mesher/mesher.h"
@@ -125,6 +126,7 @@ PreparedCase prepare(const Experiment& experiment) try {
   check_expectations(experiment);
   for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
   check_kinematics(experiment, prepared.models);
+  check_fracture_models(experiment, prepared.models);
   prepared.geo = find_geo(experiment.body, experiment.file);
   progress::phase("cutting the body");
   experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);

@@ -25,6 +25,7 @@ constexpr Key document_schema[] = {{"cite"},
                                    {"compare"},
                                    {"section"},
                                    {"line"},
+                                   {"fracture"},
                                    {"probe"},
                                    {"reference"},
                                    {"expect"},
@@ -234,6 +235,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
     experiment.reference.elements = {"p2"};
   settle_kelvin(experiment);
   read_line(document, experiment);
+  read_fracture(document, experiment);
   read_compare(document, experiment);
   check_loads(experiment);
   if (experiment.reference.cells[0] > 0) check_reference_cells(document.at("reference"), experiment);

@@ -18,6 +18,9 @@ std::vector<std::string> read_elements(const TomlValue& value, const std::vector
 /// [line]; loads, materials and kinematics must have been read.
 void read_line(const TomlTable& document, Experiment& experiment);
 
+/// [fracture]; loads and kinematics must have been read.  A drying body has no finite element reference.
+void read_fracture(const TomlTable& document, Experiment& experiment);
+
 /// Sets the solution of the loads with the field "kelvin".
 /// @throws InputError at such a load if the case has no such solution.
 void settle_kelvin(Experiment& experiment);

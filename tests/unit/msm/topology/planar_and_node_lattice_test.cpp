@@ -74,7 +74,9 @@ TEST(NodeLattice, FillsARegionTurned) {
     EXPECT_NEAR(d.norm(), s.rest_length, 1e-12);
     if (d[2] == 0 && s.rest_length < 1.1) EXPECT_NEAR(std::abs(d[0]), std::sqrt(0.5), 1e-12);  // edges: diagonal now
   }
-  EXPECT_THROW(node_lattice(region, 100, 0.1, isotropic_pattern(infinity)), std::invalid_argument);
+  Region nowhere = region;
+  nowhere.inside = [](const Vec3&) { return false; };
+  EXPECT_THROW(node_lattice(nowhere, 1, 0.1, isotropic_pattern(infinity)), std::invalid_argument);
 }
 
 TEST(HexagonalLattice, HasTheModuliOfKotEquation12) {
