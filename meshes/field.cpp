@@ -1,15 +1,17 @@
 #include "meshes/field.h"
 
+#include <sstream>
 #include <stdexcept>
 
 #include "meshes/volume.h"
 #include "meshes/vtu.h"
+#include "problem/system/encoding.h"
 #include "problem/system/files.h"
 
 namespace springproof {
 namespace {
 
-constexpr std::uint8_t vtk_tetrahedron = 10, vtk_hexahedron = 12;
+constexpr std::uint8_t vtk_line = 3, vtk_tetrahedron = 10, vtk_hexahedron = 12;
 
 VtuArray nodal_vectors(const std::string& name, const NodalVectors& values) {
   return {name, 3, {values.data(), values.data() + values.size()}};
@@ -48,6 +50,19 @@ void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<do
     out << "    <DataSet timestep=\"" << time << "\" file=\"" << xml_escaped(vtu) << "\"/>\n";
   out << "  </Collection>\n</VTKFile>\n";
   write_file(file, out.view());
+}
+
+void write_lines_vtu(const std::filesystem::path& file, const NodalVectors& points, const NodalVectors& displacement,
+                     const std::vector<std::array<int, 2>>& lines,
+                     const std::vector<std::pair<std::string, std::vector<double>>>& values) {
+  if (displacement.rows() != points.rows()) throw std::invalid_argument("write_lines_vtu: one displacement per point");
+  VtuFile vtu{points, {}, {}, {}, {nodal_vectors("displacement", displacement)}, {}};
+  for (const std::array<int, 2>& line : lines) vtu.add_cell(line, vtk_line);
+  for (const auto& [name, numbers] : values) {
+    if (numbers.size() != lines.size()) throw std::invalid_argument("write_lines_vtu: one number per line");
+    vtu.cell_data.push_back({name, 1, numbers});
+  }
+  write_file(file, text_of(vtu));
 }
 
 }  // namespace springproof

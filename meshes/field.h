@@ -35,5 +35,10 @@ void write_vtu(const std::filesystem::path& file, const Field& field,
 /// Writes a ParaView collection: the time [s] and the name of each VTU file of a series, beside which it lies.
 /// @throws std::runtime_error if the file cannot be written.
 void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<double, std::string>>& series);
+/// Writes lines between points: displacement of the points, one number of each name per line.
+/// @throws std::runtime_error if the file cannot be written; std::invalid_argument if the sizes do not fit.
+void write_lines_vtu(const std::filesystem::path& file, const NodalVectors& points, const NodalVectors& displacement,
+                     const std::vector<std::array<int, 2>>& lines,
+                     const std::vector<std::pair<std::string, std::vector<double>>>& values);
 
 }  // namespace springproof

@@ -30,7 +30,9 @@ Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* reg
     case cells:
       return cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
     case centres:
-      return node_lattice(mesh, isotropic_pattern(p.face_to_cube));
+      return p.turned == 0 ? node_lattice(mesh, isotropic_pattern(p.face_to_cube))
+                           : node_lattice(region ? *region : region_of(mesh), cube_edge(mesh), p.turned,
+                                          isotropic_pattern(p.face_to_cube));
     case hexagonal:
       return hexagonal_lattice(mesh, mean_edge(mesh));
     case random:

@@ -97,7 +97,7 @@ bool every_run_failed(const Json& result) {
 }
 
 bool anything_compared(const Json& result) {
-  return !list_of(result, "histories").empty() ||
+  return !list_of(result, "histories").empty() || !list_of(result, "cracks").empty() ||
          any_of(list_of(result, "rows"), [](const Json& row) { return number_of(row, "error").has_value(); }) ||
          any_of(list_of(result, "checks"),
                 [](const Json& check) { return number_of(check, "computed").has_value(); }) ||

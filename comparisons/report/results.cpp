@@ -159,6 +159,18 @@ Json json_of(const Deformation& d) {
           {"rotation_deg", number(d.rotation_deg)}};
 }
 
+Json json_of(const CrackRecord& c) {
+  return {{"model", c.model},
+          {"poisson_ratio", number(c.poisson_ratio)},
+          {"cells", c.cells},
+          {"shrinkage", numbers(c.shrinkage)},
+          {"broken", numbers(c.broken)},
+          {"fragments", numbers(c.fragments)},
+          {"stored", numbers(c.stored)},
+          {"released", numbers(c.released)},
+          {"directions", numbers(c.directions)}};
+}
+
 Json json_of(const PublishedRow& p) {
   return {{"model", p.model},
           {"poisson_ratio", number(p.poisson_ratio)},
@@ -254,7 +266,7 @@ Json to_json(const CaseResult& result) {
           {"checks", list(result.checks)}, {"published", list(result.published)},
           {"lines", list(result.lines)},   {"histories", list(result.histories)},
           {"splits", list(result.splits)}, {"deformations", list(result.deformations)},
-          {"notes", result.notes}};
+          {"cracks", list(result.cracks)}, {"notes", result.notes}};
 }
 
 std::string csv_text(const std::string& field) {

@@ -146,6 +146,17 @@ struct HistoryRecord : RunKey {
   std::vector<std::vector<double>> values;  ///< of each quantity, one per time
 };
 
+/// Cracks of a model in a body that dries, means over its samples; the picture is of the first.
+struct CrackRecord : RunKey {
+  std::vector<double> shrinkage;   ///< at the top, after some of the steps [1]
+  std::vector<double> broken;      ///< share of the springs [1]
+  std::vector<double> fragments;   ///< of the top
+  std::vector<double> stored;      ///< energy [J]
+  std::vector<double> released;    ///< energy [J]
+  std::vector<double> directions;  ///< share of the cracks' weight, per bin of their angle with x, 0 to 180 degrees
+  std::string svg;                 ///< seen from above
+};
+
 /// Size of the deformation of a case's reference at one Poisson's ratio (comparisons/judge/deformation.h).
 struct Deformation {
   double poisson_ratio = 0;
@@ -163,6 +174,7 @@ struct Part {
   std::vector<HistoryRecord> histories;
   std::vector<ErrorSplit> splits;
   std::vector<Deformation> deformations;
+  std::vector<CrackRecord> cracks;
 };
 
 struct CaseResult : Part {

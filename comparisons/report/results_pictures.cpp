@@ -99,10 +99,14 @@ Json pictures_to_json(const CaseResult& result) {
     for (const std::vector<float>& frame : p.frames) frames.insert(frames.end(), frame.begin(), frame.end());
     pictures.back()["frames"] = {{"time", p.frame_times}, {"displacement", shorts_json(frames)}};
   }
+  Json cracks = Json::array();
+  for (const CrackRecord& c : result.cracks)
+    cracks.push_back({{"model", c.model}, {"poisson_ratio", c.poisson_ratio}, {"cells", c.cells}, {"svg", c.svg}});
   return {{"case", result.experiment.name},
           {"folder", result.experiment.folder},
           {"meshes", meshes},
-          {"pictures", pictures}};
+          {"pictures", pictures},
+          {"cracks", cracks}};
 }
 
 }  // namespace springproof

@@ -11,6 +11,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/picture.h"
 #include "comparisons/run/case_checks.h"
+#include "comparisons/run/fracture_run.h"
 #include "comparisons/run/model_run.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_body.h"
@@ -306,6 +307,23 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   add_splits(run, lattice, label, fields, scalars);
 }
 
+/// A model of a body that dries.
+void run_fracture_model(PartRun& run, std::size_t lattice, std::size_t number) {
+  const RunKey key = run.key(run.experiment().models[number].label, lattice);
+  const std::string name =
+      fmt::format("{}_nu{}_{}.vtu", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
+  FractureSamples samples = run_fracture_samples(run.prepared, run.prepared.lattices[lattice], number, run.material,
+                                                 run.vtu_folder.empty() ? run.vtu_folder : run.vtu_folder / name);
+  for (Run& sample : samples.runs) {
+    static_cast<RunKey&>(sample) = key;
+    run.part.runs.push_back(std::move(sample));
+  }
+  if (samples.scalars.empty()) return;
+  add_rows(run, lattice, key.model, "linear", {}, samples.scalars);
+  static_cast<RunKey&>(samples.cracks) = key;
+  run.part.cracks.push_back(std::move(samples.cracks));
+}
+
 /// The finite elements' results at the nodes of one lattice.
 void add_fem(PartRun& run, std::size_t lattice) {
   const Lattice& here = run.prepared.lattices[lattice];
@@ -338,7 +356,8 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
   for (std::size_t lattice = 0; lattice < prepared.lattices.size(); ++lattice) {
     add_fem(run, lattice);
     if (!small_enough(prepared.experiment, run.mesh(lattice))) continue;
-    for (std::size_t m = 0; m < prepared.models.size(); ++m) run_model(run, lattice, m);
+    for (std::size_t m = 0; m < prepared.models.size(); ++m)
+      prepared.experiment.fracture ? run_fracture_model(run, lattice, m) : run_model(run, lattice, m);
   }
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);
   return std::move(run.part);

@@ -24,15 +24,6 @@ bool asked(const Experiment& e, const std::string& measure) {
   return std::find(e.measures.begin(), e.measures.end(), measure) != e.measures.end();
 }
 
-void add_network(const Network& network, std::map<std::string, double>& out) {
-  const NetworkStatistics s = statistics(network);
-  out["network.nodes"] = static_cast<double>(s.nodes);
-  out["network.springs"] = static_cast<double>(s.springs);
-  out["network.springs_per_node"] = s.springs_per_node;
-  out["network.mean_length"] = s.mean_length;
-  out["network.length_deviation"] = s.length_deviation;
-}
-
 /// The papers' moduli of a block stretched along x; lengths of the local fields follow from the network's spacing.
 void add_moduli(const PreparedCase& prepared, const MassSpringModel& model, const NodalVectors& u,
                 std::map<std::string, double>& out) {
@@ -123,6 +114,15 @@ ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, con
 }
 
 }  // namespace
+
+void add_network(const Network& network, std::map<std::string, double>& out) {
+  const NetworkStatistics s = statistics(network);
+  out["network.nodes"] = static_cast<double>(s.nodes);
+  out["network.springs"] = static_cast<double>(s.springs);
+  out["network.springs_per_node"] = s.springs_per_node;
+  out["network.mean_length"] = s.mean_length;
+  out["network.length_deviation"] = s.length_deviation;
+}
 
 std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material) {

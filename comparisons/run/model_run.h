@@ -24,6 +24,9 @@ struct ModelSample {
   MotionRecord motion;                    ///< empty: the model is solved for its equilibrium
 };
 
+/// Rows of the measure `network`.
+void add_network(const Network& network, std::map<std::string, double>& out);
+
 /// Solves model `number` of the case on a lattice; one sample per seed.
 std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material);

@@ -27,7 +27,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorSplit, model, poisson_ratio, cells, voxe
                                    model_error, discretisation_error, geometry_error, voxel_uncertainty,
                                    body_uncertainty)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain, rotation_deg)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CrackRecord, model, poisson_ratio, cells, shrinkage, broken, fragments, stored,
+                                   released, directions, svg)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
+                                   cracks)
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/results.h"
 #include "comparisons/run/case_checks.h"
+#include "comparisons/run/fracture_run.h"
 #include "comparisons/run/motion_run.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
@@ -158,6 +159,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
     check_own_models(prepared);
     check_kinematics(experiment, prepared.models);
+    check_fracture_models(experiment, prepared.models);
     prepared.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);

@@ -21,6 +21,7 @@
 
 #include "comparisons/judge/calibration.h"
 #include "comparisons/judge/judge.h"
+#include "comparisons/report/crack_picture.h"
 #include "comparisons/report/headline.h"
 #include "comparisons/report/report.h"
 #include "comparisons/run/case_run.h"
@@ -262,6 +263,7 @@ void append(const Part& from, Part& to) {
   append(from.histories, to.histories);
   append(from.splits, to.splits);
   append(from.deformations, to.deformations);
+  append(from.cracks, to.cracks);
 }
 
 std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const std::vector<Task>& tasks) {
@@ -322,6 +324,7 @@ bool write_results(const std::vector<CaseResult>& results, const fs::path& out) 
   for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
   write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   write_file(out / "results.csv", to_csv(results));
+  write_crack_pictures(results, out);
   write_report(out / "report.html", doc, pictures);
   const Headline h = headline(doc);
   fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known), (out / "report.html").string());

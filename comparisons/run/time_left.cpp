@@ -9,6 +9,7 @@ namespace {
 
 // Seconds of one core per unknown.  Assembled matrices: tetrahedra, and cubes without a multigrid hierarchy.
 constexpr double matrix_free = 5e-6, with_matrices = 6e-5, springs = 5e-6;
+constexpr double breaking = 1e-4;                            // of a sample that dries: hundreds of equilibria
 constexpr double with_pressures = 4, pressures_above = 0.4;  // factor above this Poisson's ratio
 constexpr double start_up = 0.3;                             // of the programs
 constexpr double large_strain = 25;  // number of linear systems in all load steps and Newton steps
@@ -74,7 +75,8 @@ double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& m
   double total = e.body.is_voxels() ? voxel_seconds(prepared) : block_seconds(prepared);
   for (const Lattice& lattice : prepared.lattices)
     if (small_enough(e, *lattice.mesh))
-      for (const ModelParameters& model : prepared.models) total += springs * model.seeds * unknowns(*lattice.mesh, 1);
+      for (const ModelParameters& model : prepared.models)
+        total += (e.fracture ? breaking * e.fracture->seeds : springs * model.seeds) * unknowns(*lattice.mesh, 1);
   const double incompressible = material.poisson_ratio > pressures_above ? with_pressures : 1;
   return start_up + total * incompressible * (e.model_kinematics() == Kinematics::finite ? large_strain : 1);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "msm/exchange/springs_file.h"
 #include "msm/parameters/model_table.h"
@@ -112,6 +113,9 @@ std::vector<Option> options_of(const ModelRow& row) {
   if (row.topology == Topology::cells || row.topology == Topology::centres)
     options.push_back({"face_to_cube", set_face_to_cube});
   if (row.topology == Topology::random) options = random_options();
+  if (row.topology == Topology::centres)
+    options.push_back(
+        number("turned_deg", -90, 90, [](double v, ModelParameters& p) { p.turned = v * std::numbers::pi / 180; }));
   options.push_back(hold_option());
   if (row.topology != Topology::cells) options.push_back(grip_option());
   if (row.extension == Extension::volume_correction)

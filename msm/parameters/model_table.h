@@ -67,6 +67,7 @@ struct ModelParameters {
   RandomParameters random{};           ///< of random networks; its spacing follows from the mesh
   std::optional<double> node_density;  ///< of random networks [1/m^3]; empty: one node per cube
   std::optional<double> grip;          ///< depth in node spacings to which supports hold nodes that are not the mesh's
+  double turned = 0;                   ///< of node-centred lattices: angle about z [rad] between lattice and axes
   bool hold_rigid_motions = false;     ///< constrains those that the loads leave free, instead of an error
   int seeds = 1;                       ///< number of random networks to average: random.seed and those after it
   std::shared_ptr<const SpringsFile> springs = {};  ///< of Topology::file: network, laws and material as read

@@ -9,7 +9,7 @@
 namespace springproof {
 namespace {
 
-constexpr double most_nodes = 2e7;
+constexpr double most_nodes_of_sheet = 2e7;
 
 /// Rows 0..rows; even rows have columns + 1 nodes, odd ones columns.
 struct Rows {
@@ -40,7 +40,7 @@ std::vector<std::array<int, 3>> triangles_of(const Rows& r) {
 Network hexagonal_lattice(const Mesh& mesh, double edge) {
   if (!(edge > 0)) throw std::invalid_argument(fmt::format("edge: {} m, must be positive", edge));
   const Vec3 lower = mesh.nodes.colwise().minCoeff(), size = mesh.nodes.colwise().maxCoeff().transpose() - lower;
-  if (size[0] * size[1] / (edge * edge) > most_nodes)
+  if (size[0] * size[1] / (edge * edge) > most_nodes_of_sheet)
     throw std::invalid_argument(fmt::format("edge: {:.3g} m makes too many nodes", edge));
   const int rows = std::max(1, static_cast<int>(std::lround(size[1] / (edge * std::sqrt(3.0) / 2))));
   const double height = size[1] / rows, a = height * 2 / std::sqrt(3.0);

@@ -1,7 +1,10 @@
 #include "msm/topology/node_lattice.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <stdexcept>
 
 namespace springproof {
 namespace {
@@ -47,6 +50,32 @@ Network node_lattice(const Mesh& mesh, const CubicPattern& pattern) {
         }
   }
   network.springs = merge_springs(std::move(springs));
+  return network;
+}
+
+Network node_lattice(const Region& region, double edge, double angle, const CubicPattern& pattern) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
+  const Vec3 size = region.upper - region.lower, middle = (region.upper + region.lower) / 2;
+  const int high = std::max(1, static_cast<int>(std::lround(size.z() / edge)));
+  int across = std::max(1, static_cast<int>(std::lround(size.x() / edge)));
+  while (across * edge < size.head<2>().norm()) across += 2;  // with angle 0 the lattice that is not turned
+  const Vec3 extent = edge * Vec3(across, across, high);
+  const auto in_body = [&](const Vec3& p) -> Vec3 { return middle + turn * (p - extent / 2); };
+  Mesh cubes = block_mesh(extent, {across, across, high});
+  const std::vector<Hexahedron> all = std::move(cubes.hexahedra);
+  const std::vector<std::array<int, 3>> places = std::move(cubes.grid->cell_index);
+  cubes.hexahedra.clear();
+  cubes.grid->cell_index.clear();
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const auto [i, j, k] = places[c];
+    if (!region.inside(in_body(edge * Vec3(i + 0.5, j + 0.5, k + 0.5)))) continue;
+    cubes.hexahedra.push_back(all[c]);
+    cubes.grid->cell_index.push_back(places[c]);
+  }
+  if (cubes.hexahedra.empty()) throw std::invalid_argument("the turned lattice has no node in the body");
+  Network network = node_lattice(cubes, pattern);
+  for (Eigen::Index n = 0; n < network.X.rows(); ++n)
+    network.X.row(n) = in_body(network.X.row(n).transpose()).transpose();
   return network;
 }
 

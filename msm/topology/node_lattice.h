@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/topology/cubic_lattice.h"
+#include "msm/topology/region.h"
 
 namespace springproof {
 
@@ -11,5 +12,10 @@ namespace springproof {
 /// present.
 /// @throws std::invalid_argument as cube_edge().
 Network node_lattice(const Mesh& mesh, const CubicPattern& pattern);
+
+/// The same in a region: the cubes of a lattice turned by `angle` [rad] about the vertical through the middle of the
+/// region's bounding box whose centres lie inside.
+/// @throws std::invalid_argument if there is none.
+Network node_lattice(const Region& region, double edge, double angle, const CubicPattern& pattern);
 
 }  // namespace springproof

@@ -26,6 +26,7 @@ constexpr Key document_schema[] = {{"cite"},
                                    {"section"},
                                    {"line"},
                                    {"dynamics"},
+                                   {"fracture"},
                                    {"probe"},
                                    {"reference"},
                                    {"expect"},
@@ -236,6 +237,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   settle_kelvin(experiment);
   read_line(document, experiment);
   read_dynamics(document, experiment);
+  read_fracture(document, experiment);
   read_compare(document, experiment);
   check_loads(experiment);
   if (experiment.reference.cells[0] > 0) check_reference_cells(document.at("reference"), experiment);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "problem/body.h"
+#include "problem/fracture.h"
 #include "problem/loads.h"
 #include "problem/material.h"
 #include "problem/model_choice.h"
@@ -119,6 +120,7 @@ struct Experiment {
   std::optional<Section> section;
   std::optional<Line> line;
   std::optional<MotionChoice> dynamics;
+  std::optional<Fracture> fracture;  ///< the models dry and break instead of being loaded
   ReferenceChoice reference;
   std::vector<Expectation> expectations;
   std::vector<PublishedValue> published;

@@ -145,6 +145,10 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
       refuse(item, "'displacement_error_order' needs the solution", "with exact = \"...\" in [compare]");
     if (measure == "reaction_error" && moved_patches(experiment).empty())
       refuse(item, "'reaction_error' needs a support that is moved", "with a displacement or rotation other than zero");
+    if (measure == "fracture" && !experiment.fracture)
+      refuse(item, "'fracture' needs a body that dries", "with a [fracture] in the file");
+    if (experiment.fracture && measure != "fracture" && measure != "network")
+      refuse(item, fmt::format("'{}' is not measured where a body dries", measure), "fracture, network");
     if (measure == "line" && !experiment.line) refuse(item, "'line' needs one", "with a [line] in the file");
     if (measure == "moduli" && !elongation_along_x(experiment))
       refuse(item, "'moduli' needs a block stretched along x",
@@ -266,7 +270,10 @@ void read_compare_table(const TomlValue& value, const TomlTable& document, Exper
     if (!experiment.models.empty()) refuse(*exact, "stands beside models", "with models = []");
   }
   if (const auto measures = table.find("measures")) experiment.measures = read_measures(*measures, experiment);
-  if (const auto elements = table.find("elements")) experiment.elements = read_elements(*elements, element_names());
+  if (const auto elements = table.find("elements")) {
+    if (experiment.fracture) refuse(*elements, "does not go with [fracture]", "no such key: springs alone break");
+    experiment.elements = read_elements(*elements, element_names());
+  }
   if (const auto most = table.find("max_unknowns")) experiment.max_unknowns = as_number(*most, positive_number);
   if (const auto cost = table.find("cost")) experiment.cost = as_flag(*cost);
 }
@@ -275,7 +282,7 @@ void read_compare_table(const TomlValue& value, const TomlTable& document, Exper
 
 void read_compare(const TomlTable& document, Experiment& experiment) {
   experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
-  experiment.measures = default_measures;
+  experiment.measures = experiment.fracture ? std::vector<std::string>{"fracture"} : default_measures;
   if (const auto value = document.find("compare")) read_compare_table(*value, document, experiment);
   if (experiment.dynamics) experiment.models = with_motions(experiment.models, *experiment.dynamics);
   // Displacement errors alone are not enough for a body that is moved by its supports.

@@ -23,6 +23,7 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
   if (experiment.model_kinematics() == Kinematics::linear)
     refuse(*value, "moves the models by their forces at large displacements, and the case has kinematics = \"linear\"",
            "with kinematics = \"hencky\", \"neo_hooke\" or another finite-strain law");
+  if (document.find("fracture")) refuse(*value, "stands beside [fracture]", "one of the two");
   MotionChoice motion;
   motion.where = location_of(*value);
   motion.duration = as_number(table.at("duration_s"), positive_number);

@@ -24,6 +24,8 @@ void read_dynamics(const TomlTable& document, Experiment& experiment);
 /// The models of a case with [dynamics]: each one's equilibrium, unless it is left out, and its motion, labelled
 /// "NAME in motion".
 std::vector<ModelChoice> with_motions(const std::vector<ModelChoice>& models, const MotionChoice& motion);
+/// [fracture]; loads and kinematics must have been read.  A drying body has no finite element reference.
+void read_fracture(const TomlTable& document, Experiment& experiment);
 
 /// Sets the solution of the loads with the field "kelvin".
 /// @throws InputError at such a load if the case has no such solution.

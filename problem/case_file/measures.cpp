@@ -88,6 +88,21 @@ std::vector<std::string> line_rows(const Experiment& experiment) {
   return rows;
 }
 
+std::vector<std::string> fracture_rows(const Experiment&) {
+  return {"fracture.first_shrinkage",
+          "fracture.broken",
+          "fracture.crack_area_per_volume",
+          "fracture.along_4",
+          "fracture.along_8",
+          "fracture.order_4",
+          "fracture.order_8",
+          "fracture.fragments",
+          "fracture.stored",
+          "fracture.released",
+          "fracture.released_per_area",
+          "fracture.imbalance"};
+}
+
 /// Length of `name` if it equals the row's name or is its prefix before a dot; otherwise 0.
 std::size_t common(const std::string& row, const std::string& name) {
   return row == name || row.starts_with(name + '.') ? name.size() : 0;
@@ -129,6 +144,8 @@ const std::vector<Measure>& measure_table() {
      "E and nu of a block stretched along x, as the Kot papers measure them", "", "", moduli_rows},
     {"network", value, {{"network", "1"}, {"network.mean_length", "m"}, {"network.length_deviation", "m"}},
      "nodes, springs, springs per node, spring lengths [m]", "", "", network_rows},
+    {"fracture", value, {{"fracture", "1"}, {"fracture.crack_area_per_volume", "1/m"}, {"fracture.stored", "J"}, {"fracture.released", "J"}, {"fracture.released_per_area", "J/m2"}},
+     "cracks of a drying body: shrinkage at the first, area, directions, fragments, energy released", "", "", fracture_rows},
     {"line", deviation, {{"line", "1"}}, "strain and stress along [line] against Kelvin's solution", "", "", line_rows},
   };
   // clang-format on

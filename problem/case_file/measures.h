@@ -33,7 +33,7 @@ const std::vector<Measure>& measure_table();
 /// The measure that produces the row of this name, e.g. `reaction` for force.x_min.z; nullptr: none.
 const Measure* measure_of(const std::string& row);
 
-/// "m", "Pa", "N", "N m" or "1".
+/// "m", "Pa", "N", "N m", "J", "J/m2", "1/m" or "1".
 std::string unit_of(const std::string& row);
 
 /// True if the row is a distance from the reference, whose best value is 0.

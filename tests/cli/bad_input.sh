@@ -107,6 +107,15 @@ edited "E = 1e300" "case.toml:6:21: .*is 1e\+300 .allowed" 's/1e4/1e300/'
 edited "a force of 1e300" "load.displacement_m: is 1e\+300" 's/0\.01/1e300/'
 edited "contradictory loads" "case.toml:14:1: load: the displacement of 'z_min' along x is prescribed by the load in line 8 too" '$s/$/\n/; s/^\[compare\]/[[load]]\non = "z_min"\ndisplacement_m = [1, 0, 0]\n[compare]/'
 
+# A drying body.
+drying='s/^displacement_m = \[0, 0, 0.01\]$/displacement_m = [0, 0, 0]/; s/"hybmss"/"msm_18"/; $s/$/\n[fracture]\nshrinkage = 0.1\nthreshold = 0.05\nscatter = 0.1\nsteps = 50/'
+edited "threshold = 0" "case.toml:18:13: fracture.threshold: is 0 .allowed: a number > 0, up to 1" "${drying/0.05/0}"
+edited "scatter < 0" "case.toml:19:11: fracture.scatter: is -0.1 .allowed: a number from 0 to 0.5" "${drying/scatter = 0.1/scatter = -0.1}"
+edited "no steps" "case.toml:20:9: fracture.steps: is 0 .allowed: a whole number from 1" "${drying/steps = 50/steps = 0}"
+edited "drying in steps beyond the threshold" "case.toml:17:13: fracture.shrinkage: is 0.1 in each of 1 steps, beyond the threshold .allowed: shrinkage / steps up to the threshold, 0.05" "${drying/steps = 50/steps = 1}"
+edited "a drying body that is pulled" "case.toml:8:1: load: cannot act on a body that dries .allowed beside .fracture.: displacement_m = .0, 0, 0." "s/\[0, 0, 0\]/[0, 0, 1]/; $drying"
+edited "a drying body of a model that cannot break" "case.toml:15:11: compare.models: hybmss has forces that no breaking spring takes away.*allowed beside .fracture.: msm_18" "${drying/s?\"hybmss\"?\"msm_18\"?; /}"
+
 # Scripts, where they are not wanted, and files that are scripts under another name.
 echo "SystemCall \"touch $work/trace\";" >"$work/own.geo"
 sed 's/block.geo/own.geo/' "$work/good.toml" >"$work/script.toml"

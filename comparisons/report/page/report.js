@@ -90,6 +90,7 @@ function start() {
   const shapes = build('shapes', shapesSection);
   const motion = build('motion', motionSection);
   const line = build('line', lineSection);
+  const cracks = build('cracks', cracksSection);
   build('verification', verificationSection);
   build('fem-column', femColumnSection);
   build('pages', section => pagesSection(section, [
@@ -98,11 +99,12 @@ function start() {
     {text: 'Error against cost', go: jumpTo('cost', cost), has: id => cost.has(id)},
     {text: 'Parts of the error', go: jumpTo('splits', splits), has: id => splits.has(id)},
     {text: 'Along the line', go: jumpTo('line', line), has: id => line.has(id)},
+    {text: 'Cracks', go: jumpTo('cracks', cracks), has: id => cracks.has(id)},
     {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
   ]));
   build('about', aboutSection);
   const wanted = /^#png=(\d+)(?:&only=(.*))?$/.exec(location.hash);
-  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, cost, splits, line], decodeURIComponent(wanted[2] || ''));
+  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, cost, splits, line, cracks], decodeURIComponent(wanted[2] || ''));
   preparePrinting();
   window.addEventListener('hashchange', followHash);
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);

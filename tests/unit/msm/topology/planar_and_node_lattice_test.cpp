@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "msm/parameters/calibrate.h"
@@ -52,6 +53,30 @@ TEST(NodeLattice, CalibrationMakesUpForTheMissingSurface) {
   // 8 x 2 x 2: 60 edges, 72 diagonals, V = 4, a = 1/2: E = (60 + 144) k a^2 / (6 V).
   EXPECT_NEAR(beam.springs.front().stiffness, 24.0 / (204 * 0.25), test::round_off);
   EXPECT_THROW(node_lattice(block_mesh({1, 1, 2}, {2, 2, 2}), isotropic_pattern(2)), std::invalid_argument);
+}
+
+// A square plate: turned by 0 or 90 degrees the lattice is the one that is not turned.
+TEST(NodeLattice, FillsARegionTurned) {
+  const Mesh plate = block_mesh({8, 8, 2}, {8, 8, 2});
+  const Region region = region_of(plate);
+  const Network aligned = node_lattice(plate, isotropic_pattern(infinity));
+  for (const double angle : {0.0, std::numbers::pi / 2}) {
+    const Network turned = node_lattice(region, 1, angle, isotropic_pattern(infinity));
+    EXPECT_EQ(turned.nodes(), aligned.nodes());
+    EXPECT_EQ(turned.springs.size(), aligned.springs.size());
+    EXPECT_NEAR((turned.X.colwise().sum() - aligned.X.colwise().sum()).norm(), 0, 1e-9);
+  }
+  const Network turned = node_lattice(region, 1, std::numbers::pi / 4, isotropic_pattern(infinity));
+  EXPECT_NEAR(turned.nodes(), 128, 12);
+  for (Eigen::Index n = 0; n < turned.X.rows(); ++n) EXPECT_TRUE(region.inside(turned.X.row(n).transpose()));
+  for (const Spring& s : turned.springs) {
+    const Eigen::RowVector3d d = turned.X.row(s.j) - turned.X.row(s.i);
+    EXPECT_NEAR(d.norm(), s.rest_length, 1e-12);
+    if (d[2] == 0 && s.rest_length < 1.1) EXPECT_NEAR(std::abs(d[0]), std::sqrt(0.5), 1e-12);  // edges: diagonal now
+  }
+  Region nowhere = region;
+  nowhere.inside = [](const Vec3&) { return false; };
+  EXPECT_THROW(node_lattice(nowhere, 1, 0.1, isotropic_pattern(infinity)), std::invalid_argument);
 }
 
 TEST(HexagonalLattice, HasTheModuliOfKotEquation12) {
