@@ -19,8 +19,8 @@ const std::vector<std::pair<std::string, std::string>> hybrid_and_fem = {{"HybMS
                                                                     {"FEM", "fem"}};
 
 const std::string wrinkled =
-    "HybMSS-FD has no static equilibrium at this load: without face diagonals cells have modes without energy, and the "
-    "lattice wrinkles (docs/papers.md #10)";
+    "HybMSS-FD loses its static equilibrium: without face diagonals cells have modes without energy, and the lattice "
+    "wrinkles (docs/papers.md #10)";
 
 /// y(x) of (6.1) with the sign of a downward weight (docs/papers.md #6), E in Pa; density 1000 kg/m3 is ours.
 double euler_bernoulli(double x, double youngs_modulus) {

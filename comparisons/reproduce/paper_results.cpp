@@ -63,7 +63,10 @@ std::vector<PrintedValue> printed_of(const json& result, const std::string& case
     all.push_back(std::move(v));
   };
   for (const json& check : result.at("checks"))
-    if (check.at("source") == "published") add(check, "expected");
+    if (check.at("source") == "published") {
+      add(check, "expected");
+      all.back().within = check.at("within").get<double>();
+    }
   for (const json& value : result.at("published")) add(value, "published");
   return all;
 }

@@ -29,16 +29,22 @@ bool shows_reason(const FigureVerdict& verdict) {
   return verdict.word != "agrees" && verdict.word != "not redone" && verdict.word != "not run";
 }
 
+bool has_section(const DrawnFigure& d) { return !d.svgs.empty() || !d.verdict.values.empty(); }
+
 std::string overview_row(const DrawnFigure& d) {
   const bool reason = shows_reason(d.verdict) && !d.figure.reason.empty();
-  return fmt::format("<tr><th><a href=\"#{}\">{}</a></th><td>{}<small>{}</small></td><td>{}</td><td>{}{}</td></tr>\n",
-                     d.figure.file_stem(), xml_escaped(d.figure.title()), xml_escaped(d.figure.what),
-                     listed_cases(d.figure), chip(d.verdict.word), xml_escaped(d.verdict.sentence),
+  const std::string title = xml_escaped(d.figure.title());
+  return fmt::format("<tr><th>{}</th><td>{}<small>{}</small></td><td>{}</td><td>{}{}</td></tr>\n",
+                     has_section(d) ? fmt::format("<a href=\"#{}\">{}</a>", d.figure.file_stem(), title) : title,
+                     xml_escaped(d.figure.what), listed_cases(d.figure), chip(d.verdict.word),
+                     xml_escaped(d.verdict.sentence),
                      reason ? fmt::format("<small>{}</small>", xml_escaped(d.figure.reason)) : "");
 }
 
-std::string amount(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format("{:.5g}", *value) : "none";
+std::string amount(const std::optional<double>& value, const char* missing) {
+  if (!value || !std::isfinite(*value)) return missing;
+  const bool count = *value == std::round(*value) && std::abs(*value) < 1e9;
+  return count ? fmt::format("{:.0f}", *value) : fmt::format("{:.5g}", *value);
 }
 
 std::string difference_text(const PrintedValue& v, double factor) {
@@ -69,7 +75,7 @@ std::string value_row(const ValueVerdict& value, const PaperFigure& figure) {
       xml_escaped(v.where), xml_escaped(v.model), xml_escaped(name),
       v.cells[0] > 0 ? ", " + cells_text(v.cells, "×") + " cells" : "", v.poisson_ratio, xml_escaped(v.measure),
       figure.percent ? "%" : xml_escaped(v.unit), printed_text(factor * v.printed, factor * figure.last_digit),
-      amount(scaled(v.ours, factor)), difference_text(v, factor), amount(scaled(v.fem, factor)),
+      amount(scaled(v.ours, factor), "no result"), difference_text(v, factor), amount(scaled(v.fem, factor), ""),
       chip(value.agrees ? "agrees" : "differs"),
       v.remark.empty() ? "" : fmt::format("<small>{}</small>", xml_escaped(v.remark)));
 }
@@ -142,7 +148,7 @@ std::string reproduce_page(const std::vector<DrawnFigure>& drawn, const Paper& p
   std::string rows, sections;
   for (const DrawnFigure& d : drawn) {
     rows += overview_row(d);
-    if (!d.svgs.empty() || !d.verdict.values.empty()) sections += figure_html(d);
+    if (has_section(d)) sections += figure_html(d);
   }
   return fmt::format(R"(<!DOCTYPE html>
 <html lang="en">

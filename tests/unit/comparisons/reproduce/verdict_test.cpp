@@ -113,6 +113,16 @@ TEST_F(ReproducedResults, PrintedValuesAgreeWithinTwoPerCentOrTheirLastDigit) {
   EXPECT_EQ(judge_figure(read(), figure).word, "agrees");
 }
 
+TEST_F(ReproducedResults, PrintedValuesOfAFigureAgreeAsTheCaseAllows) {
+  result.checks.push_back(
+      {{"b", 0.25, {1, 1, 1}}, "x", "N", "published", 2.91, 3.0, 0.15, {}, Verdict::pass, "Fig. 3, within 5 %"});
+  const PaperFigure figure{"golec_2019", "3", "", {"golec_2019/compress"}, ""};
+  ASSERT_EQ(judge_figure(read(), figure).values.size(), 1u);
+  EXPECT_TRUE(judge_figure(read(), figure).values[0].agrees);
+  result.checks.back().within = 0.05;
+  EXPECT_FALSE(judge_figure(read(), figure).values[0].agrees);
+}
+
 TEST_F(ReproducedResults, FiguresOfCasesThatWereNotRunSaySo) {
   PaperFigure figure{"golec_2019", "3", "", {"golec_2019/compress", "golec_2019/lost"}, ""};
   EXPECT_EQ(judge_figure(read(), figure).word, "not run");
@@ -136,6 +146,18 @@ TEST_F(ReproducedResults, ShapesComeBackFromTheReport) {
   const std::string svg = bodies_svg({{"a", "", shape}, {"lost", "", {}, "no equilibrium"}}, 2, {{0, 0, 1}, {0, 1, 0}});
   EXPECT_NE(svg.find("<polygon"), std::string::npos);
   EXPECT_NE(svg.find("no equilibrium"), std::string::npos);
+}
+
+TEST(LayerOutline, IsOfTheNodesInThePlaneInOrderAroundItsMiddle) {
+  Shape shape;
+  shape.rest = {{1, 1, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+  for (const Vec3& p : shape.rest) shape.displaced.push_back(p + Vec3(2, 0, 0));
+  const std::vector<Vec3> outline = layer_outline(shape, 2, {0, 0, 0});
+  ASSERT_EQ(outline.size(), 4u);
+  EXPECT_EQ(outline[0], Vec3(2, 0, 0));
+  EXPECT_EQ(outline[1], Vec3(3, 0, 0));
+  EXPECT_EQ(outline[2], Vec3(3, 1, 0));
+  EXPECT_EQ(outline[3], Vec3(2, 1, 0));
 }
 
 TEST_F(ReproducedResults, ADamagedReportIsAnInputError) {
