@@ -134,7 +134,7 @@ std::string colour_bar(double x, double y, double largest) {
 
 /// The missing shape's reason, broken into lines.
 std::string reason_svg(const std::string& reason, double x, double y) {
-  constexpr std::size_t longest = 34;
+  constexpr std::size_t longest = 28;
   std::string out, line;
   const auto flush = [&] {
     out += svg_text(x, y, line, "text-anchor=\"middle\" fill=\"#8f1d0a\"");

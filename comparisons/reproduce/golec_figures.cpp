@@ -13,6 +13,7 @@ const std::string compression_20 = "golec_2019/tables/table2_compression_20",
 
 const std::vector<double> golec_nus = {0, 0.25, 0.499};
 const std::vector<std::pair<std::string, std::string>> hybrid_and_fem = {{"HybMSS", "hybmss_as_printed"},
+                                                                         {"HybMSS, springs from G", "hybmss_from_G"},
                                                                          {"FEM", "fem"}},
                                                        all_three = {{"HybMSS-FD", "hybmss_fd_as_printed"},
                                                                     {"HybMSS", "hybmss_as_printed"},
