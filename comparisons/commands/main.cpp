@@ -14,7 +14,9 @@
 #include "comparisons/commands/homogenise_command.h"
 #include "comparisons/commands/material_command.h"
 #include "comparisons/commands/pictures_command.h"
+#include "comparisons/commands/reproduce_command.h"
 #include "comparisons/commands/versions.h"
+#include "comparisons/reproduce/figures.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/suite.h"
 #include "fem_reference/reference.h"
@@ -53,11 +55,13 @@ int run_bench(const std::vector<std::string>& arguments) {
 }
 
 int describe(const CLI::App& app, const std::string& form) {
-  std::vector<std::string> cases, models;
+  std::vector<std::string> cases, models, paper_names;
+  for (const Paper& paper : papers()) paper_names.push_back(paper.name);
   for (const auto& file : built_in_cases()) cases.push_back(case_name(file));
   for (const ModelRow& row : model_table()) models.push_back(row.name);
-  fmt::print("{}", form == "man" ? man_page(app, SPRINGPROOF_VERSION)
-                                 : bash_completion(app, {{"CASE", cases}, {"--model", models}}));
+  fmt::print("{}", form == "man"
+                       ? man_page(app, SPRINGPROOF_VERSION)
+                       : bash_completion(app, {{"CASE", cases}, {"--model", models}, {"PAPER", paper_names}}));
   return 0;
 }
 
@@ -122,6 +126,12 @@ int main(int argc, char** argv) try {
       app.add_subcommand("pictures", "The figures and bodies of a report as PNG files, without a display");
   pictures.add_options(*pictures_command);
 
+  ReproduceCommand reproduction;
+  CLI::App* reproduce_command = app.add_subcommand(
+      "reproduce",
+      "The figures and tables of a paper, computed and drawn anew, each with a verdict: SVG, PDF, CSV, a page");
+  reproduction.add_options(*reproduce_command);
+
   DiffCommand diff;
   CLI::App* diff_command =
       app.add_subcommand("diff", "Which numbers of two results folders differ, by how much, beyond which uncertainty");
@@ -155,6 +165,7 @@ int main(int argc, char** argv) try {
   if (*export_command) return export_case.run();
   if (*pictures_command) return pictures.run();
   if (*diff_command) return diff.run();
+  if (*reproduce_command) return reproduction.run();
   if (*cross_check_command) return second_opinion.run();
   return material.run();
 } catch (const springproof::InputError& e) {

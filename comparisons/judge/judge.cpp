@@ -101,8 +101,9 @@ void judge(CaseResult& result) {
         result.checks.push_back(judge_one(result, e, {e.model, material.poisson_ratio, cells}));
     }
   for (const PublishedValue& p : experiment.published) {
-    PublishedRow row{p.model, p.poisson_ratio, p.measure, unit_of(p.measure), p.value, {}, p.where, p.remark};
-    const Row* ours = find_row(result, {p.model, p.poisson_ratio, p.cells.value_or(result.cells.front())}, p.measure);
+    const RunKey key = {p.model, p.poisson_ratio, p.cells.value_or(result.cells.front())};
+    PublishedRow row{key, p.measure, unit_of(p.measure), p.value, {}, p.where, p.remark};
+    const Row* ours = find_row(result, key, p.measure);
     if (ours) row.computed = ours->value;
     if (const auto element = reference_element(experiment, p.model))
       if (const ReferenceRecord* r = find_reference(result, *element, p.poisson_ratio, p.measure))

@@ -87,9 +87,7 @@ struct Check : RunKey {
 };
 
 /// One [[published]] value beside ours.
-struct PublishedRow {
-  std::string model;
-  double poisson_ratio = 0;
+struct PublishedRow : RunKey {
   std::string measure;
   std::string unit;
   double published = 0;
@@ -214,7 +212,8 @@ nlohmann::json pictures_to_json(const CaseResult& result);
 std::string csv_text(const std::string& field);
 std::string csv_number(const std::optional<double>& x);
 
-/// results.csv: one line per row of every case.
+/// results.csv: one line per row of every case, with the printed value ([[published]], and [[expect]] with source
+/// "published") where there is one; then one line per printed value of something that has no row.
 std::string to_csv(const std::vector<CaseResult>& results);
 
 }  // namespace springproof

@@ -100,7 +100,7 @@ inline CaseResult sample_case() {
                       Verdict::fail,
                       "sec. 6"});
   c.published.push_back(
-      {"hybmss", 0.25, "volume_change", "1", -0.0261, -0.025, "Table 3", "explicit run, not settled"});
+      {{"hybmss", 0.25, {1, 1, 1}}, "volume_change", "1", -0.0261, -0.025, "Table 3", "explicit run, not settled"});
   return c;
 }
 

@@ -333,7 +333,7 @@ TEST(Headline, NothingComparedIsNoSuccess) {
   EXPECT_EQ(h.failures[0].find("cube: nothing was compared, since the case asks for no reference"), 0u)
       << h.failures[0];
   EXPECT_NE(terminal_text(h).find("FAILED: cube: nothing was compared"), std::string::npos);
-  c.published.push_back({"emsm", 0.3, "moduli.poisson_ratio", "1", 0.3, 0.31, "Fig. 1", ""});
+  c.published.push_back({{"emsm", 0.3, {1, 1, 1}}, "moduli.poisson_ratio", "1", 0.3, 0.31, "Fig. 1", ""});
   EXPECT_TRUE(success(headline_of({c})));
 }
 

@@ -1,0 +1,97 @@
+// The numbers of charts as one wide table.
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "comparisons/report/results.h"
+#include "comparisons/reproduce/chart.h"
+
+namespace springproof {
+namespace {
+
+bool is_outline(const Curve& curve) { return curve.style == CurveStyle::shape || curve.style == CurveStyle::shape_fem; }
+
+/// Column name of a curve: letters, digits and underscores.
+std::string column_name(const Chart& chart, const Curve& curve, std::size_t charts) {
+  std::string name;
+  for (const char c : charts > 1 ? chart.title + ' ' + curve.label : curve.label) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.';
+    if (plain || (!name.empty() && name.back() != '_')) name += plain ? c : '_';
+  }
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  return name;
+}
+
+bool has_spread(const Curve& curve) {
+  return std::any_of(curve.points.begin(), curve.points.end(),
+                     [](const CurvePoint& p) { return p.spread.has_value(); });
+}
+
+using Column = std::pair<std::string, std::vector<std::optional<double>>>;
+
+std::string columns_csv(const std::vector<Column>& columns) {
+  std::string out;
+  std::size_t lines = 0;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    out += (c ? "," : "") + csv_text(columns[c].first);
+    lines = std::max(lines, columns[c].second.size());
+  }
+  out += '\n';
+  for (std::size_t line = 0; line < lines; ++line) {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      out += (c ? "," : "") + (line < columns[c].second.size() ? csv_number(columns[c].second[line]) : "");
+    out += '\n';
+  }
+  return out;
+}
+
+/// One x for all curves: values of a curve that has no point there are empty.
+std::vector<Column> shared_columns(const std::vector<Chart>& charts) {
+  std::set<double> places;
+  for (const Chart& chart : charts)
+    for (const Curve& curve : chart.curves)
+      for (const CurvePoint& p : curve.points) places.insert(p.x);
+  std::vector<Column> columns = {{"x", {places.begin(), places.end()}}};
+  for (const Chart& chart : charts)
+    for (const Curve& curve : chart.curves) {
+      const std::string name = column_name(chart, curve, charts.size());
+      Column y = {name, {}}, spread = {name + "_spread", {}};
+      for (double x : places) {
+        const auto found =
+            std::find_if(curve.points.begin(), curve.points.end(), [&](const CurvePoint& p) { return p.x == x; });
+        const bool here = found != curve.points.end();
+        y.second.push_back(here ? std::optional(found->y) : std::nullopt);
+        spread.second.push_back(here ? found->spread : std::nullopt);
+      }
+      columns.push_back(std::move(y));
+      if (has_spread(curve)) columns.push_back(std::move(spread));
+    }
+  return columns;
+}
+
+std::vector<Column> separate_columns(const std::vector<Chart>& charts) {
+  std::vector<Column> columns;
+  for (const Chart& chart : charts)
+    for (const Curve& curve : chart.curves) {
+      const std::string name = column_name(chart, curve, charts.size());
+      Column x = {name + "_x", {}}, y = {name + "_y", {}};
+      for (const CurvePoint& p : curve.points) {
+        x.second.push_back(p.x);
+        y.second.push_back(p.y);
+      }
+      columns.push_back(std::move(x));
+      columns.push_back(std::move(y));
+    }
+  return columns;
+}
+
+}  // namespace
+
+std::string charts_csv(const std::vector<Chart>& charts) {
+  const bool outlines = std::any_of(charts.begin(), charts.end(), [](const Chart& chart) {
+    return std::any_of(chart.curves.begin(), chart.curves.end(), is_outline);
+  });
+  return columns_csv(outlines ? separate_columns(charts) : shared_columns(charts));
+}
+
+}  // namespace springproof

@@ -1,0 +1,186 @@
+#include "comparisons/reproduce/paper_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "comparisons/judge/differences.h"
+#include "comparisons/reproduce/read_pictures.h"
+#include "problem/system/files.h"
+#include "problem/system/input_error.h"
+#include "problem/system/json.h"
+
+namespace springproof {
+namespace {
+
+using nlohmann::json;
+
+std::optional<double> number_if_any(const json& j) {
+  return j.is_null() ? std::nullopt : std::optional(j.get<double>());
+}
+
+LineTensors tensors_of(const json& values) {
+  LineTensors out;
+  for (const json& value : values) out.push_back(number_if_any(value).value_or(std::nan("")));
+  return out;
+}
+
+LineRecord line_of(const json& j) {
+  LineRecord line;
+  line.model = j.at("model");
+  line.poisson_ratio = j.at("poisson_ratio");
+  line.cells = j.at("cells").get<Cells>();
+  line.first = j.at("first");
+  line.last = j.at("last");
+  line.distance = tensors_of(j.at("distance"));
+  line.strain = tensors_of(j.at("strain"));
+  line.stress = tensors_of(j.at("stress"));
+  line.exact_strain = tensors_of(j.at("exact_strain"));
+  line.exact_stress = tensors_of(j.at("exact_stress"));
+  return line;
+}
+
+/// Of [[published]] the remark says why ours differs; of [[expect]] with source "published" there is none.
+std::vector<PrintedValue> printed_of(const json& result, const std::string& case_name, const std::vector<Row>& rows) {
+  std::vector<PrintedValue> all;
+  const auto add = [&](const json& j, const char* printed) {
+    PrintedValue v{case_name,
+                   j.at("model"),
+                   j.at("poisson_ratio"),
+                   j.value("cells", Cells{}),
+                   j.at("measure"),
+                   j.at("unit"),
+                   j.at(printed),
+                   number_if_any(j.at("computed")),
+                   {},
+                   j.at("where"),
+                   j.value("remark", "")};
+    for (const Row& row : rows)
+      if (row.measure == v.measure && same_poisson_ratio(row.poisson_ratio, v.poisson_ratio) && row.reference)
+        v.fem = row.reference;
+    all.push_back(std::move(v));
+  };
+  for (const json& check : result.at("checks"))
+    if (check.at("source") == "published") {
+      add(check, "expected");
+      all.back().within = check.at("within").get<double>();
+    }
+  for (const json& value : result.at("published")) add(value, "published");
+  return all;
+}
+
+Shape shape_of(const Picture& p) {
+  Shape shape;
+  for (std::size_t i = 0; i + 2 < p.rest.size(); i += 3) {
+    const Vec3 rest(p.rest[i], p.rest[i + 1], p.rest[i + 2]);
+    shape.rest.push_back(rest);
+    shape.displaced.push_back(rest + Vec3(p.displacement[i], p.displacement[i + 1], p.displacement[i + 2]));
+  }
+  for (std::size_t i = 0; i + 3 < p.quads.size(); i += 4)
+    shape.facets.push_back({p.quads[i], p.quads[i + 1], p.quads[i + 2], p.quads[i + 3]});
+  return shape;
+}
+
+/// What results call a case: its last folder and its name ("tables/table2_compression_5").
+std::string name_in_results(const std::string& case_name) {
+  const std::size_t name = case_name.rfind('/');
+  const std::size_t folder =
+      name == std::string::npos || name == 0 ? std::string::npos : case_name.rfind('/', name - 1);
+  return folder == std::string::npos ? case_name : case_name.substr(folder + 1);
+}
+
+}  // namespace
+
+PaperResults::PaperResults(const std::vector<std::filesystem::path>& folders) {
+  for (const std::filesystem::path& folder : folders) {
+    const ResultsFolder found = read_results(folder);
+    const json document = json::parse(text_of_file(folder / "results.json"));
+    for (std::size_t i = 0; i < found.cases.size(); ++i) {
+      const json& result = document.at("cases").at(i);
+      ReadCase read;
+      for (const Row& row : found.rows)
+        if (row.case_name == found.cases[i]) read.rows.push_back(row);
+      read.printed = printed_of(result, found.cases[i], read.rows);
+      for (const json& line : result.at("lines")) read.lines.push_back(line_of(line));
+      for (const json& run : result.at("runs"))
+        if (!run.at("ok").get<bool>())
+          read.failed.push_back({run.at("model"), run.at("poisson_ratio"), run.at("message")});
+      read.folder = folder;
+      cases_[found.cases[i]] = std::move(read);
+    }
+  }
+}
+
+const PaperResults::ReadCase* PaperResults::find(const std::string& case_name) const {
+  const auto found = cases_.find(name_in_results(case_name));
+  return found == cases_.end() ? nullptr : &found->second;
+}
+
+const std::vector<Row>& PaperResults::rows(const std::string& case_name) const {
+  static const std::vector<Row> none;
+  const ReadCase* found = find(case_name);
+  return found ? found->rows : none;
+}
+
+const std::vector<LineRecord>& PaperResults::lines(const std::string& case_name) const {
+  static const std::vector<LineRecord> none;
+  const ReadCase* found = find(case_name);
+  return found ? found->lines : none;
+}
+
+const Row* PaperResults::row(const std::string& case_name, const std::string& model, double poisson_ratio,
+                             const std::string& measure, const std::optional<Cells>& cells) const {
+  const Row* best = nullptr;
+  for (const Row& row : rows(case_name)) {
+    if (row.model != model || row.measure != measure || !same_poisson_ratio(row.poisson_ratio, poisson_ratio)) continue;
+    if (cells ? row.cells == *cells : !best || cell_count(row.cells) < cell_count(best->cells)) best = &row;
+  }
+  return best;
+}
+
+std::vector<PrintedValue> PaperResults::printed(const std::string& case_name, const std::string& where) const {
+  std::vector<PrintedValue> all;
+  const ReadCase* found = find(case_name);
+  if (!found) return all;
+  for (const PrintedValue& v : found->printed) {
+    const bool longer =
+        v.where.size() > where.size() && std::isdigit(static_cast<unsigned char>(v.where[where.size()]));
+    if (v.where.starts_with(where) && !longer) all.push_back(v);
+  }
+  std::stable_sort(all.begin(), all.end(), [](const PrintedValue& a, const PrintedValue& b) {
+    return std::pair(a.poisson_ratio, cell_count(a.cells)) < std::pair(b.poisson_ratio, cell_count(b.cells));
+  });
+  return all;
+}
+
+std::string PaperResults::failure(const std::string& case_name, const std::string& model, double poisson_ratio) const {
+  const ReadCase* found = find(case_name);
+  if (!found) return "";
+  for (const FailedRun& run : found->failed)
+    if (run.model == model && same_poisson_ratio(run.poisson_ratio, poisson_ratio))
+      return run.message.substr(0, run.message.find(':'));
+  return "";
+}
+
+const std::vector<Picture>& PaperResults::pictures(const std::string& case_name) const {
+  const std::string key = name_in_results(case_name);
+  const auto known = pictures_.find(key);
+  if (known != pictures_.end()) return known->second;
+  for (auto& [name, all] : read_pictures(find(case_name)->folder)) pictures_[name] = std::move(all);
+  return pictures_[key];
+}
+
+std::optional<Shape> PaperResults::shape(const std::string& case_name, const std::string& model, double poisson_ratio,
+                                         const std::optional<Cells>& cells) const {
+  if (!has(case_name)) return {};
+  const Picture* best = nullptr;
+  for (const Picture& p : pictures(case_name)) {
+    if (p.model != model || p.surface != "cells" || !same_poisson_ratio(p.poisson_ratio, poisson_ratio)) continue;
+    if (cells ? p.cells == *cells : !best || cell_count(p.cells) < cell_count(best->cells)) best = &p;
+  }
+  return best ? std::optional(shape_of(*best)) : std::nullopt;
+}
+
+}  // namespace springproof
