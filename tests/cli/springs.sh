@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Springs files: written in every form, by the schema, with our forces in another program; read back as a model of a case.
-#   springs.sh PROGRAM SOURCE-FOLDER [PYTHON]
+#   springs.sh PROGRAM SOURCE-FOLDER
 # Without numpy, jsonschema or lmp what needs them is left out, and said.
 set -u
 program=$1 source=$2
