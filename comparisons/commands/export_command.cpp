@@ -98,7 +98,7 @@ ModelChoice chosen_model(const Experiment& e, const std::string& name) {
   if (name.empty() && !e.models.empty()) return e.models.front();
   for (const ModelRow& row : model_table()) {
     if (row.name == name) return named_model(name);
-    known.push_back(row.name);
+    if (std::find(known.begin(), known.end(), row.name) == known.end()) known.push_back(row.name);
   }
   throw InputError(fmt::format("--model: unknown model '{}' (allowed: {}){}", name, fmt::join(known, ", "),
                                did_you_mean(name, known)));

@@ -165,9 +165,9 @@ NodalVectors check_positions(const NodalVectors& X) {
   const double size = extent.maxCoeff();
   for (Eigen::Index n = 0; n < X.rows(); ++n) {
     const Eigen::RowVector3d s = size > 0 ? Eigen::RowVector3d((X.row(n) - low) / size) : Eigen::RowVector3d::Zero();
-    x(n, 0) += 0.01 * size * (s[0] * s[1] - s[2] / 2);
-    x(n, 1) += 0.01 * size * (s[1] * s[1] * s[2] + s[0] / 3);
-    if (extent[2] > 0) x(n, 2) += 0.01 * size * (s[0] * s[2] - s[1] * s[1]);
+    x(n, 0) += 0.01 * size * (s[0] * s[1] + s[1] * s[2] - s[2] / 2);
+    x(n, 1) += 0.01 * size * (s[1] * s[1] * s[2] + s[2] * s[0] / 2 + s[0] / 3);
+    if (extent[2] > 0) x(n, 2) += 0.01 * size * (s[0] * s[2] - s[1] * s[1] + s[0] * s[1] / 3);
   }
   return x;
 }

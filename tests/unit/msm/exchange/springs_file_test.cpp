@@ -20,7 +20,8 @@ const IsotropicMaterial material{1e4, 0.4, 1100};
 
 Mesh mesh_of(const ModelRow& row) {
   if (row.topology == Topology::cells) return test::notched_block();
-  return block_mesh({2, 2, 2}, {4, 4, row.topology == Topology::hexagonal ? 1 : 4});
+  if (row.topology == Topology::hexagonal) return block_mesh({2, 2, 0.5}, {4, 4, 1});
+  return block_mesh({2, 2, 2}, {4, 4, 4});
 }
 
 SpringsFile file_of(const std::string& name) {
