@@ -57,11 +57,11 @@ std::string crack_svg(const std::vector<Stroke>& springs, const std::vector<Stro
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-20 -20 {0:g} {0:g}\" fill=\"none\" "
       "stroke-linecap=\"round\">"
       "<rect x=\"-20\" y=\"-20\" width=\"{0:g}\" height=\"{0:g}\" fill=\"#fff\"/>"
-      "<path stroke=\"#9aa3ad\" stroke-width=\"4\" d=\"{1}\"/>",
+      "<path stroke=\"#b4bcc5\" stroke-width=\"3\" d=\"{1}\"/>",
       picture_width + 40, grey);
   for (std::size_t i = 0; i < drawn.size(); ++i)
     if (!drawn[i].empty())
-      out += fmt::format("<path stroke=\"{}\" stroke-width=\"9\" d=\"{}\"/>", crack_colours[i], drawn[i]);
+      out += fmt::format("<path stroke=\"{}\" stroke-width=\"7\" d=\"{}\"/>", crack_colours[i], drawn[i]);
   return out + "</svg>\n";
 }
 

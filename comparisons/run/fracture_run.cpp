@@ -88,12 +88,32 @@ std::map<std::string, double> measures_of(const Dried& dried) {
   return out;
 }
 
-/// The springs of the top layer, displaced with it, and strokes across the broken springs of the upper half: the trace
-/// of the plane normal to the spring.
-std::string picture_of(const Dried& dried) {
+/// Where cracks are open: broken springs of the upper half whose ends have moved apart by more than twice the
+/// threshold.
+std::vector<char> open_cracks(const Dried& dried, const Fracture& fracture) {
   const Network& network = dried.network;
   const FractureResult& r = dried.result;
-  const double top = network.X.col(2).maxCoeff(), half = (top + network.X.col(2).minCoeff()) / 2;
+  const std::vector<double> profile = drying_profile(fracture, network);
+  const double half = (network.X.col(2).maxCoeff() + network.X.col(2).minCoeff()) / 2;
+  std::vector<char> open;
+  for (std::size_t n = 0; n < network.springs.size(); ++n) {
+    const Spring& s = network.springs[n];
+    const Eigen::RowVector3d rest = network.X.row(s.j) - network.X.row(s.i),
+                             moved = r.displacement.row(s.j) - r.displacement.row(s.i);
+    const double stretch = rest.dot(moved) / rest.squaredNorm() + fracture.shrinkage * profile[n];
+    open.push_back(r.broken_at[n] > 0 && stretch > 2 * fracture.threshold &&
+                   (network.X(s.i, 2) + network.X(s.j, 2)) / 2 > half);
+  }
+  return open;
+}
+
+/// The springs of the top layer, displaced with it, and strokes across the broken springs of open cracks: the trace of
+/// the plane normal to the spring.
+std::string picture_of(const Dried& dried, const Fracture& fracture) {
+  const Network& network = dried.network;
+  const FractureResult& r = dried.result;
+  const std::vector<char> open = open_cracks(dried, fracture);
+  const double top = network.X.col(2).maxCoeff();
   double length = 0;
   for (const Spring& s : network.springs) length += s.rest_length / static_cast<double>(network.springs.size());
   const int last = *std::max_element(r.broken_at.begin(), r.broken_at.end());
@@ -108,8 +128,7 @@ std::string picture_of(const Dried& dried) {
     const Vec3 rest = (network.X.row(s.j) - network.X.row(s.i)).transpose();
     const double low = std::min(network.X(s.i, 2), network.X(s.j, 2)), level = rest.head<2>().norm();
     if (r.broken_at[n] == 0 && low > top - length) springs.push_back({a.x(), a.y(), b.x(), b.y()});
-    if (r.broken_at[n] == 0 || (network.X(s.i, 2) + network.X(s.j, 2)) / 2 < half || level < 0.3 * s.rest_length)
-      continue;
+    if (!open[n] || level < 0.3 * s.rest_length) continue;
     const Vec3 middle = (a + b) / 2, along = 0.4 * length / level * Vec3(-rest.y(), rest.x(), 0);
     cracks.push_back({middle.x() - along.x(), middle.y() - along.y(), middle.x() + along.x(), middle.y() + along.y(),
                       last > first ? (r.broken_at[n] - first) / static_cast<double>(last - first) : 0});
@@ -188,7 +207,7 @@ FractureSamples run_fracture_samples(const PreparedCase& prepared, const Lattice
       samples.scalars.push_back(measures_of(dried));
       add_curves(dried, samples.cracks);
       if (samples.scalars.size() > 1) continue;
-      samples.cracks.svg = picture_of(dried);
+      samples.cracks.svg = picture_of(dried, f);
       if (!vtu.empty()) write_springs(vtu, dried);
     } catch (const InputError&) {
       throw;

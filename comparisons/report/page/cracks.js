@@ -49,8 +49,8 @@ function cracksSection(section) {
     pictures.replaceChildren(...(picturesOf(result).cracks || []).map(crackPicture));
     curve.draw(crackDrawing(result, crackCurves.find(([key]) => key === curveChoice.value)));
   }
-  section.append(el('p', {class: 'lead'}, 'The first sample of each model, from above. Grey: intact springs of the top layer, displaced; strokes: across broken ' +
-      'springs of the upper half, dark red the first to break, orange the last.'),
+  section.append(el('p', {class: 'lead'}, 'The first sample of each model, from above. Grey: intact springs of the top layer, displaced; strokes: across the ' +
+      'broken springs of open cracks in the upper half, dark red the first to break, orange the last.'),
     el('div', {class: 'choices'}, caseChoice.node, curveChoice.node), pictures, curve.node);
   draw();
   charts.push(draw);

@@ -103,9 +103,9 @@ TEST(FractureRun, RefusesModelsThatCannotBreak) {
 
 TEST(CrackPicture, DrawsSpringsAndCracksByAge) {
   const std::string svg = crack_svg({{0, 0, 2, 0}}, {{1, -1, 1, 1, 0}, {0, -1, 0, 1, 1}});
-  EXPECT_NE(svg.find("stroke=\"#9aa3ad\" stroke-width=\"4\" d=\"M0 1000L2000 1000\""), std::string::npos) << svg;
-  EXPECT_NE(svg.find("stroke=\"#67000d\" stroke-width=\"9\" d=\"M1000 2000L1000 0\""), std::string::npos) << svg;
-  EXPECT_NE(svg.find("stroke=\"#fdae6b\" stroke-width=\"9\" d=\"M0 2000L0 0\""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("stroke=\"#b4bcc5\" stroke-width=\"3\" d=\"M0 1000L2000 1000\""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("stroke=\"#67000d\" stroke-width=\"7\" d=\"M1000 2000L1000 0\""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("stroke=\"#fdae6b\" stroke-width=\"7\" d=\"M0 2000L0 0\""), std::string::npos) << svg;
   EXPECT_TRUE(crack_svg({}, {}).ends_with("</svg>\n"));
 }
 
