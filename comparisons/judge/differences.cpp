@@ -32,8 +32,7 @@ Row row_of(const json& j, const std::string& case_name) {
   row.unit = j.at("unit");
   j.at("reference").get_to(row.reference);
   j.at("reference_uncertainty").get_to(row.reference_uncertainty);
-  j.at("samples").get_to(row.samples);
-  j.at("spread").get_to(row.spread);
+  if (j.contains("spread")) j.at("spread").get_to(row.spread);
   return row;
 }
 

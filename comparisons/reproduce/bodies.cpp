@@ -144,7 +144,8 @@ std::string reason_svg(const std::string& reason, double x, double y) {
   for (std::size_t at = 0; at < reason.size();) {
     const std::size_t end = std::min(reason.find(' ', at), reason.size());
     if (!line.empty() && line.size() + end - at > longest) flush();
-    line += (line.empty() ? "" : " ") + reason.substr(at, end - at);
+    if (!line.empty()) line += ' ';
+    line.append(reason, at, end - at);
     at = end + 1;
   }
   if (!line.empty()) flush();

@@ -33,13 +33,16 @@ std::string columns_csv(const std::vector<Column>& columns) {
   std::string out;
   std::size_t lines = 0;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    out += (c ? "," : "") + csv_text(columns[c].first);
+    if (c > 0) out += ',';
+    out += csv_text(columns[c].first);
     lines = std::max(lines, columns[c].second.size());
   }
   out += '\n';
   for (std::size_t line = 0; line < lines; ++line) {
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      out += (c ? "," : "") + (line < columns[c].second.size() ? csv_number(columns[c].second[line]) : "");
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c > 0) out += ',';
+      if (line < columns[c].second.size()) out += csv_number(columns[c].second[line]);
+    }
     out += '\n';
   }
   return out;

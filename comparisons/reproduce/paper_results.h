@@ -21,7 +21,6 @@ struct PrintedValue {
   double printed = 0;
   std::optional<double> ours, fem;  ///< fem: the converged finite elements
   std::string where, remark;
-  std::optional<double> within = {};  ///< of an [[expect]]: the difference that the paper's statement allows
 };
 
 /// The deformed surface of one run.

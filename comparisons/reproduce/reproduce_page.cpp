@@ -76,7 +76,7 @@ std::string value_row(const ValueVerdict& value, const PaperFigure& figure) {
       v.cells[0] > 0 ? ", " + cells_text(v.cells, "×") + " cells" : "", v.poisson_ratio, xml_escaped(v.measure),
       figure.percent ? "%" : xml_escaped(v.unit), printed_text(factor * v.printed, factor * figure.last_digit),
       amount(scaled(v.ours, factor), "no result"), difference_text(v, factor), amount(scaled(v.fem, factor), ""),
-      chip(value.agrees ? "agrees" : "differs"),
+      figure.is_table() ? chip(value.agrees ? "agrees" : "differs") : "",
       v.remark.empty() ? "" : fmt::format("<small>{}</small>", xml_escaped(v.remark)));
 }
 
@@ -86,7 +86,8 @@ std::string values_html(const DrawnFigure& d) {
       "<div class=\"scroll\"><table class=\"values\"><thead><tr><th>printed in</th><th>model here</th><th "
       "class=\"number\">ν</th><th>quantity</th><th class=\"number\">printed</th><th class=\"number\">ours</th><th "
       "class=\"number\">difference</th><th class=\"number\">FEM, "
-      "converged</th><th>verdict</th></tr></thead><tbody>\n";
+      "converged</th><th>" +
+      std::string(d.figure.is_table() ? "verdict" : "remark") + "</th></tr></thead><tbody>\n";
   for (const ValueVerdict& value : d.verdict.values) out += value_row(value, d.figure);
   return out + "</tbody></table></div>\n";
 }

@@ -109,8 +109,7 @@ std::vector<ValueVerdict> judge_values(const PaperResults& results, const PaperF
   for (const std::string& case_name : figure.cases)
     for (const PrintedValue& v :
          results.printed(case_name, figure.printed_where.empty() ? figure.title() : figure.printed_where)) {
-      const double printed = std::max(printed_tolerance * std::abs(v.printed), figure.last_digit * (1 + 1e-9));
-      const double allowed = figure.is_table() ? printed : v.within.value_or(printed);
+      const double allowed = std::max(printed_tolerance * std::abs(v.printed), figure.last_digit * (1 + 1e-9));
       all.push_back({v, v.ours && std::abs(*v.ours - v.printed) <= allowed});
     }
   return all;

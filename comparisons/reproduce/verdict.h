@@ -12,7 +12,7 @@ struct ClaimVerdict {
   enum { no, partly, yes, not_judged } holds = no;
 };
 
-/// One printed value, judged.
+/// One printed value; of a table it is judged, of a figure shown beside what the paper states.
 struct ValueVerdict {
   PrintedValue value;
   bool agrees = false;
