@@ -65,13 +65,15 @@ std::string crack_svg(const std::vector<Stroke>& springs, const std::vector<Stro
   return out + "</svg>\n";
 }
 
+std::string crack_file(const std::string& case_name, const RunKey& key) {
+  return file_name(
+             fmt::format("{}-cracks-{}-{}-nu{}", case_name, key.model, cells_text(key.cells), key.poisson_ratio)) +
+         ".svg";
+}
+
 void write_crack_pictures(const std::vector<CaseResult>& results, const std::filesystem::path& folder) {
   for (const CaseResult& result : results)
-    for (const CrackRecord& c : result.cracks)
-      write_file(folder / (file_name(fmt::format("{}-cracks-{}-{}-nu{}", result.experiment.name, c.model,
-                                                 cells_text(c.cells), c.poisson_ratio)) +
-                           ".svg"),
-                 c.svg);
+    for (const CrackRecord& c : result.cracks) write_file(folder / crack_file(result.experiment.name, c), c.svg);
 }
 
 }  // namespace springproof

@@ -19,6 +19,9 @@ struct Stroke {
 /// larger extent.  The text holds no names from outside.
 std::string crack_svg(const std::vector<Stroke>& springs, const std::vector<Stroke>& cracks);
 
+/// CASE-cracks-MODEL-CELLS-nuNU.svg
+std::string crack_file(const std::string& case_name, const RunKey& key);
+
 /// Writes CASE-cracks-MODEL-CELLS.svg of every record into the folder.
 /// @throws std::runtime_error if a file cannot be written.
 void write_crack_pictures(const std::vector<CaseResult>& results, const std::filesystem::path& folder);

@@ -56,7 +56,8 @@ struct PaperFigure {
   std::vector<Claim> claims = {};
   std::vector<Chart> (*charts)(const PaperResults&) = nullptr;
   std::vector<BodyPlan> bodies = {};
-  int columns = 3;  ///< of the bodies
+  std::vector<std::string> cracks = {};  ///< models of the first case whose cracks are drawn
+  int columns = 3;                       ///< of the bodies
   BodyView view = {};
   double last_digit = 0;           ///< of a table: the unit of its last printed digit [SI]
   bool percent = false;            ///< the table prints per cent of what the case files hold

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/judge/differences.h"
+#include "comparisons/report/crack_picture.h"
 #include "comparisons/reproduce/read_pictures.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
@@ -150,6 +151,13 @@ std::vector<PrintedValue> PaperResults::printed(const std::string& case_name, co
     return std::pair(a.poisson_ratio, cell_count(a.cells)) < std::pair(b.poisson_ratio, cell_count(b.cells));
   });
   return all;
+}
+
+std::string PaperResults::cracks(const std::string& case_name, const std::string& model) const {
+  const Row* finest = nullptr;
+  for (const Row& row : rows(case_name))
+    if (row.model == model && (!finest || cell_count(row.cells) > cell_count(finest->cells))) finest = &row;
+  return finest ? text_of_file(find(case_name)->folder / crack_file(finest->case_name, *finest)) : "";
 }
 
 std::string PaperResults::failure(const std::string& case_name, const std::string& model, double poisson_ratio) const {

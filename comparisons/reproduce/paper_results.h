@@ -53,6 +53,9 @@ class PaperResults {
   std::optional<Shape> shape(const std::string& case_name, const std::string& model, double poisson_ratio,
                              const std::optional<Cells>& cells = {}) const;
 
+  /// Cracks of a model in a drying body seen from above, on the finest lattice: an SVG document.  Empty: there is none.
+  std::string cracks(const std::string& case_name, const std::string& model) const;
+
   /// Why a model has no result: "no stable equilibrium beyond 0.21 of the load"; empty: it has one, or was not run.
   std::string failure(const std::string& case_name, const std::string& model, double poisson_ratio) const;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "problem/system/child.h"
+#include "problem/system/encoding.h"
 #include "problem/system/files.h"
 
 namespace springproof {
@@ -24,6 +25,26 @@ std::string drawn_bodies(const PaperResults& results, const PaperFigure& figure)
   std::vector<BodyPanel> panels;
   for (const BodyPlan& plan : figure.bodies) panels.push_back(panel_of(results, plan));
   return bodies_svg(panels, figure.columns, figure.view);
+}
+
+/// Cracks side by side, seen from above.
+std::string drawn_cracks(const PaperResults& results, const PaperFigure& figure) {
+  constexpr int size = 340, gap = 20, title = 30;
+  std::string out;
+  int left = 0;
+  for (const std::string& model : figure.cracks) {
+    std::string svg = results.cracks(figure.cases.front(), model);
+    if (svg.empty()) continue;
+    const std::string place =
+        fmt::format("<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" ", left, title, size, size);
+    out += fmt::format("<text x=\"{}\" y=\"20\">{}</text>\n", left, xml_escaped(model)) +
+           svg.replace(0, std::string("<svg ").size(), place);
+    left += size + gap;
+  }
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"sans-serif\" font-size=\"15\">\n{2}</svg>\n",
+      std::max(size, left - gap), size + title, out);
 }
 
 /// Numbers beside the pictures: every number of the cases that the claims are about.
@@ -76,6 +97,10 @@ DrawnFigure draw_figure(const PaperResults& results, const PaperFigure& figure) 
   if (!figure.bodies.empty()) {
     drawn.svgs.push_back(drawn_bodies(results, figure));
     if (drawn.csv.empty()) drawn.csv = bodies_csv(results, figure);
+  }
+  if (!figure.cracks.empty()) {
+    drawn.svgs.push_back(drawn_cracks(results, figure));
+    drawn.csv = bodies_csv(results, figure);
   }
   if (figure.is_table()) drawn.csv = values_csv(drawn.verdict.values);
   return drawn;
