@@ -203,7 +203,8 @@ std::vector<PaperFigure> golec_2019_figures() {
                 "at ν = 0 the energy (5.1) has no equilibrium at this load (docs/papers.md #5); " + wrinkled),
       printed_table("table2", "e in compression", {"golec_2019/tables/table2_compression_5", compression_20},
                     hundredth_of_a_percent,
-                    "HybMSS-FD wrinkles (docs/papers.md #10), HybMSS at ν = 0.499 is no static value (#7), FEM at 20 % "
+                    "HybMSS-FD wrinkles (docs/papers.md #10; in motion, as the paper runs it: #20), HybMSS at ν = "
+                    "0.499 is no static value (#7), FEM at 20 % "
                     "and 0.499 is wrinkled in the paper too (section 5)"),
       printed_table("table3", "e in tension", {"golec_2019/tables/table3_tension_5", tension_20},
                     hundredth_of_a_percent,

@@ -157,7 +157,8 @@ std::string PaperResults::cracks(const std::string& case_name, const std::string
   const Row* finest = nullptr;
   for (const Row& row : rows(case_name))
     if (row.model == model && (!finest || cell_count(row.cells) > cell_count(finest->cells))) finest = &row;
-  return finest ? text_of_file(find(case_name)->folder / crack_file(finest->case_name, *finest)) : "";
+  if (!finest) return "";
+  return text_of_file(find(case_name)->folder / crack_file(case_name.substr(case_name.rfind('/') + 1), *finest));
 }
 
 std::string PaperResults::failure(const std::string& case_name, const std::string& model, double poisson_ratio) const {

@@ -7,6 +7,7 @@
 #include "problem/system/child.h"
 #include "problem/system/encoding.h"
 #include "problem/system/files.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {
@@ -34,7 +35,8 @@ std::string drawn_cracks(const PaperResults& results, const PaperFigure& figure)
   int left = 0;
   for (const std::string& model : figure.cracks) {
     std::string svg = results.cracks(figure.cases.front(), model);
-    if (svg.empty()) continue;
+    if (svg.empty())
+      throw InputError(fmt::format("no cracks of {} are in the results of {}", model, figure.cases.front()));
     const std::string place =
         fmt::format("<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" ", left, title, size, size);
     out += fmt::format("<text x=\"{}\" y=\"20\">{}</text>\n", left, xml_escaped(model)) +
