@@ -17,7 +17,7 @@ struct ModelChoice {
   std::string label;                                                       ///< "hybmss" or "hybmss A=1 paper_e_form"
   SourceLocation where;
   std::filesystem::path file = {};  ///< a springs file instead of a row of the table; empty: the row `name`
-  bool in_motion = false;  ///< integrated in time as [dynamics] says, not solved for its equilibrium
+  bool in_motion = false;           ///< integrated in time as [dynamics] says, not solved for its equilibrium
 };
 
 }  // namespace springproof

@@ -19,6 +19,7 @@ plan() {
     "$springproof compare golec_2019/"* | "$springproof compare verification" | "$springproof compare calibration")
       echo "check minutes; the tests experiment.* run these cases" ;;
     "$springproof cross-check "*) echo "check it needs CalculiX; cli.cross_check runs it" ;;
+    "$springproof reproduce "*) echo "check minutes; cli.reproduce draws figures from results" ;;
     "$springproof diff "*) echo "check it takes the folders of two runs; the tests Differences.* compare such" ;;
     "$springproof pictures"*) echo "check it needs Chromium; cli.pictures runs it" ;;
   esac
