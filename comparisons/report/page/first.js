@@ -67,6 +67,12 @@ function dotOf(result, model, nus) {
 const isVariant = model => smallStrain().some(({experiment}) => (experiment.models || []).some(m =>
   m.label === model && m.name !== model && (experiment.models || []).some(other => other.label === m.name)));
 
+/// The only Poisson's ratio of a classic model, behind its name.
+function claimText(result, model) {
+  const own = ownRatio(result, model);
+  return own === null ? null : el('small', {}, ` ν = ${nuText(own)}`);
+}
+
 function dotPlot() {
   const box = document.getElementById('first-plot');
   const shown = smallStrain().filter(result => result.measures.includes('displacement_error'));
@@ -91,13 +97,14 @@ function dotPlot() {
     const low = Math.floor(Math.log10(Math.min(1, ...all))), high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(1, ...all))));
     const at = error => `${100 * Math.min(1, Math.max(0, (Math.log10(Math.max(error, 1e-12)) - low) / (high - low)))}%`;
     const ticks = Array.from({length: high - low + 1}, (_, i) => 10 ** (low + i));
-    const doubt = Math.max(0, ...lines.flatMap(line => line.dots.map(dot => dot.uncertainty || 0)));
-    const marks = () => [doubt > 0 ? el('span', {class: 'doubt', style: {width: at(doubt)}}) : null,
-                         ...ticks.map(tick => el('span', {class: 'tick', style: {left: at(tick)}}))];
+    const marks = () => ticks.map(tick => el('span', {class: 'tick', style: {left: at(tick)}}));
+    /// The uncertainty of the reference, to both sides of the whole error: the springs' own part does not depend on it.
+    const whisker = ({whole, uncertainty}, model) => !uncertainty ? null : el('span', {class: 'whisker', style: {
+      left: at(whole - uncertainty), right: `calc(100% - ${at(whole + uncertainty)})`, background: modelStyle(model).color}});
     axis.replaceChildren(
       ...lines.flatMap(({model, dots, worst}) => [
-        el('div', {class: 'dot-name'}, modelName(model)),
-        el('div', {class: 'dot-track'}, marks(), dots.map(({result, row, error, own, whole}) => {
+        el('div', {class: 'dot-name'}, modelName(model), claimText(dots[0].result, model)),
+        el('div', {class: 'dot-track'}, marks(), dots.map(dot => whisker(dot, model)), dots.map(({result, row, error, own, whole}) => {
           const text = `${model}, ${result.name}: ${percent(error)} at ν = ${nuText(row.poisson_ratio)}` +
             (own === null ? '' : ` by its springs, ${percent(whole)} with coarse cells and staircase`);
           const mark = (at, kind) => el('span', {class: kind, role: 'img', title: text, 'aria-label': text, style: {left: at, color: modelStyle(model).color}},
@@ -112,7 +119,7 @@ function dotPlot() {
       nus.length > 1 ? el('label', {class: 'choice'}, slider) : null,
       anyVariant ? el('label', {class: 'ghost'}, variants, 'variants') : null,
       el('span', {class: 'dot-legend'}, shown.map((result, i) => el('span', {}, caseGlyphs[i % caseGlyphs.length], ' ', result.name)),
-         el('span', {}, el('i', {class: 'doubt-sample'}), 'uncertainty of the reference'))),
+         el('span', {}, el('i', {class: 'whisker-sample'}), 'uncertainty of the reference'))),
     axis,
     shown.some(result => result.splits.length > 0) ? el('p', {class: 'note'}, 'On a body of cubes a dot is the springs’ own part of the error, the pale one the whole with coarse cells and staircase.') : '');
   draw();
