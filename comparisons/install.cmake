@@ -29,3 +29,18 @@ foreach(module problem meshes msm)
 endforeach()
 install(EXPORT springproof NAMESPACE springproof:: FILE springproofTargets.cmake DESTINATION lib/cmake/springproof)
 install(FILES ${CMAKE_SOURCE_DIR}/msm/springproofConfig.cmake DESTINATION lib/cmake/springproof)
+# The same for builds without CMake: pkg-config --cflags --libs springproof.
+configure_file(${CMAKE_SOURCE_DIR}/msm/springproof.pc.in ${CMAKE_CURRENT_BINARY_DIR}/springproof.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/springproof.pc DESTINATION lib/pkgconfig)
+
+# cpack: one Debian package of programs and library; dpkg-shlibdeps finds the libraries that it depends on.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "springproof")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "mass-spring models of elastic solids, compared with finite elements")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, zlib1g-dev")  # to link springproof::msm
+include(CPack)
