@@ -53,6 +53,19 @@ else
   cat log; fail "springproof::msm cannot be used"
 fi
 
+# The Debian package, unpacked into an empty root: its program runs there, and its library by pkg-config.
+if command -v dpkg-shlibdeps >/dev/null && command -v pkg-config >/dev/null; then
+  "$(dirname "$cmake")/cpack" --config "$binary/CPackConfig.cmake" -B "$prefix/packed" >log 2>&1 || { cat log; fail "cpack"; }
+  dpkg -x packed/springproof_*.deb root || fail "the package cannot be unpacked"
+  root/usr/bin/springproof list | grep -q '^  golec_2019/compression ' || fail "the packaged program does not find its cases"
+  export PKG_CONFIG_PATH=$prefix/root/usr/lib/pkgconfig
+  if g++ -O2 other/embed_msm.cpp -o packed/bar $(pkg-config --cflags --libs springproof) >log 2>&1; then
+    packed/bar | grep -q '^tip ' || fail "the program built by pkg-config"
+  else
+    cat log; fail "pkg-config --cflags --libs springproof does not suffice"
+  fi
+fi
+
 # By hand, without the flags that CMake passes on, it is refused at once.
 for eigen in /usr/include/eigen3 /usr/local/include/eigen3; do
   [ -d $eigen ] && g++ -std=c++20 -fsyntax-only -I"$prefix/include/springproof" -isystem $eigen other/embed_msm.cpp 2>log
