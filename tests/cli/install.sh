@@ -39,13 +39,14 @@ cmake_minimum_required(VERSION 3.25)
 project(other LANGUAGES C CXX)
 set(CMAKE_CXX_STANDARD 20)
 find_package(springproof REQUIRED)
-foreach(program embed_msm drop_springs)
+foreach(program embed_msm drop_springs own_model)
   add_executable(${program} ${program}.cpp)
   target_link_libraries(${program} PRIVATE springproof::msm)
 endforeach()
 END
 # With this machine's instructions: vectors of Eigen are handed over to a library that has been built without them.
 if "$cmake" -S other -B other/build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_FLAGS="-O2 -march=native" >log 2>&1 && "$cmake" --build other/build >>log 2>&1; then
+  other/build/own_model | grep -q "safe step" || fail "the program with a network of its own"
   other/build/embed_msm | grep '^tip ' || fail "the program that embeds springproof::msm"
   "$springproof" export only_here.geo --size 0.1 0.1 0.1 --cells 4 4 4 -E 1e5 --nu 0.45 --to springs --out springs.json >log 2>&1 || fail "no springs of an installed case: $(cat log)"
   other/build/drop_springs springs.json | grep ' rebounds by ' || fail "the program that loads a springs file"
