@@ -1,0 +1,68 @@
+// Reads a springs file with a JSON library alone and computes its forces by springproof_forces.h, without springproof:
+// they are those of the file's check, and minus the gradient of the energy.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "springproof_forces.h"
+
+using nlohmann::json;
+
+template <class T>
+std::vector<T> flat(const json& rows) {
+  std::vector<T> out;
+  for (const json& row : rows)
+    if (row.is_array())
+      for (const json& x : row) out.push_back(x);
+    else
+      out.push_back(row);
+  return out;
+}
+
+int main(int count, char** arguments) try {
+  if (count != 2) return std::fprintf(stderr, "usage: forces_in_c FILE.json\n"), 2;
+  const json file = json::parse(std::ifstream(arguments[1])), laws = file.at("laws"), derived = file.at("derived");
+  const auto X = flat<double>(file.at("nodes").at("position_m")), mass = flat<double>(file.at("nodes").at("mass_kg"));
+  const auto ends = flat<int>(file.at("springs").at("nodes")), cells = flat<int>(file.at("cells").at("nodes"));
+  const auto k = flat<double>(file.at("springs").at("stiffness_N_m")),
+             L = flat<double>(file.at("springs").at("rest_length_m"));
+  const auto energy = [&](const std::vector<double>& x, double* f) {
+    double W = sp_springs(k.size(), ends.data(), k.data(), L.data(), x.data(), f);
+    if (laws.contains("volume_correction"))
+      W += sp_volume(cells.size() / 8, cells.data(), file.at("cells").at("edge_m"),
+                     laws.at("volume_correction").at("kappa_Pa"), laws.at("volume_correction").at("form") == "paper",
+                     x.data(), f);
+    if (laws.contains("hourglass_correction"))
+      W += sp_hourglass(cells.size() / 8, cells.data(),
+                        {derived.at("hourglass_bending_N_m"), derived.at("hourglass_coupling_N_m"),
+                         derived.at("hourglass_torsion_N_m"), derived.at("hourglass_torsion_coupling_N_m")},
+                        X.data(), x.data(), f);
+    return W;
+  };
+
+  auto x = flat<double>(file.at("check").at("position_m"));
+  const auto wanted = flat<double>(file.at("check").at("force_N"));
+  std::vector<double> f(x.size()), v(x.size());
+  energy(x, f.data());
+  double largest = 0, off = 0, off_gradient = 0;
+  for (double force : wanted) largest = std::max(largest, std::abs(force));
+  for (std::size_t i = 0; i < x.size(); ++i) off = std::max(off, std::abs(f[i] - wanted[i]));
+  for (std::size_t i = 0; i < std::min<std::size_t>(30, x.size()); ++i) {
+    const double h = 1e-6 * L.front(), at = x[i];
+    x[i] = at + h;
+    const double above = energy(x, nullptr);
+    x[i] = at - h;
+    off_gradient = std::max(off_gradient, std::abs((energy(x, nullptr) - above) / (2 * h) - f[i]));
+    x[i] = at;
+  }
+  sp_step(mass.size(), mass.data(), f.data(), 0.95 * derived.at("safe_time_step_s").get<double>(), 0, x.data(),
+          v.data());
+  std::printf("forces differ by %.1e of the largest, by %.1e from the gradient of the energy\n", off / largest,
+              off_gradient / largest);
+  return off < 1e-12 * largest && off_gradient < 1e-5 * largest ? 0 : 1;
+} catch (const std::exception& e) {
+  std::fprintf(stderr, "%s\n", e.what());
+  return 2;
+}

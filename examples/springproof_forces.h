@@ -1,0 +1,111 @@
+/* Forces of HybMSS and its hourglass correction in C99, for an engine or a shader that has the springs of a springs
+ * file (springproof export BODY --to springs) and nothing else of springproof.  SI units; nodes count from 0; a vector
+ * is three numbers in a row.  Every function adds to the forces f [N] and returns its energy [J]; f may be null.
+ * Equations: Golec et al. (2019); the hourglass correction: docs/papers.md, section 4. */
+#ifndef SPRINGPROOF_FORCES_H
+#define SPRINGPROOF_FORCES_H
+
+#include <math.h>
+#include <stddef.h>
+
+/* Signs of the corners of a cell: (0,0,0) (1,0,0) (1,1,0) (0,1,0) (0,0,1) (1,0,1) (1,1,1) (0,1,1) are -1 or +1. */
+static const int sp_sign[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                  {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+
+/* Springs: W = k/2 (L' - L)^2 (4.1).  nodes: count x 2. */
+static double sp_springs(size_t count, const int* nodes, const double* k, const double* L, const double* x, double* f) {
+  double energy = 0;
+  for (size_t s = 0; s < count; ++s) {
+    const double *a = x + 3 * nodes[2 * s], *b = x + 3 * nodes[2 * s + 1];
+    const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), stretch = length - L[s];
+    energy += 0.5 * k[s] * stretch * stretch;
+    if (!f) continue;
+    for (int c = 0; c < 3; ++c) {
+      const double pull = k[s] * stretch / length * d[c];
+      f[3 * nodes[2 * s] + c] += pull;
+      f[3 * nodes[2 * s + 1] + c] -= pull;
+    }
+  }
+  return energy;
+}
+
+static void sp_cross(const double* u, const double* v, double* w) {
+  w[0] = u[1] * v[2] - u[2] * v[1];
+  w[1] = u[2] * v[0] - u[0] * v[2];
+  w[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+/* Volume correction: W = V kappa psi(J), J = a . (b x c) / V with the mean edge vectors a, b, c of a cell (5.13),
+ * (5.14); psi = 9/2 (J^(1/3) - 1)^2, or with `paper` (J - 1)^2 / 2 (5.1).  nodes: cells x 8; edge of every cell [m]. */
+static double sp_volume(size_t cells, const int* nodes, double edge, double kappa, int paper, const double* x,
+                        double* f) {
+  const double V = edge * edge * edge;
+  double energy = 0;
+  for (size_t cell = 0; cell < cells; ++cell) {
+    const int* n = nodes + 8 * cell;
+    double mean[3][3] = {{0}}, area[3][3]; /* mean edge vectors; b x c, c x a, a x b */
+    for (int corner = 0; corner < 8; ++corner)
+      for (int d = 0; d < 3; ++d)
+        for (int c = 0; c < 3; ++c) mean[d][c] += sp_sign[corner][d] * x[3 * n[corner] + c] / 4;
+    for (int d = 0; d < 3; ++d) sp_cross(mean[(d + 1) % 3], mean[(d + 2) % 3], area[d]);
+    const double J = (mean[0][0] * area[0][0] + mean[0][1] * area[0][1] + mean[0][2] * area[0][2]) / V;
+    const double root = cbrt(J);
+    energy += V * kappa * (paper ? 0.5 * (J - 1) * (J - 1) : 4.5 * (root - 1) * (root - 1));
+    if (!f) continue;
+    const double slope = kappa * (paper ? J - 1 : 3 * (root - 1) / (root * root));
+    for (int corner = 0; corner < 8; ++corner)
+      for (int d = 0; d < 3; ++d)
+        for (int c = 0; c < 3; ++c) f[3 * n[corner] + c] -= slope * sp_sign[corner][d] * area[d][c] / 4;
+  }
+  return energy;
+}
+
+/* Stiffness of the hourglass modes of a cell [N/m]: derived.hourglass_* of the file. */
+struct sp_hourglass_stiffness {
+  double bending, coupling, torsion, torsion_coupling;
+};
+
+/* Hourglass correction, linear in the displacements x - X: for small displacements without rotation.  Modes of unit
+ * norm: u_p ~ xi_p xi_y (bending) and u_m ~ the product of the other two xi (torsion). */
+static double sp_hourglass(size_t cells, const int* nodes, struct sp_hourglass_stiffness k, const double* X,
+                           const double* x, double* f) {
+  double energy = 0;
+  for (size_t cell = 0; cell < cells; ++cell) {
+    const int* n = nodes + 8 * cell;
+    double mode[3][3] = {{0}}, force[3][3] = {{0}}; /* [component][the axis that the mode does not contain] */
+    for (int corner = 0; corner < 8; ++corner)
+      for (int c = 0; c < 3; ++c)
+        for (int out = 0; out < 3; ++out)
+          mode[c][out] += sp_sign[corner][(out + 1) % 3] * sp_sign[corner][(out + 2) % 3] *
+                          (x[3 * n[corner] + c] - X[3 * n[corner] + c]) / sqrt(8.0);
+    for (int y = 0; y < 3; ++y) { /* u_p with xi_p xi_y does not contain q, u_q with xi_q xi_y not p */
+      const int p = (y + 1) % 3, q = (y + 2) % 3;
+      force[p][q] += k.bending * mode[p][q] + k.coupling * mode[q][p];
+      force[q][p] += k.bending * mode[q][p] + k.coupling * mode[p][q];
+    }
+    const double twist = mode[0][0] + mode[1][1] + mode[2][2];
+    for (int m = 0; m < 3; ++m) force[m][m] += k.torsion * mode[m][m] + k.torsion_coupling * twist;
+    for (int c = 0; c < 3; ++c)
+      for (int out = 0; out < 3; ++out) {
+        energy += 0.5 * force[c][out] * mode[c][out];
+        if (!f) continue;
+        for (int corner = 0; corner < 8; ++corner)
+          f[3 * n[corner] + c] -=
+              force[c][out] * sp_sign[corner][(out + 1) % 3] * sp_sign[corner][(out + 2) % 3] / sqrt(8.0);
+      }
+  }
+  return energy;
+}
+
+/* One step of semi-implicit Euler, v += dt f / m, x += dt v, with damping in proportion to the mass [1/s], implicit.
+ * Stable at rest for dt up to derived.safe_time_step_s. */
+static void sp_step(size_t nodes, const double* mass, const double* f, double dt, double damping, double* x,
+                    double* v) {
+  for (size_t i = 0; i < 3 * nodes; ++i) {
+    v[i] = (v[i] + dt * f[i] / mass[i / 3]) / (1 + dt * damping);
+    x[i] += dt * v[i];
+  }
+}
+
+#endif
