@@ -19,6 +19,10 @@ const needsCases = make => section => {
   return section.append(notice('No model was compared.'));
 };
 
+/// The same, left out also where nothing was compared with a reference: bodies that only move or dry.
+const needsErrors = make => section =>
+  cases.length > 0 && !cases.some(result => result.rows.some(row => isNumber(row.error))) ? leaveOut(section) : needsCases(make)(section);
+
 function jumpTo(id, part) {
   return caseId => {
     part.show(caseId);
@@ -42,7 +46,9 @@ function aboutSection(section) {
 function decorateHead() {
   document.getElementById('generated').textContent = [results.program && results.program.version, results.generated]
     .filter(Boolean).join(' · ');
-  if (cases.length === 0 && verifications.length > 0) document.querySelector('#head h1').textContent = 'Are the reference’s finite elements right?';
+  const title = cases.length === 0 && verifications.length > 0 ? 'Are the reference’s finite elements right?'
+    : cases.length > 0 && cases.every(result => result.cracks.length > 0) ? 'How does a drying body crack?' : null;
+  if (title) document.querySelector('#head h1').textContent = title;
   for (const item of document.querySelectorAll('.verdicts li')) item.prepend(swatch(item.dataset.model));
 }
 
@@ -83,8 +89,8 @@ function start() {
   Chart.defaults.font.size = 13;
   build('cases', needsCases(casesSection));
   const compared = id => cases.some(result => result.id === id);
-  const poisson = build('poisson', needsCases(poissonSection));
-  const convergence = build('convergence', needsCases(convergenceSection));
+  const poisson = build('poisson', needsErrors(poissonSection));
+  const convergence = build('convergence', needsErrors(convergenceSection));
   const cost = build('cost', costSection);
   const splits = build('splits', splitsSection);
   const shapes = build('shapes', shapesSection);

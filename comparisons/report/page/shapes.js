@@ -150,7 +150,7 @@ function shapesDrawings(result) {
 
 function shapesSection(section) {
   const withPictures = allCases.filter(c => picturesOf(c).pictures.length > 0);
-  if (withPictures.length === 0) return section.append(notice('No pictures were written in this run.'));
+  if (withPictures.length === 0) return leaveOut(section);
   const viewer = new Viewer(), bar = colorBar(), caption = el('p', {class: 'caption'});
   const caseChoice = select('Case', withPictures.map(c => [c.id, c.name]), update);
   const nuChoice = select('ν', [], updateCells), cellsChoice = select('Cells', [], updateSurfaces);
