@@ -310,10 +310,9 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
 /// A model of a body that dries.
 void run_fracture_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const RunKey key = run.key(run.experiment().models[number].label, lattice);
-  const std::string name =
-      fmt::format("{}_nu{}_{}.vtu", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
-  FractureSamples samples = run_fracture_samples(run.prepared, run.prepared.lattices[lattice], number, run.material,
-                                                 run.vtu_folder.empty() ? run.vtu_folder : run.vtu_folder / name);
+  FractureSamples samples =
+      run_fracture_samples(run.prepared, run.prepared.lattices[lattice], number, run.material,
+                           run.vtu_folder.empty() ? run.vtu_folder : run.vtu_folder / (vtu_stem(key) + ".vtu"));
   for (Run& sample : samples.runs) {
     static_cast<RunKey&>(sample) = key;
     run.part.runs.push_back(std::move(sample));

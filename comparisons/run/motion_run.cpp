@@ -19,7 +19,7 @@ constexpr double most_steps = 1e8;
 /// The steps of a motion.
 struct Steps {
   double size;  ///< [s]
-  long count, stride;
+  long stride;  ///< from one sample of the history to the next
 };
 
 Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material) {
@@ -36,8 +36,7 @@ Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const I
     throw InputError(motion.where, fmt::format("dynamics.duration_s: takes {:.3g} steps of {:.3g} s (allowed: up to "
                                                "{:.0g} steps)",
                                                count, size, most_steps));
-  const long steps = static_cast<long>(count);
-  return {size, steps, std::max(1L, steps / motion.samples)};
+  return {size, std::max(1L, static_cast<long>(count) / motion.samples)};
 }
 
 /// Records the motion of one network, sample by sample.
@@ -75,9 +74,7 @@ class Recorder {
     const MassSpringModel& model = built_.model;
     Equilibrium state;
     state.displacement = x - model.network.X;
-    state.support = -forces(model, x) - conditions.external;
-    for (Eigen::Index i = 0; i < x.size(); ++i)
-      if (!conditions.fixed[i]) state.support.data()[i] = 0;
+    state.support = support_forces(model, x, conditions);
     const Experiment& e = prepared_.experiment;
     Field field = to_field(state, lattice_.mesh, built_.embedding, model.network, prepared_.loads, conditions,
                            e.model_kinematics());
@@ -113,8 +110,8 @@ void check_motion(const MotionChoice& motion, const MassSpringModel& model, cons
   steps_of(motion, model, material);
 }
 
-Equilibrium move(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
-                 const IsotropicMaterial& material, const LoadPath& path, MotionRecord& record) {
+Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
+                       const IsotropicMaterial& material, const LoadPath& path, MotionRecord& record) {
   const MotionChoice& motion = *prepared.experiment.dynamics;
   const Steps steps = steps_of(motion, built.model, material);
   record.history.time_step = steps.size;

@@ -21,8 +21,8 @@ struct MotionRecord {
 /// History: kinetic_energy, elastic_energy (of conservative models) and load_potential [J], volume_change [1], the
 /// force of every support [N] and the displacement of every probe [m].
 /// @throws InputError at time_step_s, if the step is not safe for the model.
-Equilibrium move(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
-                 const IsotropicMaterial& material, const LoadPath& path, MotionRecord& record);
+Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
+                       const IsotropicMaterial& material, const LoadPath& path, MotionRecord& record);
 
 /// Refuses a time step beyond the model's bound, and a motion of too many steps, before anything is run.
 /// @throws InputError at time_step_s or [dynamics].

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -216,11 +217,8 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
     state.message = fmt::format("not at rest after {:.4g} s: unbalanced force {:.2e} of the supports'", result.time,
                                 state.residual);
   state.displacement = x - X;
-  state.support = -forces(model, x) - bc.external;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    if (!bc.fixed[i]) state.support.data()[i] = 0;
-    state.unknowns += !bc.fixed[i];
-  }
+  state.support = support_forces(model, x, bc);
+  state.unknowns = std::count(bc.fixed.begin(), bc.fixed.end(), false);
   state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s, {}", result.steps, dt, motion->description());
   state.iterations = static_cast<int>(result.steps);
   state.seconds = cpu_seconds() - start;

@@ -52,6 +52,9 @@ using LoadPath = std::function<BoundaryConditions(double factor)>;
 /// the load reached and the reason (limit point or buckling, inverted cell, no convergence).
 Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options = {});
 
+/// Force of the supports on each node at positions x [N], zero on free unknowns.
+NodalVectors support_forces(const MassSpringModel& model, const NodalVectors& x, const BoundaryConditions& conditions);
+
 /// The Field of an equilibrium of a network in a mesh, for the comparator.
 Field to_field(const Equilibrium& equilibrium, std::shared_ptr<const Mesh> mesh, const Embedding& embedding,
                const Network& network, const std::vector<Load>& loads, const BoundaryConditions& conditions,

@@ -132,6 +132,13 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   return result;
 }
 
+NodalVectors support_forces(const MassSpringModel& model, const NodalVectors& x, const BoundaryConditions& conditions) {
+  NodalVectors support = -forces(model, x) - conditions.external;
+  for (Eigen::Index i = 0; i < support.size(); ++i)
+    if (!conditions.fixed[i]) support.data()[i] = 0;
+  return support;
+}
+
 Field to_field(const Equilibrium& equilibrium, std::shared_ptr<const Mesh> mesh, const Embedding& embedding,
                const Network& network, const std::vector<Load>& loads, const BoundaryConditions& conditions,
                Kinematics kinematics) {

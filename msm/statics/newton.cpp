@@ -187,9 +187,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   if (result.ok) result.message.clear();
   const BoundaryConditions reached = load_path(result.load_reached);
   result.displacement = x - model.network.X;
-  result.support = -forces(model, x) - reached.external;
-  for (Eigen::Index i = 0; i < result.support.size(); ++i)
-    if (!full.fixed[i]) result.support.data()[i] = 0;
+  result.support = support_forces(model, x, reached);
   result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K.name(),
                               steps, steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
