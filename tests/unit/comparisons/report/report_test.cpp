@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -86,8 +85,9 @@ TEST_F(Report, CarriesItsLibrariesOnce) {
 
 TEST_F(Report, RefersToNothingOutside) {
   const std::string page = write({hostile_case()});
-  const std::string markup =
-      std::regex_replace(page.substr(0, page.find("<script")), std::regex("<style>[^]*?</style>"), "");
+  std::string markup = page.substr(0, page.find("<script"));
+  for (std::size_t style; (style = markup.find("<style>")) != std::string::npos;)  // std::regex recurses per character
+    markup.erase(style, markup.find("</style>", style) - style);
   EXPECT_EQ(markup.find("://"), std::string::npos) << "the markup names an address";
   EXPECT_EQ(count(page, "<script src"), 0u);
   EXPECT_EQ(between(page, "<style>", "</style>").find("url("), std::string::npos);

@@ -11,6 +11,7 @@
 
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
+#include "fem_reference/reference.h"
 #include "problem/exact_field.h"
 #include "problem/system/child.h"
 
@@ -175,6 +176,7 @@ bool on_grids_of(const ElementGrids& e, double grading) {
 }
 
 TEST(ReferenceGrids, WhatFailsOnGradedGridsIsSolvedOnUniformOnes) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
   const PreparedCase prepared = squeezed_cube("\"q2\"", 0.2);
   const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
   ASSERT_EQ(grids.elements.size(), 1u) << grids.failure;
@@ -188,6 +190,7 @@ TEST(ReferenceGrids, WhatFailsOnGradedGridsIsSolvedOnUniformOnes) {
 
 /// A torque that vanishes is the largest of its kind, and says nothing about the body.
 TEST(ReferenceGrids, RoundOffOfATorqueDoesNotMatter) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
   const PreparedCase prepared = squeezed_cube("\"q2\"", 0.01);
   const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
   ASSERT_EQ(grids.elements.size(), 1u) << grids.failure;
@@ -198,6 +201,7 @@ TEST(ReferenceGrids, RoundOffOfATorqueDoesNotMatter) {
 }
 
 TEST(ReferenceGrids, WhatFailsOnUniformGridsTooSaysBoth) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
   const PreparedCase prepared = squeezed_cube("\"q2\"", 0.6);
   const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
   ASSERT_EQ(grids.elements.size(), 1u) << grids.failure;
@@ -226,6 +230,7 @@ class DyingProgram {
 };
 
 TEST(ReferenceGrids, AnElementThatTheProgramDiesOfDiesAlone) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
   const DyingProgram program("p1");
   const PreparedCase prepared = squeezed_cube("\"q1\", \"p1\"", 0.02);
   const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
