@@ -146,4 +146,31 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
 }
 
+bool has_cut_cells(const ModelRow& row) {
+  return row.topology == cells && row.extension != Extension::momentum_dispersion;
+}
+
+EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std::vector<std::string>& held,
+                        const Mesh& mesh, const IsotropicMaterial& material) {
+  if (!has_cut_cells(p.row))
+    throw InputError(
+        fmt::format("{}: cannot be made of cut cells (allowed: lattices of cells without momentum "
+                    "dispersion)",
+                    p.row.name));
+  const double G = spring_shear_modulus(p, material);
+  AveragedSprings law;
+  law.shear_modulus = G;
+  law.lame_lambda = G + (p.has(Extension::volume_correction) ? kappa(material) : 0);
+  law.hourglass = HourglassStiffness::of_pattern(p.face_to_cube, material.poisson_ratio, p.row.bending_correction,
+                                                 p.row.torsion_correction);
+  law.shift = p.shift;
+  law.contraction = material.poisson_ratio / (1 - material.poisson_ratio);
+  EmbeddedModel built;
+  built.model.network = cut_lattice(body, held, material.youngs_modulus);
+  built.model.laws = {law, Anchors{}};
+  built.model.small_displacements_only = true;
+  built.embedding = embed(body, held, built.model.network, mesh);
+  return built;
+}
+
 }  // namespace springproof

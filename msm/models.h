@@ -3,6 +3,7 @@
 
 #include "msm/embedding/embedding.h"
 #include "msm/parameters/model_table.h"
+#include "msm/topology/cut_lattice.h"
 
 namespace springproof {
 
@@ -19,6 +20,15 @@ struct EmbeddedModel {
 ///   moduli.
 EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region = nullptr);
+
+/// Whether a model can be built of cut cells: lattices of cells, but for momentum dispersion, which needs springs.
+bool has_cut_cells(const ModelRow& row);
+
+/// Builds the model of the cells of a cut body (msm/laws/averaged_springs.h), whose supports may hold the patches
+/// `held`; embedded at the nodes of `mesh`.
+/// @throws InputError unless has_cut_cells(parameters.row).
+EmbeddedModel build_cut(const ModelParameters& parameters, const CutBody& body, const std::vector<std::string>& held,
+                        const Mesh& mesh, const IsotropicMaterial& material);
 
 /// The network of a springs file stands for one material.
 /// @throws InputError if the model is a springs file of another one.

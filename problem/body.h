@@ -18,6 +18,7 @@ struct Body {
   SourceLocation where;      ///< of the key `geo`
   std::vector<double> voxel_edges = {};  ///< [m]; empty: no voxels, or their counts are given
   std::vector<int> voxel_counts = {};    ///< approximate numbers of cubes; empty: no voxels, or their edges are given
+  bool cut = true;                       ///< voxels: models that can take cut cells instead of whole cubes
   double scale = 1;                      ///< coordinates of a file are multiplied by it
 
   bool is_script() const;  ///< true for a .geo, whose size is a parameter; false for a file with fixed geometry

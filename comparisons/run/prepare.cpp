@@ -41,11 +41,32 @@ Cells reference_cells(const Experiment& e) {
 }
 
 /// @throws InputError at the model's location in the case, if its options yield no network.
-EmbeddedModel build_chosen(const ModelChoice& choice, const ModelParameters& parameters, const Mesh& mesh,
-                           const IsotropicMaterial& material, const Region* region) try {
-  return build_embedded(parameters, mesh, material, region);
+EmbeddedModel build_chosen(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
+                           const IsotropicMaterial& material) try {
+  return build_on(prepared, lattice, prepared.models[number], material);
 } catch (const InputError& e) {
-  throw InputError(choice.where, fmt::format("compare.models: {}", e.what()));
+  throw InputError(prepared.experiment.models[number].where, fmt::format("compare.models: {}", e.what()));
+}
+
+/// Decides which models take cut cells.
+/// @throws InputError for a model that is to and cannot.
+void choose_cut_cells(PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+    ModelParameters& p = prepared.models[m];
+    const char* reason = !has_cut_cells(p.row)                        ? "this model has none"
+                         : !e.body.is_voxels()                        ? "the body is a block"
+                         : e.fracture                                 ? "the body breaks"
+                         : e.models[m].in_motion                      ? "it is to move in time"
+                         : e.model_kinematics() != Kinematics::linear ? "the displacements are large"
+                                                                      : nullptr;
+    if (reason && p.cut.value_or(false))
+      throw InputError(e.models[m].where,
+                       fmt::format("compare.models: {}: cut = true: {} (allowed: lattices of cells in a body of "
+                                   "voxels, at rest under small displacements)",
+                                   p.row.name, reason));
+    p.cut = p.cut.value_or(e.body.cut && !reason);
+  }
 }
 
 /// @throws InputError at a springs file that stands for another material than the case's.
@@ -64,14 +85,11 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   const Experiment& experiment = prepared.experiment;
   const ModelParameters& parameters = prepared.models[number];
   const Mesh& mesh = *lattice.mesh;
-  const auto [model, embedding] =
-      build_chosen(experiment.models[number], parameters, mesh, experiment.materials.front(), lattice.region.get());
+  const auto [model, embedding] = build_chosen(prepared, lattice, number, experiment.materials.front());
   if (experiment.models[number].in_motion)
     for (const IsotropicMaterial& material : experiment.materials)
-      check_motion(*experiment.dynamics,
-                   build_chosen(experiment.models[number], parameters, mesh, material, lattice.region.get()).model,
-                   material);
-  if (parameters.row.topology == Topology::cells) return;
+      check_motion(*experiment.dynamics, build_chosen(prepared, lattice, number, material).model, material);
+  if (parameters.row.topology == Topology::cells && !*parameters.cut) return;
   const BoundaryConditions bc =
       transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
   if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
@@ -160,6 +178,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     check_own_models(prepared);
     check_kinematics(experiment, prepared.models);
     check_fracture_models(experiment, prepared.models);
+    choose_cut_cells(prepared);
     prepared.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);

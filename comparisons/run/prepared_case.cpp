@@ -5,6 +5,15 @@
 
 namespace springproof {
 
+EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                       const IsotropicMaterial& material) {
+  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
+  std::set<std::string> held;
+  for (const Load& load : prepared.loads)
+    if (prescribes_displacement(load)) held.insert(*patch_of(load));
+  return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
+}
+
 void add_lattice(Lattice lattice, PreparedCase& prepared) {
   lattice.first_node = prepared.nodes();
   prepared.lattices.push_back(std::move(lattice));

@@ -9,7 +9,8 @@
 
 #include "comparisons/judge/patch_mean.h"
 #include "meshes/mesh.h"
-#include "msm/parameters/model_table.h"
+#include "msm/models.h"
+#include "msm/topology/cut_lattice.h"
 #include "msm/topology/region.h"
 #include "problem/case_file/experiment.h"
 
@@ -23,6 +24,7 @@ struct Lattice {
   std::shared_ptr<const Region> region = {};    ///< the true body if cubes represent it, else empty
   std::shared_ptr<const Mesh> tetrahedra = {};  ///< for a body of voxels, with edges as long as the cubes', if
                                                 ///< elements on them are compared, else empty
+  std::shared_ptr<const CutBody> cut = {};      ///< of a body of voxels, if a model takes cut cells, else empty
   Eigen::Index first_node = 0;                  ///< first row of its nodes in fem::Solution::displacement
 };
 
@@ -59,6 +61,10 @@ struct PreparedCase {
     return lattices.empty() ? 0 : lattices.back().first_node + lattices.back().mesh->nodes.rows();
   }
 };
+
+/// Builds a model on a lattice, of cut cells if ModelParameters::cut says so.
+EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                       const IsotropicMaterial& material);
 
 /// Adds the next lattice.
 void add_lattice(Lattice lattice, PreparedCase& prepared);

@@ -119,6 +119,11 @@ void cut_lattices(PreparedCase& prepared) {
     for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
     compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);
     add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), edge, region}, prepared);
+    const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
+    if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
+    CutBody cut = cut_body(grid, true_body);
+    prepared.notes.insert(prepared.notes.end(), cut.notes.begin(), cut.notes.end());
+    prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
   }
 }
 

@@ -89,6 +89,10 @@ std::vector<std::vector<int>> coupled_nodes(const Network& network) {
     coupled[s.i].push_back(s.j);
     coupled[s.j].push_back(s.i);
   }
+  for (const Anchor& anchor : network.anchors) {
+    coupled[anchor.node].insert(coupled[anchor.node].end(), anchor.corners.begin(), anchor.corners.end());
+    for (int a : anchor.corners) coupled[a].push_back(anchor.node);
+  }
   for (const auto& triangle : network.triangles)
     for (int a : triangle) coupled[a].insert(coupled[a].end(), triangle.begin(), triangle.end());
   sort_unique(coupled);

@@ -139,6 +139,33 @@ NodalVectors mesh_forces(const std::vector<Load>& loads, const Mesh& mesh, doubl
   return external;
 }
 
+/// Forces of a load on the nodes of a network that knows the true body [N]; nothing for a force at a point.
+std::optional<NodalVectors> true_forces(const Load& load, const Embedding& e, double density, double factor) {
+  if (const auto* t = std::get_if<Traction>(&load))
+    return e.patches.at(t->on).area * (factor * t->traction).transpose();
+  if (const auto* q = std::get_if<Pressure>(&load)) return -factor * q->pressure * e.patches.at(q->on).normal;
+  if (const auto* f = std::get_if<PatchForce>(&load)) {
+    const Eigen::VectorXd& area = e.patches.at(f->on).area;
+    return area / area.sum() * (factor * f->force).transpose();
+  }
+  if (const auto* g = std::get_if<Gravity>(&load)) return factor * density * e.volumes * g->acceleration.transpose();
+  return {};
+}
+
+/// Forces on the nodes of a network [N].
+NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& e, double density,
+                            double factor) {
+  if (e.patches.empty()) return e.weights.transpose() * mesh_forces(loads, mesh, density, factor);
+  NodalVectors external = NodalVectors::Zero(e.weights.cols(), 3);
+  for (const Load& load : loads) {
+    if (const auto forces = true_forces(load, e, density, factor))
+      external += *forces;
+    else
+      external += e.weights.transpose() * mesh_forces({load}, mesh, density, factor);
+  }
+  return external;
+}
+
 }  // namespace
 
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, double density, Kinematics kinematics,
@@ -163,7 +190,7 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
           "no node of the network is near enough to patch '{}' to be held; choose a larger grip", *patch_of(load)));
     prescribe(load, number, held, network.X, kinematics, factor, bc);
   });
-  bc.external = embedding.weights.transpose() * mesh_forces(loads, mesh, density, factor);
+  bc.external = network_forces(loads, mesh, embedding, density, factor);
   if (!network.triangles.empty())
     for (int n = 0; n < network.nodes(); ++n) bc.fixed[3 * n + 2] = 1;
   return bc;

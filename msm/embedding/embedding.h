@@ -11,11 +11,19 @@
 
 namespace springproof {
 
+/// Shares of the nodes of a network in integrals over a patch of the true body, N_n the interpolation of node n.
+struct PatchShares {
+  Eigen::VectorXd area;  ///< integral of N_n [m^2]
+  NodalVectors normal;   ///< integral of N_n times the outward unit normal [m^2]
+};
+
 struct Embedding {
   /// Displacement of the mesh's nodes = weights * displacement of the network's, mesh nodes x network nodes.  Affine
   /// displacements are reproduced exactly, so that the transpose preserves the resultant and moment of loads.
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights;
   std::map<std::string, std::vector<int>> held;  ///< patch -> the network nodes that its supports hold, ascending
+  std::map<std::string, PatchShares> patches;    ///< of the true body; empty: loads are those on the mesh's nodes
+  Eigen::VectorXd volumes;                       ///< integral of N_n over the true body [m^3]; empty likewise
 };
 
 /// Embedding in a network whose nodes are the mesh's nodes, in their order.

@@ -15,19 +15,12 @@ CellVector hourglass(int component, int p, int q) {
   return h;
 }
 
-CellVector displacement(const Network& network, const Hexahedron& cell, const NodalVectors& x) {
-  CellVector u;
-  for (int n = 0; n < 8; ++n) u.segment<3>(3 * n) = (x.row(cell[n]) - network.X.row(cell[n])).transpose();
-  return u;
-}
-
 }  // namespace
 
+double paired_stiffness(double A) { return std::isinf(A) ? 0.5 : 3 * A / (2 * (4 + 3 * A)); }
+
 HourglassCorrection::Stiffness HourglassCorrection::stiffness(double edge) const {
-  const double Gl = shear_modulus * edge, nu = poisson_ratio, A = face_to_cube;
-  // 3A / (2 (4 + 3A)) is both the springs' coupling of the two bending modes of one neutral plane and their stiffness
-  // of the paired torsional modes; 6A / (4 + 3A) that of the symmetric torsional mode (units of G l).
-  const double pair = std::isinf(A) ? 0.5 : 3 * A / (2 * (4 + 3 * A));
+  const double Gl = shear_modulus * edge, nu = poisson_ratio, pair = paired_stiffness(face_to_cube);
   Stiffness k = {Gl * (1 / (3 * (1 - nu)) - 1), Gl * (nu / (3 * (1 - nu)) - pair)};
   if (!torsion) return k;
   const double paired = Gl * (1.0 / 6 - pair), symmetric = Gl * (2.0 / 3 - 4 * pair);
@@ -58,7 +51,7 @@ double HourglassCorrection::energy(const Network& network, const NodalVectors& x
   const auto K = cell_matrix(network.cell_edge);
   double sum = 0;
   for (const Hexahedron& cell : network.cells) {
-    const CellVector u = displacement(network, cell, x);
+    const CellVector u = displacement_of(cell, network, x);
     sum += 0.5 * u.dot(K * u);
   }
   return sum;
@@ -67,7 +60,7 @@ double HourglassCorrection::energy(const Network& network, const NodalVectors& x
 void HourglassCorrection::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
   const auto K = cell_matrix(network.cell_edge);
   for (const Hexahedron& cell : network.cells) {
-    const CellVector force = K * displacement(network, cell, x);
+    const CellVector force = K * displacement_of(cell, network, x);
     for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
   }
 }

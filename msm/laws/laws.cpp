@@ -35,6 +35,12 @@ const MomentumDispersion* dispersion_of(const MassSpringModel& model) {
   return nullptr;
 }
 
+const AveragedSprings* averaged_springs_of(const MassSpringModel& model) {
+  for (const ForceLaw& law : model.laws)
+    if (const auto* averaged = std::get_if<AveragedSprings>(&law)) return averaged;
+  return nullptr;
+}
+
 bool conservative(const MassSpringModel& model) {
   const MomentumDispersion* dispersion = dispersion_of(model);
   return !dispersion || dispersion->conservative();

@@ -5,7 +5,9 @@
 #include <variant>
 #include <vector>
 
+#include "msm/laws/anchors.h"
 #include "msm/laws/angular_springs.h"
+#include "msm/laws/averaged_springs.h"
 #include "msm/laws/hourglass_correction.h"
 #include "msm/laws/momentum_dispersion.h"
 #include "msm/laws/springs.h"
@@ -13,7 +15,8 @@
 
 namespace springproof {
 
-using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion, AngularSprings>;
+using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion, AngularSprings,
+                              AveragedSprings, Anchors>;
 
 inline const LawTraits& traits(const ForceLaw& law) {
   return std::visit([](const auto& l) -> const LawTraits& { return l.traits; }, law);
@@ -35,6 +38,9 @@ void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent
 
 /// The model's momentum dispersion; nullptr if it has none.
 const MomentumDispersion* dispersion_of(const MassSpringModel& model);
+
+/// The model's averaged springs; nullptr if it has none.
+const AveragedSprings* averaged_springs_of(const MassSpringModel& model);
 
 /// Whether the forces derive from an energy, so that the tangent is symmetric.
 bool conservative(const MassSpringModel& model);

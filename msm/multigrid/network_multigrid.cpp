@@ -22,13 +22,14 @@ struct Auxiliary {
   std::vector<int> cell_of;  ///< per node of the network above
 };
 
-Auxiliary auxiliary_lattice(const Network& above, double edge) {
+/// `aligned`: begins where the network does, so that the points of a lattice of half the edge lie on it or half way.
+Auxiliary auxiliary_lattice(const Network& above, double edge, bool aligned) {
   const Vec3 lower = above.X.colwise().minCoeff().transpose(),
              extent = above.X.colwise().maxCoeff().transpose() - lower;
   Grid grid;
   grid.spacing = edge * Vec3::Ones();
   for (int d = 0; d < 3; ++d) grid.cells[d] = std::max(1, static_cast<int>(std::ceil(extent[d] / edge - 1e-9)));
-  for (int d = 0; d < 3; ++d) grid.origin[d] = lower[d] - (grid.cells[d] * edge - extent[d]) / 2;
+  for (int d = 0; d < 3; ++d) grid.origin[d] = lower[d] - (aligned ? 0 : (grid.cells[d] * edge - extent[d]) / 2);
   Auxiliary aux;
   std::vector<int> number(std::size_t(grid.cells[0]) * grid.cells[1] * grid.cells[2], -1);
   for (int n = 0; n < above.nodes(); ++n) {
@@ -106,10 +107,11 @@ void hold(const std::vector<char>& fixed, Passage& level) {
 CellMatrix auxiliary_cell(const MassSpringModel& model, double edge) {
   MassSpringModel cell;
   cell.network = cubic_lattice(block_mesh(edge * Vec3::Ones(), {1, 1, 1}), isotropic_pattern(2));
-  const double G = affine_shear_modulus(model.network);
+  const double G = affine_shear_modulus(model);
   calibrate(G, cell.network);
   const MomentumDispersion* dispersion = dispersion_of(model);
-  const double kappa = dispersion ? 2 * dispersion->q * 5 / 3 * G : 0;
+  const AveragedSprings* averaged = averaged_springs_of(model);
+  const double kappa = dispersion ? 2 * dispersion->q * 5 / 3 * G : averaged ? averaged->lame_lambda - G : 0;
   cell.laws = {Springs{}, VolumeCorrection{std::min(kappa, largest_kappa * G)}};
   return cell_stiffness(cell).total;
 }
@@ -146,10 +148,9 @@ NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vect
                                    const ListStiffness<double>* list)
     : fixed_(fixed), smoother_(network_smoother(model, fixed, list)) {
   const Network& network = model.network;
-  const double edge = network.grid && !network.cells.empty()
-                          ? 2 * network.cell_edge
-                          : auxiliary_spacings * std::cbrt(network.volume.sum() / network.nodes());
-  const Auxiliary aux = auxiliary_lattice(network, edge);
+  const double edge = network.cells.empty() ? auxiliary_spacings * std::cbrt(network.volume.sum() / network.nodes())
+                                            : 2 * network.cell_edge;
+  const Auxiliary aux = auxiliary_lattice(network, edge, !network.filled.empty());
   passage_ = passage(network, aux);
   hold(fixed, passage_);
   lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, passage_.fixed, 900, aux.fill),

@@ -56,6 +56,11 @@ double affine_shear_modulus(const Network& network) {
   return sum_kL2(network) / (d * (d + 2) * network.volume.sum());
 }
 
+double affine_shear_modulus(const MassSpringModel& model) {
+  const AveragedSprings* averaged = averaged_springs_of(model);
+  return averaged ? averaged->shear_modulus : affine_shear_modulus(model.network);
+}
+
 void calibrate(double shear_modulus, Network& network) {
   const double factor = shear_modulus / affine_shear_modulus(network);
   for (Spring& s : network.springs) s.stiffness *= factor;

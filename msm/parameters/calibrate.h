@@ -1,7 +1,7 @@
 // Calibration of spring constants to a shear modulus, G = sum k L^2 / (d (d + 2) V) in d dimensions for every network.
 #pragma once
 
-#include "msm/topology/network.h"
+#include "msm/laws/laws.h"
 
 namespace springproof {
 
@@ -10,6 +10,9 @@ namespace springproof {
 /// for isotropic cell-superposed lattices (it contains Golec et al. 2019, eq. (5.11)), an upper bound for disordered
 /// networks.
 double affine_shear_modulus(const Network& network);
+
+/// That of a model: of its springs, or of the averaged springs of its cells.
+double affine_shear_modulus(const MassSpringModel& model);
 
 /// Scales all spring constants so that affine_shear_modulus(network) == G.
 void calibrate(double shear_modulus, Network& network);

@@ -69,6 +69,8 @@ struct ModelParameters {
   std::optional<double> grip;          ///< depth in node spacings to which supports hold nodes that are not the mesh's
   double turned = 0;                   ///< of node-centred lattices: angle about z [rad] between lattice and axes
   bool hold_rigid_motions = false;     ///< constrains those that the loads leave free, instead of an error
+  std::optional<bool> cut;             ///< of cut cells instead of whole cubes; empty: as the body says
+  double shift = 0;                    ///< AveragedSprings::shift
   int seeds = 1;                       ///< number of random networks to average: random.seed and those after it
   std::shared_ptr<const SpringsFile> springs = {};  ///< of Topology::file: network, laws and material as read
 

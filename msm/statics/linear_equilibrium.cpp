@@ -5,6 +5,8 @@
 #include "meshes/volume.h"
 #include "msm/algebra/krylov.h"
 #include "msm/multigrid/cell_stiffness.h"
+#include "msm/multigrid/cut_mixed_multigrid.h"
+#include "msm/multigrid/cut_multigrid.h"
 #include "msm/multigrid/dispersion_multigrid.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/equilibrium.h"
@@ -85,7 +87,9 @@ void solve_mixed(const LinearProblem& p, Mixed&& multigrid, double unit, std::si
 void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Equilibrium& result) {
   const Network& network = p.model.network;
   const double l = network.cell_edge, unit = G * l;
-  if (dispersion_of(p.model))
+  if (CutMultigrid::covers(p.model))
+    solve_mixed(p, CutMixedMultigrid(p.model, p.conditions.fixed), unit, network.cells.size(), result);
+  else if (dispersion_of(p.model))
     solve_mixed(p, DispersionMultigrid(p.model, p.conditions.fixed, G), unit, network.volume.size(), result);
   else
     solve_mixed(p, MixedMultigrid(lattice_levels(network, p.conditions.fixed), in_units(cell, G, l)), unit,
@@ -94,6 +98,7 @@ void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Eq
 
 /// Stiffness of the volume term [Pa] of a lattice for which there is a mixed multigrid.
 double volume_stiffness(const MassSpringModel& model, const CellStiffness& cell, double G) {
+  if (CutMultigrid::covers(model)) return averaged_springs_of(model)->lame_lambda - G;
   return NodalVolumes::covers(model) ? added_lambda(*dispersion_of(model)) * G : cell.kappa;
 }
 
@@ -107,15 +112,19 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   progress::detail([&] { return fmt::format("{} unknowns", result.unknowns); });
   const LinearProblem problem{model, conditions, options, flat(conditions.prescribed), flat(conditions.external)};
   LinearSolver solver = options.solver;
-  const double G = affine_shear_modulus(model.network);
+  const double G = affine_shear_modulus(model);
   const bool has_cells = consists_of_cells(model);
   const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
-    if (result.unknowns <= (has_cells || NodalVolumes::covers(model) ? lattice_cholesky_limit : cholesky_limit))
+    if (result.unknowns <= (has_cells || NodalVolumes::covers(model) || CutMultigrid::covers(model)
+                                ? lattice_cholesky_limit
+                                : cholesky_limit))
       solver = LinearSolver::cholesky;
     else
-      solver = volume_stiffness(model, cell, G) > mixed_above_kappa * G ? LinearSolver::mixed_multigrid
-                                                                        : LinearSolver::multigrid;
+      solver = volume_stiffness(model, cell, G) >
+                       (CutMultigrid::covers(model) ? cut_cells_mixed_above_kappa : mixed_above_kappa) * G
+                   ? LinearSolver::mixed_multigrid
+                   : LinearSolver::multigrid;
   }
   try {
     if (solver == LinearSolver::mixed_multigrid)

@@ -29,6 +29,8 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
   const Network& network = model.network;
   if (consists_of_cells(model))
     lattice_ = std::make_unique<Multigrid>(lattice_levels(network, fixed), cell_stiffness(model).total);
+  else if (CutMultigrid::covers(model))
+    cut_ = std::make_unique<CutMultigrid>(model, fixed);
   else {
     if (ListStiffness<double>::covers(model)) {
       list_ = std::make_unique<ListStiffness<double>>(model, std::make_shared<SpringBlocks>(network));
@@ -54,7 +56,7 @@ void TangentSolver::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) c
   if (direct_)
     factors_.solve(r, z);
   else
-    lattice_ ? lattice_->apply(r, z) : network_->apply(r, z);
+    lattice_ ? lattice_->apply(r, z) : cut_ ? cut_->apply(r, z) : network_->apply(r, z);
 }
 
 void TangentSolver::clear_fixed(Eigen::VectorXd& v) const {
@@ -133,7 +135,7 @@ double TangentSolver::largest_diagonal() const {
 }
 
 std::string TangentSolver::name() const {
-  const std::string inner = direct_ ? "Cholesky" : lattice_ ? "multigrid" : "network multigrid";
+  const std::string inner = direct_ ? "Cholesky" : lattice_ || cut_ ? "multigrid" : "network multigrid";
   if (companion_) return "GMRES + " + inner + " of the symmetric form";
   return direct_ ? inner : "CG + " + inner;
 }

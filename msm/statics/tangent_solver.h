@@ -6,6 +6,7 @@
 #include <string>
 
 #include "msm/algebra/krylov.h"
+#include "msm/multigrid/cut_multigrid.h"
 #include "msm/multigrid/multigrid.h"
 #include "msm/multigrid/network_multigrid.h"
 
@@ -60,6 +61,7 @@ class TangentSolver {
   bool at_rest_ = false;  ///< lattice_ or list_ provides the tangent, K_ is not updated
   DirectSolver factors_;
   std::unique_ptr<Multigrid> lattice_;
+  std::unique_ptr<CutMultigrid> cut_;
   std::unique_ptr<NetworkMultigrid> network_;
   std::unique_ptr<ListStiffness<double>> list_, companion_list_;  ///< of networks that it covers
 };

@@ -38,4 +38,10 @@ std::vector<Spring> merge_springs(std::vector<Spring> springs) {
 
 Eigen::VectorXd masses(const Network& network, double density) { return density * network.volume; }
 
+Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Network& network, const NodalVectors& x) {
+  Eigen::Matrix<double, 24, 1> u;
+  for (int n = 0; n < 8; ++n) u.segment<3>(3 * n) = (x.row(cell[n]) - network.X.row(cell[n])).transpose();
+  return u;
+}
+
 }  // namespace springproof

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "meshes/mesh.h"
+#include "meshes/voxels/filled_part.h"
 
 namespace springproof {
 
@@ -16,11 +17,22 @@ struct Spring {
   double rest_length;  ///< L [m]
 };
 
+/// Spring of rest length zero between a weighted mean of the corners of a cell and a node, by which a support holds the
+/// part of a patch in that cell: energy k/2 |sum_a w_a x_a - x_node|^2.
+struct Anchor {
+  Hexahedron corners;
+  std::array<double, 8> weights;  ///< they sum to 1
+  int node;
+  double stiffness;  ///< k [N/m]
+};
+
 struct Network {
   NodalVectors X;                    ///< rest positions [m], n x 3
   std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
   std::vector<Hexahedron> cells;     ///< cubic cells, empty for networks without
   double cell_edge = 0;              ///< l [m] of the cells
+  std::vector<FilledPart> filled;    ///< of cut cells, one per cell; empty: all cells are full
+  std::vector<Anchor> anchors;       ///< of the supports of cut cells
   std::vector<Spring> cell_springs;  ///< contribution of one cell: springs between its corners 0..7
   Eigen::VectorXd volume;            ///< volume share of each node in the body [m^3]
   std::optional<Grid> grid;          ///< the lattice of the cells
@@ -36,6 +48,9 @@ struct Network {
 /// sorts by (i, j).
 /// @throws std::invalid_argument if merged springs differ in rest length.
 std::vector<Spring> merge_springs(std::vector<Spring> springs);
+
+/// Displacement of the corners of a cell at positions x [m]; 3 * corner + axis.
+Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Network& network, const NodalVectors& x);
 
 /// Mass of each node [kg]: rho times its volume share (rho V/8 per cell corner, Golec et al. 2019, sec. 5.4).
 Eigen::VectorXd masses(const Network& network, double density);

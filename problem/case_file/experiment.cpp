@@ -38,7 +38,8 @@ constexpr Key body_schema[] = {
     {"scale"},
     {"cells"},
     {"voxels"},
-    {"voxel_edge_m"}};
+    {"voxel_edge_m"},
+    {"cut"}};
 
 constexpr Key material_schema[] = {{"youngs_modulus_Pa"}, {"poisson_ratio"},  {"shear_modulus_Pa"},
                                    {"bulk_modulus_Pa"},   {"lame_lambda_Pa"}, {"density_kg_m3"}};
@@ -120,6 +121,10 @@ Body read_body(const TomlValue& value) {
   if (voxels)
     body.voxel_counts = read_each_once<int>(*voxels, {"a number from 1 to 4e6, or a list of such", 1, 4e6, true, true});
   if (edges) body.voxel_edges = read_each_once<double>(*edges, positive_number);
+  if (const auto cut = table.find("cut")) {
+    if (cells) refuse(*cut, "is for bodies of voxels", "voxels or voxel_edge_m");
+    body.cut = as_flag(*cut);
+  }
   if (cells && !script) refuse(*cells, "is for bodies of hexahedra", "voxels or voxel_edge_m");
   return body;
 }

@@ -1,0 +1,189 @@
+#include "meshes/voxels/body_parts.h"
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+#include <tuple>
+
+namespace springproof {
+namespace {
+
+constexpr double least_volume = 1e-12, least_area = 1e-9;  // of a cube, of its face: below it round-off
+constexpr double least_fraction = 1e-3;                    // of a cube, for a piece that is kept
+
+double volume_of(const TetrahedronCorners& t) {
+  return std::abs((t[1] - t[0]).cross(t[2] - t[0]).dot(t[3] - t[0])) / 6;
+}
+
+std::array<int, 3> ascending(std::array<int, 3> nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+}  // namespace
+
+double area_of(const TriangleCorners& t) { return (t[1] - t[0]).cross(t[2] - t[0]).norm() / 2; }
+
+void SolidMoments::add(const TetrahedronCorners& t) {
+  const double v = volume_of(t);
+  const Vec3 sum = t[0] + t[1] + t[2] + t[3];
+  Eigen::Matrix3d squares = sum * sum.transpose();
+  for (const Vec3& x : t) squares += x * x.transpose();
+  volume += v;
+  first += v / 4 * sum;
+  second += v / 20 * squares;
+}
+
+void SolidMoments::add(const SolidMoments& m) {
+  volume += m.volume;
+  first += m.first;
+  second += m.second;
+}
+
+bool BodyParts::TetrahedronFacet::operator<(const TetrahedronFacet& o) const {
+  return std::tie(nodes, tetrahedron) < std::tie(o.nodes, o.tetrahedron);
+}
+
+BodyParts::BodyParts(const VoxelGrid& grid, const Mesh& body) : grid_(grid), body_(body) {
+  list_facets();
+  X_.resize(body.nodes.rows());
+  for (Eigen::Index n = 0; n < body.nodes.rows(); ++n)
+    X_[n] = (body.nodes.row(n).transpose() - grid.origin) / grid.edge;
+  for (const Tetrahedron& t : body.tetrahedra) {
+    begin.push_back(static_cast<int>(cube.size()));
+    cut_by_lattice(TetrahedronCorners{X_[t[0]], X_[t[1]], X_[t[2]], X_[t[3]]}, grid.cells,
+                   [&](const std::array<int, 3>& at, const TetrahedronCorners& part) {
+                     if (volume_of(part) > 0) moments[find_or_add(number(at))].add(part);
+                   });
+  }
+  begin.push_back(static_cast<int>(cube.size()));
+  connect();
+}
+
+void BodyParts::list_facets() {
+  facets_.reserve(4 * body_.tetrahedra.size());
+  for (std::size_t t = 0; t < body_.tetrahedra.size(); ++t)
+    for (int f = 0; f < 4; ++f) {
+      const Tetrahedron& n = body_.tetrahedra[t];
+      facets_.push_back({ascending({n[f], n[(f + 1) % 4], n[(f + 2) % 4]}), static_cast<int>(t)});
+    }
+  std::sort(facets_.begin(), facets_.end());
+}
+
+long BodyParts::number(const std::array<int, 3>& at) const {
+  return (long(at[2]) * grid_.cells[1] + at[1]) * grid_.cells[0] + at[0];
+}
+
+std::array<int, 3> BodyParts::index(long at) const {
+  const long row = at / grid_.cells[0];
+  return {static_cast<int>(at % grid_.cells[0]), static_cast<int>(row % grid_.cells[1]),
+          static_cast<int>(row / grid_.cells[1])};
+}
+
+int BodyParts::find(int tetrahedron, long at) const {
+  for (int p = begin[tetrahedron]; p < begin[tetrahedron + 1]; ++p)
+    if (cube[p] == at) return p;
+  return -1;
+}
+
+int BodyParts::find_or_add(long at) {
+  for (auto p = static_cast<std::size_t>(begin.back()); p < cube.size(); ++p)
+    if (cube[p] == at) return static_cast<int>(p);
+  cube.push_back(at);
+  moments.emplace_back();
+  return static_cast<int>(cube.size()) - 1;
+}
+
+long BodyParts::cube_beside(const TriangleCorners& part, int tetrahedron) const {
+  const Tetrahedron& t = body_.tetrahedra[tetrahedron];
+  const Vec3 middle = (part[0] + part[1] + part[2]) / 3, inside = (X_[t[0]] + X_[t[1]] + X_[t[2]] + X_[t[3]]) / 4;
+  std::array<int, 3> at;
+  for (int d = 0; d < 3; ++d) {
+    double x = middle[d];
+    if (std::abs(x - std::round(x)) < 4 * lattice_tolerance) x = std::round(x) + (inside[d] > x ? 0.5 : -0.5);
+    at[d] = std::clamp(static_cast<int>(std::floor(x)), 0, grid_.cells[d] - 1);
+  }
+  return number(at);
+}
+
+int BodyParts::owner(const std::array<int, 3>& of) const {
+  const std::array<int, 3> nodes = ascending(of);
+  const auto at = std::lower_bound(facets_.begin(), facets_.end(), TetrahedronFacet{nodes, -1});
+  if (at == facets_.end() || at->nodes != nodes)
+    throw std::invalid_argument("voxels: a patch has a facet that no tetrahedron has");
+  return at->tetrahedron;
+}
+
+bool BodyParts::share_a_face(long a, long b) const {
+  const std::array<int, 3> i = index(a), j = index(b);
+  return std::abs(i[0] - j[0]) + std::abs(i[1] - j[1]) + std::abs(i[2] - j[2]) == 1;
+}
+
+void BodyParts::connect() {
+  for (std::size_t t = 0; t + 1 < begin.size(); ++t)  // a convex solid in two cubes fills some of the face between them
+    for (int p = begin[t]; p < begin[t + 1]; ++p)
+      for (int q = begin[t]; q < p; ++q)
+        if (moments[p].volume > least_volume && moments[q].volume > least_volume && share_a_face(cube[p], cube[q]))
+          to_next.push_back({q, p});
+  for (std::size_t f = 0; f + 1 < facets_.size(); ++f) {
+    if (facets_[f].nodes != facets_[f + 1].nodes) continue;
+    const int a = facets_[f].tetrahedron, b = facets_[f + 1].tetrahedron;
+    cut_by_lattice(triangle(facets_[f].nodes), grid_.cells,
+                   [&](const std::array<int, 3>&, const TriangleCorners& part) {
+                     if (area_of(part) < least_area) return;
+                     const long at = cube_beside(part, a), beyond = cube_beside(part, b);
+                     const int p = find(a, at), q = find(b, beyond);
+                     if (p < 0 || q < 0) return;
+                     if (at == beyond)
+                       in_cube.push_back({p, q});
+                     else if (share_a_face(at, beyond))
+                       to_next.push_back({p, q});
+                   });
+  }
+}
+
+BodyPieces::BodyPieces(const BodyParts& parts) {
+  UnitedNumbers classes(parts.cube.size());
+  for (const auto& [p, q] : parts.in_cube) classes.unite(p, q);
+  of_part.resize(parts.cube.size());
+  std::vector<int> number(parts.cube.size(), -1);
+  for (std::size_t p = 0; p < parts.cube.size(); ++p) {
+    int& n = number[classes.of(static_cast<int>(p))];
+    if (n < 0) {
+      n = static_cast<int>(cube.size());
+      cube.push_back(parts.cube[p]);
+      moments.emplace_back();
+    }
+    of_part[p] = n;
+    moments[n].add(parts.moments[p]);
+  }
+  for (const auto& [p, q] : parts.to_next) links.push_back({of_part[p], of_part[q]});
+  std::sort(links.begin(), links.end());
+  links.erase(std::unique(links.begin(), links.end()), links.end());
+}
+
+double BodyPieces::number_cells() {
+  const std::size_t n = cube.size();
+  std::vector<char> large(n);
+  double all = 0;
+  for (std::size_t p = 0; p < n; ++p) {
+    large[p] = moments[p].volume >= least_fraction;
+    all += moments[p].volume;
+  }
+  UnitedNumbers together(n);
+  for (const auto& [p, q] : links)
+    if (large[p] && large[q]) together.unite(p, q);
+  std::vector<double> size(n, 0);
+  for (std::size_t p = 0; p < n; ++p)
+    if (large[p]) size[together.of(static_cast<int>(p))] += moments[p].volume;
+  const auto largest = std::max_element(size.begin(), size.end());
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::tie(cube[a], a) < std::tie(cube[b], b); });
+  cell.assign(n, -1);
+  int next = 0;
+  for (const int p : order)
+    if (large[p] && together.of(p) == largest - size.begin()) cell[p] = next++;
+  return 1 - *largest / all;
+}
+
+}  // namespace springproof

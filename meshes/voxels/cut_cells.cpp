@@ -1,0 +1,267 @@
+#include "meshes/voxels/cut_cells.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "meshes/locate/outer_facets.h"
+#include "meshes/voxels/body_parts.h"
+
+namespace springproof {
+namespace {
+
+constexpr double largest_loss = 0.02, noted_loss = 1e-3, noted_thin = 0.02;
+constexpr double thin = 0.75;  // 2 V / A in edges: sheets of that thickness, rods of twice that diameter
+
+FilledPart filled_part(const SolidMoments& m, const std::array<int, 3>& cube) {
+  const Vec3 centre = Vec3(cube[0], cube[1], cube[2]) + Vec3::Constant(0.5);
+  FilledPart f;
+  f.fraction = m.volume;
+  f.mean = m.first / m.volume - centre;
+  const Eigen::Matrix3d second = m.second / m.volume - centre * (m.first / m.volume).transpose() -
+                                 (m.first / m.volume) * centre.transpose() + centre * centre.transpose();
+  for (int i = 0; i < 3; ++i) {
+    f.mixed[i] = second((i + 1) % 3, (i + 2) % 3);
+    f.variance[i] = std::max(0.0, second(i, i) - f.mean[i] * f.mean[i]);
+  }
+  constexpr double round_off = 1e-10;
+  if (std::abs(f.fraction - 1) < round_off) f = FilledPart{};
+  return f;
+}
+
+/// Gives the cells corners: those on a face through which two cells are connected are the same.
+void number_points(const BodyPieces& pieces, CutBody& out) {
+  UnitedNumbers corners(8 * out.cells.size());
+  for (const auto& [p, q] : pieces.links) {
+    const int a = pieces.cell[p], b = pieces.cell[q];
+    if (a < 0 || b < 0) continue;
+    const std::array<int, 3>&i = out.cells[a].index, &j = out.cells[b].index;
+    for (int m = 0; m < 8; ++m)
+      for (int n = 0; n < 8; ++n) {
+        bool same = true;
+        for (int d = 0; d < 3; ++d) same &= i[d] + hexahedron_corners[m][d] == j[d] + hexahedron_corners[n][d];
+        if (same) corners.unite(8 * a + m, 8 * b + n);
+      }
+  }
+  std::vector<int> number(8 * out.cells.size(), -1);
+  std::vector<Vec3> points;
+  for (std::size_t c = 0; c < out.cells.size(); ++c)
+    for (int n = 0; n < 8; ++n) {
+      int& at = number[corners.of(static_cast<int>(8 * c + n))];
+      if (at < 0) {
+        at = static_cast<int>(points.size());
+        Vec3 x;
+        for (int d = 0; d < 3; ++d) x[d] = out.cells[c].index[d] + hexahedron_corners[n][d];
+        points.push_back(out.grid.origin + out.grid.edge * x);
+      }
+      out.cells[c].corners[n] = at;
+    }
+  out.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t p = 0; p < points.size(); ++p) out.points.row(static_cast<Eigen::Index>(p)) = points[p].transpose();
+}
+
+/// Quadrature on a triangle, exact to degree 4 (Strang and Fix, six points): barycentric coordinates and weights.
+struct TrianglePoint {
+  std::array<double, 3> at;
+  double weight;
+};
+std::vector<TrianglePoint> triangle_points() {
+  std::vector<TrianglePoint> points;
+  const double a[2] = {0.44594849091596489, 0.09157621350977073}, w[2] = {0.22338158967801147, 0.10995174365532187};
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < 3; ++i) {
+      TrianglePoint p{{a[k], a[k], a[k]}, w[k]};
+      p.at[i] = 1 - 2 * a[k];
+      points.push_back(p);
+    }
+  return points;
+}
+
+}  // namespace
+
+double PatchInCell::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
+
+Vec3 CutBody::centre(int cell) const {
+  const std::array<int, 3>& i = cells[cell].index;
+  return grid.origin + grid.edge * (Vec3(i[0], i[1], i[2]) + Vec3::Constant(0.5));
+}
+
+std::array<double, 8> CutBody::weights(int cell, const Vec3& point) const {
+  const Vec3 xi = (point - centre(cell)) / grid.edge;
+  std::array<double, 8> w;
+  for (int n = 0; n < 8; ++n) {
+    w[n] = 1;
+    for (int d = 0; d < 3; ++d) w[n] *= 0.5 + (hexahedron_corners[n][d] ? xi[d] : -xi[d]);
+  }
+  return w;
+}
+
+int CutBody::nearest_cell(const Vec3& point) const {
+  const Vec3 x = (point - grid.origin) / grid.edge;
+  std::array<int, 3> at;
+  for (int d = 0; d < 3; ++d) at[d] = std::clamp(static_cast<int>(std::floor(x[d])), 0, grid.cells[d] - 1);
+  const auto distance = [&](int c) { return (centre(c) - point).squaredNorm(); };
+  for (int rings = 1; rings <= *std::max_element(grid.cells.begin(), grid.cells.end()); ++rings) {
+    int best = -1;
+    for (int k = std::max(0, at[2] - rings); k <= std::min(grid.cells[2] - 1, at[2] + rings); ++k)
+      for (int j = std::max(0, at[1] - rings); j <= std::min(grid.cells[1] - 1, at[1] + rings); ++j)
+        for (int i = std::max(0, at[0] - rings); i <= std::min(grid.cells[0] - 1, at[0] + rings); ++i) {
+          const auto here = cells_of_.find((long(k) * grid.cells[1] + j) * grid.cells[0] + i);
+          if (here == cells_of_.end()) continue;
+          for (const int c : here->second)
+            if (best < 0 || distance(c) < distance(best)) best = c;
+        }
+    if (best >= 0) return best;
+  }
+  throw std::invalid_argument("voxels: the body has no cells");
+}
+
+CutBody::Place CutBody::place(const Vec3& point) const {
+  const auto tetrahedron = (*locator_)(point).cell;
+  std::array<int, 3> at;
+  for (int d = 0; d < 3; ++d)
+    at[d] = std::clamp(static_cast<int>(std::floor((point[d] - grid.origin[d]) / grid.edge)), 0, grid.cells[d] - 1);
+  const long cube = (long(at[2]) * grid.cells[1] + at[1]) * grid.cells[0] + at[0];
+  int best = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (int p = part_begin_[tetrahedron]; p < part_begin_[tetrahedron + 1]; ++p) {
+    const auto [own, cell] = part_[p];
+    if (cell < 0) continue;
+    const double distance = own == cube ? -1 : (centre(cell) - point).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      best = cell;
+    }
+  }
+  if (best < 0) best = nearest_cell(point);
+  return {best, weights(best, point)};
+}
+
+namespace {
+
+void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pieces, CutBody& out,
+                 const std::function<int(const Vec3&)>& nearest) {
+  static const std::vector<TrianglePoint> rule = triangle_points();
+  const double l = out.grid.edge;
+  for (const Patch& patch : body.patches) {
+    std::map<int, PatchInCell> in_cell;
+    for (const auto& f : patch.facets) {
+      if (f[3] >= 0) throw std::invalid_argument("voxels: a patch has facets with four corners");
+      const int owner = parts.owner({f[0], f[1], f[2]});
+      cut_by_lattice(parts.triangle({f[0], f[1], f[2]}), out.grid.cells,
+                     [&](const std::array<int, 3>&, const TriangleCorners& part) {
+                       const Vec3 normal = l * l * (part[1] - part[0]).cross(part[2] - part[0]) / 2;
+                       if (normal.isZero(0)) return;
+                       const auto position = [&](const std::array<double, 3>& b) -> Vec3 {
+                         return out.grid.origin + l * (b[0] * part[0] + b[1] * part[1] + b[2] * part[2]);
+                       };
+                       const int p = parts.find(owner, parts.cube_beside(part, owner));
+                       int cell = p < 0 ? -1 : pieces.cell[pieces.of_part[p]];
+                       if (cell < 0) cell = nearest(position({1.0 / 3, 1.0 / 3, 1.0 / 3}));
+                       auto [at, is_new] = in_cell.try_emplace(cell);
+                       if (is_new) {
+                         at->second.cell = cell;
+                         at->second.normal.fill(Vec3::Zero());
+                       }
+                       for (const TrianglePoint& q : rule) {
+                         const std::array<double, 8> N = out.weights(cell, position(q.at));
+                         for (int n = 0; n < 8; ++n) {
+                           at->second.area[n] += q.weight * N[n] * normal.norm();
+                           at->second.normal[n] += q.weight * N[n] * normal;
+                         }
+                       }
+                     });
+    }
+    auto& list = out.patches[patch.name];
+    for (auto& [cell, piece] : in_cell) list.push_back(piece);
+  }
+}
+
+/// Fraction of the volume in parts that are thin against the cubes: 2 V / A of the surroundings of a cell.
+double thin_fraction(const Mesh& body, const BodyParts& parts, const BodyPieces& pieces, const VoxelGrid& grid) {
+  std::map<long, std::array<double, 2>> in_cube;  // volume and area
+  for (std::size_t p = 0; p < pieces.cube.size(); ++p) in_cube[pieces.cube[p]][0] += pieces.moments[p].volume;
+  for (const OuterFacet& f : outer_facets(body))
+    cut_by_lattice(parts.triangle({f.nodes[0], f.nodes[1], f.nodes[2]}), grid.cells,
+                   [&](const std::array<int, 3>& at, const TriangleCorners& part) {
+                     in_cube[parts.number(at)][1] += area_of(part);
+                   });
+  double all = 0, in_thin = 0;
+  for (const auto& [cube, here] : in_cube) {
+    const std::array<int, 3> at = parts.index(cube);
+    double volume = 0, surface = 0;
+    for (int n = 0; n < 27; ++n) {
+      const std::array<int, 3> near = {at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
+      bool in_grid = true;
+      for (int d = 0; d < 3; ++d) in_grid &= near[d] >= 0 && near[d] < grid.cells[d];
+      const auto found = in_grid ? in_cube.find(parts.number(near)) : in_cube.end();
+      if (found == in_cube.end()) continue;
+      volume += found->second[0];
+      surface += found->second[1];
+    }
+    all += here[0];
+    if (2 * volume < thin * surface) in_thin += here[0];
+  }
+  return in_thin / all;
+}
+
+void check_in_grid(const VoxelGrid& grid, const Mesh& body) {
+  if (body.tetrahedra.empty()) throw std::invalid_argument("voxels: the body has no tetrahedra");
+  const Vec3 slack = Vec3::Constant(2e-6 * grid.edge);
+  const Vec3 end = grid.origin + grid.edge * Vec3(grid.cells[0], grid.cells[1], grid.cells[2]) + slack;
+  for (const Tetrahedron& t : body.tetrahedra)
+    for (const int n : t) {
+      const Vec3 x = body.nodes.row(n).transpose();
+      if ((x.array() < (grid.origin - slack).array()).any() || (x.array() > end.array()).any())
+        throw std::invalid_argument("voxels: the body reaches out of the grid of cubes");
+    }
+}
+
+}  // namespace
+
+CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
+  check_in_grid(grid, body);
+  const BodyParts parts(grid, body);
+  BodyPieces pieces(parts);
+  const double left_out = pieces.number_cells();
+  if (left_out > largest_loss)
+    throw std::invalid_argument(fmt::format(
+        "voxels: {:.3g} % of the body is connected with the rest only through less than 1/1000 of a cube of {:.6g} m; "
+        "take smaller voxels",
+        100 * left_out, grid.edge));
+  CutBody out;
+  out.grid = grid;
+  out.cells.resize(std::count_if(pieces.cell.begin(), pieces.cell.end(), [](int c) { return c >= 0; }));
+  for (std::size_t p = 0; p < pieces.cube.size(); ++p) {
+    if (pieces.cell[p] < 0) continue;
+    const std::array<int, 3> at = parts.index(pieces.cube[p]);
+    out.cells[pieces.cell[p]] = {at, {}, filled_part(pieces.moments[p], at)};
+  }
+  for (std::size_t c = 0; c < out.cells.size(); ++c)
+    out.cells_of_[parts.number(out.cells[c].index)].push_back(static_cast<int>(c));
+  number_points(pieces, out);
+  out.locator_ = std::make_shared<TetrahedronLocator>(body.nodes, body.tetrahedra);
+  out.part_begin_ = parts.begin;
+  for (std::size_t p = 0; p < parts.cube.size(); ++p)
+    out.part_.emplace_back(parts.cube[p], pieces.cell[pieces.of_part[p]]);
+  add_patches(body, parts, pieces, out, [&](const Vec3& x) { return out.nearest_cell(x); });
+  if (left_out > noted_loss)
+    out.notes.push_back(
+        fmt::format("{:.2g} % of the body, in parts of less than 1/1000 of a cube of {:.4g} m or "
+                    "connected only through such: left out",
+                    100 * left_out, grid.edge));
+  if (const double share = thin_fraction(body, parts, pieces, grid); share > noted_thin)
+    out.notes.push_back(
+        fmt::format("{:.2g} % of the body is thinner than about a cube of {:.4g} m, or a rod of less "
+                    "than two: springs are not accurate there; take smaller voxels",
+                    100 * share, grid.edge));
+  return out;
+}
+
+}  // namespace springproof

@@ -1,0 +1,71 @@
+// A body cut by a lattice of cubes along its true surface: what every cube holds of it, and of its patches.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "meshes/locate/tetrahedron_locator.h"
+#include "meshes/mesh.h"
+#include "meshes/voxels/filled_part.h"
+#include "meshes/voxels/voxelise.h"
+
+namespace springproof {
+
+/// A connected part of the body within one cube.
+struct CutCell {
+  std::array<int, 3> index;  ///< of the cube
+  Hexahedron corners;        ///< points of the lattice; two parts of one cube share only corners through which they are
+                             ///< connected outside it
+  FilledPart filled;
+};
+
+/// The part of a patch in one cell, by the trilinear weights N_a of the cell's corners.
+struct PatchInCell {
+  int cell;
+  std::array<double, 8> area{};  ///< integral of N_a [m^2]
+  std::array<Vec3, 8> normal;    ///< integral of N_a n, n the outward unit normal [m^2]
+
+  double total_area() const;
+};
+
+class CutBody {
+ public:
+  VoxelGrid grid;
+  NodalVectors points;         ///< corners of the cells [m]
+  std::vector<CutCell> cells;  ///< by layers: x fastest, then y, then z
+  std::map<std::string, std::vector<PatchInCell>> patches;
+  std::vector<std::string> notes;  ///< what was left out or is too thin, for the user
+
+  /// A point by the corners of the cell that holds it; a point outside the body by those of a cell near to it,
+  /// continued.
+  struct Place {
+    int cell;
+    std::array<double, 8> weights;  ///< trilinear; they sum to 1 and reproduce the point
+  };
+  Place place(const Vec3& point) const;
+
+  /// Trilinear weights of the corners of a cell at a point.
+  std::array<double, 8> weights(int cell, const Vec3& point) const;
+  Vec3 centre(int cell) const;
+
+ private:
+  friend CutBody cut_body(const VoxelGrid& grid, const Mesh& body);
+  int nearest_cell(const Vec3& point) const;
+
+  std::shared_ptr<const TetrahedronLocator> locator_;
+  std::vector<int> part_begin_;                ///< per tetrahedron, then the end
+  std::vector<std::pair<long, int>> part_;     ///< cube and cell (-1: left out) of each part of a tetrahedron
+  std::map<long, std::vector<int>> cells_of_;  ///< of a cube
+};
+
+/// Cuts the tetrahedra of a body by the planes of the grid: the moments of all parts are exact to round-off, and so are
+/// the integrals over its patches.  Parts of less than 1/1000 of a cube are left out, and what is connected with the
+/// rest of the body only through them; the patches there are attached to the nearest cell.
+/// @throws std::invalid_argument if the body has no tetrahedra or reaches out of the grid, or if more than 2 % of its
+///   volume would be left out.
+CutBody cut_body(const VoxelGrid& grid, const Mesh& body);
+
+}  // namespace springproof

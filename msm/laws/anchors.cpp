@@ -1,0 +1,40 @@
+#include "msm/laws/anchors.h"
+
+namespace springproof {
+namespace {
+
+Vec3 stretch(const Anchor& anchor, const NodalVectors& x) {
+  Vec3 d = -x.row(anchor.node).transpose();
+  for (int n = 0; n < 8; ++n) d += anchor.weights[n] * x.row(anchor.corners[n]).transpose();
+  return d;
+}
+
+}  // namespace
+
+double Anchors::energy(const Network& network, const NodalVectors& x) const {
+  double sum = 0;
+  for (const Anchor& a : network.anchors) sum += a.stiffness / 2 * stretch(a, x).squaredNorm();
+  return sum;
+}
+
+void Anchors::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
+  for (const Anchor& a : network.anchors) {
+    const Vec3 force = a.stiffness * stretch(a, x);
+    f.row(a.node) += force.transpose();
+    for (int n = 0; n < 8; ++n) f.row(a.corners[n]) -= a.weights[n] * force.transpose();
+  }
+}
+
+void Anchors::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  for (const Anchor& a : network.anchors) {
+    K.add(a.node, a.node, a.stiffness * I);
+    for (int m = 0; m < 8; ++m) {
+      K.add(a.node, a.corners[m], -a.stiffness * a.weights[m] * I);
+      K.add(a.corners[m], a.node, -a.stiffness * a.weights[m] * I);
+      for (int n = 0; n < 8; ++n) K.add(a.corners[m], a.corners[n], a.stiffness * a.weights[m] * a.weights[n] * I);
+    }
+  }
+}
+
+}  // namespace springproof

@@ -1,0 +1,23 @@
+// Force law: the anchors by which supports hold the true surface of a body of cut cells.
+#pragma once
+
+#include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
+#include "msm/topology/network.h"
+
+namespace springproof {
+
+/// Energy sum k/2 |sum_a w_a x_a - x_node|^2 over Network::anchors: springs of rest length zero, so the energy is
+/// quadratic and the same in every frame.
+struct Anchors {
+  static constexpr LawTraits traits = {"anchors", Reach::cells};
+
+  template <class Fields>
+  void fields(Fields&) {}
+
+  double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
+};
+
+}  // namespace springproof

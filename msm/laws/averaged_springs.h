@@ -1,0 +1,76 @@
+// Force law: springs averaged over a cubic cell, for cells that the body fills in part.
+#pragma once
+
+#include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
+#include "msm/topology/network.h"
+
+namespace springproof {
+
+/// Stiffness of the modes of a full cell of edge l that its mean strain does not see, in units of G l: displacements in
+/// the patterns xi_p xi_q and xi_x xi_y xi_z of its corners, normalised.
+struct HourglassStiffness {
+  double bending = 1;   ///< of a bending mode; 1/(3(1 - nu)) is exact
+  double coupling = 0;  ///< between the two bending modes of one neutral plane; nu/(3(1 - nu))
+  double torsion = 0;   ///< of the paired torsional modes, a quarter of that of the symmetric one; 1/6
+  double warping = 0;   ///< of xi_x xi_y xi_z
+
+  /// Of the springs of a cubic pattern of face-to-cube ratio A, with exact bending and torsion where they are
+  /// corrected.
+  static HourglassStiffness of_pattern(double face_to_cube, double poisson_ratio, bool exact_bending,
+                                       bool exact_torsion);
+};
+
+/// The energy of a cell is that of its springs and its volume term at the mean displacement gradient of the part that
+/// the body fills, times the fraction filled, alpha; its hourglass stiffness is multiplied by alpha and the second
+/// moments of that part (12 S_i, at least `least_variance`).  Uniform strain is exact in a body of cut cells, and so
+/// is, for circular and rectangular sections, the bending and torsional stiffness of the section; no constant is
+/// negative for -1 < nu < 1/2.  Cells: Network::cells and Network::filled.
+/// Valid for small displacements from rest (linear kinematics).
+struct AveragedSprings {
+  static constexpr LawTraits traits = {"averaged springs", Reach::cells};
+  static constexpr double least_variance = 0.1;  ///< of a full cell's; for the solvers
+
+  double shear_modulus = 0;  ///< G [Pa]
+  double lame_lambda = 0;    ///< of springs (G) and volume term (kappa = lambda - G) [Pa]
+  HourglassStiffness hourglass = {};
+  /// theta: fraction of the second derivatives that a cell assumes beside those of its trilinear field, by which its
+  /// strain is shifted from the middle of the cell to the centroid of the filled part, in the deviator only.  1/2 makes
+  /// limbs bend better that lie askew in the lattice, at the price of the patch test.
+  double shift = 0;
+  double contraction = 0;  ///< nu/(1 - nu) of these second derivatives
+
+  template <class Fields>
+  void fields(Fields& f) {
+    f.number("shear_modulus_Pa", shear_modulus);
+    f.number("lame_lambda_Pa", lame_lambda);
+    f.number("bending", hourglass.bending, 0);
+    f.number("coupling", hourglass.coupling);
+    f.number("torsion", hourglass.torsion, 0);
+    f.number("warping", hourglass.warping, 0);
+    f.number("shift", shift, 0, 1);
+    f.number("contraction", contraction, -0.5, 1);
+  }
+
+  double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
+
+  /// Stiffness of a cell of edge l [N/m]; unknown 3 * corner + axis.
+  Eigen::Matrix<double, 24, 24> cell_matrix(double edge, const FilledPart& part) const;
+};
+
+/// Mean over the filled part of the gradients of the corners' trilinear weights [1/m].
+std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part);
+
+/// Derivative of the volume of the filled part to the displacement of the corners [m^2]; 3 * corner + axis.
+Eigen::Matrix<double, 24, 1> volume_gradient(double edge, const FilledPart& part);
+
+/// Relative change of the volume of a network of cells, filled or cut, by the mean deformation gradients of the cells:
+/// to first order in the displacement, and exact.
+struct VolumeChange {
+  double first_order, exact;
+};
+VolumeChange volume_change(const Network& network, const NodalVectors& displacement);
+
+}  // namespace springproof

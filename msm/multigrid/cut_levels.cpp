@@ -1,0 +1,321 @@
+#include "msm/multigrid/cut_levels.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "meshes/voxels/united_numbers.h"
+
+namespace springproof {
+namespace {
+
+constexpr std::size_t smallest_cut_level = 300;  // points
+
+std::array<int, 3> lattice_corner(const std::array<int, 3>& cell, int n) {
+  return {cell[0] + hexahedron_corners[n][0], cell[1] + hexahedron_corners[n][1], cell[2] + hexahedron_corners[n][2]};
+}
+std::array<int, 3> parent_of(const std::array<int, 3>& i) { return {i[0] >> 1, i[1] >> 1, i[2] >> 1}; }
+
+/// Moments about the middle of a cube, in its edges: volume, first, second.
+struct ChildMoments {
+  double volume = 0;
+  Vec3 first = Vec3::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+
+  void add_child(const FilledPart& part, const std::array<int, 3>& child) {
+    const double v = part.fraction / 8;
+    const Vec3 o(child[0] & 1 ? 0.25 : -0.25, child[1] & 1 ? 0.25 : -0.25, child[2] & 1 ? 0.25 : -0.25);
+    Eigen::Matrix3d own = (part.mean * part.mean.transpose()).eval();
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      own(i, i) = part.variance[i] + part.mean[i] * part.mean[i];
+      own(j, k) = own(k, j) = part.mixed[i];
+    }
+    volume += v;
+    first += v * (part.mean / 2 + o);
+    second += v * (own / 4 + o * part.mean.transpose() / 2 + part.mean * o.transpose() / 2 + o * o.transpose());
+  }
+
+  FilledPart part() const {
+    FilledPart f;
+    f.fraction = volume;
+    f.mean = first / volume;
+    for (int i = 0; i < 3; ++i) {
+      f.mixed[i] = second((i + 1) % 3, (i + 2) % 3) / volume;
+      f.variance[i] = std::max(0.0, second(i, i) / volume - f.mean[i] * f.mean[i]);
+    }
+    return std::abs(f.fraction - 1) < 1e-10 ? FilledPart{} : f;
+  }
+};
+
+/// Cells of a level at each of its points.
+std::vector<std::vector<int>> cells_at_points(const CutLevel& level) {
+  std::vector<std::vector<int>> at(level.point.size());
+  for (std::size_t c = 0; c < level.corners.size(); ++c)
+    for (const int p : level.corners[c]) at[p].push_back(static_cast<int>(c));
+  return at;
+}
+
+/// The cells of twice the edge: children of one cube that share points are one cell, and cells whose children share
+/// points share their corners.
+CutLevel coarsen(CutLevel& fine) {
+  const auto at_point = cells_at_points(fine);
+  UnitedNumbers family(fine.index.size());
+  for (const std::vector<int>& cells : at_point)
+    for (const int c : cells)
+      for (const int d : cells)
+        if (d < c && parent_of(fine.index[c]) == parent_of(fine.index[d])) family.unite(c, d);
+
+  CutLevel coarse;
+  coarse.edge = 2 * fine.edge;
+  std::vector<int>& parent = fine.parent;
+  parent.assign(fine.index.size(), -1);
+  std::vector<ChildMoments> moments;
+  for (std::size_t c = 0; c < fine.index.size(); ++c) {
+    const int head = family.of(static_cast<int>(c));
+    if (parent[head] < 0) {
+      parent[head] = static_cast<int>(moments.size());
+      moments.emplace_back();
+      coarse.index.push_back(parent_of(fine.index[c]));
+    }
+    parent[c] = parent[head];
+    moments[parent[c]].add_child(fine.filled[c], fine.index[c]);
+  }
+  for (const ChildMoments& m : moments) coarse.filled.push_back(m.part());
+
+  UnitedNumbers corner(8 * coarse.index.size());
+  for (const std::vector<int>& cells : at_point)
+    for (const int c : cells) {
+      const int a = parent[c], b = parent[cells.front()];
+      if (a == b) continue;
+      for (int m = 0; m < 8; ++m)
+        for (int n = 0; n < 8; ++n)
+          if (lattice_corner(coarse.index[a], m) == lattice_corner(coarse.index[b], n))
+            corner.unite(8 * a + m, 8 * b + n);
+    }
+  std::vector<int> number(8 * coarse.index.size(), -1);
+  coarse.corners.resize(coarse.index.size());
+  for (std::size_t c = 0; c < coarse.index.size(); ++c)
+    for (int n = 0; n < 8; ++n) {
+      int& p = number[corner.of(static_cast<int>(8 * c + n))];
+      if (p < 0) {
+        p = static_cast<int>(coarse.point.size());
+        coarse.point.push_back(lattice_corner(coarse.index[c], n));
+      }
+      coarse.corners[c][n] = p;
+    }
+
+  fine.weight_begin = {0};
+  for (std::size_t p = 0; p < fine.point.size(); ++p) {
+    const int c = parent[at_point[p].front()];
+    for (int n = 0; n < 8; ++n) {
+      const std::array<int, 3> q = lattice_corner(coarse.index[c], n);
+      float w = 1;
+      for (int d = 0; d < 3; ++d) w *= 1 - std::abs(static_cast<float>(fine.point[p][d] - 2 * q[d])) / 2;
+      if (w <= 0) continue;
+      fine.weight_point.push_back(coarse.corners[c][n]);
+      fine.weight.push_back(w);
+    }
+    fine.weight_begin.push_back(static_cast<int>(fine.weight.size()));
+  }
+
+  for (const Anchor& a : fine.anchors) {
+    // All corners of a cell have the same parent.
+    int cell = -1;
+    for (const int c : at_point[a.corners[0]])
+      if (fine.corners[c] == a.corners) cell = c;
+    const int up = parent[cell];
+    Anchor above{coarse.corners[up], {}, a.node, a.stiffness};
+    for (int n = 0; n < 8; ++n)
+      for (int e = fine.weight_begin[a.corners[n]]; e < fine.weight_begin[a.corners[n] + 1]; ++e)
+        for (int m = 0; m < 8; ++m)
+          if (coarse.corners[up][m] == fine.weight_point[e]) {
+            above.weights[m] += a.weights[n] * fine.weight[e];
+            break;
+          }
+    coarse.anchors.push_back(above);
+  }
+  return coarse;
+}
+
+/// K += the stiffness of the anchors in the directions that are held.
+template <class Add>
+void add_anchors(const CutLevel& level, const Add& add) {
+  for (const Anchor& a : level.anchors)
+    for (int m = 0; m < 8; ++m)
+      for (int n = 0; n < 8; ++n) {
+        Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+        for (int d = 0; d < 3; ++d)
+          if (a.node >> d & 1) block(d, d) = a.stiffness * a.weights[m] * a.weights[n];
+        add(a.corners[m], a.corners[n], block);
+      }
+}
+
+BlockMatrix stiffness_of(const CutLevel& level, const AveragedSprings& law) {
+  BlockMatrix K(coupled_nodes(static_cast<int>(level.point.size()), level.corners));
+  const auto full = law.cell_matrix(level.edge, {});
+  for (std::size_t c = 0; c < level.corners.size(); ++c) {
+    const FilledPart& part = level.filled[c];
+    const Eigen::Matrix<double, 24, 24> own = part.fraction == 1 ? full : law.cell_matrix(level.edge, part);
+    for (int m = 0; m < 8; ++m)
+      for (int n = 0; n < 8; ++n) K.add(level.corners[c][m], level.corners[c][n], own.block<3, 3>(3 * m, 3 * n));
+  }
+  add_anchors(level, [&](int i, int j, const Eigen::Matrix3d& block) { K.add(i, j, block); });
+  return K;
+}
+
+/// In units of `unit`, without the rows and columns of fixed unknowns (empty: none).
+FloatBlocks float_blocks(const BlockMatrix& K, const std::vector<std::vector<int>>& pattern, double unit,
+                         const std::vector<char>& fixed) {
+  FloatBlocks out;
+  out.begin = {0};
+  out.inverse_diagonal.resize(9 * pattern.size());
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    for (const int j : pattern[i]) {
+      Eigen::Matrix3d block = K.at(static_cast<int>(i), j) / unit;
+      if (!fixed.empty())
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b)
+            if (fixed[3 * i + a] || fixed[3 * j + b]) block(a, b) = 0;
+      out.column.push_back(j);
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) out.block.push_back(static_cast<float>(block(a, b)));
+      if (j != static_cast<int>(i)) continue;
+      for (int a = 0; a < 3; ++a)
+        if (!fixed.empty() && fixed[3 * i + a]) block(a, a) = 1;
+      Eigen::Matrix3d inverse = block.inverse();
+      for (int a = 0; a < 3; ++a)
+        if (!fixed.empty() && fixed[3 * i + a]) inverse(a, a) = 0;
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) out.inverse_diagonal[9 * i + 3 * a + b] = static_cast<float>(inverse(a, b));
+    }
+    out.begin.push_back(static_cast<int>(out.column.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
+void FloatBlocks::residual(const float* b, const float* x, int i, float* r) const {
+  float s0 = b[3 * i], s1 = b[3 * i + 1], s2 = b[3 * i + 2];
+  const float* m = block.data() + 9 * static_cast<std::size_t>(begin[i]);
+  for (int e = begin[i]; e < begin[i + 1]; ++e, m += 9) {
+    const float* v = x + 3 * column[e];
+    s0 -= m[0] * v[0] + m[1] * v[1] + m[2] * v[2];
+    s1 -= m[3] * v[0] + m[4] * v[1] + m[5] * v[2];
+    s2 -= m[6] * v[0] + m[7] * v[1] + m[8] * v[2];
+  }
+  r[0] = s0;
+  r[1] = s1;
+  r[2] = s2;
+}
+
+void FloatBlocks::relax(const float* b, int i, float* x) const {
+  float r[3];
+  residual(b, x, i, r);
+  const float* d = inverse_diagonal.data() + 9 * static_cast<std::size_t>(i);
+  for (int a = 0; a < 3; ++a) x[3 * i + a] += d[3 * a] * r[0] + d[3 * a + 1] * r[1] + d[3 * a + 2] * r[2];
+}
+
+void CutLevel::restrict_to(const float* r, float* out) const {
+  for (std::size_t i = 0; i < point.size(); ++i)
+    for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
+      for (int a = 0; a < 3; ++a) out[3 * weight_point[e] + a] += weight[e] * r[3 * i + a];
+}
+
+void CutLevel::prolongate(const float* coarse, float* u) const {
+  for (std::size_t i = 0; i < point.size(); ++i)
+    for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
+      for (int a = 0; a < 3; ++a) u[3 * i + a] += weight[e] * coarse[3 * weight_point[e] + a];
+}
+
+AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns)
+    : anchors(network.anchors),
+      fixed(std::move(fixed_unknowns)),
+      corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
+
+Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
+  Eigen::VectorXd b = r.head(3 * corners);
+  for (const Anchor& a : anchors)  // k (u_node - sum w u) = r_node
+    for (int d = 0; d < 3; ++d)
+      if (!fixed[3 * a.node + d])
+        for (int n = 0; n < 8; ++n) b[3 * a.corners[n] + d] += a.weights[n] * r[3 * a.node + d];
+  for (int i = 0; i < 3 * corners; ++i)
+    if (fixed[i]) b[i] = 0;
+  return b;
+}
+
+void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of_corners, Eigen::VectorXd& z) const {
+  z.setZero(r.size());
+  z.head(3 * corners) = of_corners;
+  for (const Anchor& a : anchors)
+    for (int d = 0; d < 3; ++d) {
+      if (fixed[3 * a.node + d]) continue;
+      z[3 * a.node + d] = r[3 * a.node + d] / a.stiffness;
+      for (int n = 0; n < 8; ++n) z[3 * a.node + d] += a.weights[n] * z[3 * a.corners[n] + d];
+    }
+}
+
+std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes) {
+  CutLevel finest;
+  finest.edge = network.cell_edge;
+  finest.corners = network.cells;
+  finest.filled = network.filled;
+  const Vec3 lower = network.X.topRows(nodes.corners).colwise().minCoeff().transpose();
+  for (int n = 0; n < nodes.corners; ++n) {
+    std::array<int, 3> at;
+    for (int d = 0; d < 3; ++d) at[d] = static_cast<int>(std::lround((network.X(n, d) - lower[d]) / network.cell_edge));
+    finest.point.push_back(at);
+  }
+  for (const Hexahedron& cell : network.cells) finest.index.push_back(finest.point[cell[0]]);
+  for (const Anchor& a : nodes.anchors) {
+    int held = 0;
+    for (int d = 0; d < 3; ++d) held |= int(nodes.fixed[3 * a.node + d] != 0) << d;
+    finest.anchors.push_back({a.corners, a.weights, held, a.stiffness});
+  }
+  std::vector<CutLevel> levels = {std::move(finest)};
+  while (levels.back().point.size() > smallest_cut_level && levels.back().index.size() > 8) {
+    CutLevel coarse = coarsen(levels.back());
+    levels.push_back(std::move(coarse));
+  }
+  return levels;
+}
+
+void assemble(const AveragedSprings& law, double unit, const std::vector<char>& fixed, CutLevel& level) {
+  level.A = float_blocks(stiffness_of(level, law), coupled_nodes(static_cast<int>(level.point.size()), level.corners),
+                         unit, fixed);
+}
+
+Eigen::SparseMatrix<double> sparse(const FloatBlocks& A) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(A.block.size());
+  for (int i = 0; i < A.rows(); ++i)
+    for (int e = A.begin[i]; e < A.begin[i + 1]; ++e)
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
+          entries.emplace_back(3 * i + a, 3 * A.column[e] + b, A.block[9 * static_cast<std::size_t>(e) + 3 * a + b]);
+  Eigen::SparseMatrix<double> K(3 * A.rows(), 3 * A.rows());
+  K.setFromTriplets(entries.begin(), entries.end());
+  return K;
+}
+
+void CoarsestFactors::factor(const Eigen::SparseMatrix<double>& K) {
+  // In single precision rigid motions of a level without supports are nearly singular, and fixed unknowns of the finest
+  // level, if it is the coarsest, have empty rows.
+  const double mean = K.diagonal().mean();
+  Eigen::SparseMatrix<double> I(K.rows(), K.cols());
+  I.setIdentity();
+  for (const double shift : {1e-7, 1e-3}) {
+    ldlt_.compute(K + shift * mean * I);
+    if (ldlt_.info() == Eigen::Success && ldlt_.vectorD().minCoeff() > 0.1 * shift * mean) return;
+  }
+  if (ldlt_.info() != Eigen::Success || !(ldlt_.vectorD().minCoeff() > 0))
+    throw std::runtime_error("the coarsest lattice is not positive definite");
+}
+
+Eigen::VectorXf CoarsestFactors::solve(const Eigen::VectorXf& b) const {
+  return ldlt_.solve(b.cast<double>().eval()).cast<float>();
+}
+
+}  // namespace springproof

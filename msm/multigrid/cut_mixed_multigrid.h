@@ -1,0 +1,64 @@
+// Multigrid for lattices of cut cells in mixed form: the cost does not grow as nu -> 1/2.
+#pragma once
+
+#include "msm/algebra/krylov.h"
+#include "msm/algebra/tangent.h"
+#include "msm/multigrid/cut_levels.h"
+
+namespace springproof {
+
+/// kappa / G (48 at nu = 0.49) above which the pressures as unknowns are worth it: Gauss-Seidel copes longer than
+/// Jacobi.
+inline constexpr double cut_cells_mixed_above_kappa = 40;
+
+/// The saddle-point system  [K_s B^T; B -C] (u, p) = (f, g)  of averaged springs and anchors K_s (nu = 1/4 but for the
+/// hourglass stiffness) and one pressure per cell, p = kappa / (alpha V) B u; kappa > 0.  Inexact Braess-Sarazin
+/// smoothing as on lattices of full cells (msm/multigrid/braess_sarazin.h), with blocks of nodes; GMRES over the cycle.
+/// Units: shear modulus and edge of the finest cells.
+class CutMixedMultigrid {
+ public:
+  CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed);
+
+  /// (u, p) of the system, u = 0 on the fixed unknowns; u of all nodes of the network.
+  KrylovResult solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
+                     Eigen::VectorXd& u, Eigen::VectorXd& p);
+  /// K_s u + B^T p, fixed unknowns included: minus the internal force.
+  Eigen::VectorXd force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) const;
+  /// B u: first-order change of the volumes.
+  Eigen::VectorXd volume_change(const Eigen::VectorXd& u) const;
+
+ private:
+  /// One level of the cycle, in single precision.
+  struct Level {
+    std::vector<float> gradient;  ///< 24 per cell: row of B
+    std::vector<float> D;         ///< nine per point: inverse of the damped diagonal block of K_s
+    Eigen::VectorXf compliance, inverse_schur;
+    double schur_bound = 1;
+    Eigen::VectorXf f, g, u, p, d, Bu, r, z, q;
+  };
+
+  void set_up(std::size_t l, double kappa);
+  void bound_schur(std::size_t l);
+  double damping(std::size_t l) const;
+  void cycle(std::size_t l);
+  void sweep(std::size_t l);
+  void residual(std::size_t l);
+  void solve_coarsest();
+  void divergence(std::size_t l, const Eigen::VectorXf& u, Eigen::VectorXf& out) const;
+  void add_gradient(std::size_t l, const Eigen::VectorXf& p, Eigen::VectorXf& out) const;
+  void scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) const;
+  void schur(std::size_t l, const Eigen::VectorXf& z, Eigen::VectorXf& Sz);
+
+  AnchoredNodes nodes_;
+  double unit_;  ///< of stiffness [N/m]
+  MassSpringModel springs_;
+  Tangent K_;                 ///< of the network, in units
+  Eigen::MatrixXd gradient_;  ///< 24 x cells
+  Eigen::VectorXd compliance_;
+  std::vector<CutLevel> lattice_;
+  std::vector<Level> levels_;
+  int chebyshev_steps_;
+  CoarsestFactors coarsest_;
+};
+
+}  // namespace springproof

@@ -1,0 +1,64 @@
+#include "msm/multigrid/cut_multigrid.h"
+
+#include <algorithm>
+
+namespace springproof {
+namespace {
+
+constexpr int relaxations = 2;  // before and after the coarser lattice
+
+}  // namespace
+
+bool CutMultigrid::covers(const MassSpringModel& model) {
+  if (model.network.filled.empty() || !averaged_springs_of(model)) return false;
+  return std::all_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) {
+    return std::holds_alternative<AveragedSprings>(law) || std::holds_alternative<Anchors>(law);
+  });
+}
+
+CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
+    : nodes_(model.network, fixed),
+      unit_(averaged_springs_of(model)->shear_modulus * model.network.cell_edge),
+      levels_(cut_levels(model.network, nodes_)) {
+  for (CutLevel& level : levels_) {
+    const bool finest = &level == &levels_.front();
+    assemble(*averaged_springs_of(model), unit_, finest ? nodes_.fixed : std::vector<char>{}, level);
+    const Eigen::VectorXf zero = Eigen::VectorXf::Zero(level.unknowns());
+    at_level_.push_back({zero, zero, zero});
+  }
+  coarsest_.factor(sparse(levels_.back().A));
+}
+
+void CutMultigrid::cycle(std::size_t l) const {
+  auto& [b, x, r] = at_level_[l];
+  if (l + 1 == levels_.size()) {
+    x = coarsest_.solve(b);
+    return;
+  }
+  const CutLevel& level = levels_[l];
+  const FloatBlocks& A = level.A;
+  x.setZero();
+  for (int s = 0; s < relaxations; ++s)
+    for (int i = 0; i < A.rows(); ++i) A.relax(b.data(), i, x.data());
+  for (int i = 0; i < A.rows(); ++i) A.residual(b.data(), x.data(), i, &r[3 * i]);
+  Vectors& below = at_level_[l + 1];
+  below.b.setZero();
+  level.restrict_to(r.data(), below.b.data());
+  cycle(l + 1);
+  level.prolongate(below.x.data(), x.data());
+  if (l == 0)
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (nodes_.fixed[i]) x[i] = 0;
+  for (int s = 0; s < relaxations; ++s)
+    for (int i = A.rows() - 1; i >= 0; --i) A.relax(b.data(), i, x.data());
+}
+
+void CutMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+  const Eigen::VectorXd b = nodes_.eliminated(r);
+  const double largest = b.lpNorm<Eigen::Infinity>(), scale = largest > 0 ? largest : 1;
+  at_level_[0].b = (b / scale).cast<float>();
+  cycle(0);
+  nodes_.complete(r, at_level_[0].x.cast<double>() * (scale / unit_), z);
+}
+
+}  // namespace springproof

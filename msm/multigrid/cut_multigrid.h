@@ -1,0 +1,33 @@
+// Multigrid for lattices of cut cells: the displacement form, for Poisson's ratios away from 1/2.
+#pragma once
+
+#include "msm/multigrid/cut_levels.h"
+
+namespace springproof {
+
+/// Symmetric V-cycle for the stiffness at rest of averaged springs and anchors: symmetric Gauss-Seidel over the points
+/// of each level, in single precision.  Anchored nodes are eliminated exactly.
+class CutMultigrid {
+ public:
+  /// Whether the model is one of averaged springs and anchors.
+  static bool covers(const MassSpringModel& model);
+
+  CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed);
+
+  /// z = M^-1 r, symmetric positive definite; zero on the fixed unknowns.
+  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+
+ private:
+  struct Vectors {
+    Eigen::VectorXf b, x, r;
+  };
+  void cycle(std::size_t l) const;
+
+  AnchoredNodes nodes_;
+  double unit_;  ///< of stiffness [N/m]
+  std::vector<CutLevel> levels_;
+  mutable std::vector<Vectors> at_level_;
+  CoarsestFactors coarsest_;
+};
+
+}  // namespace springproof

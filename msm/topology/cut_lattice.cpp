@@ -1,0 +1,104 @@
+#include "msm/topology/cut_lattice.h"
+
+namespace springproof {
+namespace {
+
+constexpr double least_weight = 1e-12;
+
+/// Integral of a corner's trilinear weight over the filled part, in units of the volume of the cube; the moment of
+/// third order is left out, so that force and moment of a uniform body force are exact.
+double weight_of_corner(const FilledPart& part, int corner) {
+  Vec3 s;
+  for (int d = 0; d < 3; ++d) s[d] = 2.0 * hexahedron_corners[corner][d] - 1;
+  const double mixed = s[1] * s[2] * part.mixed[0] + s[2] * s[0] * part.mixed[1] + s[0] * s[1] * part.mixed[2];
+  return part.fraction * (0.125 + s.dot(part.mean) / 4 + mixed / 2);
+}
+
+}  // namespace
+
+Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus) {
+  Network network;
+  const double l = body.grid.edge;
+  network.cell_edge = l;
+  std::vector<Vec3> anchored;
+  const int corners = static_cast<int>(body.points.rows());
+  for (const std::string& name : held)
+    for (const PatchInCell& p : body.patches.at(name)) {
+      const double area = p.total_area();
+      Anchor anchor{body.cells[p.cell].corners,
+                    {},
+                    corners + static_cast<int>(anchored.size()),
+                    anchor_stiffness * youngs_modulus * area / l};
+      Vec3 centroid = Vec3::Zero();
+      for (int n = 0; n < 8; ++n) {
+        anchor.weights[n] = p.area[n] / area;
+        centroid += anchor.weights[n] * body.points.row(anchor.corners[n]).transpose();
+      }
+      anchored.push_back(centroid);
+      network.anchors.push_back(anchor);
+    }
+  network.X.resize(corners + static_cast<Eigen::Index>(anchored.size()), 3);
+  network.X.topRows(corners) = body.points;
+  for (std::size_t a = 0; a < anchored.size(); ++a)
+    network.X.row(corners + static_cast<Eigen::Index>(a)) = anchored[a].transpose();
+  network.volume = Eigen::VectorXd::Zero(network.X.rows());
+  for (const CutCell& cell : body.cells) {
+    network.cells.push_back(cell.corners);
+    network.filled.push_back(cell.filled);
+    for (const int n : cell.corners) network.volume[n] += cell.filled.fraction * l * l * l / 8;
+  }
+  return network;
+}
+
+Embedding embed(const CutBody& body, const std::vector<std::string>& held, const Network& network, const Mesh& mesh) {
+  Embedding e;
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<char> done(mesh.nodes.rows(), 0);
+  const auto follow = [&](int node, int cell) {
+    if (done[node]) return;
+    done[node] = 1;
+    const auto weights = body.weights(cell, mesh.nodes.row(node).transpose());
+    for (int n = 0; n < 8; ++n)
+      if (std::abs(weights[n]) > least_weight) entries.emplace_back(node, body.cells[cell].corners[n], weights[n]);
+  };
+  for (const Hexahedron& cube : mesh.hexahedra) {
+    const Vec3 middle = (mesh.nodes.row(cube[0]) + mesh.nodes.row(cube[6])).transpose() / 2;
+    const int cell = body.place(middle).cell;
+    for (const int n : cube) follow(n, cell);
+  }
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    for (const int n : t)
+      if (!done[n]) follow(n, body.place(mesh.nodes.row(n).transpose()).cell);
+  e.weights.resize(mesh.nodes.rows(), network.X.rows());
+  e.weights.setFromTriplets(entries.begin(), entries.end());
+
+  const double volume = network.cell_volume();
+  e.volumes = Eigen::VectorXd::Zero(network.X.rows());
+  for (const CutCell& cell : body.cells)
+    for (int n = 0; n < 8; ++n) e.volumes[cell.corners[n]] += volume * weight_of_corner(cell.filled, n);
+  for (const auto& [name, parts] : body.patches) {
+    PatchShares shares{Eigen::VectorXd::Zero(network.X.rows()), NodalVectors::Zero(network.X.rows(), 3)};
+    for (const PatchInCell& p : parts)
+      for (int n = 0; n < 8; ++n) {
+        const int node = body.cells[p.cell].corners[n];
+        shares.area[node] += p.area[n];
+        shares.normal.row(node) += p.normal[n].transpose();
+      }
+    e.patches[name] = std::move(shares);
+  }
+  int node = static_cast<int>(body.points.rows());  // the anchored nodes follow the corners, patch by patch
+  for (const std::string& name : held)
+    for (std::size_t p = 0; p < body.patches.at(name).size(); ++p) e.held[name].push_back(node++);
+  return e;
+}
+
+NodalVectors displacement_at(const CutBody& body, const NodalVectors& u, const NodalVectors& points) {
+  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const CutBody::Place at = body.place(points.row(i).transpose());
+    for (int n = 0; n < 8; ++n) out.row(i) += at.weights[n] * u.row(body.cells[at.cell].corners[n]);
+  }
+  return out;
+}
+
+}  // namespace springproof
