@@ -304,7 +304,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   }
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
-  add_splits(run, lattice, label, fields, scalars);
+  if (!run.prepared.models[number].cut.value_or(false)) add_splits(run, lattice, label, fields, scalars);
 }
 
 /// A model of a body that dries.

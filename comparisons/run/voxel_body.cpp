@@ -106,6 +106,17 @@ void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
   }
 }
 
+/// Which models take the cut cells.
+std::string cut_cells_note(const PreparedCase& prepared, const CutBody& cut) {
+  std::vector<std::string> cut_models, others;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    (*prepared.models[m].cut ? cut_models : others).push_back(prepared.experiment.models[m].label);
+  std::string note = fmt::format("{} cells of {:.6g} m, cut along the true surface: {}", cut.cells.size(),
+                                 cut.grid.edge, fmt::join(cut_models, ", "));
+  if (!others.empty()) note += fmt::format("; whole cubes: {}", fmt::join(others, ", "));
+  return note;
+}
+
 void cut_lattices(PreparedCase& prepared) {
   const Mesh& true_body = *prepared.tetrahedra.back();
   const auto region = std::make_shared<Region>(region_of(true_body));
@@ -122,6 +133,7 @@ void cut_lattices(PreparedCase& prepared) {
     const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
     if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
     CutBody cut = cut_body(grid, true_body);
+    prepared.notes.push_back(cut_cells_note(prepared, cut));
     prepared.notes.insert(prepared.notes.end(), cut.notes.begin(), cut.notes.end());
     prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
   }

@@ -50,6 +50,34 @@ inline NodalVectors noise(Eigen::Index nodes, double size, unsigned seed = 1) {
   return v;
 }
 
+/// Two by two by one cells that a body fills in part, with moments at random, one of them full, and two anchors.
+inline Network cut_network(double edge = 0.5) {
+  const Mesh mesh = block_mesh(edge * Vec3(2, 2, 1), {2, 2, 1});
+  Network network;
+  network.cell_edge = edge;
+  network.cells = mesh.hexahedra;
+  network.X.resize(mesh.nodes.rows() + 2, 3);
+  network.X.topRows(mesh.nodes.rows()) = mesh.nodes;
+  network.volume = Eigen::VectorXd::Zero(network.X.rows());
+  for (int c = 0; c < 4; ++c) {
+    FilledPart part;
+    if (c > 0) part = {0.2 * c, 0.1 * Vec3(c, -1, 0.5), 0.01 * Vec3(1, -c, 2), Vec3(0.01, 0.02 * c, 0.001)};
+    network.filled.push_back(part);
+    for (const int n : network.cells[c]) network.volume[n] += part.fraction * edge * edge * edge / 8;
+  }
+  for (int a = 0; a < 2; ++a) {
+    Anchor anchor{network.cells[a], {}, static_cast<int>(mesh.nodes.rows()) + a, 100.0};
+    Vec3 at = Vec3::Zero();
+    for (int n = 0; n < 8; ++n) {
+      anchor.weights[n] = n == a ? 0.3 : 0.1;
+      at += anchor.weights[n] * mesh.nodes.row(anchor.corners[n]).transpose();
+    }
+    network.X.row(anchor.node) = at.transpose();
+    network.anchors.push_back(anchor);
+  }
+  return network;
+}
+
 /// A sheet of 3 x 3 rhombi cut into two triangles each, nodes moved in the plane and out of it.
 inline Network bent_triangles(double edge = 0.5) {
   const int n = 4;
