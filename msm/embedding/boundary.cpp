@@ -93,20 +93,20 @@ void for_each(const std::vector<Load>& loads, const Action& act) {
 
 /// Adds to a load's nodal forces a rigid field, weighted by the nodes' areas or volumes, so that their wrench is the
 /// load's.
-void complete(const std::optional<Wrench>& wrench, double factor, const Mesh& mesh, const Eigen::VectorXd& weights,
+void complete(const std::optional<Wrench>& wrench, double factor, const NodalVectors& X, const Eigen::VectorXd& weights,
               NodalVectors& force) {
   if (!wrench) return;
   RegionMoments region;
   Wrench missing{factor * wrench->force, factor * wrench->moment, wrench->about};
   for (Eigen::Index n = 0; n < force.rows(); ++n) {
-    const Vec3 X = mesh.nodes.row(n).transpose(), f = force.row(n).transpose();
-    if (weights[n] > 0) region.add(weights[n], X);
+    const Vec3 at = X.row(n).transpose(), f = force.row(n).transpose();
+    if (weights[n] > 0) region.add(weights[n], at);
     missing.force -= f;
-    missing.moment -= (X - wrench->about).cross(f);
+    missing.moment -= (at - wrench->about).cross(f);
   }
   const RigidField field = rigid_field(region, missing);
   for (Eigen::Index n = 0; n < force.rows(); ++n)
-    force.row(n) += weights[n] * field.at(mesh.nodes.row(n).transpose()).transpose();
+    force.row(n) += weights[n] * field.at(X.row(n).transpose()).transpose();
 }
 
 /// Forces of one load on the mesh's nodes [N].
@@ -123,7 +123,7 @@ NodalVectors forces_of(const Load& load, const Mesh& mesh, double density, doubl
   else if (const auto* p = std::get_if<PointForce>(&load))
     add_point_force({p->at, factor * p->force}, mesh, force);
   if (const auto* wrench = wrench_of(load); wrench && *wrench)
-    complete(*wrench, factor, mesh,
+    complete(*wrench, factor, mesh.nodes,
              patch_of(load) ? nodal_areas(mesh, patch(mesh, *patch_of(load))) : nodal_volumes(mesh), force);
   return force;
 }
@@ -140,25 +140,30 @@ NodalVectors mesh_forces(const std::vector<Load>& loads, const Mesh& mesh, doubl
 }
 
 /// Forces of a load on the nodes of a network that knows the true body [N]; nothing for a force at a point.
-std::optional<NodalVectors> true_forces(const Load& load, const Embedding& e, double density, double factor) {
+std::optional<NodalVectors> true_forces(const Load& load, const Embedding& e, const NodalVectors& X, double density,
+                                        double factor) {
+  NodalVectors force;
   if (const auto* t = std::get_if<Traction>(&load))
-    return e.patches.at(t->on).area * (factor * t->traction).transpose();
-  if (const auto* q = std::get_if<Pressure>(&load)) return -factor * q->pressure * e.patches.at(q->on).normal;
+    force = e.patches.at(t->on).area * (factor * t->traction).transpose();
+  if (const auto* q = std::get_if<Pressure>(&load)) force = -factor * q->pressure * e.patches.at(q->on).normal;
   if (const auto* f = std::get_if<PatchForce>(&load)) {
     const Eigen::VectorXd& area = e.patches.at(f->on).area;
-    return area / area.sum() * (factor * f->force).transpose();
+    force = area / area.sum() * (factor * f->force).transpose();
   }
-  if (const auto* g = std::get_if<Gravity>(&load)) return factor * density * e.volumes * g->acceleration.transpose();
-  return {};
+  if (const auto* g = std::get_if<Gravity>(&load)) force = factor * density * e.volumes * g->acceleration.transpose();
+  if (force.rows() == 0) return {};
+  if (const auto* wrench = wrench_of(load); wrench && *wrench)
+    complete(*wrench, factor, X, patch_of(load) ? e.patches.at(*patch_of(load)).area : e.volumes, force);
+  return force;
 }
 
 /// Forces on the nodes of a network [N].
-NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& e, double density,
-                            double factor) {
+NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& e, const NodalVectors& X,
+                            double density, double factor) {
   if (e.patches.empty()) return e.weights.transpose() * mesh_forces(loads, mesh, density, factor);
   NodalVectors external = NodalVectors::Zero(e.weights.cols(), 3);
   for (const Load& load : loads) {
-    if (const auto forces = true_forces(load, e, density, factor))
+    if (const auto forces = true_forces(load, e, X, density, factor))
       external += *forces;
     else
       external += e.weights.transpose() * mesh_forces({load}, mesh, density, factor);
@@ -190,7 +195,7 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
           "no node of the network is near enough to patch '{}' to be held; choose a larger grip", *patch_of(load)));
     prescribe(load, number, held, network.X, kinematics, factor, bc);
   });
-  bc.external = network_forces(loads, mesh, embedding, density, factor);
+  bc.external = network_forces(loads, mesh, embedding, network.X, density, factor);
   if (!network.triangles.empty())
     for (int n = 0; n < network.nodes(); ++n) bc.fixed[3 * n + 2] = 1;
   return bc;

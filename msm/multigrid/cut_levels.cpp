@@ -195,7 +195,43 @@ FloatBlocks float_blocks(const BlockMatrix& K, const std::vector<std::vector<int
   return out;
 }
 
+/// Sets CutLevel::anchored and its inverses.
+void invert_anchored(CutLevel& level) {
+  using CellMatrix = Eigen::Matrix<float, 24, 24, Eigen::RowMajor>;
+  level.anchored.clear();
+  for (const Anchor& a : level.anchors) level.anchored.push_back(a.corners);
+  std::sort(level.anchored.begin(), level.anchored.end());
+  level.anchored.erase(std::unique(level.anchored.begin(), level.anchored.end()), level.anchored.end());
+  level.anchored_inverse.resize(576 * level.anchored.size());
+  const FloatBlocks& A = level.A;
+  for (std::size_t c = 0; c < level.anchored.size(); ++c) {
+    Eigen::Matrix<double, 24, 24> K = Eigen::Matrix<double, 24, 24>::Zero();
+    for (int m = 0; m < 8; ++m)
+      for (int n = 0; n < 8; ++n) {
+        const int i = level.anchored[c][m];
+        const auto row = A.column.begin() + A.begin[i];
+        const auto at = std::lower_bound(row, A.column.begin() + A.begin[i + 1], level.anchored[c][n]);
+        const float* block = &A.block[9 * static_cast<std::size_t>(at - A.column.begin())];
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) K(3 * m + a, 3 * n + b) = block[3 * a + b];
+      }
+    for (int i = 0; i < 24; ++i)
+      if (K(i, i) == 0) K(i, i) = 1e30;  // fixed
+    const CellMatrix inverse = K.inverse().cast<float>();
+    std::copy_n(inverse.data(), 576, &level.anchored_inverse[576 * c]);
+  }
+}
+
 }  // namespace
+
+void CutLevel::relax_anchored(std::size_t c, const float* b, float* x) const {
+  Eigen::Matrix<float, 24, 1> r;
+  for (int n = 0; n < 8; ++n) A.residual(b, x, anchored[c][n], r.data() + 3 * n);
+  const Eigen::Map<const Eigen::Matrix<float, 24, 24, Eigen::RowMajor>> inverse(&anchored_inverse[576 * c]);
+  const Eigen::Matrix<float, 24, 1> d = inverse * r;
+  for (int n = 0; n < 8; ++n)
+    for (int a = 0; a < 3; ++a) x[3 * anchored[c][n] + a] += d[3 * n + a];
+}
 
 void FloatBlocks::residual(const float* b, const float* x, int i, float* r) const {
   float s0 = b[3 * i], s1 = b[3 * i + 1], s2 = b[3 * i + 2];
@@ -285,6 +321,7 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
 void assemble(const AveragedSprings& law, double unit, const std::vector<char>& fixed, CutLevel& level) {
   level.A = float_blocks(stiffness_of(level, law), coupled_nodes(static_cast<int>(level.point.size()), level.corners),
                          unit, fixed);
+  invert_anchored(level);
 }
 
 Eigen::SparseMatrix<double> sparse(const FloatBlocks& A) {

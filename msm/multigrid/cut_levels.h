@@ -35,6 +35,11 @@ struct CutLevel {
   std::vector<int> weight_begin, weight_point;  ///< per point, of the coarser level's points
   std::vector<float> weight;
 
+  /// Cells with anchors, which are stiffer than cells: their corners are relaxed together.
+  std::vector<Hexahedron> anchored;
+  std::vector<float> anchored_inverse;  ///< 24 x 24 each, of the corners' rows and columns of A
+  void relax_anchored(std::size_t number, const float* b, float* x) const;
+
   FloatBlocks A;  ///< in units of the shear modulus times the finest edge
 
   Eigen::Index unknowns() const { return 3 * static_cast<Eigen::Index>(point.size()); }

@@ -8,8 +8,9 @@
 namespace springproof {
 namespace {
 
-constexpr int sweeps_of_cut_cells = 2;  // before and after the coarser lattice
-constexpr double relaxed = 1.6;         // largest eigenvalue of the damped D K_s
+constexpr int sweeps_of_cut_cells = 3;    // before and after the coarser lattice
+constexpr double anchors_of_cycle = 0.3;  // of the anchors' stiffness: point smoothers cope badly with all of it
+constexpr double relaxed = 1.8;           // largest eigenvalue of the damped D K_s
 
 /// The model without its volume term, in units of G and the cells' edge.
 MassSpringModel springs_alone(const MassSpringModel& model) {
@@ -36,6 +37,8 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
     compliance_[static_cast<Eigen::Index>(c)] = network.filled[c].fraction / kappa;
   }
   levels_.resize(lattice_.size());
+  for (CutLevel& level : lattice_)
+    for (Anchor& a : level.anchors) a.stiffness *= anchors_of_cycle;
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
     const bool coarsest = i + 1 == lattice_.size();
     if (coarsest) {  // the pressure is eliminated there

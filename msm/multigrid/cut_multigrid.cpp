@@ -38,8 +38,10 @@ void CutMultigrid::cycle(std::size_t l) const {
   const CutLevel& level = levels_[l];
   const FloatBlocks& A = level.A;
   x.setZero();
-  for (int s = 0; s < relaxations; ++s)
+  for (int s = 0; s < relaxations; ++s) {
     for (int i = 0; i < A.rows(); ++i) A.relax(b.data(), i, x.data());
+    for (std::size_t c = 0; c < level.anchored.size(); ++c) level.relax_anchored(c, b.data(), x.data());
+  }
   for (int i = 0; i < A.rows(); ++i) A.residual(b.data(), x.data(), i, &r[3 * i]);
   Vectors& below = at_level_[l + 1];
   below.b.setZero();
@@ -49,8 +51,10 @@ void CutMultigrid::cycle(std::size_t l) const {
   if (l == 0)
     for (Eigen::Index i = 0; i < x.size(); ++i)
       if (nodes_.fixed[i]) x[i] = 0;
-  for (int s = 0; s < relaxations; ++s)
+  for (int s = 0; s < relaxations; ++s) {
+    for (std::size_t c = level.anchored.size(); c-- > 0;) level.relax_anchored(c, b.data(), x.data());
     for (int i = A.rows() - 1; i >= 0; --i) A.relax(b.data(), i, x.data());
+  }
 }
 
 void CutMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {

@@ -10,7 +10,7 @@
 namespace springproof {
 
 /// Stiffness of an anchor, in units of E A / l, A the area of the patch in the cell of edge l.
-inline constexpr double anchor_stiffness = 30;
+inline constexpr double anchor_stiffness = 100;
 
 /// The cells as a network: nodes are the corners of the cells, with an eighth of a cell's volume each, and one node, of
 /// no volume, in the centroid of each part of the patches `held` in a cell, anchored to that cell.

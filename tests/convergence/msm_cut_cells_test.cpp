@@ -153,13 +153,13 @@ TEST(CutCells, CantileversThatLieAnyhowBendAsTheyShould) {
   struct Bound {
     double across, plain, shifted;
   };
-  for (const Bound& bound : {Bound{2, 0.13, 0.08}, Bound{3, 0.07, 0.035}, Bound{4, 0.045, 0.021}})
+  for (const Bound& bound : {Bound{2, 0.13, 0.08}, Bound{3, 0.07, 0.035}, Bound{4, 0.045, 0.02}})
     for (double nu : {0.0, 0.25, 0.45, 0.499}) {
       std::vector<double> plain, shifted;
       Equilibrium e;
       for (unsigned seed = 1; seed <= 8; ++seed) {
         plain.push_back(tip(straight, bound.across, seed, nu, 0, e) / exact_tip(nu) - 1);
-        shifted.push_back(tip(straight, bound.across, seed, nu, 0.4, e) / exact_tip(nu) - 1);
+        shifted.push_back(tip(straight, bound.across, seed, nu, 0.5, e) / exact_tip(nu) - 1);
       }
       EXPECT_LE(rms(plain), bound.plain) << bound.across << " cells across, nu = " << nu;
       EXPECT_LE(rms(shifted), bound.shifted) << bound.across << " cells across, nu = " << nu << ", shifted";
