@@ -11,6 +11,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/picture.h"
 #include "comparisons/run/case_checks.h"
+#include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/fracture_run.h"
 #include "comparisons/run/model_run.h"
 #include "comparisons/run/reference_grids.h"
@@ -43,6 +44,7 @@ struct PartRun {
   ReferenceGrids grids;                             ///< no elements: no reference
   std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: no reference
   std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
+  std::vector<CutState> cut_states;
 
   const Experiment& experiment() const { return prepared.experiment; }
   const Mesh& mesh(std::size_t lattice) const { return *prepared.lattices[lattice].mesh; }
@@ -304,7 +306,23 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   }
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
-  if (!run.prepared.models[number].cut.value_or(false)) add_splits(run, lattice, label, fields, scalars);
+  if (run.prepared.models[number].cut.value_or(false))
+    run.cut_states.push_back(
+        {lattice, number, samples.front().state.displacement, samples.front().field.displacement, scalars.front()});
+  else
+    add_splits(run, lattice, label, fields, scalars);
+}
+
+/// The limits of models of cut cells as rows of their own; the last step is stated as the spread.
+void add_extrapolated(PartRun& run) {
+  for (const ExtrapolatedModel& e : extrapolate_cut_cells(run.prepared, run.cut_states)) {
+    const std::size_t first = run.part.rows.size();
+    add_rows(run, e.lattice, e.label, "linear", {e.field}, {e.scalars});
+    for (std::size_t r = first; r < run.part.rows.size(); ++r)
+      if (const auto step = e.step.find(run.part.rows[r].measure); step != e.step.end())
+        run.part.rows[r].spread = step->second;
+    run.part.runs.push_back({run.key(e.label, e.lattice), "msm", "linear", true, "", e.from, 0, 0, 0, 0, 0});
+  }
 }
 
 /// A model of a body that dries.
@@ -346,7 +364,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
 }  // namespace
 
 Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {
-  PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}, {}};
+  PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}, {}, {}};
   if (!vtu_folder.empty()) std::filesystem::create_directories(vtu_folder);
   if (!prepared.experiment.reference.elements.empty()) run_fem(run);
   record_elements(run);
@@ -358,6 +376,7 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const std::fil
     for (std::size_t m = 0; m < prepared.models.size(); ++m)
       prepared.experiment.fracture ? run_fracture_model(run, lattice, m) : run_model(run, lattice, m);
   }
+  add_extrapolated(run);
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);
   return std::move(run.part);
 }

@@ -9,8 +9,9 @@
 
 namespace springproof {
 
-/// Stiffness of an anchor, in units of E A / l, A the area of the patch in the cell of edge l.
-inline constexpr double anchor_stiffness = 100;
+/// Stiffness of an anchor, in units of E A / l, A the area of the patch in the cell of edge l: a support gives way like a
+/// thirtieth of a cell.  Stiffer anchors make clamped bodies, which coarse cells leave too stiff, stiffer still.
+inline constexpr double anchor_stiffness = 30;
 
 /// The cells as a network: nodes are the corners of the cells, with an eighth of a cell's volume each, and one node, of
 /// no volume, in the centroid of each part of the patches `held` in a cell, anchored to that cell.

@@ -95,6 +95,9 @@ struct PublishedValue {
   SourceLocation location;
 };
 
+/// Follows the label of a model of cut cells in the name of its limit from two lattices.
+inline constexpr const char* extrapolated_suffix = " extrapolated";
+
 /// A case: one body, its loads, the materials and models it is run with, and the expected results.
 struct Experiment {
   std::string name;    ///< the file's stem

@@ -194,6 +194,8 @@ std::string read_row_name(const TomlValue& value, const Experiment& experiment) 
 std::string read_judged_model(const TomlValue& value, const Experiment& experiment) {
   std::vector<std::string> labels;
   for (const ModelChoice& m : experiment.models) labels.push_back(m.label);
+  if (experiment.body.is_voxels() && experiment.body.resolutions() > 1)
+    for (const ModelChoice& m : experiment.models) labels.push_back(m.label + extrapolated_suffix);
   for (const std::string& name : fem_names(experiment)) labels.push_back(name);
   return as_choice(value, labels);
 }
