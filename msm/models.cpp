@@ -7,8 +7,10 @@
 #include <limits>
 
 #include "meshes/volume.h"
+#include "msm/embedding/surface_shares.h"
 #include "msm/exchange/springs_file.h"
 #include "msm/parameters/calibrate.h"
+#include "msm/parameters/patch_fit.h"
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
 #include "msm/topology/hexagonal_lattice.h"
@@ -99,6 +101,19 @@ EmbeddedModel build_from_file(const ModelParameters& p, const Mesh& mesh, const 
   return built;
 }
 
+/// Fits the springs of a disordered network to the patch test at every node.  If the mesh is the body itself (no
+/// region), its loads are shared by the nodes as the surface is.  Returns the outward area of each node [m^2].
+NodalVectors fit_in_body(const Mesh& mesh, const Region* region, double shear_modulus, EmbeddedModel& built) {
+  Network& network = built.model.network;
+  SurfaceShares shares = surface_shares(region ? *region : region_of(mesh), network);
+  fit_patch(shares.area, shear_modulus, network);
+  if (!region) {
+    built.embedding.patches = std::move(shares.patches);
+    built.embedding.volumes = built.embedding.weights.transpose() * nodal_volumes(mesh);
+  }
+  return shares.area;
+}
+
 }  // namespace
 
 double grip_of(const ModelParameters& p, const Mesh& mesh) {
@@ -134,11 +149,15 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   const Region* filled = p.row.topology == random ? region : nullptr;
   built.embedding = p.row.topology == cells ? nodes_of_mesh(mesh) : embed(mesh, network, grip_of(p, mesh), filled);
   network.volume *= (filled ? filled->volume : volume(mesh, mesh.nodes)) / network.volume.sum();
-  if (p.row.topology == random && p.random.surface_nodes) correct_surface(network);
   const BulkCalibration calibration = bulk_calibration(p, material);
-  calibrate(calibration.spring_shear_modulus, network);
   NodalVectors gradient;
-  if (p.has(Extension::momentum_dispersion)) gradient = built.embedding.weights.transpose() * volume_gradient(mesh);
+  if (passes_patch_test(p.row)) {
+    gradient = fit_in_body(mesh, region, calibration.spring_shear_modulus, built);
+  } else {
+    if (p.row.topology == random && p.random.surface_nodes) correct_surface(network);
+    calibrate(calibration.spring_shear_modulus, network);
+    if (p.has(Extension::momentum_dispersion)) gradient = built.embedding.weights.transpose() * volume_gradient(mesh);
+  }
   laws = laws_of(p, network, material, calibration, gradient);
   small_displacements_only = !holds_at_large_displacement(p.row);
   return built;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <set>
 
 #include "msm/exchange/springs_file.h"
 #include "msm/parameters/model_table.h"
@@ -113,6 +114,10 @@ std::vector<Option> options_of(const ModelRow& row) {
   if (row.topology == Topology::cells || row.topology == Topology::centres)
     options.push_back({"face_to_cube", set_face_to_cube});
   if (row.topology == Topology::random) options = random_options();
+  if (passes_patch_test(row))  // needs nodes on the surface, and chooses the springs' constants itself
+    std::erase_if(options, [](const Option& o) {
+      return std::set<std::string>{"surface", "windows", "stiffness_exponent"}.contains(o.name);
+    });
   if (row.topology == Topology::centres)
     options.push_back(
         number("turned_deg", -90, 90, [](double v, ModelParameters& p) { p.turned = v * std::numbers::pi / 180; }));
@@ -134,7 +139,7 @@ std::vector<Option> options_of(const ModelRow& row) {
   if (row.extension == Extension::momentum_dispersion)
     options.push_back(
         choice<std::optional<bool>>("weights", &ModelParameters::exact_volumes, {{"volume", true}, {"kL", false}}));
-  if (row.topology == Topology::random)
+  if (row.topology == Topology::random && !passes_patch_test(row))
     options.push_back(
         choice<bool>("calibration", &ModelParameters::homogenised, {{"homogenised", true}, {"affine", false}}));
   return options;
@@ -179,6 +184,12 @@ ModelParameters of_row(const ModelRow& row) {
   ModelParameters p;
   p.row = row;
   p.face_to_cube = row.face_to_cube;
+  if (passes_patch_test(row)) {
+    p.homogenised = false;  // the springs have the modulus exactly
+    p.random.springs_per_node = 50;
+    p.random.least_springs = 30;
+    p.random.edge_clearance = 0.6;
+  }
   return p;
 }
 

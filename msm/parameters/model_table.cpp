@@ -8,7 +8,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using enum Topology;
 using enum Extension;
-constexpr Calibration G = Calibration::shear_modulus, E = Calibration::youngs_modulus;
+constexpr Calibration G = Calibration::shear_modulus, E = Calibration::youngs_modulus, patch = Calibration::patch_test;
 
 // clang-format off
 const std::vector<ModelRow> table = {
@@ -21,6 +21,7 @@ const std::vector<ModelRow> table = {
   {"emsm",           "springs + momentum dispersion; Kot & Nagahashi (2015), as an energy",    cells,     infinity, true,  momentum_dispersion, false, false, G},
   {"emsm_centred",   "eMSM with nodes in the middle of the cubes",                             centres,   infinity, true,  momentum_dispersion, false, false, G},
   {"emsm_random",    "disordered eMSM",                                                        random,    0,        false, momentum_dispersion, false, false, G},
+  {"emsm_patch",     "disordered eMSM whose springs pass the patch test at every node",        random,    0,        false, momentum_dispersion, false, false, patch},
   {"emsm_hexagonal", "triangular sheet with momentum dispersion, in plane strain",             hexagonal, 0,        false, momentum_dispersion, false, false, G},
   {"kirkwood",       "triangular sheet with angular springs (Kirkwood), in plane strain",      hexagonal, 0,        false, angular_springs,     false, false, G},
   {"hybmss",         "springs + volume correction; Golec et al. (2019)",                       cells,     2,        true,  volume_correction,   false, false, G},

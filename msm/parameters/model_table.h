@@ -31,6 +31,7 @@ enum class Extension { none, volume_correction, momentum_dispersion, angular_spr
 enum class Calibration {
   shear_modulus,   ///< G = E / (2 (1 + nu)): required by an extension
   youngs_modulus,  ///< E, as if nu were 1/4 (G = 2 E / 5): as in a classic mass-spring model
+  patch_test,  ///< G, spring by spring: every affine strain is in equilibrium at every node (parameters/patch_fit.h)
 };
 
 struct ModelRow {
@@ -53,6 +54,9 @@ std::optional<double> own_poisson_ratio(const ModelRow& row);
 
 /// Whether the model is valid under finite kinematics; hourglass corrections are for small displacements only.
 inline bool holds_at_large_displacement(const ModelRow& row) { return !row.bending_correction; }
+
+/// Whether each spring has its own constant, by the patch test at its nodes.
+inline bool passes_patch_test(const ModelRow& row) { return row.calibration == Calibration::patch_test; }
 
 /// A model choice with all options resolved.
 struct ModelParameters {

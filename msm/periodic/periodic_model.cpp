@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msm/parameters/calibrate.h"
+#include "msm/parameters/patch_fit.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
@@ -28,10 +29,13 @@ MassSpringModel periodic_random_model(const ModelParameters& p, const BulkCalibr
   random.spacing = spacing;
   random.windows = false;  // they compensate for walls, which a periodic cell does not have
   MassSpringModel model{periodic_random_network(spacing * std::cbrt(nodes) * Vec3::Ones(), random), {Springs{}}};
-  if (random.surface_nodes) correct_surface(model.network);
+  const NodalVectors no_surface = NodalVectors::Zero(model.network.nodes(), 3);
+  if (passes_patch_test(p.row))
+    fit_patch(no_surface, c.spring_shear_modulus, model.network);
+  else if (random.surface_nodes)
+    correct_surface(model.network);
   calibrate(c.spring_shear_modulus, model.network);
-  if (p.has(Extension::momentum_dispersion))
-    model.laws.push_back(dispersion_law(p, model.network, c, NodalVectors::Zero(model.network.nodes(), 3)));
+  if (p.has(Extension::momentum_dispersion)) model.laws.push_back(dispersion_law(p, model.network, c, no_surface));
   return model;
 }
 

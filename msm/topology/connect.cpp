@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace springproof {
@@ -80,6 +81,37 @@ std::vector<Bond> bonds_within(const std::vector<Vec3>& points, const PointCells
     std::sort(bonds.begin() + first, bonds.end(), [](const Bond& a, const Bond& b) { return a.j < b.j; });
   }
   return bonds;
+}
+
+void join_sparse_points(const std::vector<Vec3>& points, const PointCells& cells, double max_length, int least,
+                        const std::function<bool(const Vec3&)>& inside, std::vector<Bond>& bonds) {
+  std::vector<std::vector<int>> joined(points.size());
+  const auto join = [&](int i, int j) {
+    joined[i].push_back(j);
+    joined[j].push_back(i);
+  };
+  for (const Bond& b : bonds) join(b.i, b.j);
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    if (static_cast<int>(joined[i].size()) >= least) continue;
+    std::vector<std::pair<double, int>> others;
+    cells.any_near(
+        points[i],
+        [&](int j) {
+          const double d = (points[j] - points[i]).norm();
+          const bool is_new = j != i && std::find(joined[i].begin(), joined[i].end(), j) == joined[i].end();
+          if (is_new && d < 2 * max_length && passes_inside(inside, points[i], points[j])) others.emplace_back(d, j);
+          return false;
+        },
+        2);
+    std::sort(others.begin(), others.end());
+    for (const auto& [d, j] : others) {
+      if (static_cast<int>(joined[i].size()) >= least) break;
+      join(i, j);
+      bonds.push_back({std::min(i, j), std::max(i, j), {}});
+    }
+  }
+  std::sort(bonds.begin(), bonds.end(),
+            [](const Bond& a, const Bond& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
 }
 
 double length_for(double springs_per_node, const std::vector<Vec3>& points, const Vec3& box) {

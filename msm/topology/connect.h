@@ -21,6 +21,11 @@ std::vector<Vec3> spatially_sorted(const std::vector<Vec3>& points, double edge)
 std::vector<Bond> bonds_within(const std::vector<Vec3>& points, const PointCells& cells, double max_length,
                                const std::function<bool(const Vec3&)>& inside);
 
+/// Joins points that have fewer than `least` bonds to the nearest points within 2 max_length [m] until they have, under
+/// the same test; not for periodic boxes.
+void join_sparse_points(const std::vector<Vec3>& points, const PointCells& cells, double max_length, int least,
+                        const std::function<bool(const Vec3&)>& inside, std::vector<Bond>& bonds);
+
 /// Length [m] up to which each point of a periodic box has `springs_per_node` neighbours on average.
 double length_for(double springs_per_node, const std::vector<Vec3>& points, const Vec3& box);
 

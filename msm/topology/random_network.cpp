@@ -117,6 +117,8 @@ Network random_network(const Region& region, const RandomParameters& parameters,
   PointCells cells(region.lower, region.upper, max_length, false);
   for (const Vec3& p : points) cells.add(p);
   std::vector<Bond> bonds = bonds_within(points, cells, max_length, region.inside);
+  if (parameters.least_springs > 0)
+    join_sparse_points(points, cells, max_length, parameters.least_springs, region.inside, bonds);
   const NetworkRepair counts = repair_or_refuse(points, bonds, Vec3::Zero());
   if (repaired) *repaired = counts;
   Network network = assemble(points, std::move(bonds), parameters, nullptr);

@@ -15,6 +15,8 @@ struct RandomParameters {
   double min_length = 0.8;           ///< minL / l; addition jams near 0.895
   std::optional<double> max_length;  ///< maxL / l; if empty, chosen to give springs_per_node
   double springs_per_node = 15;      ///< mean number <S> inside the bulk
+  double edge_clearance = 0;         ///< distance / l that nodes on faces keep from sharp edges
+  int least_springs = 0;             ///< nodes that have fewer are joined to the nearest within 2 maxL as well
   double stiffness_exponent = 0;     ///< p: k = (L/l)^-p [N/m]
   std::uint64_t seed = 1;            ///< the same seed gives the same network, to the last bit, on every machine
   bool windows = false;       ///< nodes in stages, by spherical windows, as the paper; without surface nodes only

@@ -39,10 +39,30 @@ double length(const std::vector<std::array<Vec3, 2>>& edges) {
   return sum;
 }
 
+double distance_to_segment(const Vec3& x, const std::array<Vec3, 2>& segment) {
+  const Vec3 along = segment[1] - segment[0];
+  const double at = std::clamp(along.dot(x - segment[0]) / along.squaredNorm(), 0.0, 1.0);
+  return (x - segment[0] - at * along).norm();
+}
+
 double area(const std::vector<std::array<Vec3, 3>>& triangles) {
   double sum = 0;
   for (const auto& [a, b, c] : triangles) sum += (b - a).cross(c - a).norm() / 2;
   return sum;
+}
+
+/// The pieces of the surface that are at least `clearance` [m] from its sharp edges; 0: the whole surface.
+std::vector<std::array<Vec3, 3>> clear_of_edges(const SurfaceFeatures& features, double clearance) {
+  if (!(clearance > 0)) return features.triangles;
+  std::vector<std::array<Vec3, 3>> pieces;
+  for (const auto& t : features.triangles)
+    for_pieces(t[0], t[1], t[2], clearance / 3, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      const bool clear = std::none_of(features.edges.begin(), features.edges.end(), [&](const auto& edge) {
+        return distance_to_segment((a + b + c) / 3, edge) < clearance;
+      });
+      if (clear) pieces.push_back({a, b, c});
+    });
+  return pieces;
 }
 
 /// Spherical windows that step through the box, each filled to its expected number.  The paper steps by sqrt(2) R_s,
@@ -82,7 +102,7 @@ std::vector<Vec3> nodes_from_surface(const Region& region, const RandomParameter
     if (sample.is_free(corner)) sample.add(corner);
   const double corners = double(sample.points.size());
   const double edges = fill_edges(sample, features.edges, count_for(length(features.edges) / l - corners / 2));
-  const double faces = fill_triangles(sample, features.triangles,
+  const double faces = fill_triangles(sample, clear_of_edges(features, parameters.edge_clearance * l),
                                       count_for(area(features.triangles) / (l * l) - edges / 2 - corners / 4));
   const double weight = surface_weight * parameters.min_length;
   const long inner = count_for(region.volume / (l * l * l) - weight * (faces + edges / 2 + corners / 4));

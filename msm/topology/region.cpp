@@ -112,17 +112,6 @@ void subdivide(Points& points, Triangles& triangles) {
   triangles = std::move(finer);
 }
 
-/// f(a, b, c) for pieces of the triangle that are no wider than `width`.
-template <class F>
-void for_pieces(const Vec3& a, const Vec3& b, const Vec3& c, double width, F f) {
-  if (std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()}) <= width) return f(a, b, c);
-  const Vec3 ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-  for_pieces(a, ab, ca, width, f);
-  for_pieces(ab, b, bc, width, f);
-  for_pieces(ca, bc, c, width, f);
-  for_pieces(ab, bc, ca, width, f);
-}
-
 }  // namespace
 
 Region region_of(const Mesh& mesh) {

@@ -32,4 +32,15 @@ Region ball(const Vec3& centre, double radius);
 /// Marks the points closer than `distance` [m] to the region's surface.
 std::vector<char> near_surface(const Region& region, const std::vector<Vec3>& points, double distance);
 
+/// f(a, b, c) for pieces of the triangle that are no wider than `width` [m].
+template <class F>
+void for_pieces(const Vec3& a, const Vec3& b, const Vec3& c, double width, F f) {
+  if (std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()}) <= width) return f(a, b, c);
+  const Vec3 ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+  for_pieces(a, ab, ca, width, f);
+  for_pieces(ab, b, bc, width, f);
+  for_pieces(ca, bc, c, width, f);
+  for_pieces(ab, bc, ca, width, f);
+}
+
 }  // namespace springproof

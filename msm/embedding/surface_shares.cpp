@@ -1,0 +1,187 @@
+#include "msm/embedding/surface_shares.h"
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "msm/topology/point_cells.h"
+
+namespace springproof {
+namespace {
+
+// In node spacings.
+constexpr double on_surface = 1e-6;
+constexpr double piece_width = 0.5;
+constexpr std::array heights = {1e-6, 0.1, 0.3, 0.6, 1.0};  // of nodes above or below the tangent plane
+constexpr std::array reaches = {1.6, 2.0, 2.5, 3.0};
+constexpr double largest_sum = 1.5;  // of |weights|, which is 1 within the convex hull of few nodes
+
+struct SurfaceWeights {
+  std::vector<int> nodes;
+  Eigen::VectorXd weight;
+};
+
+/// Interpolation from the surface nodes of a network to points of the surface.
+struct SurfaceInterpolation {
+  const Network& network;
+  double spacing;
+  PointCells cells;
+  std::vector<char> at_surface;
+  std::vector<std::vector<int>> neighbours;
+
+  SurfaceInterpolation(const Region& region, const Network& n)
+      : network(n),
+        spacing(std::cbrt(n.volume.sum() / n.nodes())),
+        cells(region.lower, region.upper, spacing, false),
+        at_surface(n.nodes(), 0),
+        neighbours(n.nodes()) {
+    for (int node = 0; node < n.nodes(); ++node) cells.add(n.X.row(node).transpose());
+    for (const auto& t : region.surface_triangles)
+      mark({region.surface_points[t[0]], region.surface_points[t[1]], region.surface_points[t[2]]});
+    for (const Spring& s : n.springs) {
+      neighbours[s.i].push_back(s.j);
+      neighbours[s.j].push_back(s.i);
+    }
+  }
+
+  /// Marks the nodes on a triangle.
+  void mark(const std::array<Vec3, 3>& triangle) {
+    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+    const double width = piece_width * spacing;
+    for_pieces(triangle[0], triangle[1], triangle[2], width, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      const Vec3 middle = (a + b + c) / 3;
+      cells.any_near(middle, [&](int n) {
+        const bool in_plane = std::abs((network.X.row(n).transpose() - a).dot(normal)) <= on_surface * spacing;
+        at_surface[n] = at_surface[n] || (in_plane && distance(n, middle) <= width);
+        return false;
+      });
+    });
+  }
+
+  double distance(int node, const Vec3& p) const { return (network.X.row(node).transpose() - p).norm(); }
+
+  /// Nodes within `reach` [m] of p, nearest first, that are connected with the nearest surface node through such nodes.
+  std::vector<int> connected(const Vec3& p, double reach) const {
+    std::vector<std::pair<double, int>> near;
+    cells.any_near(
+        p,
+        [&](int n) {
+          if (const double d = distance(n, p); d <= reach) near.emplace_back(d, n);
+          return false;
+        },
+        static_cast<int>(reach / spacing) + 1);
+    std::sort(near.begin(), near.end());
+    const auto start = std::find_if(near.begin(), near.end(), [&](const auto& at) { return at_surface[at.second]; });
+    if (start == near.end()) return {};
+    std::vector<int> open;
+    for (const auto& at : near) open.push_back(at.second);
+    std::sort(open.begin(), open.end());
+    std::vector<int> found = {start->second};
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (const int n : neighbours[found[i]])
+        if (std::binary_search(open.begin(), open.end(), n) && std::find(found.begin(), found.end(), n) == found.end())
+          found.push_back(n);
+    return found;
+  }
+
+  /// Moving least squares in the plane through p with normal n.
+  std::optional<SurfaceWeights> in_plane(const std::vector<int>& candidates, const Vec3& p, const Vec3& normal,
+                                         double height, double reach) const {
+    const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+    SurfaceWeights found;
+    std::vector<Vec3> basis;
+    for (const int n : candidates) {
+      const Vec3 d = network.X.row(n).transpose() - p;
+      if (!at_surface[n] || std::abs(d.dot(normal)) > height) continue;
+      found.nodes.push_back(n);
+      basis.emplace_back(1, d.dot(u) / reach, d.dot(v) / reach);
+    }
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    Eigen::VectorXd bell(static_cast<Eigen::Index>(basis.size()));
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+      bell[i] = std::pow(1 - std::min(1.0, basis[i].tail<2>().squaredNorm()), 3) + 1e-9;
+      moments += bell[i] * basis[i] * basis[i].transpose();
+    }
+    if (!(moments.determinant() > 1e-6 * std::pow(moments(0, 0), 3))) return {};
+    const Vec3 c = moments.ldlt().solve(Vec3::UnitX());
+    found.weight.resize(bell.size());
+    for (std::size_t i = 0; i < basis.size(); ++i) found.weight[i] = bell[i] * basis[i].dot(c);
+    return found;
+  }
+
+  SurfaceWeights at(const Vec3& p, const Vec3& normal) const {
+    SurfaceWeights best;
+    double least = std::numeric_limits<double>::infinity();
+    std::array<std::vector<int>, reaches.size()> candidates;
+    for (const double height : heights)
+      for (std::size_t r = 0; r < reaches.size(); ++r) {
+        if (candidates[r].empty()) candidates[r] = connected(p, reaches[r] * spacing);
+        auto found = in_plane(candidates[r], p, normal, height * spacing, reaches[r] * spacing);
+        if (!found) continue;
+        const double sum = found->weight.cwiseAbs().sum();
+        if (sum <= largest_sum) return *std::move(found);
+        if (sum < least) {
+          least = sum;
+          best = *std::move(found);
+        }
+      }
+    if (best.nodes.empty()) throw std::invalid_argument("a part of the surface is far from all nodes on the surface");
+    return best;
+  }
+
+  /// Adds the shares in a triangle, anticlockwise seen from outside.
+  void add(const std::array<Vec3, 3>& triangle, PatchShares& shares) const {
+    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+    for_pieces(triangle[0], triangle[1], triangle[2], piece_width * spacing,
+               [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+                 const double area = (b - a).cross(c - a).norm() / 2;
+                 const SurfaceWeights w = at((a + b + c) / 3, normal);
+                 for (std::size_t i = 0; i < w.nodes.size(); ++i) {
+                   shares.area[w.nodes[i]] += area * w.weight[i];
+                   shares.normal.row(w.nodes[i]) += area * w.weight[i] * normal.transpose();
+                 }
+               });
+  }
+
+  PatchShares none() const { return {Eigen::VectorXd::Zero(network.nodes()), NodalVectors::Zero(network.nodes(), 3)}; }
+};
+
+/// Makes sum A = 0 and sum A x^T = V 1.
+void meet_gauss(const NodalVectors& X, double volume, NodalVectors& A) {
+  const Eigen::RowVector3d middle = X.colwise().mean();
+  const double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
+  Eigen::MatrixXd linear(X.rows(), 4);
+  linear << (X.rowwise() - middle) / size, Eigen::VectorXd::Ones(X.rows());
+  Eigen::Matrix<double, 4, 3> missing = -linear.transpose() * A;
+  for (int d = 0; d < 3; ++d) missing(d, d) += volume / size;
+  const Eigen::VectorXd share = A.rowwise().norm();
+  const Eigen::Matrix4d moments = linear.transpose() * share.asDiagonal() * linear;
+  A += share.asDiagonal() * linear * moments.ldlt().solve(missing);
+}
+
+}  // namespace
+
+SurfaceShares surface_shares(const Region& region, const Network& network) {
+  const SurfaceInterpolation interpolation(region, network);
+  const auto point = [&](int n) -> const Vec3& { return region.surface_points[n]; };
+  SurfaceShares shares;
+  for (const Patch& p : region.patches) {
+    PatchShares& patch = shares.patches.emplace(p.name, interpolation.none()).first->second;
+    for (const auto& f : p.facets) {
+      interpolation.add({point(f[0]), point(f[1]), point(f[2])}, patch);
+      if (f[3] >= 0) interpolation.add({point(f[0]), point(f[2]), point(f[3])}, patch);
+    }
+  }
+  PatchShares whole = interpolation.none();
+  for (const auto& t : region.surface_triangles) interpolation.add({point(t[0]), point(t[1]), point(t[2])}, whole);
+  shares.area = std::move(whole.normal);
+  meet_gauss(network.X, region.volume, shares.area);
+  return shares;
+}
+
+}  // namespace springproof
