@@ -1,9 +1,9 @@
 // Construction of a model of the table in a body.
 #pragma once
 
+#include "msm/embedding/cut_lattice.h"
 #include "msm/embedding/embedding.h"
 #include "msm/parameters/model_table.h"
-#include "msm/topology/cut_lattice.h"
 
 namespace springproof {
 

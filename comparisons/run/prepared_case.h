@@ -9,8 +9,8 @@
 
 #include "comparisons/judge/patch_mean.h"
 #include "meshes/mesh.h"
+#include "msm/embedding/cut_lattice.h"
 #include "msm/models.h"
-#include "msm/topology/cut_lattice.h"
 #include "msm/topology/region.h"
 #include "problem/case_file/experiment.h"
 

@@ -7,8 +7,8 @@
 
 namespace springproof {
 
-/// 3A / (2 (4 + 3A)): the stiffness, in units of G l, by which the springs of a cell couple the two bending modes of one
-/// neutral plane, and that of their paired torsional modes; a quarter of that of the symmetric torsional mode.
+/// 3A / (2 (4 + 3A)): the stiffness, in units of G l, by which the springs of a cell couple the two bending modes of
+/// one neutral plane, and that of their paired torsional modes; a quarter of that of the symmetric torsional mode.
 double paired_stiffness(double face_to_cube);
 
 /// Springs give a cell's bending mode the stiffness G l for any nu and A; a beam needs G l / (3 (1 - nu)).  This law

@@ -1,4 +1,4 @@
-#include "msm/topology/cut_lattice.h"
+#include "msm/embedding/cut_lattice.h"
 
 namespace springproof {
 namespace {

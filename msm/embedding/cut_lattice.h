@@ -9,8 +9,8 @@
 
 namespace springproof {
 
-/// Stiffness of an anchor, in units of E A / l, A the area of the patch in the cell of edge l: a support gives way like a
-/// thirtieth of a cell.  Stiffer anchors make clamped bodies, which coarse cells leave too stiff, stiffer still.
+/// Stiffness of an anchor, in units of E A / l, A the area of the patch in the cell of edge l: a support gives way like
+/// a thirtieth of a cell.  Stiffer anchors make clamped bodies, which coarse cells leave too stiff, stiffer still.
 inline constexpr double anchor_stiffness = 30;
 
 /// The cells as a network: nodes are the corners of the cells, with an eighth of a cell's volume each, and one node, of
