@@ -136,6 +136,7 @@ SpringsFile springs_of(const ExportRequest& request) {
     if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");
     e.body.cells = {cells_of_option(request.cells)};
   }
+  e.body.cut = false;  // springs between nodes: whole cubes
   Status status(false);
   const Status::Working working(status, request.what);
   return springs_of(prepare_lattices(e));

@@ -283,6 +283,25 @@ void add_splits(PartRun& run, std::size_t lattice, const std::string& model, con
     run.part.splits.push_back(std::move(split));
 }
 
+/// A model of cut cells has no staircase.  Its springs' part is that of the same model on whole cubes, where there are
+/// finite elements on the same cells; the rest is the cells' size.
+void add_splits_of_cut_cells(PartRun& run, std::size_t lattice, std::size_t number, const std::vector<NodalVectors>& u,
+                             const std::vector<std::map<std::string, double>>& scalars) {
+  if (!run.reference[lattice] || !run.voxels[lattice]) return;
+  PreparedCase whole = run.prepared;
+  whole.models[number].cut = false;
+  const std::vector<ModelSample> cubes = run_samples(whole, run.prepared.lattices[lattice], number, run.material);
+  if (!cubes.front().state.ok) return;
+  const std::string& label = run.experiment().models[number].label;
+  const std::size_t first = run.part.splits.size();
+  add_splits(run, lattice, label, {cubes.front().field.displacement}, {cubes.front().scalars});
+  const std::vector<ErrorSplit> of_cubes(run.part.splits.begin() + static_cast<std::ptrdiff_t>(first),
+                                         run.part.splits.end());
+  run.part.splits.resize(first);
+  add_splits(run, lattice, label, u, scalars);
+  for (std::size_t s = 0; s < of_cubes.size(); ++s) without_staircase(of_cubes[s], run.part.splits[first + s]);
+}
+
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
@@ -306,11 +325,10 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   }
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
-  if (run.prepared.models[number].cut.value_or(false))
-    run.cut_states.push_back(
-        {lattice, number, samples.front().state.displacement, samples.front().field.displacement, scalars.front()});
-  else
-    add_splits(run, lattice, label, fields, scalars);
+  if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
+  run.cut_states.push_back(
+      {lattice, number, samples.front().state.displacement, samples.front().field.displacement, scalars.front()});
+  add_splits_of_cut_cells(run, lattice, number, fields, scalars);
 }
 
 /// The limits of models of cut cells as rows of their own; the last step is stated as the spread.

@@ -90,6 +90,8 @@ SpringsFile springs_of(const PreparedCase& prepared) {
   const ModelParameters& parameters = prepared.models.front();
   const IsotropicMaterial& material = prepared.experiment.materials.front();
   const ModelChoice& choice = prepared.experiment.models.front();
+  if (parameters.cut.value_or(false))
+    throw InputError(choice.where, "compare.models: cut = true: springs files hold whole cubes (allowed: cut = false)");
   EmbeddedModel built = build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
   SpringsFile file;
   file.density = material.density;

@@ -166,6 +166,14 @@ std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t 
   return out;
 }
 
+void without_staircase(const ErrorSplit& of_cubes, ErrorSplit& split) {
+  const bool signed_parts = split.measure != "displacement_error" && split.measure != "reaction_error";
+  split.model_error = of_cubes.model_error;
+  split.geometry_error = 0;
+  split.discretisation_error =
+      signed_parts ? split.total - split.model_error : std::max(0.0, split.total - split.model_error);
+}
+
 std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice& lattice, const RunKey& key,
                                     const VoxelLimit& voxels, const BodyLimit& body, const std::vector<NodalVectors>& u,
                                     const std::vector<std::map<std::string, double>>& values) {

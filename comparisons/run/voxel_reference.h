@@ -39,4 +39,8 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
                                     const VoxelLimit& voxels, const BodyLimit& body, const std::vector<NodalVectors>& u,
                                     const std::vector<std::map<std::string, double>>& values);
 
+/// Makes the split of a model of cut cells from that of the same model on whole cubes: no geometry, the same springs,
+/// and the rest of the total as discretisation.
+void without_staircase(const ErrorSplit& of_cubes, ErrorSplit& split);
+
 }  // namespace springproof
