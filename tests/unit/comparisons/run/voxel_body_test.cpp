@@ -151,6 +151,28 @@ TEST(VoxelBody, ThinPartsAreSaidToBeLost) {
   EXPECT_EQ(notes("voxels = 1000").find("cubes of"), std::string::npos) << notes("voxels = 1000");
 }
 
+TEST(VoxelBody, CutCellsHaveALimitFromTwoLatticesAndWholeCubesHaveNone) {
+  std::string text = ball_case(100, "[[load]]\non = \"high\"\nforce_N = [0, 0, 1]",
+                               "\"hybmss\", { model = \"hybmss\", cut = false }", "elements = []\nedge_m = 0.03");
+  text.replace(text.find("voxels = 100"), 12, "voxels = [100, 300]");
+  const PreparedCase prepared = prepare(parse_experiment(text, "ball.toml"));
+  const Part part = run_part(prepared, 0, {});
+  const auto top = [&](const std::string& model, const Cells& cells) {
+    for (const Row& row : part.rows)
+      if (row.model == model && row.cells == cells && row.measure == "displacement.top.z") return row;
+    ADD_FAILURE() << "no row of " << model;
+    return Row{};
+  };
+  const Lattice &coarse = prepared.lattices[0], &fine = prepared.lattices[1];
+  const double u = top("hybmss", fine.cells).value, step = u - top("hybmss", coarse.cells).value;
+  const Row limit = top("hybmss extrapolated", fine.cells);
+  const double factor = fine.voxel_edge / (coarse.voxel_edge - fine.voxel_edge);
+  EXPECT_NEAR(limit.value, u + factor * step, 1e-12 * std::abs(u));
+  EXPECT_NEAR(limit.spread.value(), std::abs(factor * step), 1e-12 * std::abs(u));
+  EXPECT_TRUE(std::none_of(part.rows.begin(), part.rows.end(),
+                           [](const Row& row) { return row.model == "hybmss cut=false extrapolated"; }));
+}
+
 TEST(VoxelBody, TorquesMoveToTheTruePatch) {
   const PreparedCase& ball = loaded_ball();
   const Mesh& voxels = *ball.lattices[0].mesh;
@@ -205,6 +227,9 @@ const Mistake mistakes[] = {
     {"probe_outside", "at_m = [0.1, 0.1, 0.19]", "at_m = [0.1, 0.1, 0.3]",
      "ball.toml:*probe 'top': at_m: the point (0.1, 0.1, 0.3) m lies outside the body, 0.1 m from its surface"},
     {"not_held", "displacement_m = [0, 0, 0]", "displacement_m = [\"free\", \"free\", 0]", "ball.toml:*not held"},
+    {"cut_is_no_flag", "voxels = 100", "voxels = 100\ncut = 3", "ball.toml:*body.cut"},
+    {"cut_of_emsm", "\"emsm_random\"", "{ model = \"emsm\", cut = true }", "ball.toml:*unknown option 'cut'"},
+    {"shift_too_large", "\"emsm_random\"", "{ model = \"hybmss\", shift = 2 }", "ball.toml:*0 <= shift <= 1"},
     {"edge_too_long", "edge_m = 0.03", "edge_m = -3", "ball.toml:*edge_m"},
 };
 INSTANTIATE_TEST_SUITE_P(Cases, VoxelMistakes, testing::ValuesIn(mistakes),
