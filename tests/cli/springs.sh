@@ -37,6 +37,7 @@ awk '/^```python$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$source/d
 for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { inside = 0 } inside { print $1 }'); do
   cells="4 2 2"
   [[ $model != *hexagonal && $model != kirkwood ]] || cells="4 2 1"
+  [[ $model != *patch ]] || cells="8 4 4"  # fewer nodes cannot hold every strain
   for form in json npz; do
     # shellcheck disable=SC2086
     export_to case.toml --to springs --model "$model" --nu 0.4 --cells $cells --out "$model.$form"  # every constant differs from 0
@@ -111,7 +112,7 @@ same_rows() {
   [ "$(wc -l <<<"$rows")" -eq 1 ] && [ "$rows" -ge 8 ] || fail "$1: $2 from its file has other rows: $rows"
 }
 for model in hybmss hybmss_bt emsm emsm_random msm_centred; do same_rows template.toml $model; done
-sed -e 's/^geo = .*/geo = "icosahedron.stl"/; s/^size_m = .*/voxels = 300/; /^cells = /d; s/x_min/low/; s/x_max/high/' \
+sed -e 's/^geo = .*/geo = "icosahedron.stl"/; s/^size_m = .*/voxels = 300\ncut = false/; /^cells = /d; s/x_min/low/; s/x_max/high/' \
   -e 's/^\[material\]/[[patch]]\nname = "low"\nbeyond = { point_m = [0, 0, -0.5], normal = [0, 0, -1] }\n[[patch]]\nname = "high"\nbeyond = { point_m = [0, 0, 0.5], normal = [0, 0, 1] }\n&/' template.toml >voxels.toml
 for model in hybmss_bt emsm_random emsm_centred; do same_rows voxels.toml $model; done
 
