@@ -29,7 +29,7 @@ insert_after() {  # FILE PATTERN LINE
   mv edited "$1"
 }
 insert_after msm/laws/laws.h '#include "msm/laws/springs.h"' '#include "msm/laws/stiffening_springs.h"'
-sed -i 's/AngularSprings>;/AngularSprings, StiffeningSprings>;/' msm/laws/laws.h
+sed -i 's/Anchors>;/Anchors, StiffeningSprings>;/' msm/laws/laws.h
 sed -i 's/angular_springs };/angular_springs, stiffening_springs };/' msm/parameters/model_table.h
 insert_after msm/parameters/model_table.cpp 'const std::vector<ModelRow> table = {' "$(line '{"msm_stiffening"')"
 insert_after msm/periodic/laws_of_model.cpp 'if (p.has(angular_springs))' "$(line 'StiffeningSprings{10});' | grep has)"
