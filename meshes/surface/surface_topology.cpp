@@ -5,27 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
+#include "meshes/united_numbers.h"
+
 namespace springproof {
-namespace {
-
-/// Disjoint sets of the numbers 0 to n-1.
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int i, int j) { parent_[find(i)] = find(j); }
-
- private:
-  std::vector<int> parent_;
-};
-
-}  // namespace
 
 std::vector<Side> sides_by_edge(const Surface& surface) {
   std::vector<Side> sides;
@@ -72,18 +56,18 @@ std::vector<int> shells(const Neighbours& neighbours) {
 }
 
 std::vector<Hole> holes(const Surface& surface, const std::vector<Side>& sides) {
-  Sets sets(surface.points.size());
+  UnitedNumbers sets(surface.points.size());
   std::vector<Side> open;
   for_each_edge(sides, [&](std::span<const Side> edge) {
     if (edge.size() != 1) return;
     open.push_back(edge[0]);
-    sets.join(edge[0].low, edge[0].high);
+    sets.unite(edge[0].low, edge[0].high);
   });
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<int> hole_of(surface.points.size(), -1);
   std::vector<Hole> found;
   for (const Side& side : open) {
-    int& hole = hole_of[sets.find(side.low)];
+    int& hole = hole_of[sets.of(side.low)];
     if (hole < 0) {
       hole = static_cast<int>(found.size());
       found.push_back({0, surface.points[side.low], {Vec3::Constant(infinity), Vec3::Constant(-infinity)}});
@@ -99,7 +83,7 @@ std::vector<Hole> holes(const Surface& surface, const std::vector<Side>& sides) 
 }
 
 std::vector<int> pinched_points(const Surface& surface, const Neighbours& neighbours) {
-  Sets corners(3 * neighbours.size());  // joined round their point, across edges
+  UnitedNumbers corners(3 * neighbours.size());  // joined round their point, across edges
   const auto corner_at = [&](int facet, int point) {
     const auto& triangle = surface.triangles[facet];
     return 3 * facet + static_cast<int>(std::find(triangle.begin(), triangle.end(), point) - triangle.begin());
@@ -108,15 +92,15 @@ std::vector<int> pinched_points(const Surface& surface, const Neighbours& neighb
     for (int i = 0; i < 3; ++i) {
       const int next = neighbours[f][i], from = surface.triangles[f][i], to = surface.triangles[f][(i + 1) % 3];
       if (next < f) continue;
-      corners.join(3 * f + i, corner_at(next, from));
-      corners.join(3 * f + (i + 1) % 3, corner_at(next, to));
+      corners.unite(3 * f + i, corner_at(next, from));
+      corners.unite(3 * f + (i + 1) % 3, corner_at(next, to));
     }
   std::vector<int> fan(surface.points.size(), -1), pinched;
   for (int c = 0; c < 3 * static_cast<int>(neighbours.size()); ++c) {
     int& first = fan[surface.triangles[c / 3][c % 3]];
     if (first < 0)
-      first = corners.find(c);
-    else if (first != corners.find(c))
+      first = corners.of(c);
+    else if (first != corners.of(c))
       pinched.push_back(surface.triangles[c / 3][c % 3]);
   }
   std::sort(pinched.begin(), pinched.end());

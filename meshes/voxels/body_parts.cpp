@@ -52,7 +52,7 @@ BodyParts::BodyParts(const VoxelGrid& grid, const Mesh& body) : grid_(grid), bod
     begin.push_back(static_cast<int>(cube.size()));
     cut_by_lattice(TetrahedronCorners{X_[t[0]], X_[t[1]], X_[t[2]], X_[t[3]]}, grid.cells,
                    [&](const std::array<int, 3>& at, const TetrahedronCorners& part) {
-                     if (volume_of(part) > 0) moments[find_or_add(number(at))].add(part);
+                     if (volume_of(part) > 0) moments[find_or_add(cube_number(grid, at))].add(part);
                    });
   }
   begin.push_back(static_cast<int>(cube.size()));
@@ -67,10 +67,6 @@ void BodyParts::list_facets() {
       facets_.push_back({ascending({n[f], n[(f + 1) % 4], n[(f + 2) % 4]}), static_cast<int>(t)});
     }
   std::sort(facets_.begin(), facets_.end());
-}
-
-long BodyParts::number(const std::array<int, 3>& at) const {
-  return (long(at[2]) * grid_.cells[1] + at[1]) * grid_.cells[0] + at[0];
 }
 
 std::array<int, 3> BodyParts::index(long at) const {
@@ -102,7 +98,7 @@ long BodyParts::cube_beside(const TriangleCorners& part, int tetrahedron) const 
     if (std::abs(x - std::round(x)) < 4 * lattice_tolerance) x = std::round(x) + (inside[d] > x ? 0.5 : -0.5);
     at[d] = std::clamp(static_cast<int>(std::floor(x)), 0, grid_.cells[d] - 1);
   }
-  return number(at);
+  return cube_number(grid_, at);
 }
 
 int BodyParts::owner(const std::array<int, 3>& of) const {

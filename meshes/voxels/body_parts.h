@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "meshes/mesh.h"
+#include "meshes/united_numbers.h"
 #include "meshes/voxels/cut_simplex.h"
-#include "meshes/voxels/united_numbers.h"
 #include "meshes/voxels/voxelise.h"
 
 namespace springproof {
@@ -29,8 +29,7 @@ class BodyParts {
  public:
   BodyParts(const VoxelGrid& grid, const Mesh& body);
 
-  long number(const std::array<int, 3>& at) const;  ///< of a cube
-  std::array<int, 3> index(long cube) const;
+  std::array<int, 3> index(long cube) const;  ///< (i,j,k) of a cube from its number
 
   /// Part of a tetrahedron in a cube; -1: none.
   int find(int tetrahedron, long cube) const;

@@ -19,20 +19,12 @@ namespace {
 constexpr double largest_loss = 0.02, noted_loss = 1e-3, noted_thin = 0.02;
 constexpr double thin = 0.75;  // 2 V / A in edges: sheets of that thickness, rods of twice that diameter
 
-FilledPart filled_part(const SolidMoments& m, const std::array<int, 3>& cube) {
+/// Of a piece in a cube, from its moments about the origin of the grid.
+FilledPart part_in_cube(const SolidMoments& m, const std::array<int, 3>& cube) {
   const Vec3 centre = Vec3(cube[0], cube[1], cube[2]) + Vec3::Constant(0.5);
-  FilledPart f;
-  f.fraction = m.volume;
-  f.mean = m.first / m.volume - centre;
-  const Eigen::Matrix3d second = m.second / m.volume - centre * (m.first / m.volume).transpose() -
-                                 (m.first / m.volume) * centre.transpose() + centre * centre.transpose();
-  for (int i = 0; i < 3; ++i) {
-    f.mixed[i] = second((i + 1) % 3, (i + 2) % 3);
-    f.variance[i] = std::max(0.0, second(i, i) - f.mean[i] * f.mean[i]);
-  }
-  constexpr double round_off = 1e-10;
-  if (std::abs(f.fraction - 1) < round_off) f = FilledPart{};
-  return f;
+  return filled_part(
+      m.volume, m.first - m.volume * centre,
+      m.second - centre * m.first.transpose() - m.first * centre.transpose() + m.volume * centre * centre.transpose());
 }
 
 /// Gives the cells corners: those on a face through which two cells are connected are the same.
@@ -85,6 +77,19 @@ std::vector<TrianglePoint> triangle_points() {
 
 }  // namespace
 
+FilledPart filled_part(double volume, const Vec3& first, const Eigen::Matrix3d& second) {
+  constexpr double round_off = 1e-10;
+  if (std::abs(volume - 1) < round_off) return {};
+  FilledPart f;
+  f.fraction = volume;
+  f.mean = first / volume;
+  for (int i = 0; i < 3; ++i) {
+    f.mixed[i] = second((i + 1) % 3, (i + 2) % 3) / volume;
+    f.variance[i] = std::max(0.0, second(i, i) / volume - f.mean[i] * f.mean[i]);
+  }
+  return f;
+}
+
 double PatchInCell::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
 
 Vec3 CutBody::centre(int cell) const {
@@ -103,16 +108,14 @@ std::array<double, 8> CutBody::weights(int cell, const Vec3& point) const {
 }
 
 int CutBody::nearest_cell(const Vec3& point) const {
-  const Vec3 x = (point - grid.origin) / grid.edge;
-  std::array<int, 3> at;
-  for (int d = 0; d < 3; ++d) at[d] = std::clamp(static_cast<int>(std::floor(x[d])), 0, grid.cells[d] - 1);
+  const std::array<int, 3> at = cube_at(grid, point);
   const auto distance = [&](int c) { return (centre(c) - point).squaredNorm(); };
   for (int rings = 1; rings <= *std::max_element(grid.cells.begin(), grid.cells.end()); ++rings) {
     int best = -1;
     for (int k = std::max(0, at[2] - rings); k <= std::min(grid.cells[2] - 1, at[2] + rings); ++k)
       for (int j = std::max(0, at[1] - rings); j <= std::min(grid.cells[1] - 1, at[1] + rings); ++j)
         for (int i = std::max(0, at[0] - rings); i <= std::min(grid.cells[0] - 1, at[0] + rings); ++i) {
-          const auto here = cells_of_.find((long(k) * grid.cells[1] + j) * grid.cells[0] + i);
+          const auto here = cells_of_.find(cube_number(grid, {i, j, k}));
           if (here == cells_of_.end()) continue;
           for (const int c : here->second)
             if (best < 0 || distance(c) < distance(best)) best = c;
@@ -124,10 +127,7 @@ int CutBody::nearest_cell(const Vec3& point) const {
 
 CutBody::Place CutBody::place(const Vec3& point) const {
   const auto tetrahedron = (*locator_)(point).cell;
-  std::array<int, 3> at;
-  for (int d = 0; d < 3; ++d)
-    at[d] = std::clamp(static_cast<int>(std::floor((point[d] - grid.origin[d]) / grid.edge)), 0, grid.cells[d] - 1);
-  const long cube = (long(at[2]) * grid.cells[1] + at[1]) * grid.cells[0] + at[0];
+  const long cube = cube_number(grid, cube_at(grid, point));
   int best = -1;
   double least = std::numeric_limits<double>::infinity();
   for (int p = part_begin_[tetrahedron]; p < part_begin_[tetrahedron + 1]; ++p) {
@@ -190,7 +190,7 @@ double thin_fraction(const Mesh& body, const BodyParts& parts, const BodyPieces&
   for (const OuterFacet& f : outer_facets(body))
     cut_by_lattice(parts.triangle({f.nodes[0], f.nodes[1], f.nodes[2]}), grid.cells,
                    [&](const std::array<int, 3>& at, const TriangleCorners& part) {
-                     in_cube[parts.number(at)][1] += area_of(part);
+                     in_cube[cube_number(grid, at)][1] += area_of(part);
                    });
   double all = 0, in_thin = 0;
   for (const auto& [cube, here] : in_cube) {
@@ -200,7 +200,7 @@ double thin_fraction(const Mesh& body, const BodyParts& parts, const BodyPieces&
       const std::array<int, 3> near = {at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
       bool in_grid = true;
       for (int d = 0; d < 3; ++d) in_grid &= near[d] >= 0 && near[d] < grid.cells[d];
-      const auto found = in_grid ? in_cube.find(parts.number(near)) : in_cube.end();
+      const auto found = in_grid ? in_cube.find(cube_number(grid, near)) : in_cube.end();
       if (found == in_cube.end()) continue;
       volume += found->second[0];
       surface += found->second[1];
@@ -241,10 +241,10 @@ CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
   for (std::size_t p = 0; p < pieces.cube.size(); ++p) {
     if (pieces.cell[p] < 0) continue;
     const std::array<int, 3> at = parts.index(pieces.cube[p]);
-    out.cells[pieces.cell[p]] = {at, {}, filled_part(pieces.moments[p], at)};
+    out.cells[pieces.cell[p]] = {at, {}, part_in_cube(pieces.moments[p], at)};
   }
   for (std::size_t c = 0; c < out.cells.size(); ++c)
-    out.cells_of_[parts.number(out.cells[c].index)].push_back(static_cast<int>(c));
+    out.cells_of_[cube_number(grid, out.cells[c].index)].push_back(static_cast<int>(c));
   number_points(pieces, out);
   out.locator_ = std::make_shared<TetrahedronLocator>(body.nodes, body.tetrahedra);
   out.part_begin_ = parts.begin;

@@ -13,4 +13,7 @@ struct FilledPart {
   Vec3 variance = Vec3::Constant(1.0 / 12);  ///< S_i = <xi_i^2> - c_i^2
 };
 
+/// From the integrals of 1, xi and xi xi^T.
+FilledPart filled_part(double volume, const Vec3& first, const Eigen::Matrix3d& second);
+
 }  // namespace springproof

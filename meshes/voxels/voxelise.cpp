@@ -224,6 +224,17 @@ class CubeMesh {
 
 }  // namespace
 
+long cube_number(const VoxelGrid& grid, const std::array<int, 3>& at) {
+  return (long(at[2]) * grid.cells[1] + at[1]) * grid.cells[0] + at[0];
+}
+
+std::array<int, 3> cube_at(const VoxelGrid& grid, const Vec3& point) {
+  std::array<int, 3> at;
+  for (int d = 0; d < 3; ++d)
+    at[d] = std::clamp(static_cast<int>(std::floor((point[d] - grid.origin[d]) / grid.edge)), 0, grid.cells[d] - 1);
+  return at;
+}
+
 VoxelGrid voxel_grid(const Mesh& body, double edge) {
   if (body.hexahedra.empty() && body.tetrahedra.empty()) throw std::invalid_argument("voxels: the body has no cells");
   const Extent box = extent_of(body);

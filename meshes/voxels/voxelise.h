@@ -15,6 +15,10 @@ struct VoxelGrid {
   std::array<int, 3> cells = {0, 0, 0};
 };
 
+/// Number of cube (i,j,k), x fastest, and the cube that holds a point; of a point outside the nearest one.
+long cube_number(const VoxelGrid& grid, const std::array<int, 3>& cube);
+std::array<int, 3> cube_at(const VoxelGrid& grid, const Vec3& point);
+
 /// The smallest grid of cubes of that edge [m] that holds the body, centred on its bounding box.
 /// @throws std::invalid_argument if the body has no cells, or the edge is not positive or gives more than 10^9 cubes.
 VoxelGrid voxel_grid(const Mesh& body, double edge);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "meshes/voxels/united_numbers.h"
+#include "meshes/united_numbers.h"
 
 namespace springproof {
 namespace {
@@ -35,17 +35,6 @@ struct ChildMoments {
     volume += v;
     first += v * (part.mean / 2 + o);
     second += v * (own / 4 + o * part.mean.transpose() / 2 + part.mean * o.transpose() / 2 + o * o.transpose());
-  }
-
-  FilledPart part() const {
-    FilledPart f;
-    f.fraction = volume;
-    f.mean = first / volume;
-    for (int i = 0; i < 3; ++i) {
-      f.mixed[i] = second((i + 1) % 3, (i + 2) % 3) / volume;
-      f.variance[i] = std::max(0.0, second(i, i) / volume - f.mean[i] * f.mean[i]);
-    }
-    return std::abs(f.fraction - 1) < 1e-10 ? FilledPart{} : f;
   }
 };
 
@@ -82,7 +71,7 @@ CutLevel coarsen(CutLevel& fine) {
     parent[c] = parent[head];
     moments[parent[c]].add_child(fine.filled[c], fine.index[c]);
   }
-  for (const ChildMoments& m : moments) coarse.filled.push_back(m.part());
+  for (const ChildMoments& m : moments) coarse.filled.push_back(filled_part(m.volume, m.first, m.second));
 
   UnitedNumbers corner(8 * coarse.index.size());
   for (const std::vector<int>& cells : at_point)
@@ -121,7 +110,6 @@ CutLevel coarsen(CutLevel& fine) {
   }
 
   for (const Anchor& a : fine.anchors) {
-    // All corners of a cell have the same parent.
     int cell = -1;
     for (const int c : at_point[a.corners[0]])
       if (fine.corners[c] == a.corners) cell = c;
@@ -139,21 +127,9 @@ CutLevel coarsen(CutLevel& fine) {
   return coarse;
 }
 
-/// K += the stiffness of the anchors in the directions that are held.
-template <class Add>
-void add_anchors(const CutLevel& level, const Add& add) {
-  for (const Anchor& a : level.anchors)
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) {
-        Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
-        for (int d = 0; d < 3; ++d)
-          if (a.node >> d & 1) block(d, d) = a.stiffness * a.weights[m] * a.weights[n];
-        add(a.corners[m], a.corners[n], block);
-      }
-}
-
-BlockMatrix stiffness_of(const CutLevel& level, const AveragedSprings& law) {
-  BlockMatrix K(coupled_nodes(static_cast<int>(level.point.size()), level.corners));
+BlockMatrix stiffness_of(const CutLevel& level, const std::vector<std::vector<int>>& pattern,
+                         const AveragedSprings& law) {
+  BlockMatrix K(pattern);
   const auto full = law.cell_matrix(level.edge, {});
   for (std::size_t c = 0; c < level.corners.size(); ++c) {
     const FilledPart& part = level.filled[c];
@@ -161,7 +137,12 @@ BlockMatrix stiffness_of(const CutLevel& level, const AveragedSprings& law) {
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) K.add(level.corners[c][m], level.corners[c][n], own.block<3, 3>(3 * m, 3 * n));
   }
-  add_anchors(level, [&](int i, int j, const Eigen::Matrix3d& block) { K.add(i, j, block); });
+  for (const Anchor& a : level.anchors) {
+    const Vec3 held(a.node & 1, a.node >> 1 & 1, a.node >> 2 & 1);
+    for (int m = 0; m < 8; ++m)
+      for (int n = 0; n < 8; ++n)
+        K.add(a.corners[m], a.corners[n], (a.stiffness * a.weights[m] * a.weights[n] * held).asDiagonal());
+  }
   return K;
 }
 
@@ -195,22 +176,22 @@ FloatBlocks float_blocks(const BlockMatrix& K, const std::vector<std::vector<int
   return out;
 }
 
-/// Sets CutLevel::anchored and its inverses.
-void invert_anchored(CutLevel& level) {
+}  // namespace
+
+void CutLevel::invert_anchored() {
   using CellMatrix = Eigen::Matrix<float, 24, 24, Eigen::RowMajor>;
-  level.anchored.clear();
-  for (const Anchor& a : level.anchors) level.anchored.push_back(a.corners);
-  std::sort(level.anchored.begin(), level.anchored.end());
-  level.anchored.erase(std::unique(level.anchored.begin(), level.anchored.end()), level.anchored.end());
-  level.anchored_inverse.resize(576 * level.anchored.size());
-  const FloatBlocks& A = level.A;
-  for (std::size_t c = 0; c < level.anchored.size(); ++c) {
+  anchored.clear();
+  for (const Anchor& a : anchors) anchored.push_back(a.corners);
+  std::sort(anchored.begin(), anchored.end());
+  anchored.erase(std::unique(anchored.begin(), anchored.end()), anchored.end());
+  anchored_inverse.resize(576 * anchored.size());
+  for (std::size_t c = 0; c < anchored.size(); ++c) {
     Eigen::Matrix<double, 24, 24> K = Eigen::Matrix<double, 24, 24>::Zero();
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) {
-        const int i = level.anchored[c][m];
+        const int i = anchored[c][m];
         const auto row = A.column.begin() + A.begin[i];
-        const auto at = std::lower_bound(row, A.column.begin() + A.begin[i + 1], level.anchored[c][n]);
+        const auto at = std::lower_bound(row, A.column.begin() + A.begin[i + 1], anchored[c][n]);
         const float* block = &A.block[9 * static_cast<std::size_t>(at - A.column.begin())];
         for (int a = 0; a < 3; ++a)
           for (int b = 0; b < 3; ++b) K(3 * m + a, 3 * n + b) = block[3 * a + b];
@@ -218,11 +199,9 @@ void invert_anchored(CutLevel& level) {
     for (int i = 0; i < 24; ++i)
       if (K(i, i) == 0) K(i, i) = 1e30;  // fixed
     const CellMatrix inverse = K.inverse().cast<float>();
-    std::copy_n(inverse.data(), 576, &level.anchored_inverse[576 * c]);
+    std::copy_n(inverse.data(), 576, &anchored_inverse[576 * c]);
   }
 }
-
-}  // namespace
 
 void CutLevel::relax_anchored(std::size_t c, const float* b, float* x) const {
   Eigen::Matrix<float, 24, 1> r;
@@ -319,9 +298,8 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
 }
 
 void assemble(const AveragedSprings& law, double unit, const std::vector<char>& fixed, CutLevel& level) {
-  level.A = float_blocks(stiffness_of(level, law), coupled_nodes(static_cast<int>(level.point.size()), level.corners),
-                         unit, fixed);
-  invert_anchored(level);
+  const auto pattern = coupled_nodes(static_cast<int>(level.point.size()), level.corners);
+  level.A = float_blocks(stiffness_of(level, pattern, law), pattern, unit, fixed);
 }
 
 Eigen::SparseMatrix<double> sparse(const FloatBlocks& A) {

@@ -38,6 +38,7 @@ struct CutLevel {
   /// Cells with anchors, which are stiffer than cells: their corners are relaxed together.
   std::vector<Hexahedron> anchored;
   std::vector<float> anchored_inverse;  ///< 24 x 24 each, of the corners' rows and columns of A
+  void invert_anchored();               ///< sets the two from A
   void relax_anchored(std::size_t number, const float* b, float* x) const;
 
   FloatBlocks A;  ///< in units of the shear modulus times the finest edge

@@ -133,7 +133,7 @@ void CutMixedMultigrid::scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) con
   }
 }
 
-/// Sz = C z + B D B^T z; uses u's scratch field d only through a copy.
+/// Sz = C z + B D B^T z.
 void CutMixedMultigrid::schur(std::size_t l, const Eigen::VectorXf& z, Eigen::VectorXf& Sz) {
   Eigen::VectorXf t = Eigen::VectorXf::Zero(levels_[l].u.size());
   add_gradient(l, z, t);

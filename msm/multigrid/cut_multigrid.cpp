@@ -23,6 +23,7 @@ CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>
   for (CutLevel& level : levels_) {
     const bool finest = &level == &levels_.front();
     assemble(*averaged_springs_of(model), unit_, finest ? nodes_.fixed : std::vector<char>{}, level);
+    level.invert_anchored();
     const Eigen::VectorXf zero = Eigen::VectorXf::Zero(level.unknowns());
     at_level_.push_back({zero, zero, zero});
   }
