@@ -30,7 +30,7 @@ double mean_edge(const Mesh& mesh) {
 Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* region) {
   switch (p.row.topology) {
     case cells:
-      return cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
+      return cubic_lattice(mesh, p.has(Extension::averaging) ? CubicPattern{} : isotropic_pattern(p.face_to_cube));
     case centres:
       return p.turned == 0 ? node_lattice(mesh, isotropic_pattern(p.face_to_cube))
                            : node_lattice(region ? *region : region_of(mesh), cube_edge(mesh), p.turned,
@@ -155,11 +155,11 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
     gradient = fit_in_body(mesh, region, calibration.spring_shear_modulus, built);
   } else {
     if (p.row.topology == random && p.random.surface_nodes) correct_surface(network);
-    calibrate(calibration.spring_shear_modulus, network);
+    if (!network.springs.empty()) calibrate(calibration.spring_shear_modulus, network);
     if (p.has(Extension::momentum_dispersion)) gradient = built.embedding.weights.transpose() * volume_gradient(mesh);
   }
   laws = laws_of(p, network, material, calibration, gradient);
-  small_displacements_only = !holds_at_large_displacement(p.row);
+  small_displacements_only = !holds_at_large_displacement(p.row) || p.shift > 0;
   return built;
 } catch (const std::invalid_argument& e) {
   throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
@@ -176,18 +176,10 @@ EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std
         fmt::format("{}: cannot be made of cut cells (allowed: lattices of cells without momentum "
                     "dispersion)",
                     p.row.name));
-  const double G = spring_shear_modulus(p, material);
-  AveragedSprings law;
-  law.shear_modulus = G;
-  law.lame_lambda = G + (p.has(Extension::volume_correction) ? kappa(material) : 0);
-  law.hourglass = HourglassStiffness::of_pattern(p.face_to_cube, material.poisson_ratio, p.row.bending_correction,
-                                                 p.row.torsion_correction);
-  law.shift = p.shift;
-  law.contraction = material.poisson_ratio / (1 - material.poisson_ratio);
   EmbeddedModel built;
   built.model.network = cut_lattice(body, held, material.youngs_modulus);
-  built.model.laws = {law, Anchors{}};
-  built.model.small_displacements_only = true;
+  built.model.laws = {averaged_law(p, material), Anchors{}};
+  built.model.small_displacements_only = p.shift > 0 || !p.has(Extension::averaging);
   built.embedding = embed(body, held, built.model.network, mesh);
   return built;
 }

@@ -54,12 +54,13 @@ void choose_cut_cells(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     ModelParameters& p = prepared.models[m];
-    const char* reason = !has_cut_cells(p.row)                        ? "this model has none"
-                         : !e.body.is_voxels()                        ? "the body is a block"
-                         : e.fracture                                 ? "the body breaks"
-                         : e.models[m].in_motion                      ? "it is to move in time"
-                         : e.model_kinematics() != Kinematics::linear ? "the displacements are large"
-                                                                      : nullptr;
+    const char* reason = !has_cut_cells(p.row)   ? "this model has none"
+                         : !e.body.is_voxels()   ? "the body is a block"
+                         : e.fracture            ? "the body breaks"
+                         : e.models[m].in_motion ? "it is to move in time"
+                         : e.model_kinematics() != Kinematics::linear && !p.has(Extension::averaging)
+                             ? "the displacements are large"
+                             : nullptr;
     if (reason && p.cut.value_or(false))
       throw InputError(e.models[m].where,
                        fmt::format("compare.models: {}: cut = true: {} (allowed: lattices of cells in a body of "
@@ -67,6 +68,14 @@ void choose_cut_cells(PreparedCase& prepared) {
                                    p.row.name, reason));
     p.cut = p.cut.value_or(e.body.cut && !reason);
   }
+}
+
+/// Averaged springs follow the material law of the case.
+void choose_curve(const Experiment& e, ModelParameters& p) {
+  if (!p.has(Extension::averaging) || p.curve) return;
+  p.curve = e.kinematics == "neo_hooke"             ? StrainCurve::neo_hooke
+            : e.kinematics == "neo_hooke_isochoric" ? StrainCurve::neo_hooke_isochoric
+                                                    : StrainCurve::hencky;
 }
 
 /// @throws InputError at a springs file that stands for another material than the case's.
@@ -174,7 +183,10 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     prepared.experiment = experiment;
     prepared.loads = experiment.loads;
     prepared.size = experiment.body.size;
-    for (const ModelChoice& choice : experiment.models) prepared.models.push_back(resolve(choice));
+    for (const ModelChoice& choice : experiment.models) {
+      prepared.models.push_back(resolve(choice));
+      choose_curve(experiment, prepared.models.back());
+    }
     check_own_models(prepared);
     check_kinematics(experiment, prepared.models);
     check_fracture_models(experiment, prepared.models);

@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <vector>
+#include <limits>
 
 #include "msm/laws/hourglass_correction.h"
 
@@ -23,20 +23,137 @@ Row second_difference(int p, int q, int component) {
   return row;
 }
 
-Row third_difference(int component) {
-  Row row = Row::Zero();
-  for (int n = 0; n < 8; ++n) row[3 * n + component] = side(n, 0) * side(n, 1) * side(n, 2);
-  return row;
-}
-
 const FilledPart& part_of(const Network& network, std::size_t cell) {
   static const FilledPart full;
   return network.filled.empty() ? full : network.filled[cell];
 }
 
-/// Calls act(cell, its stiffness); that of full cells is computed once.
+using Pattern = Eigen::Matrix<double, 8, 4>;
+using HourglassMatrix = Eigen::Matrix<double, 12, 12>;
+using HourglassRow = Eigen::Matrix<double, 1, 12>;
+
+/// Patterns of the corners: d2/dxi_q dxi_r of the trilinear field in the middle of the cell, q and r the axes other
+/// than 0, 1, 2; and the third difference.
+const Pattern& patterns() {
+  static const Pattern all = [] {
+    Pattern h;
+    for (int n = 0; n < 8; ++n) {
+      const double x = side(n, 0), y = side(n, 1), z = side(n, 2);
+      h.row(n) << y * z / 2, z * x / 2, x * y / 2, x * y * z;
+    }
+    return h;
+  }();
+  return all;
+}
+
+/// Quadratic form of 3 * pattern + axis, the stiffness of a cell's hourglass springs [N/m].
+HourglassMatrix hourglass_matrix(const AveragedSprings& law, double l, const FilledPart& part) {
+  const auto third = [](int axis) -> HourglassRow { return HourglassRow::Unit(9 + axis); };
+  // At the centroid: second differences of the trilinear field vary along the third axis.
+  const auto second = [&](int p, int q, int axis) -> HourglassRow {
+    const int r = 3 - p - q;
+    return HourglassRow::Unit(3 * r + axis) + part.mean[r] * third(axis);
+  };
+  Vec3 rho;
+  for (int i = 0; i < 3; ++i) rho[i] = std::max(12 * part.variance[i], AveragedSprings::least_variance);
+  const double unit = part.fraction * law.shear_modulus * l / 2;
+  HourglassMatrix D = HourglassMatrix::Zero();
+  for (int y = 0; y < 3; ++y) {  // the normal of the neutral plane
+    const int z = (y + 1) % 3, x = (y + 2) % 3;
+    const HourglassRow k1 = second(x, y, x), k2 = second(y, z, z);
+    D += unit * rho[y] *
+         (law.hourglass.bending * (k1.transpose() * k1 + k2.transpose() * k2) +
+          law.hourglass.coupling * (k1.transpose() * k2 + k2.transpose() * k1));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const HourglassRow twist = second(k, i, j) + second(i, j, k);
+    D += unit * law.hourglass.torsion * rho[i] * twist.transpose() * twist;
+    const HourglassRow own = second(j, k, i);
+    D += unit * law.hourglass.twist * (rho[j] + rho[k]) / 2 * own.transpose() * own;
+    D += unit / 4 * law.hourglass.warping * (0.3 * rho[j] * rho[k] + rho[i] * (rho[j] + rho[k])) / 2.3 *
+         third(i).transpose() * third(i);
+  }
+  return D;
+}
+
+/// What the energy of a cell depends on beside the positions of its corners.
+struct CellForm {
+  double volume;                         ///< of the filled part [m^3]
+  Eigen::Matrix<double, 3, 8> gradient;  ///< of the corners' weights [1/m]
+  HourglassMatrix hourglass;
+};
+
+CellForm form_of(const AveragedSprings& law, double l, const FilledPart& part) {
+  CellForm form{part.fraction * l * l * l, {}, hourglass_matrix(law, l, part)};
+  const std::array<Vec3, 8> g = mean_gradients(l, part);
+  for (int n = 0; n < 8; ++n) form.gradient.col(n) = g[n];
+  return form;
+}
+
+using Corners = Eigen::Matrix<double, 3, 8>;
+
+Corners corners_of(const Hexahedron& cell, const NodalVectors& x) {
+  Corners p;
+  for (int n = 0; n < 8; ++n) p.col(n) = x.row(cell[n]).transpose();
+  return p;
+}
+
+/// State of a cell.
+struct Deformed {
+  Eigen::Matrix3d F;
+  Eigen::Matrix<double, 3, 4> q;  ///< the patterns of the positions [m]
+  Eigen::Matrix<double, 3, 4> v;  ///< F^T q
+  Eigen::Matrix<double, 3, 4> w;  ///< derivative of the hourglass energy to v [N]
+  StrainEnergy strain;            ///< per unit of volume
+
+  Deformed(const AveragedSprings& law, const CellForm& form, const Corners& x, Derivative up_to)
+      : F(x * form.gradient.transpose()), q(x * patterns()), v(F.transpose() * q) {
+    Eigen::Map<Eigen::Matrix<double, 12, 1>>(w.data()) =
+        form.hourglass * Eigen::Map<const Eigen::Matrix<double, 12, 1>>(v.data());
+    if (F.determinant() <= 0) {
+      strain.value = std::numeric_limits<double>::infinity();
+      strain.stress.setConstant(std::numeric_limits<double>::quiet_NaN());
+      return;
+    }
+    strain = springs_energy(law.curve, law.shear_modulus, F, up_to);
+    add_volume_term(law.curve, law.lame_lambda - law.shear_modulus, F, up_to, strain);
+  }
+};
+
+CellMatrix tangent_of(const CellForm& form, const Deformed& s) {
+  // P and its derivative, [9 x 9] of F, to positions of corners.
+  Eigen::Matrix<double, 9, 24> strain_gradient = Eigen::Matrix<double, 9, 24>::Zero();
+  Eigen::Matrix<double, 12, 24> hourglass_gradient;
+  for (int a = 0; a < 8; ++a) {
+    const Vec3 g = form.gradient.col(a);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) strain_gradient(i + 3 * j, 3 * a + i) = g[j];
+    for (int m = 0; m < 4; ++m)
+      hourglass_gradient.block<3, 3>(3 * m, 3 * a) = patterns()(a, m) * s.F.transpose() + g * s.q.col(m).transpose();
+  }
+  CellMatrix K = form.volume * strain_gradient.transpose() * s.strain.tangent * strain_gradient +
+                 hourglass_gradient.transpose() * form.hourglass * hourglass_gradient;
+  const Eigen::Matrix<double, 8, 8> turned = patterns() * s.w.transpose() * form.gradient;
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b)
+      for (int i = 0; i < 3; ++i) K(3 * a + i, 3 * b + i) += turned(a, b) + turned(b, a);
+  return K;
+}
+
+/// Calls act(cell, what its energy depends on); that of full cells is computed once.
 template <class Act>
-void for_each_cell(const AveragedSprings& law, const Network& network, const Act& act) {
+void for_each_form(const AveragedSprings& law, const Network& network, const Act& act) {
+  const CellForm full = form_of(law, network.cell_edge, {});
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const FilledPart& part = part_of(network, c);
+    act(network.cells[c], part.fraction == 1 ? full : form_of(law, network.cell_edge, part));
+  }
+}
+
+/// Calls act(cell, its stiffness at rest); that of full cells is computed once.
+template <class Act>
+void for_each_stiffness(const AveragedSprings& law, const Network& network, const Act& act) {
   const CellMatrix full = law.cell_matrix(network.cell_edge, {});
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const FilledPart& part = part_of(network, c);
@@ -44,18 +161,30 @@ void for_each_cell(const AveragedSprings& law, const Network& network, const Act
   }
 }
 
+/// d2V/dx2 = volume [F (g_m x g_n)] as the matrix of a cross product.
+Eigen::Matrix3d volume_curvature(double volume, const Eigen::Matrix3d& F, const Vec3& g_m, const Vec3& g_n) {
+  const Vec3 w = -volume * F * g_m.cross(g_n);
+  Eigen::Matrix3d block;
+  block << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
+  return block;
+}
+
 }  // namespace
 
 HourglassStiffness HourglassStiffness::of_pattern(double face_to_cube, double nu, bool exact_bending,
-                                                  bool exact_torsion) {
+                                                  bool exact_torsion, bool slender) {
   const double pair = paired_stiffness(face_to_cube);
-  HourglassStiffness k{1, pair, pair, 1.5 - 2 * pair};
+  HourglassStiffness k{1, pair, pair, 0, 1.5 - 2 * pair};
   if (exact_bending) {
     k.bending = 1 / (3 * (1 - nu));
     k.coupling = nu * k.bending;
   }
   if (exact_torsion) k.torsion = 1.0 / 6;
   if (exact_bending && exact_torsion) k.warping = 2.3 / 18;  // of a brick whose edges' moments are exact but for nu
+  if (slender) {
+    k.torsion = 0;
+    k.twist = k.warping = 0.1;
+  }
   return k;
 }
 
@@ -111,52 +240,80 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(double l, const Fille
     K += volume * G * (2 * deviator.transpose() * deviator + shear[i].transpose() * shear[i]);
   }
 
-  Vec3 rho;
-  for (int i = 0; i < 3; ++i) rho[i] = std::max(12 * part.variance[i], least_variance);
-  const double unit = alpha * G * l / 2;
-  // At the centroid: second differences of the trilinear field vary along the third axis.
-  const auto H_at = [&](int p, int q, int component) -> Row {
-    return H(p, q, component) + c[3 - p - q] * third_difference(component);
-  };
-  for (int y = 0; y < 3; ++y) {  // the normal of the neutral plane
-    const int z = (y + 1) % 3, x = (y + 2) % 3;
-    const Row k1 = H_at(x, y, x), k2 = H_at(y, z, z);
-    K += unit * rho[y] *
-         (hourglass.bending * (k1.transpose() * k1 + k2.transpose() * k2) +
-          hourglass.coupling * (k1.transpose() * k2 + k2.transpose() * k1));
-  }
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const Row twist = H_at(k, i, j) + H_at(i, j, k);
-    K += unit * hourglass.torsion * rho[i] * twist.transpose() * twist;
-    const Row warping = third_difference(i);
-    K += unit / 4 * hourglass.warping * (0.3 * rho[j] * rho[k] + rho[i] * (rho[j] + rho[k])) / 2.3 *
-         warping.transpose() * warping;
-  }
+  Eigen::Matrix<double, 12, 24> of_patterns = Eigen::Matrix<double, 12, 24>::Zero();
+  for (int n = 0; n < 8; ++n)
+    for (int m = 0; m < 4; ++m)
+      for (int i = 0; i < 3; ++i) of_patterns(3 * m + i, 3 * n + i) = patterns()(n, m);
+  K += of_patterns.transpose() * hourglass_matrix(*this, l, part) * of_patterns;
   return K;
 }
 
 double AveragedSprings::energy(const Network& network, const NodalVectors& x) const {
   double sum = 0;
-  for_each_cell(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
-    const CellVector u = displacement_of(cell, network, x);
-    sum += 0.5 * u.dot(K * u);
-  });
+  if (shift > 0)
+    for_each_stiffness(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
+      const CellVector u = displacement_of(cell, network, x);
+      sum += 0.5 * u.dot(K * u);
+    });
+  else
+    for_each_form(*this, network, [&](const Hexahedron& cell, const CellForm& form) {
+      const Deformed s(*this, form, corners_of(cell, x), Derivative::none);
+      sum += form.volume * s.strain.value + 0.5 * s.v.cwiseProduct(s.w).sum();
+    });
   return sum;
 }
 
 void AveragedSprings::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
-  for_each_cell(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
-    const CellVector force = K * displacement_of(cell, network, x);
-    for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
-  });
+  if (shift > 0)
+    for_each_stiffness(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
+      const CellVector force = K * displacement_of(cell, network, x);
+      for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
+    });
+  else
+    for_each_form(*this, network, [&](const Hexahedron& cell, const CellForm& form) {
+      const Deformed s(*this, form, corners_of(cell, x), Derivative::first);
+      const Corners gradient =
+          (form.volume * s.strain.stress + s.q * s.w.transpose()) * form.gradient + s.F * s.w * patterns().transpose();
+      for (int n = 0; n < 8; ++n) f.row(cell[n]) -= gradient.col(n).transpose();
+    });
 }
 
-void AveragedSprings::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
-  for_each_cell(*this, network, [&](const Hexahedron& cell, const CellMatrix& cell_K) {
+void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
+  const auto add = [&](const Hexahedron& cell, const CellMatrix& cell_K) {
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) K.add(cell[m], cell[n], cell_K.block<3, 3>(3 * m, 3 * n));
-  });
+  };
+  if (shift > 0)
+    for_each_stiffness(*this, network, add);
+  else
+    for_each_form(*this, network, [&](const Hexahedron& cell, const CellForm& form) {
+      add(cell, tangent_of(form, Deformed(*this, form, corners_of(cell, x), Derivative::second)));
+    });
+}
+
+CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x) {
+  const FilledPart& part = part_of(network, cell);
+  const std::array<Vec3, 8> g = mean_gradients(network.cell_edge, part);
+  Eigen::Matrix3d F = Eigen::Matrix3d::Zero();
+  for (int n = 0; n < 8; ++n) F += x.row(network.cells[cell][n]).transpose() * g[n].transpose();
+  Eigen::Matrix3d cofactor;
+  for (int i = 0; i < 3; ++i) cofactor.col(i) = F.col((i + 1) % 3).cross(F.col((i + 2) % 3));
+  const double volume = part.fraction * network.cell_volume();
+  CellVolume result{volume * F.determinant(), {}};
+  for (int n = 0; n < 8; ++n) result.gradient.segment<3>(3 * n) = volume * cofactor * g[n];
+  return result;
+}
+
+void add_volume_curvature(const Network& network, std::size_t cell, const NodalVectors& x, double pressure,
+                          BlockMatrix& K) {
+  const FilledPart& part = part_of(network, cell);
+  const Hexahedron& corners = network.cells[cell];
+  const std::array<Vec3, 8> g = mean_gradients(network.cell_edge, part);
+  Eigen::Matrix3d F = Eigen::Matrix3d::Zero();
+  for (int n = 0; n < 8; ++n) F += x.row(corners[n]).transpose() * g[n].transpose();
+  for (int m = 0; m < 8; ++m)
+    for (int n = 0; n < 8; ++n)
+      K.add(corners[m], corners[n], volume_curvature(pressure * part.fraction * network.cell_volume(), F, g[m], g[n]));
 }
 
 VolumeChange volume_change(const Network& network, const NodalVectors& u) {

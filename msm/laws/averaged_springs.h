@@ -1,8 +1,9 @@
-// Force law: springs averaged over a cubic cell, for cells that the body fills in part.
+// Force law: springs averaged over a cubic cell, which the body may fill in part.
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
 #include "msm/laws/law_traits.h"
+#include "msm/laws/strain_energy.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -13,20 +14,22 @@ struct HourglassStiffness {
   double bending = 1;   ///< of a bending mode; 1/(3(1 - nu)) is exact
   double coupling = 0;  ///< between the two bending modes of one neutral plane; nu/(3(1 - nu))
   double torsion = 0;   ///< of the paired torsional modes, a quarter of that of the symmetric one; 1/6
+  double twist = 0;     ///< in addition, of each torsional mode
   double warping = 0;   ///< of xi_x xi_y xi_z
 
   /// Of the springs of a cubic pattern of face-to-cube ratio A, with exact bending and torsion where they are
-  /// corrected.
+  /// corrected.  `slender`: torsional modes of 0.1, with which bars of two and more cells across twist as they should,
+  /// instead of those exact for the linear field in a cell.
   static HourglassStiffness of_pattern(double face_to_cube, double poisson_ratio, bool exact_bending,
-                                       bool exact_torsion);
+                                       bool exact_torsion, bool slender = false);
 };
 
-/// The energy of a cell is that of its springs and its volume term at the mean displacement gradient of the part that
-/// the body fills, times the fraction filled, alpha; its hourglass stiffness is multiplied by alpha and the second
-/// moments of that part (12 S_i, at least `least_variance`).  Uniform strain is exact in a body of cut cells, and so
-/// is, for circular and rectangular sections, the bending and torsional stiffness of the section; no constant is
-/// negative for -1 < nu < 1/2.  Cells: Network::cells and Network::filled.
-/// Valid for small displacements from rest (linear kinematics).
+/// The energy of a cell is that of its springs and its volume term at F, the mean deformation gradient of the part that
+/// the body fills, times the fraction filled, alpha; and that of hourglass springs, a quadratic form of v = F^T q, q
+/// the patterns of corner positions that F does not see (covariant frame: F rotates the form with the cell), times
+/// alpha and the second moments of that part (12 S_i, at least `least_variance`).  Uniform strain is exact in a body of
+/// cut cells, at any size, and so is, for circular and rectangular sections, the bending and torsional stiffness of the
+/// section; no constant is negative for -1 < nu < 1/2.  Cells: Network::cells and Network::filled.
 struct AveragedSprings {
   static constexpr LawTraits traits = {"averaged springs", Reach::cells};
   static constexpr double least_variance = 0.1;  ///< of a full cell's; for the solvers
@@ -36,9 +39,11 @@ struct AveragedSprings {
   HourglassStiffness hourglass = {};
   /// theta: fraction of the second derivatives that a cell assumes beside those of its trilinear field, by which its
   /// strain is shifted from the middle of the cell to the centroid of the filled part, in the deviator only.  1/2 makes
-  /// limbs bend better that lie askew in the lattice, at the price of the patch test.
+  /// limbs bend better that lie askew in the lattice, at the price of the patch test, and holds for small displacements
+  /// from rest only.
   double shift = 0;
   double contraction = 0;  ///< nu/(1 - nu) of these second derivatives
+  StrainCurve curve = StrainCurve::hencky;
 
   template <class Fields>
   void fields(Fields& f) {
@@ -47,16 +52,18 @@ struct AveragedSprings {
     f.number("bending", hourglass.bending, 0);
     f.number("coupling", hourglass.coupling);
     f.number("torsion", hourglass.torsion, 0);
+    f.number("twist", hourglass.twist, 0);
     f.number("warping", hourglass.warping, 0);
     f.number("shift", shift, 0, 1);
     f.number("contraction", contraction, -0.5, 1);
+    f.choice("curve", curve, {"hencky", "neo_hooke", "neo_hooke_isochoric", "springs_hencky", "springs_neo_hooke"});
   }
 
-  double energy(const Network& network, const NodalVectors& x) const;                     ///< [J]
+  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if a cell is inverted
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 
-  /// Stiffness of a cell of edge l [N/m]; unknown 3 * corner + axis.
+  /// Stiffness of a cell of edge l at rest [N/m]; unknown 3 * corner + axis.
   Eigen::Matrix<double, 24, 24> cell_matrix(double edge, const FilledPart& part) const;
 };
 
@@ -65,6 +72,17 @@ std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part);
 
 /// Derivative of the volume of the filled part to the displacement of the corners [m^2]; 3 * corner + axis.
 Eigen::Matrix<double, 24, 1> volume_gradient(double edge, const FilledPart& part);
+
+/// Volume of the filled part by its mean deformation gradient, and its derivatives to the positions of the corners.
+struct CellVolume {
+  double value;                           ///< [m^3]
+  Eigen::Matrix<double, 24, 1> gradient;  ///< [m^2]; 3 * corner + axis
+};
+CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x);
+
+/// K += pressure d2V/dx2 of that volume [N/m].
+void add_volume_curvature(const Network& network, std::size_t cell, const NodalVectors& x, double pressure,
+                          BlockMatrix& K);
 
 /// Relative change of the volume of a network of cells, filled or cut, by the mean deformation gradients of the cells:
 /// to first order in the displacement, and exact.

@@ -56,6 +56,8 @@ CellStiffness cell_stiffness(const MassSpringModel& model) {
   for (int n = 0; n < 8; ++n) s.volume_gradient.segment<3>(3 * n) = v.gradient.row(n).transpose();
   for (const ForceLaw& law : model.laws)
     if (const auto* correction = std::get_if<VolumeCorrection>(&law)) s.kappa += correction->kappa;
+  if (const AveragedSprings* averaged = averaged_springs_of(model))
+    s.kappa += averaged->lame_lambda - averaged->shear_modulus;
   s.without_volume = s.total - s.kappa / s.volume * s.volume_gradient * s.volume_gradient.transpose();
   return s;
 }

@@ -15,7 +15,7 @@ struct CellStiffness {
   CellMatrix total;
   CellMatrix without_volume;
   CellVector volume_gradient;  ///< dV'/dx at rest [m^2]
-  double kappa = 0;            ///< [Pa]; 0 for models without volume correction
+  double kappa = 0;            ///< lambda less that of springs, G [Pa]; 0 for models without volume term
   double volume = 0;           ///< V [m^3]
 };
 

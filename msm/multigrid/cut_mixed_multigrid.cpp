@@ -23,11 +23,15 @@ MassSpringModel springs_alone(const MassSpringModel& model) {
 }  // namespace
 
 CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
-    : nodes_(model.network, fixed), springs_(springs_alone(model)), lattice_(cut_levels(model.network, nodes_)) {
+    : nodes_(model.network, fixed),
+      scaled_nodes_(nodes_),
+      springs_(springs_alone(model)),
+      lattice_(cut_levels(model.network, nodes_)) {
   const AveragedSprings& law = *averaged_springs_of(model);
   const Network& network = model.network;
   const double l = network.cell_edge, kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
   unit_ = law.shear_modulus * l;
+  for (Anchor& a : scaled_nodes_.anchors) a.stiffness /= unit_;
   chebyshev_steps_ = kappa > 1000 ? 12 : 6;
   K_ = tangent(springs_, network.X);
   gradient_.resize(24, static_cast<Eigen::Index>(network.cells.size()));
@@ -244,6 +248,15 @@ Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& u) const
   return J;
 }
 
+void CutMixedMultigrid::apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u,
+                              Eigen::VectorXd& p) {
+  levels_[0].f = scaled_nodes_.eliminated(f).cast<float>();
+  levels_[0].g = g.cast<float>();
+  cycle(0);
+  scaled_nodes_.complete(f, levels_[0].u.cast<double>(), u);
+  p = levels_[0].p.cast<double>();
+}
+
 KrylovResult CutMixedMultigrid::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance,
                                       int max_iterations, Eigen::VectorXd& u, Eigen::VectorXd& p) {
   const Eigen::Index n = f.size(), m = g.size();
@@ -260,18 +273,11 @@ KrylovResult CutMixedMultigrid::solve(const Eigen::VectorXd& f, const Eigen::Vec
     y << force(of_u, of_p), volume_change(of_u) - compliance_.cwiseProduct(of_p);
     clear_fixed(y);
   };
-  const double k = 1 / unit_;
-  AnchoredNodes scaled = nodes_;
-  for (Anchor& a : scaled.anchors) a.stiffness *= k;
   const Operator precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    const Eigen::VectorXd of_u = r.head(n);
-    levels_[0].f = scaled.eliminated(of_u).cast<float>();
-    levels_[0].g = r.tail(m).cast<float>();
-    cycle(0);
-    Eigen::VectorXd complete;
-    scaled.complete(of_u, levels_[0].u.cast<double>(), complete);
+    Eigen::VectorXd of_u, of_p;
+    apply(r.head(n), r.tail(m), of_u, of_p);
     z.resize(n + m);
-    z << complete, levels_[0].p.cast<double>();
+    z << of_u, of_p;
   };
   const KrylovResult result = gmres(A, precondition, b, tolerance, max_iterations, 60, x);
   u = x.head(n);

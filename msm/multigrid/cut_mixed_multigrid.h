@@ -22,6 +22,9 @@ class CutMixedMultigrid {
   /// (u, p) of the system, u = 0 on the fixed unknowns; u of all nodes of the network.
   KrylovResult solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
                      Eigen::VectorXd& u, Eigen::VectorXd& p);
+  /// (u, p) = M^-1 (f, g), one cycle.
+  void apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u, Eigen::VectorXd& p);
+
   /// K_s u + B^T p, fixed unknowns included: minus the internal force.
   Eigen::VectorXd force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) const;
   /// B u: first-order change of the volumes.
@@ -49,8 +52,8 @@ class CutMixedMultigrid {
   void scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) const;
   void schur(std::size_t l, const Eigen::VectorXf& z, Eigen::VectorXf& Sz);
 
-  AnchoredNodes nodes_;
-  double unit_;  ///< of stiffness [N/m]
+  AnchoredNodes nodes_, scaled_nodes_;  ///< anchors in N/m, and in units
+  double unit_;                         ///< of stiffness [N/m]
   MassSpringModel springs_;
   Tangent K_;                 ///< of the network, in units
   Eigen::MatrixXd gradient_;  ///< 24 x cells

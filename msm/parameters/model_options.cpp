@@ -111,8 +111,16 @@ Option grip_option() {
 std::vector<Option> options_of(const ModelRow& row) {
   if (row.topology == Topology::file) return {hold_option(), grip_option()};
   std::vector<Option> options = {flag("paper_e_form", [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
-  if (row.topology == Topology::cells || row.topology == Topology::centres)
+  if ((row.topology == Topology::cells || row.topology == Topology::centres) && row.extension != Extension::averaging)
     options.push_back({"face_to_cube", set_face_to_cube});
+  if (row.extension == Extension::averaging)
+    options = {choice<std::optional<StrainCurve>>("curve", &ModelParameters::curve,
+                                                  {{"hencky", StrainCurve::hencky},
+                                                   {"neo_hooke", StrainCurve::neo_hooke},
+                                                   {"neo_hooke_isochoric", StrainCurve::neo_hooke_isochoric},
+                                                   {"springs_hencky", StrainCurve::springs_hencky},
+                                                   {"springs_neo_hooke", StrainCurve::springs_neo_hooke}}),
+               choice<bool>("torsion", &ModelParameters::slender, {{"exact", false}, {"slender", true}})};
   if (row.topology == Topology::random) options = random_options();
   if (passes_patch_test(row))  // needs nodes on the surface, and chooses the springs' constants itself
     std::erase_if(options, [](const Option& o) {

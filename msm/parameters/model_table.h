@@ -25,7 +25,13 @@ enum class Topology {
 };
 
 /// Extension that gives the springs, whose own Poisson's ratio is 1/4, another one.
-enum class Extension { none, volume_correction, momentum_dispersion, angular_springs };
+enum class Extension {
+  none,
+  volume_correction,
+  momentum_dispersion,
+  angular_springs,
+  averaging,  ///< springs averaged over each cell, with a volume term of their own (msm/laws/averaged_springs.h)
+};
 
 /// Which modulus the springs reproduce when their own Poisson's ratio (1/4) is not the material's.
 enum class Calibration {
@@ -52,8 +58,11 @@ const std::vector<ModelRow>& model_table();
 /// a springs file: not known).
 std::optional<double> own_poisson_ratio(const ModelRow& row);
 
-/// Whether the model is valid under finite kinematics; hourglass corrections are for small displacements only.
-inline bool holds_at_large_displacement(const ModelRow& row) { return !row.bending_correction; }
+/// Whether the model is valid under finite kinematics; hourglass corrections of springs are for small displacements
+/// only.
+inline bool holds_at_large_displacement(const ModelRow& row) {
+  return !row.bending_correction || row.extension == Extension::averaging;
+}
 
 /// Whether each spring has its own constant, by the patch test at its nodes.
 inline bool passes_patch_test(const ModelRow& row) { return row.calibration == Calibration::patch_test; }
@@ -75,6 +84,8 @@ struct ModelParameters {
   bool hold_rigid_motions = false;     ///< constrains those that the loads leave free, instead of an error
   std::optional<bool> cut;             ///< of cut cells instead of whole cubes; empty: as the body says
   double shift = 0;                    ///< AveragedSprings::shift
+  std::optional<StrainCurve> curve;    ///< of averaged springs; empty: Hencky's, in a case that of its material law
+  bool slender = false;                ///< torsional stiffness of cells of which a body has two and more across
   int seeds = 1;                       ///< number of random networks to average: random.seed and those after it
   std::shared_ptr<const SpringsFile> springs = {};  ///< of Topology::file: network, laws and material as read
 

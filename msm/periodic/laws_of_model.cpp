@@ -29,11 +29,25 @@ MomentumDispersion dispersion_law(const ModelParameters& p, const Network& netwo
   return law;
 }
 
+AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material) {
+  AveragedSprings law;
+  law.shear_modulus = spring_shear_modulus(p, material);
+  const bool has_volume_term = p.has(Extension::volume_correction) || p.has(Extension::averaging);
+  law.lame_lambda = law.shear_modulus + (has_volume_term ? kappa(material) : 0);
+  law.hourglass = HourglassStiffness::of_pattern(p.face_to_cube, material.poisson_ratio, p.row.bending_correction,
+                                                 p.row.torsion_correction, p.slender);
+  law.shift = p.shift;
+  law.contraction = material.poisson_ratio / (1 - material.poisson_ratio);
+  law.curve = p.curve.value_or(StrainCurve::hencky);
+  return law;
+}
+
 std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& network,
                               const IsotropicMaterial& material, const BulkCalibration& calibration,
                               const NodalVectors& volume_gradient) {
   using enum Extension;
   ModelParameters p = parameters;
+  if (p.has(averaging)) return {averaged_law(p, material)};
   std::vector<ForceLaw> laws = {Springs{}};
   if (p.has(volume_correction)) laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   if (p.has(momentum_dispersion)) {

@@ -11,6 +11,9 @@ namespace springproof {
 std::vector<ForceLaw> laws_of(const ModelParameters& p, const Network& network, const IsotropicMaterial& material,
                               const BulkCalibration& calibration, const NodalVectors& volume_gradient);
 
+/// The springs of a model averaged over its cells, which for small strains have its moduli.
+AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material);
+
 /// Momentum dispersion of eMSM; symmetric dispersion with p.exact_volumes resolved (empty: k L).
 MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,
                                   const NodalVectors& volume_gradient);

@@ -5,6 +5,7 @@
 
 #include "msm/exchange/springs_file.h"
 #include "msm/laws/laws.h"
+#include "msm/topology/cubic_lattice.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
@@ -45,15 +46,22 @@ std::vector<Case> cases() {
           {"DispersionTransposed" + name, {network, {MomentumDispersion{q, Dispersion::published_transposed}}}, true});
     }
   }
-  const Network cut = test::cut_network();
+  const Network cut = test::cut_network(), cells = cubic_lattice(mesh, CubicPattern{});
   for (double nu : {-0.9, 0.0, 0.4, 0.499})
     for (double shift : {0.0, 0.5}) {
       const IsotropicMaterial material{1e4, nu, 1000};
       AveragedSprings law{shear_modulus(material), lame_lambda(material),
-                          HourglassStiffness::of_pattern(2, nu, true, true), shift, nu / (1 - nu)};
-      all.push_back({"Averaged_nu" + std::to_string(static_cast<int>(1000 * nu + 1000)) + (shift > 0 ? "_shifted" : ""),
-                     {cut, {law}},
-                     false});
+                          HourglassStiffness::of_pattern(2, nu, true, true, nu == 0), shift, nu / (1 - nu)};
+      const std::string name = "Averaged_nu" + std::to_string(static_cast<int>(1000 * nu + 1000));
+      if (shift > 0) {
+        all.push_back({name + "_shifted", {cut, {law}}, false});
+        continue;
+      }
+      for (int curve = 0; curve < 5; ++curve) {
+        law.curve = static_cast<StrainCurve>(curve);
+        all.push_back({name + "_curve" + std::to_string(curve), {cut, {law}}, true});
+        all.push_back({name + "_full_curve" + std::to_string(curve), {cells, {law}}, true});
+      }
     }
   all.push_back({"Anchors", {cut, {Anchors{}}}, true});
   const Network sheet = test::bent_triangles();
