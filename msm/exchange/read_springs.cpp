@@ -187,6 +187,7 @@ void read_laws(const JsonPlace& document, const SpringOrder& order, MassSpringMo
     reader.refuse_others();
     if constexpr (std::is_same_v<decltype(law), MomentumDispersion>) order.sort(law.weight);
     if constexpr (std::is_same_v<decltype(law), HourglassCorrection>) model.small_displacements_only = true;
+    if constexpr (std::is_same_v<decltype(law), AveragedSprings>) model.small_displacements_only |= law.shift > 0;
     require_its_parts(law, network, *place);
     model.laws.emplace_back(std::move(law));
   });
@@ -201,13 +202,18 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
     scale[s.i] += s.stiffness * s.rest_length;
     scale[s.j] += s.stiffness * s.rest_length;
   }
+  if (const AveragedSprings* averaged = averaged_springs_of(model))
+    for (const Hexahedron& cell : network.cells)
+      for (const int n : cell) scale[n] += averaged->shear_modulus * network.cell_edge * network.cell_edge;
   const NodalVectors f = forces(model, network.X);
   for (int n = 0; n < network.nodes(); ++n)
     if (const double force = f.row(n).norm(); !(force <= unbalanced * scale[n]))
       document.at("nodes").refuse(fmt::format("node {} is not at rest: a force of {:.3g} N acts on it", n, force),
                                   "positions at which all forces balance, as where rest lengths are distances");
   for (int n = 0; n < network.nodes(); ++n)
-    if (scale[n] == 0) document.at("springs").refuse(fmt::format("node {} has no spring", n), "one at least");
+    if (scale[n] == 0)
+      document.at("springs").refuse(fmt::format("node {} has no spring", n),
+                                    "one at least, or a cell with averaged springs");
 }
 
 void read_patches(const JsonPlace& document, SpringsFile& file) {
