@@ -121,6 +121,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
       if (const auto* volume = std::get_if<VolumeCorrection>(&law)) bounded_ = volume->form == VolumeEnergy::bounded;
       if (const auto* hourglass = std::get_if<HourglassCorrection>(&law))
         hourglass_ = scaled(hourglass->stiffness(edge_));
+      if (const auto* averaged = std::get_if<AveragedSprings>(&law)) averaged_ = scaled(*averaged);
     }
     make_arrays();
     if (const MomentumDispersion* dispersion = dispersion_of(model)) make_dispersion(*dispersion);
@@ -234,6 +235,17 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     return {real(k.bending), real(k.coupling), real(k.torsion), real(k.torsion_coupling)};
   }
 
+  LatticeAveraged<Real> scaled(const AveragedSprings& law) const {
+    const double area = edge_ * edge_, G = law.shear_modulus;
+    const auto real = [&](double value) { return static_cast<Real>(value * area); };
+    const HourglassStiffness& h = law.hourglass;
+    return {lattice_curve(law.curve), real(G),
+            real(law.lame_lambda),    real(law.lame_lambda + 2 * G / 3),
+            real(G / 8 * h.bending),  real(G / 8 * h.coupling),
+            real(G / 8 * h.torsion),  real(G / 8 * h.twist),
+            real(G / 8 * h.warping)};
+  }
+
   void make_arrays() {
     const std::size_t apart = layout_.size + 5 * cache_line / sizeof(Real);  // padded as planes are
     const std::size_t each = (apart * sizeof(Real) + cache_line - 1) / cache_line * cache_line / sizeof(Real);
@@ -327,6 +339,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
                                     nodes_.data(),
                                     bounded_,
                                     hourglass_,
+                                    averaged_,
                                     J_.data(),
                                     layout_.inflow_entry.data(),
                                     inflow_.data(),
@@ -394,6 +407,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   LatticeLayout layout_;
   bool bounded_ = false;
   LatticeHourglass<Real> hourglass_ = {};
+  LatticeAveraged<Real> averaged_ = {};
   AlignedArray<Real> motion_, rings_, springs_, nodes_, inflow_, outflow_, J_, inverse_lengths_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>>
       shared_;            ///< pairs of J that share a sum, by the last plane that adds to it
@@ -414,7 +428,7 @@ LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const
   if (!suits(model))
     throw std::invalid_argument(
         "the lattice kernel is for cubic lattices of springs, with or without volume and hourglass correction or "
-        "momentum dispersion");
+        "momentum dispersion, and of averaged springs in full cells");
   if (options.precision == Precision::float64)
     arrays_ = std::make_unique<ArraysOf<double>>(model, density, options);
   else

@@ -30,7 +30,7 @@ struct ForceNorms {
 class LatticeMotion {
  public:
   /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without
-  /// volume and hourglass correction or momentum dispersion.
+  /// volume and hourglass correction or momentum dispersion; or of averaged springs in full cells.
   static bool suits(const MassSpringModel& model);
 
   /// At rest at X, nothing fixed, no load.  Keeps a reference to the network.

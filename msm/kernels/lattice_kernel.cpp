@@ -1,4 +1,5 @@
 // One time step of a lattice: forces row by row, each row moved as soon as its forces are complete.
+#include "msm/kernels/lattice_averaged.h"
 #include "msm/kernels/lattice_hourglass.h"
 #include "msm/kernels/lattice_rows.h"
 #include "msm/kernels/lattice_volume.h"
@@ -220,7 +221,10 @@ void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const 
     volume_of_cells<true>(rows, on, c, run.begin, run.end);
   else if (run.volume)
     volume_of_cells<false>(rows, on, c, run.begin, run.end);
-  if (run.hourglass) hourglass_of_cells(rows, on, c, l.hourglass, run.begin, run.end);
+  if (run.hourglass && l.averaged.curve != LatticeCurve::none)
+    averaged_of_cells(rows, on, c, l.averaged, run.begin, run.end);
+  else if (run.hourglass)
+    hourglass_of_cells(rows, on, c, l.hourglass, run.begin, run.end);
 }
 
 template <class Real>

@@ -14,7 +14,8 @@ constexpr int lattice_directions = 13;  ///< along x; then straight, rising, fal
 constexpr int row_pairs[lattice_pairs][2] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};  ///< (dy, dz)
 constexpr int kappa_coefficient =
     lattice_directions;  ///< after the spring constants: of the volume correction of cells
-constexpr int hourglass_coefficient = kappa_coefficient + 1;  ///< 1 if a cell's hourglass modes are corrected, else 0
+constexpr int hourglass_coefficient =
+    kappa_coefficient + 1;  ///< 1 if a cell's hourglass modes are corrected or its springs averaged, else 0
 constexpr int lattice_coefficients = hourglass_coefficient + 1;
 constexpr int flow_coefficients =
     2 * lattice_directions;           ///< per direction: at the start and at the end of its springs
@@ -35,6 +36,17 @@ struct LatticeHourglass {
   Real bending, coupling, torsion, torsion_coupling;
 };
 
+/// The strain curves of msm/laws/strain_energy.h that the kernels have.
+enum class LatticeCurve { none, hencky, neo_hooke, neo_hooke_isochoric };
+
+/// Averaged springs: moduli, and AveragedSprings::hourglass times G / 8, all times edge^2 [N].
+template <class Real>
+struct LatticeAveraged {
+  LatticeCurve curve;
+  Real shear, lambda, bulk;
+  Real bending, coupling, torsion, twist, warping;
+};
+
 template <class Real>
 struct LatticeView {
   Real* u[3];       ///< displacement [edges]
@@ -51,6 +63,7 @@ struct LatticeView {
   const Real* nodes;  ///< node_coefficients vectors per entry: 1 / (mass edge), force [N]
   bool bounded;       ///< VolumeEnergy::bounded
   LatticeHourglass<Real> hourglass;
+  LatticeAveraged<Real> averaged;
   Real* J;  ///< inflow of momentum dispersion, at row (y + rows z) + x; nullptr: there is none
   const int* inflow_entry;
   const Real* inflow;  ///< flow_coefficients vectors per entry, times elongations [edges]: the inflow

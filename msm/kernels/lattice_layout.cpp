@@ -77,6 +77,9 @@ bool laws_fit(const MassSpringModel& model) {
     if (std::find(kinds.begin(), kinds.end(), law.index()) != kinds.end()) return false;
     kinds.push_back(law.index());
   }
+  if (const auto* averaged = law_of<AveragedSprings>(model))
+    return model.laws.size() == 1 && model.network.filled.empty() && averaged->shift == 0 &&
+           lattice_curve(averaged->curve) != LatticeCurve::none;
   const MomentumDispersion* dispersion = dispersion_of(model);
   if (!dispersion) return true;
   for (int to : dispersion->group)
@@ -164,7 +167,7 @@ BlockCoefficients spring_coefficients(const MassSpringModel& model, const Lattic
     if (has_springs) c.at(p.slot, p.direction) += s.stiffness * network.cell_edge;
   }
   const auto* volume = law_of<VolumeCorrection>(model);
-  const bool hourglass = law_of<HourglassCorrection>(model) != nullptr;
+  const bool hourglass = law_of<HourglassCorrection>(model) || law_of<AveragedSprings>(model);
   if (!volume && !hourglass) return c;
   for (const Hexahedron& cell : network.cells) {
     int low = l.slot[cell[0]];
@@ -272,6 +275,21 @@ int CoefficientTable::entry(const double* block) {
 int LatticeLayout::block_of(int s) const {
   const long in_plane = s % plane;
   return static_cast<int>((s / plane * nodes[1] + in_plane / row) * row_blocks + in_plane % row / lanes);
+}
+
+LatticeCurve lattice_curve(StrainCurve curve) {
+  switch (curve) {
+    case StrainCurve::hencky:
+      return LatticeCurve::hencky;
+    case StrainCurve::neo_hooke:
+      return LatticeCurve::neo_hooke;
+    case StrainCurve::neo_hooke_isochoric:
+      return LatticeCurve::neo_hooke_isochoric;
+    case StrainCurve::springs_hencky:
+    case StrainCurve::springs_neo_hooke:
+      break;
+  }
+  return LatticeCurve::none;
 }
 
 bool is_lattice_of_springs(const MassSpringModel& model) {

@@ -48,8 +48,12 @@ struct LatticeLayout {
 };
 
 /// Whether a network is a cubic lattice of distinct nodes, connected with neighbours at most one edge away on each
-/// axis, and its laws are springs, volume and hourglass correction, momentum dispersion.
+/// axis, and its laws are springs, volume and hourglass correction, momentum dispersion; or
+/// averaged springs of full cells with a strain curve that the kernels have.
 bool is_lattice_of_springs(const MassSpringModel& model);
+
+/// The kernels' name of a strain curve; none: they lack it.
+LatticeCurve lattice_curve(StrainCurve curve);
 
 /// Rows run along the axis that wastes fewest lanes, planes across the longest of the others.
 /// Requires is_lattice_of_springs().

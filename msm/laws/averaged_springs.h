@@ -31,7 +31,7 @@ struct HourglassStiffness {
 /// cut cells, at any size, and so is, for circular and rectangular sections, the bending and torsional stiffness of the
 /// section; no constant is negative for -1 < nu < 1/2.  Cells: Network::cells and Network::filled.
 struct AveragedSprings {
-  static constexpr LawTraits traits = {"averaged springs", Reach::cells};
+  static constexpr LawTraits traits = {"averaged springs", Reach::cells, true};
   static constexpr double least_variance = 0.1;  ///< of a full cell's; for the solvers
 
   double shear_modulus = 0;  ///< G [Pa]

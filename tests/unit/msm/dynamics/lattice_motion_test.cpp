@@ -53,6 +53,11 @@ std::vector<ModelParameters> models() {
     all.push_back(test::model("emsm"));
     all.back().dispersion = form;
   }
+  for (StrainCurve curve : {StrainCurve::hencky, StrainCurve::neo_hooke, StrainCurve::neo_hooke_isochoric}) {
+    all.push_back(test::model("hybmss_avg"));
+    all.back().curve = curve;
+    all.back().slender = curve == StrainCurve::neo_hooke;
+  }
   all.push_back(test::model("emsm"));
   all.back().exact_volumes = false;
   all.push_back(test::model("emsm"));
