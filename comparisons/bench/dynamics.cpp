@@ -132,6 +132,9 @@ void overheads(const Context& c) {
     overhead(c, size, "HybMSS", hybmss, "HybMSS-CF", block("hybmss_cf", 0.25), at_most(1.35));
     overhead(c, size, "HybMSS", hybmss, "HybMSS-FD", block("hybmss_fd", 0.3), at_most(1.5));
     overhead(c, size, "HybMSS, hourglass correction", block("hybmss_bt", 0.3), "HybMSS", hybmss, at_most(1.35));
+    overhead(c, size, "averaged springs", block("hybmss_avg", 0.3), "HybMSS", hybmss, at_most(1.6));
+    overhead(c, size, "averaged springs, neo-Hooke", lattice("hybmss_avg", {n, n, n}, 0.3, {{"curve", "neo_hooke"}}),
+             "HybMSS", hybmss, at_most(1.6));
     overhead(c, size, "eMSM as published", lattice("emsm", {n, n, n}, 0.3, {{"dispersion", "published"}}),
              "MSM of 18 springs", msm, at_most(1.65));
     overhead(c, size, "eMSM, exact nodal volumes", block("emsm", 0.3), "MSM of 18 springs", msm, at_most(1.65));
