@@ -18,6 +18,15 @@ constexpr long dispersive_limit = 4000;  // the factors of momentum dispersion a
 /// Outcome of one load step: a stable state, or the reason for the failure.
 enum class Outcome { accepted, unstable, inverted, not_converged };
 
+/// Whether a corner of a cell is turned inside out; of cut cells, which have corners outside of the body, the filled
+/// part as a whole.
+bool has_inverted_cell(const Network& network, const NodalVectors& x) {
+  if (network.filled.empty()) return min_relative_jacobian({network.X, network.cells, {}, {}, {}, {}}, x) <= 0;
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    if (cell_volume(network, c, x).value <= 0) return true;
+  return false;
+}
+
 struct Newton {
   const MassSpringModel& model;
   const LoadPath& path;
@@ -97,8 +106,7 @@ struct Newton {
   /// Checks the stability of a state in equilibrium; x becomes it if it is accepted.
   Outcome judge(const NodalVectors& trial, bool definite, NodalVectors& x) const {
     if (!definite || !K.stable()) return Outcome::unstable;
-    if (min_relative_jacobian({model.network.X, model.network.cells, {}, {}, {}, {}}, trial) <= 0)
-      return Outcome::inverted;
+    if (has_inverted_cell(model.network, trial)) return Outcome::inverted;
     x = trial;
     return Outcome::accepted;
   }
