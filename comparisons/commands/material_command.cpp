@@ -123,8 +123,9 @@ struct MaterialFacts {
   StrainLimits limits =
       has_limits ? strain_limits(p, m)
                  : StrainLimits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  std::vector<StressAtStretch> stresses = has_limits ? stress_curve(p, m) : std::vector<StressAtStretch>{};
   DispersionFacts dispersion = facts_of(p, m, model, l);
-  double correction = p.has(Extension::volume_correction) ? kappa(m) : 0.0;
+  double correction = p.has(Extension::volume_correction) || p.has(Extension::averaging) ? kappa(m) : 0.0;
 
   double corner_mass() const { return m.density * l * l * l / 8; }
 };
@@ -153,7 +154,12 @@ nlohmann::json json_of(const MaterialFacts& f) {
       {"safe_time_step_s", f.time_step},
       {"tension_limit_strain", {{"bounded", limit(f.limits.bounded_energy)}, {"paper", limit(f.limits.paper_energy)}}},
       {"measured", moduli_json(f.measured.youngs_modulus, f.measured.poisson_ratio, f.measured.shear_modulus)}};
-  if (!f.lattice) out.erase("springs");
+  for (const StressAtStretch& s : f.stresses)
+    out["stress_of_free_bar"].push_back({{"stretch", s.stretch},
+                                         {"model_Pa", s.model ? nlohmann::json(*s.model) : nlohmann::json(nullptr)},
+                                         {"hencky_Pa", s.hencky},
+                                         {"neo_hooke_Pa", s.neo_hooke}});
+  if (f.model.network.springs.empty() || !f.lattice) out.erase("springs");
   out.update(json_of(f.dispersion, p, f.m));
   return out;
 }
@@ -166,7 +172,8 @@ void print_model(const MaterialFacts& f) {
       m.youngs_modulus, m.poisson_ratio, shear_modulus(m), bulk_modulus(m), lame_lambda(m), m.density);
   const bool has_face_to_cube = f.lattice || f.p.row.topology == Topology::centres;
   fmt::print("model      {}: {}{}   cell edge l = {:.6g} m\n\n", f.p.row.name, f.p.row.what,
-             has_face_to_cube ? fmt::format("   A = {:g}", f.p.face_to_cube) : "", f.l);
+             has_face_to_cube && !f.p.has(Extension::averaging) ? fmt::format("   A = {:g}", f.p.face_to_cube) : "",
+             f.l);
 }
 
 void print_springs(const MaterialFacts& f) {
@@ -178,8 +185,11 @@ void print_springs(const MaterialFacts& f) {
 
 void print_limits(const MaterialFacts& f) {
   if (f.lattice) {
-    fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", f.correction,
-               f.p.has(Extension::volume_correction) ? "" : "    (this model has none)");
+    if (f.p.has(Extension::averaging))
+      fmt::print("volume term            {:>14.6g} Pa    (K, the whole bulk modulus)\n", bulk_modulus(f.m));
+    else
+      fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", f.correction,
+                 f.p.has(Extension::volume_correction) ? "" : "    (this model has none)");
     fmt::print("mass per cell corner   {:>14.6g} kg\n", f.corner_mass());
   }
   fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", f.time_step,
@@ -187,9 +197,20 @@ void print_limits(const MaterialFacts& f) {
   const auto strain = [](double limit) {
     return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %");
   };
-  if (f.has_limits)
+  if (f.p.has(Extension::volume_correction))
     fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n",
                strain(f.limits.bounded_energy), strain(f.limits.paper_energy));
+  else if (f.has_limits)
+    fmt::print("tension limit of a free-sided cell: {}\n", strain(f.limits.bounded_energy));
+}
+
+void print_stresses(const MaterialFacts& f) {
+  if (f.stresses.empty()) return;
+  fmt::print("\nstress of a bar with free sides, force over area at rest [Pa]\n");
+  fmt::print("  stretch {:>14} {:>14} {:>14}\n", f.p.row.name, "Hencky", "neo-Hooke");
+  for (const StressAtStretch& s : f.stresses)
+    fmt::print("  {:>7.2f} {:>14} {:>14.5g} {:>14.5g}\n", s.stretch,
+               s.model ? fmt::format("{:.5g}", *s.model) : "no equilibrium", s.hencky, s.neo_hooke);
 }
 
 void print_measured(const MaterialFacts& f) {
@@ -208,7 +229,7 @@ void print_warnings(const ModelParameters& p, const IsotropicMaterial& m) {
   if (p.has(Extension::none) && !same_poisson_ratio(m.poisson_ratio, 0.25))
     fmt::print("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss or emsm for nu = {:g}\n",
                m.poisson_ratio);
-  if (p.row.topology == Topology::cells && p.face_to_cube < 0.2)
+  if (p.row.topology == Topology::cells && !p.has(Extension::averaging) && p.face_to_cube < 0.2)
     fmt::print("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");
   if (p.paper_e_form) fmt::print("\nwarning: paper_e_form is right for nu = 1/4 only\n");
 }
@@ -252,9 +273,10 @@ int MaterialCommand::run() const {
     return 0;
   }
   print_model(facts);
-  if (facts.lattice) print_springs(facts);
+  if (facts.lattice && !facts.model.network.springs.empty()) print_springs(facts);
   print(facts.dispersion, p, m);
   print_limits(facts);
+  print_stresses(facts);
   print_measured(facts);
   print_warnings(p, m);
   return 0;

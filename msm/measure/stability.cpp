@@ -89,6 +89,7 @@ std::string stable_range(const ModelParameters& p, const IsotropicMaterial& mate
     return "-1 < nu < 1/2: every cell is positive (at A = 0: but for zero-energy modes)";
   if (p.has(Extension::angular_springs))
     return "-1 < nu_2D < 1 in its plane: a triangle strains affinely, K > 0 and G > 0 suffice";
+  if (p.has(Extension::averaging)) return "-1 < nu < 1/2: every constant is positive";
   if (!p.has(Extension::momentum_dispersion)) return "never negative: springs alone are a sum of squares";
   if (p.dispersion == Dispersion::symmetric) return stable_range_of_energy(p, material);
   if (p.row.topology == Topology::random || p.row.topology == Topology::hexagonal)

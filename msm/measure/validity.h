@@ -1,5 +1,8 @@
-// How far a model can be stretched before its homogeneous state has no equilibrium.
+// The homogeneous state of a model under large uniaxial strain: its stress, and where it has no equilibrium.
 #pragma once
+
+#include <optional>
+#include <vector>
 
 #include "msm/parameters/model_table.h"
 
@@ -13,5 +16,15 @@ struct StrainLimits {
 };
 
 StrainLimits strain_limits(const ModelParameters& parameters, const IsotropicMaterial& material);
+
+/// Stress [Pa], force over the area at rest, of a bar with free sides at one stretch (length over that at rest).
+struct StressAtStretch {
+  double stretch;
+  std::optional<double> model;  ///< of one cell; empty: no stable equilibrium
+  double hencky, neo_hooke;     ///< of the material laws of these names
+};
+
+/// Stretches of 0.6 to 1.4.
+std::vector<StressAtStretch> stress_curve(const ModelParameters& parameters, const IsotropicMaterial& material);
 
 }  // namespace springproof

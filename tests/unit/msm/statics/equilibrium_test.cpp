@@ -198,6 +198,61 @@ TEST(LargeDisplacements, ModelsForSmallDisplacementsRefuse) {
   EXPECT_FALSE(solve_finite(build_model(test::model("hybmss_bt"), mesh, {1e4, 0.25, 1000}), path).ok);
 }
 
+TEST(LargeDisplacements, AveragedSpringsWithAndWithoutPressuresAgree) {
+  const Mesh mesh = block_mesh({1, 1, 1}, {14, 14, 14});  // enough unknowns for the mixed form
+  const std::vector<Load> loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}},
+                                   PrescribedDisplacement{"z_max", {0.3, 0.0, 0.2}}};
+  const LoadPath path = [&](double f) { return transfer(loads, mesh, 1000, Kinematics::finite, f); };
+  const MassSpringModel model = build_model(test::model("hybmss_avg"), mesh, {1e4, 0.45, 1000});
+  const Equilibrium mixed = solve_finite(model, path);
+  ASSERT_TRUE(mixed.ok) << mixed.message;
+  EXPECT_NE(mixed.solver.find("mixed"), std::string::npos) << mixed.solver;
+  const NodalVectors f = forces(model, model.network.X + mixed.displacement);
+  const BoundaryConditions bc = path(1);
+  double free = 0;
+  for (Eigen::Index i = 0; i < f.size(); ++i)
+    if (!bc.fixed[i]) free += f.data()[i] * f.data()[i];
+  EXPECT_LE(std::sqrt(free), 1e-7 * f.norm());  // the form without pressures is in equilibrium too
+}
+
+TEST(LargeDisplacements, AveragedSpringsAreNearlyTheCorrectedLatticeForSmallStrains) {
+  const Mesh mesh = block_mesh({4, 1, 1}, {8, 2, 2});
+  const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, PatchForce{"x_max", {0, 0, 1}}};
+  const BoundaryConditions bc = transfer(loads, mesh, 1000, Kinematics::linear);
+  for (double nu : {-0.5, 0.0, 0.25, 0.45, 0.499}) {
+    const Equilibrium averaged = solve_linear(build_model(test::model("hybmss_avg"), mesh, {1e4, nu, 1000}), bc),
+                      corrected = solve_linear(build_model(test::model("hybmss_bt"), mesh, {1e4, nu, 1000}), bc);
+    ASSERT_TRUE(averaged.ok && corrected.ok);
+    EXPECT_LE((averaged.displacement - corrected.displacement).norm(), 0.02 * corrected.displacement.norm()) << nu;
+  }
+}
+
+TEST(LargeDisplacements, AveragedSpringsHaveAnEquilibriumInTensionForEveryPoissonRatio) {
+  const Mesh mesh = block_mesh({1, 1, 1}, {4, 4, 4});
+  const std::vector<Load> loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}},
+                                   PrescribedDisplacement{"z_max", {0.0, 0.0, 0.4}}};
+  const LoadPath path = [&](double f) { return transfer(loads, mesh, 1000, Kinematics::finite, f); };
+  for (double nu : {-0.5, 0.0, 0.25, 0.45}) {
+    const Equilibrium e = solve_finite(build_model(test::model("hybmss_avg"), mesh, {1e4, nu, 1000}), path);
+    EXPECT_TRUE(e.ok) << nu << ": " << e.message;
+  }
+}
+
+TEST(LargeDisplacements, AveragedSpringsStretchLikeHenckysLaw) {
+  for (double nu : {-0.5, 0.0, 0.25, 0.45, 0.499})
+    for (const StressAtStretch& s : stress_curve(test::model("hybmss_avg"), {1e4, nu, 1000})) {
+      ASSERT_TRUE(s.model) << nu << ", " << s.stretch;
+      EXPECT_NEAR(*s.model / s.hencky, 1, s.stretch >= 0.8 && s.stretch <= 1.2 ? 3e-4 : 0.008)
+          << nu << ' ' << s.stretch;
+    }
+  ModelParameters p = test::model("hybmss_avg");
+  p.curve = StrainCurve::neo_hooke;
+  for (const StressAtStretch& s : stress_curve(p, {1e4, 0.3, 1000})) {
+    ASSERT_TRUE(s.model);
+    EXPECT_NEAR(*s.model / s.neo_hooke, 1, 1e-7) << s.stretch;
+  }
+}
+
 TEST(TimeStep, IsTheBoundOfOneCell) {
   // Largest eigenvalue of a cell: dilation 1.5 K l, or the stiffest deviatoric mode; with corner masses rho l^3 / 8.
   const double l = 0.25, rho = 900;
