@@ -5,66 +5,87 @@
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 
-/// ln J, given y = J^(-1/3).
+/// 2 artanh z, for z^2 < 0.0135.
 template <class Real>
-SPRINGPROOF_INLINE Lanes<Real> logarithm(const Lanes<Real>& J, const Lanes<Real>& y) {
-  // ln J = -3 ln y = -6 artanh z
-  const Lanes<Real> z = (y - Real(1)) / (y + Real(1)), s = z * z;
-  if (stdx::all_of(s < Real(0.0135))) {
-    constexpr int terms = sizeof(Real) == 8 ? 8 : 4;
-    Lanes<Real> sum = Real(1.0 / (2 * terms + 1));
-    for (int k = terms - 1; k >= 0; --k) sum = Real(1.0 / (2 * k + 1)) + s * sum;
-    return Real(-6) * z * sum;
-  }
+SPRINGPROOF_INLINE Lanes<Real> twice_artanh(const Lanes<Real>& z) {
+  constexpr int terms = sizeof(Real) == 8 ? 8 : 4;
+  const Lanes<Real> s = z * z;
+  Lanes<Real> sum = Real(1.0 / (2 * terms + 1));
+  for (int k = terms - 1; k >= 0; --k) sum = Real(1.0 / (2 * k + 1)) + s * sum;
+  return Real(2) * z * sum;
+}
+
+/// ln(1 + d), to the relative accuracy of d.
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> logarithm_of_1_and(const Lanes<Real>& d) {
+  const Lanes<Real> z = d / (d + Real(2));
+  if (stdx::all_of(z * z < Real(0.0135))) return twice_artanh(z);
+  const Lanes<Real> y = inverse_cube_root(d + Real(1)), far = (Real(1) - y) / (Real(1) + y);
+  if (stdx::all_of(far * far < Real(0.0135))) return Real(3) * twice_artanh(far);
   Real values[lanes<Real>];
-  store(J, values);
-  for (Real& value : values) value = static_cast<Real>(__builtin_log(static_cast<double>(value)));
+  store(d, values);
+  for (Real& value : values) value = static_cast<Real>(__builtin_log1p(static_cast<double>(value)));
   return load(values);
 }
 
-/// dW/dF times edge^2 [N] of a cell, W as StrainCurve says.
+/// Stress tau of the law times edge^2 [N], of F = 1 + D: dW/dF = tau F^-T.  In terms of b = F F^T - 1 and J - 1, so
+/// that the error is one of the strain, not of 1.
 template <LatticeCurve curve, class Real>
-SPRINGPROOF_INLINE void stress_of(const LatticeAveraged<Real>& law, const Lanes<Real> (&F)[3][3],
-                                  Lanes<Real> (&P)[3][3]) {
+SPRINGPROOF_INLINE void kirchhoff_stress(const LatticeAveraged<Real>& law, const Lanes<Real> (&D)[3][3],
+                                         const Lanes<Real>& dilatation, Lanes<Real> (&tau)[3][3]) {
   using V = Lanes<Real>;
-  V cofactor[3][3];
+  V b[3][3];
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      cofactor[i][j] = F[i1][j1] * F[i2][j2] - F[i1][j2] * F[i2][j1];
-    }
-  const V J = F[0][0] * cofactor[0][0] + F[0][1] * cofactor[0][1] + F[0][2] * cofactor[0][2];
-  const V y = inverse_cube_root(J), m = y * y, inverse = m * y;
-  const auto set = [&](const V& of_F, const V& of_inverse_transpose) {
-    const V c = of_inverse_transpose * inverse;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) P[i][j] = of_F * F[i][j] + c * cofactor[i][j];
-  };
+    for (int j = i; j < 3; ++j)
+      b[i][j] = b[j][i] = D[i][j] + D[j][i] + (D[i][0] * D[j][0] + D[i][1] * D[j][1] + D[i][2] * D[j][2]);
+  const V trace = b[0][0] + b[1][1] + b[2][2];
   if constexpr (curve == LatticeCurve::neo_hooke) {
-    set(V(law.shear), law.lambda * logarithm(J, y) - law.shear);
+    const V volume = law.lambda * logarithm_of_1_and(dilatation);
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j) tau[i][j] = tau[j][i] = law.shear * b[i][j] + (i == j ? volume : V(0));
     return;
   }
-  V C[3][3];
-  for (int i = 0; i < 3; ++i)
-    for (int j = i; j < 3; ++j) C[j][i] = C[i][j] = F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j];
-  const V lengths = C[0][0] + C[1][1] + C[2][2];
+  const V J = dilatation + Real(1), y = inverse_cube_root(J), m = y * y;
   if constexpr (curve == LatticeCurve::neo_hooke_isochoric) {
-    const V scaled = law.shear * m;
-    set(scaled, law.bulk * (J - Real(1)) * J - scaled * lengths * Real(1.0 / 3));
+    const V scaled = law.shear * m, volume = law.bulk * dilatation * J - scaled * trace * Real(1.0 / 3);
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j) tau[i][j] = tau[j][i] = scaled * b[i][j] + (i == j ? volume : V(0));
     return;
   }
-  V areas = 0;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    areas += C[i][i] * C[j][j] - C[i][j] * C[i][j];
-  }
-  const V n = m * m, measure = Real(0.25) * (m * lengths + n * areas - Real(6));
-  const V slope = (Real(0.5) * law.shear) * (Real(1) + measure * (Real(-1.0 / 3) + measure * Real(2.0 / 15)));
-  set(slope * (m + n * lengths),
-      law.bulk * logarithm(J, y) - slope * (Real(1.0 / 3) * m * lengths + Real(2.0 / 3) * n * areas));
-  const V turned = slope * n;
+  // Hencky: G f'(y) / 2 times the deviator of m B + n (tr B B - B^2) = (m + n (1 + tr b)) b - n b^2 + ...
+  V square[3][3];
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) P[i][j] -= turned * (F[i][0] * C[0][j] + F[i][1] * C[1][j] + F[i][2] * C[2][j]);
+    for (int j = i; j < 3; ++j) square[i][j] = b[i][0] * b[j][0] + b[i][1] * b[j][1] + b[i][2] * b[j][2];
+  const V of_square = square[0][0] + square[1][1] + square[2][2], n = m * m;
+  const V lengths = Real(3) + trace, areas = Real(3) + Real(2) * trace + Real(0.5) * (trace * trace - of_square);
+  const V measure = Real(0.25) * (m * lengths + n * areas - Real(6));
+  const V slope = (Real(0.5) * law.shear) * (Real(1) + measure * (Real(-1.0 / 3) + measure * Real(2.0 / 15)));
+  const V first = slope * (m + n * (Real(1) + trace)), second = slope * n;
+  const V volume = law.bulk * logarithm_of_1_and(dilatation) - Real(1.0 / 3) * (first * trace - second * of_square);
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j)
+      tau[i][j] = tau[j][i] = first * b[i][j] - second * square[i][j] + (i == j ? volume : V(0));
+}
+
+/// dW/dF times edge^2 [N] of a cell, W as StrainCurve says, F = 1 + D.
+template <LatticeCurve curve, class Real>
+SPRINGPROOF_INLINE void stress_of(const LatticeAveraged<Real>& law, const Lanes<Real> (&D)[3][3],
+                                  const Lanes<Real> (&F)[3][3], Lanes<Real> (&P)[3][3]) {
+  using V = Lanes<Real>;
+  const auto minor = [](const V(&A)[3][3], int i, int j) {
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    return A[i1][j1] * A[i2][j2] - A[i1][j2] * A[i2][j1];
+  };
+  const V m00 = minor(D, 0, 0);
+  const V dilatation = (D[0][0] + D[1][1] + D[2][2]) + (m00 + minor(D, 1, 1) + minor(D, 2, 2)) +
+                       (D[0][0] * m00 + D[0][1] * minor(D, 0, 1) + D[0][2] * minor(D, 0, 2));
+  V tau[3][3];
+  kirchhoff_stress<curve>(law, D, dilatation, tau);
+  const V inverse = Real(1) / (dilatation + Real(1));
+  for (int j = 0; j < 3; ++j) {
+    const V c0 = inverse * minor(F, 0, j), c1 = inverse * minor(F, 1, j), c2 = inverse * minor(F, 2, j);
+    for (int i = 0; i < 3; ++i) P[i][j] = tau[i][0] * c0 + tau[i][1] * c1 + tau[i][2] * c2;
+  }
 }
 
 /// Forces of the cells between four rows, which have (y, z) offsets 00, 10, 01, 11 from the first; formulas:
@@ -82,7 +103,7 @@ void averaged_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], c
     for (V& row : component) row = 0;
   for (int b = begin; b < end; ++b) {
     const long n = long(b) * lanes<Real>;
-    V F[3][3], S[3][4];  // S: patterns yz, zx, xy, xyz
+    V D[3][3], S[3][4];  // S: patterns yz, zx, xy, xyz
     for (int i = 0; i < 3; ++i) {
       V d[4], m[4];
       for (int k = 0; k < 4; ++k) {
@@ -91,10 +112,9 @@ void averaged_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], c
         m[k] = high + low;
       }
       const V d01 = d[1] - d[0], d23 = d[3] - d[2], m01 = m[1] - m[0], m23 = m[3] - m[2];
-      F[i][0] = Real(0.25) * ((d[0] + d[1]) + (d[2] + d[3]));
-      F[i][1] = Real(0.25) * (m01 + m23);
-      F[i][2] = Real(0.25) * ((m[2] - m[0]) + (m[3] - m[1]));
-      F[i][i] += Real(1);
+      D[i][0] = Real(0.25) * ((d[0] + d[1]) + (d[2] + d[3]));
+      D[i][1] = Real(0.25) * (m01 + m23);
+      D[i][2] = Real(0.25) * ((m[2] - m[0]) + (m[3] - m[1]));
       S[i][0] = m23 - m01;
       S[i][1] = (d[2] - d[0]) + (d[3] - d[1]);
       S[i][2] = d01 + d23;
@@ -103,10 +123,12 @@ void averaged_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], c
     const auto absent = coefficient(c.of(b), hourglass_coefficient) == Real(0);
     if (stdx::any_of(absent))
       for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) stdx::where(absent, F[i][j]) = i == j ? Real(1) : Real(0);
+        for (V& entry : D[i]) stdx::where(absent, entry) = Real(0);
         for (V& s : S[i]) stdx::where(absent, s) = Real(0);
       }
-    V v[4][3], w[4][3];
+    V F[3][3], v[4][3], w[4][3];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
     for (int m = 0; m < 4; ++m)
       for (int j = 0; j < 3; ++j) v[m][j] = F[0][j] * S[0][m] + F[1][j] * S[1][m] + F[2][j] * S[2][m];
     const V twisted = law.torsion * (v[0][0] + v[1][1] + v[2][2]);
@@ -117,7 +139,7 @@ void averaged_of_cells(const Row<Real> (&r)[4], const ForceRow<Real> (&on)[4], c
       w[3][m] = law.warping * v[3][m];
     }
     V P[3][3];
-    stress_of<curve>(law, F, P);
+    stress_of<curve>(law, D, F, P);
     for (int i = 0; i < 3; ++i) {
       V A[3], B[4];
       for (int j = 0; j < 3; ++j)
