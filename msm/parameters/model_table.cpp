@@ -29,7 +29,7 @@ const std::vector<ModelRow> table = {
   {"hybmss_cf",      "HybMSS springs without the volume correction",                           cells,     2,        true,  none,                false, false, G},
   {"hybmss_b",       "HybMSS + bending hourglass correction (linear kinematics)",              cells,     2,        true,  volume_correction,   true,  false, G},
   {"hybmss_bt",      "HybMSS + bending and torsion hourglass correction (linear kinematics)",  cells,     2,        true,  volume_correction,   true,  true,  G},
-  {"hybmss_avg",     "springs averaged over each cell, hourglass springs and a volume term",    cells,     16.0 / 9, false, averaging,           true,  true,  G},
+  {"hybmss_avg",     "recommended: springs averaged over each cell; any strain, any nu",        cells,     16.0 / 9, false, averaging,           true,  true,  G},
 };
 // clang-format on
 
