@@ -19,20 +19,21 @@ Eigen::MatrixXd unit_columns(const ModeSet& modes, const Eigen::VectorXd& weight
 }
 
 /// For each mode the first and one past the last of its multiplet.
-std::vector<std::pair<Eigen::Index, Eigen::Index>> multiplets(const std::vector<double>& f) {
+std::vector<std::pair<Eigen::Index, Eigen::Index>> multiplets(const std::vector<double>& f, double width) {
   std::vector<std::pair<Eigen::Index, Eigen::Index>> of;
   for (std::size_t begin = 0, end = 0; begin < f.size(); begin = end) {
     end = begin + 1;
-    while (end < f.size() && f[end] < (1 + multiplet_width) * f[end - 1]) ++end;
+    while (end < f.size() && f[end] < (1 + width) * f[end - 1]) ++end;
     for (std::size_t i = begin; i < end; ++i) of.emplace_back(begin, end);
   }
   return of;
 }
 
 /// (i, j): cosine^2 of the angle between a mode j of `b` and the span of the multiplet of mode i of `a`.
-Eigen::MatrixXd shares(const Eigen::MatrixXd& a, const std::vector<double>& frequencies, const Eigen::MatrixXd& b) {
+Eigen::MatrixXd shares(const Eigen::MatrixXd& a, const std::vector<double>& frequencies, const Eigen::MatrixXd& b,
+                       double width) {
   Eigen::MatrixXd out(a.cols(), b.cols());
-  const auto groups = multiplets(frequencies);
+  const auto groups = multiplets(frequencies, width);
   for (Eigen::Index i = 0; i < a.cols(); ++i) {
     const auto [begin, end] = groups[i];
     const Eigen::MatrixXd span = a.middleCols(begin, end - begin);
@@ -84,14 +85,17 @@ std::vector<Eigen::Index> assigned(const Eigen::MatrixXd& cost) {
 std::vector<ModePair> pair_modes(const ModeSet& reference, const ModeSet& computed, const Eigen::VectorXd& weights) {
   const Eigen::MatrixXd a = unit_columns(reference, weights), b = unit_columns(computed, weights);
   // Whichever is the multiple one: modes that are apart here may coincide there, and then mix.
-  const Eigen::MatrixXd mac =
-      shares(a, reference.frequencies, b).cwiseMax(shares(b, computed.frequencies, a).transpose());
-  constexpr double order = 1e-6;  // decides between equal MACs
+  const auto macs = [&](double width) -> Eigen::MatrixXd {
+    return shares(a, reference.frequencies, b, width).cwiseMax(shares(b, computed.frequencies, a, width).transpose());
+  };
+  const Eigen::MatrixXd mac = macs(multiplet_width), similar = macs(equal_frequencies);
+  constexpr double shape = 1e-2, order = 1e-6;  // weights of what decides between equal MACs
   const Eigen::Index rows = mac.rows(), columns = std::max(mac.cols(), rows);
   Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, columns, 2);  // columns beyond the computed: no partner
   for (Eigen::Index i = 0; i < rows; ++i)
     for (Eigen::Index j = 0; j < mac.cols(); ++j)
-      cost(i, j) = 1 - mac(i, j) + order * std::pow(std::log(computed.frequencies[j] / reference.frequencies[i]), 2);
+      cost(i, j) = 1 - mac(i, j) + shape * (1 - similar(i, j)) +
+                   order * std::pow(std::log(computed.frequencies[j] / reference.frequencies[i]), 2);
   const std::vector<Eigen::Index> column = assigned(cost);
   std::vector<ModePair> pairs(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {

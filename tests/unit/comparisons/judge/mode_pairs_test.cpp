@@ -49,6 +49,11 @@ TEST(ModePairs, OfAMultipletAreOfItsSubspaceInTheOrderOfFrequency) {
   EXPECT_EQ(partners(pair_modes(apart, split, weights)), (Partners{{}, {}, 2}));  // beyond the multiplet's width
 }
 
+TEST(ModePairs, OfAMultipletThatSymmetryDoesNotMakeFollowShapes) {
+  const ModeSet reference{{1, 1.005}, {unit(0), unit(1)}}, crossed{{0.95, 1.1}, {unit(1), unit(0)}};
+  EXPECT_EQ(partners(pair_modes(reference, crossed, weights)), (Partners{1, 0}));
+}
+
 TEST(ModePairs, BelowTheLeastMacHaveNoPartner) {
   const double edge = std::acos(std::sqrt(least_mac));
   const ModeSet reference{{1, 2}, {unit(0), unit(7)}};
