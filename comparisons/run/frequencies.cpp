@@ -57,6 +57,21 @@ bool has_smooth_modes(const PreparedCase& prepared) {
          std::abs(volume(*prepared.lattices[0].mesh, prepared.lattices[0].mesh->nodes) / e.body.size.prod() - 1) < 1e-9;
 }
 
+/// At the nodes of every lattice, one after the other.
+ModeSet modes_at_nodes(const PreparedCase& prepared, const fem::Solution& s) {
+  ModeSet out{s.frequencies, {}};
+  for (const NodalVectors& u : s.shapes)
+    out.shapes.push_back(prepared.experiment.body.is_voxels() ? at_lattice_nodes(prepared, u) : u);
+  return out;
+}
+
+Eigen::VectorXd weights_of_nodes(const PreparedCase& prepared) {
+  Eigen::VectorXd weights(prepared.nodes());
+  for (const Lattice& lattice : prepared.lattices)
+    weights.segment(lattice.first_node, lattice.mesh->nodes.rows()) = nodal_volumes(*lattice.mesh);
+  return weights;
+}
+
 struct ReferenceModes {
   std::string form, failure;
   int rigid_motions = 0;
@@ -72,18 +87,17 @@ ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMate
       out.failure = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);
       return out;
     }
-  const double order = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order;
-  for (int i = 0; i < modes; ++i) {
-    std::vector<double> values;
-    for (const fem::Solution& s : grids.grids) values.push_back(s.frequencies[i]);
-    out.frequencies.push_back(extrapolate(values, solver_noise * values[2], order, ratios_of(grids)));
+  out.form = grids.grids[2].form;
+  out.rigid_motions = grids.grids[2].rigid_motions;
+  out.finest = modes_at_nodes(prepared, grids.grids[2]);
+  std::vector<std::vector<double>> values(modes);
+  for (const fem::Solution& s : grids.grids) {  // modes may cross from grid to grid
+    const auto pairs = pair_modes(out.finest, modes_at_nodes(prepared, s), weights_of_nodes(prepared));
+    for (int i = 0; i < modes; ++i) values[i].push_back(s.frequencies[pairs[i].partner.value_or(i)]);
   }
-  const fem::Solution& fine = grids.grids[2];
-  out.form = fine.form;
-  out.rigid_motions = fine.rigid_motions;
-  out.finest.frequencies = fine.frequencies;
-  for (const NodalVectors& u : fine.shapes)
-    out.finest.shapes.push_back(prepared.experiment.body.is_voxels() ? at_lattice_nodes(prepared, u) : u);
+  const double order = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order;
+  for (const std::vector<double>& v : values)
+    out.frequencies.push_back(extrapolate(v, solver_noise * v[2], order, ratios_of(grids)));
   return out;
 } catch (const std::runtime_error& e) {
   ReferenceModes none;
@@ -134,8 +148,15 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
 }  // namespace
 
 Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
-  std::erase_if(e.loads, [&](const Load& load) { return options.free || !prescribes_displacement(load); });
-  e.load_locations.clear();
+  std::vector<Load> supports;
+  std::vector<SourceLocation> locations;
+  for (std::size_t i = 0; !options.free && i < e.loads.size(); ++i)
+    if (prescribes_displacement(e.loads[i])) {
+      supports.push_back(e.loads[i]);
+      locations.push_back(e.load_locations[i]);
+    }
+  e.loads = supports;
+  e.load_locations = locations;
   e.measures.clear();
   e.expectations.clear();
   e.elements.clear();
@@ -146,6 +167,9 @@ Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
 
 std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, const IsotropicMaterial& material,
                                                 const FrequencyOptions& options) {
+  std::vector<std::string> patches;
+  for (const Patch& p : prepared.lattices.front().mesh->patches) patches.push_back(p.name);
+  check_patches(prepared.experiment, patches);
   const ReferenceModes reference = reference_modes(prepared, material, options.modes);
   std::vector<FrequencyTable> tables;
   for (const Lattice& lattice : prepared.lattices) {

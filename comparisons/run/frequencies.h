@@ -52,6 +52,7 @@ struct FrequencyTable {
 Experiment case_of_modes(Experiment experiment, const FrequencyOptions& options);
 
 /// Solves a case made by prepare_lattices(case_of_modes()) at one of its materials: a table per lattice.
+/// @throws InputError for a support on a patch that the body does not have.
 std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, const IsotropicMaterial& material,
                                                 const FrequencyOptions& options);
 
