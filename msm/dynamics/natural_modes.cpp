@@ -49,6 +49,24 @@ void clear(const std::vector<char>& fixed, Eigen::VectorXd& v) {
     if (fixed[i]) v[static_cast<Eigen::Index>(i)] = 0;
 }
 
+/// Integral of rho N_a N_b over the filled part of a cell of mass rho l^3 = `full`, N the corners' trilinear weights:
+/// at the two Gauss points per axis of the part's own mean and variance; of a full cell exact.
+Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
+  Eigen::Matrix<double, 8, 8> C = Eigen::Matrix<double, 8, 8>::Zero();
+  for (int q = 0; q < 8; ++q) {
+    Eigen::Matrix<double, 8, 1> N;
+    for (int a = 0; a < 8; ++a) {
+      N[a] = 1;
+      for (int d = 0; d < 3; ++d) {
+        const double xi = part.mean[d] + (hexahedron_corners[q][d] == 0 ? -1 : 1) * std::sqrt(part.variance[d]);
+        N[a] *= hexahedron_corners[a][d] == 0 ? 0.5 - xi : 0.5 + xi;
+      }
+    }
+    C += full * part.fraction / 8 * N * N.transpose();
+  }
+  return C;
+}
+
 void compute(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta, int count,
              NaturalModes& modes) {
   const Network& network = model.network;
@@ -106,18 +124,19 @@ void compute(const MassSpringModel& model, const std::vector<char>& fixed, doubl
 Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, double theta) {
   if (!(theta >= 0 && theta <= 1))
     throw std::invalid_argument(fmt::format("share of consistent mass {:g} (allowed: 0 to 1)", theta));
-  if (network.cells.empty()) theta = 0;
   std::vector<Eigen::Triplet<double>> entries;
-  const Eigen::VectorXd lumped = masses(network, density);
-  for (int n = 0; n < network.nodes(); ++n) entries.emplace_back(n, n, (1 - theta) * lumped[n]);
-  for (std::size_t c = 0; theta > 0 && c < network.cells.size(); ++c) {
-    const double fraction = network.filled.empty() ? 1 : network.filled[c].fraction;
-    for (int a = 0; a < 8; ++a)
-      for (int b = 0; b < 8; ++b) {
-        double part = theta * density * fraction * network.cell_volume();
-        for (int d = 0; d < 3; ++d) part /= hexahedron_corners[a][d] == hexahedron_corners[b][d] ? 3 : 6;
-        entries.emplace_back(network.cells[c][a], network.cells[c][b], part);
-      }
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const auto C =
+        consistent_mass(network.filled.empty() ? FilledPart{} : network.filled[c], density * network.cell_volume());
+    for (int a = 0; a < 8; ++a) {
+      entries.emplace_back(network.cells[c][a], network.cells[c][a], (1 - theta) * C.row(a).sum());
+      for (int b = 0; theta > 0 && b < 8; ++b)
+        entries.emplace_back(network.cells[c][a], network.cells[c][b], theta * C(a, b));
+    }
+  }
+  if (network.cells.empty()) {
+    const Eigen::VectorXd lumped = masses(network, density);
+    for (int n = 0; n < network.nodes(); ++n) entries.emplace_back(n, n, lumped[n]);
   }
   Eigen::SparseMatrix<double> mass(network.nodes(), network.nodes());
   mass.setFromTriplets(entries.begin(), entries.end());

@@ -9,9 +9,10 @@
 
 namespace springproof {
 
-/// Mass between nodes [kg], n x n, the same for each axis: M = theta C + (1 - theta) L.  L: masses().  C, of networks
-/// of cells: the consistent mass of the trilinear displacement in each cell, times the fraction that the body fills.
-/// Other networks have the lumped mass alone.
+/// Mass between nodes [kg], n x n, the same for each axis: M = theta C + (1 - theta) L.  C: the consistent mass of the
+/// trilinear displacement in each cell, over the part that the body fills: of its mass, its first moments and its
+/// second along the axes.  L: the sums of the rows of C; of whole cells an eighth of the cell's mass per corner.
+/// Networks without cells have the lumped mass alone, masses().
 /// @throws std::invalid_argument unless 0 <= theta <= 1.
 Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, double theta);
 

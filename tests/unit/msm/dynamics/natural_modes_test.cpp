@@ -40,12 +40,31 @@ TEST(MassMatrix, HoldsTheBodysMassAndItsMomentsOfInertia) {
   EXPECT_THROW(mass_matrix(model.network, density, 1.5), std::invalid_argument);
 }
 
-TEST(MassMatrix, OfCutCellsIsThatOfTheFilledParts) {
+TEST(MassMatrix, OfCutCellsHasTheMomentsOfTheFilledParts) {
   const Network network = test::cut_network();
-  double filled = 0;
-  for (const FilledPart& part : network.filled) filled += part.fraction * network.cell_volume();
-  const Eigen::SparseMatrix<double> M = mass_matrix(network, density, 1);
-  EXPECT_NEAR(M.sum(), density * filled, 1e-12 * density * filled);
+  const double l = network.cell_edge;
+  double mass = 0;
+  Vec3 first = Vec3::Zero(), second = Vec3::Zero();
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const FilledPart& part = network.filled[c];
+    const double m = density * part.fraction * network.cell_volume();
+    const Vec3 middle = (network.X.row(network.cells[c][0]) + network.X.row(network.cells[c][6])).transpose() / 2;
+    const Vec3 centroid = middle + l * part.mean;
+    mass += m;
+    first += m * centroid;
+    second += m * (centroid.cwiseProduct(centroid) + l * l * part.variance);
+  }
+  for (const double theta : {0.0, 1.0}) {
+    const Eigen::SparseMatrix<double> M = mass_matrix(network, density, theta);
+    EXPECT_NEAR(M.sum(), mass, 1e-12 * mass);
+    for (int d = 0; d < 3; ++d) {
+      const Eigen::VectorXd x = network.X.col(d), ones = Eigen::VectorXd::Ones(x.size());
+      EXPECT_NEAR(ones.dot(M * x), first[d], 1e-12 * mass);
+      if (theta == 1) {
+        EXPECT_NEAR(x.dot(M * x), second[d], 1e-12 * mass);
+      }
+    }
+  }
 }
 
 TEST(SmallestEigenpairs, AreThoseOfADiagonalPencilWithTheNullSpaceLeftOut) {
