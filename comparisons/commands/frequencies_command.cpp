@@ -46,7 +46,7 @@ std::string cell_of(const ModeRow& row, double truth) {
   return fmt::format("{:.5g}  {}  {:.2f}", *row.frequency, percent(*row.frequency / truth - 1), row.mac);
 }
 
-void print(const Experiment& e, const FrequencyTable& t) {
+void print(const Experiment& e, const FrequencyTable& t, int modes) {
   fmt::print("\n{}: nu = {:g}, {} cells, {}, E = {:g} Pa, {:g} kg/m^3\n", e.name, t.material.poisson_ratio,
              cells_text(t.lattice->cells, " x "), supports_words(e), t.material.youngs_modulus, t.material.density);
   if (t.failure.empty())
@@ -67,10 +67,7 @@ void print(const Experiment& e, const FrequencyTable& t) {
   fmt::print("{:>4}  {:>20}", "mode", t.failure.empty() ? "FEM [Hz]" : "");
   for (const ModelFrequencies* m : shown) fmt::print("{:>{}}", name_of(*m), width);
   fmt::print("\n");
-  std::size_t count = t.reference.size();
-  if (count == 0)
-    for (const ModelFrequencies* m : shown) count = std::max(count, m->modes.frequencies.size());
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(modes); ++i) {
     const bool known = i < t.reference.size();
     fmt::print("{:>4}  {:>20}", i + 1,
                known ? fmt::format("{:.6g} +- {:.1g}", t.reference[i].value, t.reference[i].uncertainty) : "");
@@ -208,7 +205,7 @@ int FrequenciesCommand::run() const {
     }();
     if (frequencies_stopped) return frequencies_interrupted;
     for (const FrequencyTable& t : solved) {
-      print(experiment, t);
+      print(experiment, t, options_.modes);
       std::fflush(stdout);
       all = all && t.failure.empty() &&
             std::all_of(t.models.begin(), t.models.end(), [](const auto& m) { return m.message.empty(); });

@@ -148,8 +148,7 @@ NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>
   const double start = cpu_seconds();
   NaturalModes modes;
   if (!conservative(model))
-    modes.message =
-        "the forces of this model have no potential, and it no natural modes (allowed: symmetric dispersion)";
+    modes.message = "its forces have no potential, so it has no natural modes (allowed: symmetric dispersion)";
   else
     compute(model, fixed, density, theta, count, modes);
   modes.seconds = cpu_seconds() - start;

@@ -64,6 +64,16 @@ TEST(FemNaturalModes, OfAClampedBarWithoutContractionHoldItsStandingWave) {
   }
 }
 
+TEST(FemNaturalModes, OfThePressureFormAreThoseOfTheDisplacementForm) {
+  // The form changes at nu = 0.4.  Modes that change the volume are among the first twelve.
+  const Vec3 size(1, 1.1, 1.2);
+  const fem::Solution a = fem::solve_grid(modes_of(size, {5, 5, 5}, 2, 0.4, 12)),
+                      b = fem::solve_grid(modes_of(size, {5, 5, 5}, 2, 0.400001, 12));
+  ASSERT_TRUE(a.ok && b.ok) << a.message << b.message;
+  EXPECT_NE(a.form, b.form);
+  for (int i = 0; i < 12; ++i) EXPECT_NEAR(b.frequencies[i] / a.frequencies[i], 1, 1e-3) << i;
+}
+
 TEST(FemNaturalModes, OfABodyOnAPlateAreLeftThreeRigidMotions) {
   fem::GridProblem problem = modes_of({1, 1, 1}, {2, 2, 2}, 2, 0.3, 4);
   problem.loads = {PrescribedDisplacement{"z_min", {std::nullopt, std::nullopt, 0.0}}};
