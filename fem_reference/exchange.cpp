@@ -28,7 +28,7 @@ namespace fem {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions,
                                    volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,
-                                   iterations, residual, seconds, times, memory_MiB)
+                                   iterations, residual, seconds, times, memory_MiB, frequencies, shapes, rigid_motions)
 
 nlohmann::json to_json(const Request& r) {
   nlohmann::json meshes = nlohmann::json::array();
@@ -44,7 +44,8 @@ nlohmann::json to_json(const Request& r) {
           {"stress_points", r.stress_points},
           {"tolerance", r.tolerance},
           {"meshes", meshes},
-          {"cost", r.cost}};
+          {"cost", r.cost},
+          {"modes", r.modes}};
 }
 
 Request request_from_json(const nlohmann::json& j) {
@@ -61,6 +62,7 @@ Request request_from_json(const nlohmann::json& j) {
   j.at("tolerance").get_to(r.tolerance);
   for (const auto& mesh : j.at("meshes")) r.meshes.push_back(std::make_shared<Mesh>(mesh_from_json(mesh)));
   j.at("cost").get_to(r.cost);
+  j.at("modes").get_to(r.modes);
   return r;
 }
 

@@ -66,6 +66,7 @@ Solution solve_one(const Request& request, const Discretisation& grid, Method me
   problem.stress_points = request.stress_points;
   problem.tolerance = request.tolerance;
   problem.own_memory = request.cost;
+  problem.modes = request.modes;
   Solution solution = solve_grid(problem);
   solution.grid = grid;
   if (!request.cost || !solution.ok) return solution;

@@ -39,6 +39,13 @@ bool answers(const std::vector<Solution>& solutions, const Request& request) {
     if (s.grid.element != request.grids[g].element) return false;
     if (!s.ok) continue;
     if (!first) first = &s;
+    if (request.modes > 0) {
+      if (s.frequencies.size() < static_cast<std::size_t>(request.modes) || s.shapes.size() != s.frequencies.size() ||
+          std::any_of(s.shapes.begin(), s.shapes.end(),
+                      [&](const NodalVectors& u) { return u.rows() != request.points.rows(); }))
+        return false;
+      continue;
+    }
     const auto same_patch = [](const PatchReaction& a, const PatchReaction& b) { return a.patch == b.patch; };
     if (s.displacement.rows() != request.points.rows() || s.stress.rows() != request.stress_points.rows() ||
         !std::equal(s.reactions.begin(), s.reactions.end(), first->reactions.begin(), first->reactions.end(),

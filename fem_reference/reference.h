@@ -43,6 +43,7 @@ struct Request {
   double tolerance = 1e-9;                               ///< relative residual of the linear solves
   std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the .geo
   bool cost = false;                                     ///< measure times and memory for comparison (RunTimes)
+  int modes = 0;  ///< compute so many natural modes instead of a displacement: supports at rest, no other loads
 };
 
 /// The result on one grid.
@@ -64,6 +65,9 @@ struct Solution {
   double residual = 0;                   ///< relative, of the final state
   double seconds = 0;                    ///< CPU time of this grid, of all processes
   RunTimes times;                        ///< the part of it spent on the displacement; the rest is post-processing
+  std::vector<double> frequencies;       ///< of Request::modes and some more, ascending, without rigid motions [Hz]
+  std::vector<NodalVectors> shapes;      ///< of these modes, at Request::points [kg^-1/2]
+  int rigid_motions = 0;                 ///< that the supports leave
   double memory_MiB = 0;  ///< peak resident set so far, of the largest process; for an experiment with `cost` the
                           ///< growth due to this grid
 };

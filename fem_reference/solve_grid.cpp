@@ -10,6 +10,7 @@
 #include "fem_reference/boundary_conditions.h"
 #include "fem_reference/coarsest_level.h"
 #include "fem_reference/elastic_system.h"
+#include "fem_reference/natural_modes.h"
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
 #include "fem_reference/triangulate.h"
@@ -213,7 +214,10 @@ Solution solve_grid(const GridProblem& problem) {
   Solution solution;
   solution.law = problem.law;
   solution.degrees_of_freedom = dof_handler.n_dofs();
-  solve_into(solution, problem, *body, dof_handler, start, memory);
+  if (problem.modes > 0)
+    solve_modes(problem, *body, dof_handler, solution);
+  else
+    solve_into(solution, problem, *body, dof_handler, start, memory);
   const MPI_Comm comm = body->triangulation.get_communicator();
   solution.seconds = dealii::Utilities::MPI::sum(cpu_seconds() - start, comm);
   if (!memory) solution.memory_MiB = dealii::Utilities::MPI::max(peak_memory_MiB(), comm);

@@ -29,6 +29,7 @@ struct GridProblem {
   double tolerance = 1e-9;                          ///< relative residual
   Method method = Method::automatic;
   bool wide_vectors = true;  ///< use wide SIMD vectors, where the processor has them
+  int modes = 0;             ///< natural modes to compute instead of a displacement (fem_reference/natural_modes.h)
   bool own_memory = false;   ///< Solution::memory_MiB is the growth due to this grid
 };
 

@@ -11,6 +11,7 @@
 #include "comparisons/commands/describe.h"
 #include "comparisons/commands/diff_command.h"
 #include "comparisons/commands/export_command.h"
+#include "comparisons/commands/frequencies_command.h"
 #include "comparisons/commands/homogenise_command.h"
 #include "comparisons/commands/material_command.h"
 #include "comparisons/commands/pictures_command.h"
@@ -121,6 +122,11 @@ int main(int argc, char** argv) try {
       app.add_subcommand("cross-check", "The same case by CalculiX and by our FEM reference, with both uncertainties");
   second_opinion.add_options(*cross_check_command);
 
+  FrequenciesCommand frequencies;
+  CLI::App* frequencies_command = app.add_subcommand(
+      "frequencies", "Natural frequencies and modes of a case's models beside the finite element reference's");
+  frequencies.add_options(*frequencies_command);
+
   PicturesCommand pictures;
   CLI::App* pictures_command =
       app.add_subcommand("pictures", "The figures and bodies of a report as PNG files, without a display");
@@ -147,7 +153,7 @@ int main(int argc, char** argv) try {
       app.add_subcommand("describe", "The command line as a man page, or as completion for bash")->group("");
   describe_command->add_option("FORM", form)->required()->check(CLI::IsMember({"man", "bash"}));
 
-  for (CLI::App* command : {compare_command, export_command, cross_check_command})
+  for (CLI::App* command : {compare_command, export_command, cross_check_command, frequencies_command})
     command->add_flag_callback(
         "--no-scripts", [] { setenv("SPRINGPROOF_NO_SCRIPTS", "1", 1); },
         "refuse .geo scripts other than the built-in ones: a script can run any command");
@@ -163,6 +169,7 @@ int main(int argc, char** argv) try {
   if (*bench_command) return run_bench(bench_command->remaining());
   if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();
+  if (*frequencies_command) return frequencies.run();
   if (*pictures_command) return pictures.run();
   if (*diff_command) return diff.run();
   if (*reproduce_command) return reproduction.run();

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "meshes/locate/locate.h"
-#include "msm/algebra/eigenvalues.h"
+#include "msm/embedding/rigid_motions.h"
 
 namespace springproof {
 namespace {
@@ -203,35 +203,11 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
 
 namespace {
 
-using Motion = Eigen::Matrix<double, 6, 1>;
-
-/// Values of the six rigid motions at an unknown: translations, then rotations about the centre, divided by the size.
-struct RigidMotions {
-  const NodalVectors& X;
-  Vec3 middle = X.colwise().mean().transpose();
-  double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
-
-  Motion at(int unknown) const {
-    const Vec3 r = (X.row(unknown / 3).transpose() - middle) / size;
-    Motion motion = Motion::Zero();
-    motion[unknown % 3] = 1;
-    for (int axis = 0; axis < 3; ++axis) motion[3 + axis] = Vec3::Unit(axis).cross(r)[unknown % 3];
-    return motion;
-  }
-};
-
 /// The rigid motion that the fixed unknowns constrain least; nothing if they constrain all six.
-std::optional<Motion> free_motion(const BoundaryConditions& bc, const RigidMotions& rigid) {
-  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
-  double count = 0;
-  for (int i = 0; i < static_cast<int>(bc.fixed.size()); ++i)
-    if (bc.fixed[i]) {
-      gram += rigid.at(i) * rigid.at(i).transpose();
-      ++count;
-    }
-  const Eigenpairs eigen = symmetric_eigenpairs(gram);
-  if (count > 0 && eigen.values[0] > 1e-10 * count) return {};
-  return eigen.vectors.col(0);
+std::optional<RigidMotions::Motion> free_motion(const BoundaryConditions& bc, const RigidMotions& rigid) {
+  const auto motions = free_motions(bc.fixed, rigid);
+  if (motions.cols() == 0) return {};
+  return motions.col(0);
 }
 
 }  // namespace

@@ -75,6 +75,7 @@ TEST(FemRequest, TheRestArrives) {
   request.tolerance = 1e-11;
   request.meshes = {std::make_shared<Mesh>(block_mesh(Vec3(1, 1, 1), {1, 1, 1}))};
   request.cost = true;
+  request.modes = 7;
   const fem::Request arrived = sent(request);
   EXPECT_EQ(to_json(arrived), to_json(request));
   EXPECT_EQ(arrived.geo, request.geo);
@@ -82,6 +83,7 @@ TEST(FemRequest, TheRestArrives) {
   EXPECT_EQ(arrived.stress_points.rows(), 2);
   EXPECT_EQ(arrived.meshes[0]->nodes, request.meshes[0]->nodes);
   EXPECT_TRUE(arrived.cost);
+  EXPECT_EQ(arrived.modes, 7);
 }
 
 TEST(FemRequest, NumbersThatMakeNoMatrixAreRefused) {

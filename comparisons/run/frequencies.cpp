@@ -1,0 +1,199 @@
+#include "comparisons/run/frequencies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "comparisons/run/reference_grids.h"
+#include "fem_reference/case_request.h"
+#include "meshes/volume.h"
+#include "msm/dynamics/natural_modes.h"
+#include "msm/embedding/boundary.h"
+#include "problem/system/progress.h"
+
+namespace springproof {
+namespace {
+
+// Elements (Q2) of the finest grid of a block: what a direct solver factors in some ten seconds.
+constexpr double mode_elements = 1728;
+constexpr int modes_beside = 6;         // computed beside those compared, as partners and for whole multiplets
+constexpr double eigenvalue_order = 4;  // of frequencies with quadratic elements in smooth solutions
+
+Cells mode_cells(const Vec3& size) {
+  const double edge = std::cbrt(size.prod() / mode_elements);
+  Cells cells;
+  for (int d = 0; d < 3; ++d) cells[d] = 4 * std::max(1, static_cast<int>(std::lround(size[d] / edge / 4)));
+  return cells;
+}
+
+/// Three grids, coarse to fine.
+fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) {
+  const Experiment& e = prepared.experiment;
+  fem::Request request = fem::request_of(e, material);
+  request.law = "linear";
+  request.loads = e.loads;
+  request.modes = modes;
+  if (e.body.is_voxels()) {
+    request.points = prepared.body_points;
+    request.meshes = prepared.tetrahedra;
+    for (int m = 0; m < 3; ++m) request.grids.push_back({{prepared.uncut[m], 0, 0}, "p2", 1.0, m, 0});
+    return request;
+  }
+  request.points.resize(prepared.nodes(), 3);
+  for (const Lattice& lattice : prepared.lattices)
+    request.points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
+  const Cells fine = mode_cells(e.body.size);
+  for (const int divisor : {4, 2, 1})
+    request.grids.push_back(
+        {{fine[0] / divisor, fine[1] / divisor, fine[2] / divisor}, "q2", e.loads.empty() ? 1.0 : e.reference.grading});
+  return request;
+}
+
+/// A free block: no edge at which stresses are singular.
+bool has_smooth_modes(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  return e.loads.empty() && !e.body.is_voxels() &&
+         std::abs(volume(*prepared.lattices[0].mesh, prepared.lattices[0].mesh->nodes) / e.body.size.prod() - 1) < 1e-9;
+}
+
+/// At the nodes of every lattice, one after the other.
+ModeSet modes_at_nodes(const PreparedCase& prepared, const fem::Solution& s) {
+  ModeSet out{s.frequencies, {}};
+  for (const NodalVectors& u : s.shapes)
+    out.shapes.push_back(prepared.experiment.body.is_voxels() ? at_lattice_nodes(prepared, u) : u);
+  return out;
+}
+
+Eigen::VectorXd weights_of_nodes(const PreparedCase& prepared) {
+  Eigen::VectorXd weights(prepared.nodes());
+  for (const Lattice& lattice : prepared.lattices)
+    weights.segment(lattice.first_node, lattice.mesh->nodes.rows()) = nodal_volumes(*lattice.mesh);
+  return weights;
+}
+
+struct ReferenceModes {
+  std::string form, failure;
+  int rigid_motions = 0;
+  std::vector<ReferenceValue> frequencies;
+  ModeSet finest;  ///< at the nodes of every lattice, one after the other
+};
+
+ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
+  ReferenceModes out;
+  const ElementGrids grids{"q2", fem::solve(mode_request(prepared, material, modes + modes_beside))};
+  for (const fem::Solution& s : grids.grids)
+    if (!s.ok) {
+      out.failure = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);
+      return out;
+    }
+  out.form = grids.grids[2].form;
+  out.rigid_motions = grids.grids[2].rigid_motions;
+  out.finest = modes_at_nodes(prepared, grids.grids[2]);
+  std::vector<std::vector<double>> values(modes);
+  for (const fem::Solution& s : grids.grids) {  // modes may cross from grid to grid
+    const auto pairs = pair_modes(out.finest, modes_at_nodes(prepared, s), weights_of_nodes(prepared));
+    for (int i = 0; i < modes; ++i) values[i].push_back(s.frequencies[pairs[i].partner.value_or(i)]);
+  }
+  const double order = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order;
+  for (const std::vector<double>& v : values)
+    out.frequencies.push_back(extrapolate(v, solver_noise * v[2], order, ratios_of(grids)));
+  return out;
+} catch (const std::runtime_error& e) {
+  ReferenceModes none;
+  none.failure = e.what();
+  return none;
+}
+
+void compare(const FrequencyTable& table, const Eigen::VectorXd& weights, ModelFrequencies& model) {
+  const std::vector<ModePair> pairs = pair_modes(table.shapes, model.modes, weights);
+  int count = 0;
+  for (std::size_t i = 0; i < table.reference.size(); ++i) {
+    ModeRow& row = model.rows.emplace_back();
+    row.mac = pairs[i].mac;
+    if (!pairs[i].partner) continue;
+    row.frequency = model.modes.frequencies[*pairs[i].partner];
+    const double error = *row.frequency / table.reference[i].value - 1;
+    model.largest = std::max(model.largest, std::abs(error));
+    model.rms = std::sqrt((count * model.rms * model.rms + error * error) / (count + 1));
+    ++count;
+  }
+}
+
+ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lattice, std::size_t number, double theta,
+                                const IsotropicMaterial& material, int modes) try {
+  ModelFrequencies out;
+  out.label = prepared.experiment.models[number].label;
+  out.consistency = theta;
+  const auto [model, embedding] = build_on(prepared, lattice, prepared.models[number], material);
+  const BoundaryConditions supports = transfer(prepared.experiment.loads, *lattice.mesh, embedding, model.network,
+                                               material.density, Kinematics::linear);
+  const NaturalModes found = natural_modes(model, supports.fixed, material.density, theta, modes + modes_beside);
+  out.message = found.message;
+  out.solver = found.solver;
+  out.seconds = found.seconds;
+  out.modes.frequencies = found.frequencies;
+  for (const NodalVectors& u : found.shapes) out.modes.shapes.emplace_back(embedding.weights * u);
+  return out;
+} catch (const InputError&) {
+  throw;
+} catch (const std::exception& e) {  // no network with this material's moduli
+  ModelFrequencies none;
+  none.label = prepared.experiment.models[number].label;
+  none.consistency = theta;
+  none.message = e.what();
+  return none;
+}
+
+}  // namespace
+
+Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
+  std::vector<Load> supports;
+  std::vector<SourceLocation> locations;
+  for (std::size_t i = 0; !options.free && i < e.loads.size(); ++i)
+    if (prescribes_displacement(e.loads[i])) {
+      supports.push_back(e.loads[i]);
+      locations.push_back(e.load_locations[i]);
+    }
+  e.loads = supports;
+  e.load_locations = locations;
+  e.measures.clear();
+  e.expectations.clear();
+  e.elements.clear();
+  e.kinematics = "linear";
+  for (ModelChoice& m : e.models) m.in_motion = false;
+  return e;
+}
+
+std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                                const FrequencyOptions& options) {
+  std::vector<std::string> patches;
+  for (const Patch& p : prepared.lattices.front().mesh->patches) patches.push_back(p.name);
+  check_patches(prepared.experiment, patches);
+  const ReferenceModes reference = reference_modes(prepared, material, options.modes);
+  std::vector<FrequencyTable> tables;
+  for (const Lattice& lattice : prepared.lattices) {
+    FrequencyTable& table = tables.emplace_back();
+    table.material = material;
+    table.lattice = &lattice;
+    table.form = reference.form;
+    table.failure = reference.failure;
+    table.rigid_motions = reference.rigid_motions;
+    table.reference = reference.frequencies;
+    table.shapes.frequencies = reference.finest.frequencies;
+    for (const NodalVectors& u : reference.finest.shapes) table.shapes.shapes.push_back(at_nodes(lattice, u));
+    const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
+    for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+      const bool cells = prepared.models[m].row.topology == Topology::cells;
+      for (const double theta : cells ? options.consistency : std::vector<double>{0}) {
+        progress::phase(
+            fmt::format("{} on {} cells", prepared.experiment.models[m].label, cells_text(lattice.cells, " x ")));
+        table.models.push_back(frequencies_of(prepared, lattice, m, theta, material, options.modes));
+        if (table.failure.empty() && table.models.back().message.empty()) compare(table, weights, table.models.back());
+      }
+    }
+  }
+  return tables;
+}
+
+}  // namespace springproof

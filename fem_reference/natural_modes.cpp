@@ -1,0 +1,263 @@
+#include "fem_reference/natural_modes.h"
+
+#include <deal.II/fe/fe_dgp.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <fmt/format.h>
+#include <slepceps.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fem_reference/boundary_conditions.h"
+#include "fem_reference/cell_equations.h"
+#include "fem_reference/multigrid.h"
+#include "fem_reference/processes.h"
+#include "fem_reference/sample.h"
+#include "problem/system/input_error.h"
+#include "problem/system/progress.h"
+
+namespace springproof::fem {
+namespace {
+
+constexpr int modes_beyond = 6;            // computed beside those wanted: a gap for the inertia, whole multiplets
+constexpr double eigen_tolerance = 1e-10;  // relative residual
+constexpr double rigid_below = 1e-7;       // of the largest eigenvalue computed: a rigid motion
+constexpr double least_gap = 1e-4;         // relative, between eigenvalues: none lies in it by accident
+
+void succeed(PetscErrorCode code) {
+  if (code == 0) return;
+  const char* text = nullptr;
+  PetscErrorMessage(code, &text, nullptr);
+  throw std::runtime_error(fmt::format("SLEPc: {}", text ? text : "unknown error"));
+}
+
+/// Stiffness and consistent mass of the free degrees of freedom.
+struct Pencil {
+  std::vector<PetscInt> number;  ///< of each degree of freedom among the free ones; -1: held
+  PetscInt unknowns = 0;
+  std::unique_ptr<SparseMatrix> K, M;
+};
+
+/// lambda B^T P^-1 B: the pressures of a cell eliminated.  B = integral of pressure functions times div u, P their
+/// mass.
+CellMatrix condensed_pressure(const CellShape& shape, double lambda) {
+  const auto functions = shape.pressures.cols();
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(functions, 3 * shape.nodes());
+  for (int q = 0; q < shape.points(); ++q)
+    for (int a = 0; a < shape.nodes(); ++a)
+      for (int i = 0; i < 3; ++i)
+        B.col(3 * a + i) += shape.weights[q] * shape.gradients(3 * q + i, a) * shape.pressures.row(q).transpose();
+  const Eigen::MatrixXd P = shape.pressures.transpose() * shape.weights.asDiagonal() * shape.pressures;
+  return lambda * B.transpose() * P.ldlt().solve(B);
+}
+
+Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                       Form form) {
+  Pencil pencil;
+  pencil.number.assign(dof_handler.n_dofs(), 0);
+  for (const Prescribed& p : prescribed(dof_handler, body, problem.loads)) pencil.number[p.dof] = -1;
+  for (PetscInt& n : pencil.number)
+    if (n == 0) n = pencil.unknowns++;
+
+  const auto& fe = dof_handler.get_fe();
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
+  dealii::DynamicSparsityPattern pattern(pencil.unknowns, pencil.unknowns);
+  for (const auto& cell : dof_handler.active_cell_iterators()) {
+    cell->get_dof_indices(dofs);
+    std::vector<dealii::types::global_dof_index> free;
+    for (const auto dof : dofs)
+      if (pencil.number[dof] >= 0) free.push_back(pencil.number[dof]);
+    std::sort(free.begin(), free.end());
+    for (const auto row : free) pattern.add_entries(row, free.begin(), free.end(), true);
+  }
+  const dealii::IndexSet all = dealii::complete_index_set(pencil.unknowns);
+  const MPI_Comm comm = PETSC_COMM_SELF;
+  pencil.K = std::make_unique<SparseMatrix>(all, all, pattern, comm);
+  pencil.M = std::make_unique<SparseMatrix>(all, all, pattern, comm);
+
+  std::unique_ptr<dealii::FiniteElement<3>> scalar = std::make_unique<dealii::FE_Q<3>>(problem.degree);
+  if (body.has_tetrahedra()) scalar = std::make_unique<dealii::FE_SimplexP<3>>(problem.degree);
+  const dealii::Quadrature<3> quadrature = cell_quadrature(body, body.has_tetrahedra() ? 4 : problem.degree + 1);
+  dealii::FEValues<3> values(*body.mapping, *scalar, quadrature,
+                             dealii::update_values | dealii::update_gradients | dealii::update_JxW_values);
+  const int nodes = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
+  CellShape shape{Eigen::MatrixXd(3 * points, nodes), Eigen::VectorXd(points), Eigen::MatrixXd()};
+  if (form == Form::mixed) {
+    const dealii::FE_DGP<3> pressure(problem.degree - 1);
+    shape.pressures.resize(points, pressure.n_dofs_per_cell());
+    for (int q = 0; q < points; ++q)
+      for (unsigned int f = 0; f < pressure.n_dofs_per_cell(); ++f)
+        shape.pressures(q, f) = pressure.shape_value(f, quadrature.point(q));
+  }
+  const CellLaw law{std::nullopt, form, shear_modulus(problem.material), lame_lambda(problem.material)};
+  std::vector<PetscInt> rows(dofs.size());
+  for (const auto& cell : dof_handler.active_cell_iterators()) {
+    cell->get_dof_indices(dofs);
+    for (unsigned int i = 0; i < dofs.size(); ++i) {
+      const auto [component, node] = fe.system_to_component_index(i);
+      rows[3 * node + component] = pencil.number[dofs[i]];  // PETSc leaves out negative rows and columns
+    }
+    const dealii::Triangulation<3>::cell_iterator here = cell;
+    values.reinit(here);
+    CellMatrix mass = CellMatrix::Zero(3 * nodes, 3 * nodes);
+    for (int q = 0; q < points; ++q) {
+      shape.weights[q] = values.JxW(q);
+      for (int a = 0; a < nodes; ++a) {
+        for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
+        for (int b = 0; b < nodes; ++b)
+          for (int i = 0; i < 3; ++i)
+            mass(3 * a + i, 3 * b + i) +=
+                problem.material.density * values.JxW(q) * values.shape_value(a, q) * values.shape_value(b, q);
+      }
+    }
+    CellMatrix stiffness = cell_stiffness(law, shape, nullptr);
+    if (form == Form::mixed) stiffness += condensed_pressure(shape, law.lambda);
+    pencil.K->add(rows, rows, stiffness.data());
+    pencil.M->add(rows, rows, mass.data());
+  }
+  pencil.K->finish();
+  pencil.M->finish();
+  for (const Mat matrix : {pencil.K->petsc(), pencil.M->petsc()})
+    succeed(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));
+  return pencil;
+}
+
+/// Number of eigenvalues below sigma: that of negative pivots of K - sigma M (Sylvester).
+PetscInt eigenvalues_below(double sigma, const Pencil& pencil) {
+  Mat shifted = nullptr, factors = nullptr;
+  IS rows = nullptr, columns = nullptr;
+  MatFactorInfo info;
+  PetscInt negative = 0;
+  succeed(MatDuplicate(pencil.K->petsc(), MAT_COPY_VALUES, &shifted));
+  succeed(MatAXPY(shifted, -sigma, pencil.M->petsc(), SAME_NONZERO_PATTERN));
+  succeed(MatSetOption(shifted, MAT_SYMMETRIC, PETSC_TRUE));
+  succeed(MatGetFactor(shifted, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors));
+  succeed(MatFactorInfoInitialize(&info));
+  succeed(MatGetOrdering(shifted, MATORDERINGEXTERNAL, &rows, &columns));
+  succeed(MatCholeskyFactorSymbolic(factors, shifted, rows, &info));
+  succeed(MatCholeskyFactorNumeric(factors, shifted, &info));
+  succeed(MatGetInertia(factors, &negative, nullptr, nullptr));
+  succeed(ISDestroy(&rows));
+  succeed(ISDestroy(&columns));
+  succeed(MatDestroy(&factors));
+  succeed(MatDestroy(&shifted));
+  return negative;
+}
+
+/// An eigenvalue solver and its vectors; destroyed on every way out.
+struct Eigensolver {
+  EPS eps = nullptr;
+  Vec vector = nullptr;
+  Eigensolver() = default;
+  Eigensolver(const Eigensolver&) = delete;
+  Eigensolver& operator=(const Eigensolver&) = delete;
+  ~Eigensolver() {
+    VecDestroy(&vector);
+    EPSDestroy(&eps);
+  }
+};
+
+void set_up(const Pencil& pencil, int count, double target, Eigensolver& solver) {
+  ST transformation = nullptr;
+  KSP ksp = nullptr;
+  PC factors = nullptr;
+  succeed(EPSCreate(PETSC_COMM_SELF, &solver.eps));
+  succeed(EPSSetOperators(solver.eps, pencil.K->petsc(), pencil.M->petsc()));
+  succeed(EPSSetProblemType(solver.eps, EPS_GHEP));
+  succeed(EPSSetType(solver.eps, EPSKRYLOVSCHUR));
+  succeed(EPSSetDimensions(solver.eps, count, std::min<PetscInt>(pencil.unknowns, 3 * count), PETSC_DEFAULT));
+  succeed(EPSSetTolerances(solver.eps, eigen_tolerance, 500));
+  succeed(EPSSetTarget(solver.eps, target));
+  succeed(EPSSetWhichEigenpairs(solver.eps, EPS_TARGET_MAGNITUDE));
+  succeed(EPSGetST(solver.eps, &transformation));
+  succeed(STSetType(transformation, STSINVERT));
+  succeed(STSetMatStructure(transformation, SAME_NONZERO_PATTERN));
+  succeed(STGetKSP(transformation, &ksp));
+  succeed(KSPSetType(ksp, KSPPREONLY));
+  succeed(KSPGetPC(ksp, &factors));
+  succeed(PCSetType(factors, PCCHOLESKY));
+  succeed(PCFactorSetMatSolverType(factors, MATSOLVERMUMPS));
+}
+
+}  // namespace
+
+void solve_modes(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                 Solution& solution) {
+  const Element element{body.has_tetrahedra(), problem.degree};
+  const Form form = form_for(element, problem.material.poisson_ratio, true);
+  if (process_count() > 1) throw InputError("natural modes are computed by one process");
+  if (element.tetrahedra && form == Form::mixed)
+    throw InputError(
+        fmt::format("natural modes of tetrahedra: Poisson's ratio is {:g} (allowed: up to 0.4, above which "
+                    "they would lock)",
+                    problem.material.poisson_ratio));
+  start_mpi();
+  progress::detail(fmt::format("{} unknowns, natural modes", dof_handler.n_dofs()));
+  const Pencil pencil = assemble_pencil(problem, body, dof_handler, form);
+  const int count = int(std::min<PetscInt>(problem.modes + 6 + modes_beyond, pencil.unknowns));
+  const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
+  const double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
+  Eigensolver solver;
+  set_up(pencil, count, -0.01 * slowest, solver);
+  succeed(EPSSolve(solver.eps));
+  PetscInt converged = 0, iterations = 0;
+  succeed(EPSGetConverged(solver.eps, &converged));
+  succeed(EPSGetIterationNumber(solver.eps, &iterations));
+  solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form));
+  solution.iterations = int(iterations);
+  solution.unknowns = pencil.unknowns;
+  if (converged < count) {
+    solution.message = fmt::format("{} of {} natural modes converged", converged, count);
+    return;
+  }
+  std::vector<std::pair<double, PetscInt>> found(converged);  // eigenvalue, its number
+  for (PetscInt i = 0; i < converged; ++i) {
+    succeed(EPSGetEigenvalue(solver.eps, i, &found[i].first, nullptr));
+    found[i].second = i;
+  }
+  std::sort(found.begin(), found.end());
+  const double largest = found.back().first;
+  const auto rigid =
+      std::count_if(found.begin(), found.end(), [&](const auto& f) { return f.first < rigid_below * largest; });
+  // The largest gap beyond the wanted: as many eigenvalues must lie below it as were found.
+  std::size_t last = found.size() - 1;
+  double gap = 0;
+  for (std::size_t i = rigid + problem.modes; i < found.size(); ++i)
+    if (const double g = found[i].first / found[i - 1].first - 1; g > gap) {
+      gap = g;
+      last = i;
+    }
+  if (gap > least_gap) {
+    const PetscInt below = eigenvalues_below((found[last - 1].first + found[last].first) / 2, pencil);
+    if (below != PetscInt(last)) {
+      solution.message = fmt::format("{} eigenvalues lie below one where {} were found", below, last);
+      return;
+    }
+  }
+  const std::vector<Location> places = locate(body, problem.points);
+  succeed(MatCreateVecs(pencil.K->petsc(), &solver.vector, nullptr));
+  for (std::size_t i = rigid; i < last; ++i) {
+    PetscReal error = 0;
+    succeed(EPSComputeError(solver.eps, found[i].second, EPS_ERROR_RELATIVE, &error));
+    solution.residual = std::max(solution.residual, double(error));
+    succeed(EPSGetEigenvector(solver.eps, found[i].second, solver.vector, nullptr));
+    const PetscScalar* entries = nullptr;
+    succeed(VecGetArrayRead(solver.vector, &entries));
+    DofVector u = zero_vector(dof_handler);
+    for (std::size_t dof = 0; dof < pencil.number.size(); ++dof)
+      if (pencil.number[dof] >= 0) u[dof] = entries[pencil.number[dof]];
+    succeed(VecRestoreArrayRead(solver.vector, &entries));
+    u.update_ghost_values();
+    solution.frequencies.push_back(std::sqrt(found[i].first) / (2 * std::numbers::pi));
+    solution.shapes.push_back(displacement_at(places, dof_handler, u));
+  }
+  solution.rigid_motions = int(rigid);
+  solution.ok = true;
+}
+
+}  // namespace springproof::fem

@@ -1,0 +1,19 @@
+// Natural frequencies and modes by finite elements with consistent mass, at rest, on one grid.
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include "fem_reference/solve_grid.h"
+#include "fem_reference/triangulate.h"
+
+namespace springproof::fem {
+
+/// The problem's first `modes` natural modes, its supports at rest and its other loads left out: SLEPc's Krylov-Schur
+/// method about a shift below zero (MUMPS); that no eigenvalue was passed over follows from the inertia of K - sigma M
+/// above the last.  Quadratic hexahedra above nu = 0.4: pressures, discontinuous from cell to cell, are eliminated.
+/// Sets the frequencies, shapes, residual and description of the solution.
+/// @throws InputError for several processes, and for quadratic tetrahedra above nu = 0.4, which would lock.
+void solve_modes(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                 Solution& solution);
+
+}  // namespace springproof::fem

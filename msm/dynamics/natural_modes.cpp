@@ -1,0 +1,158 @@
+#include "msm/dynamics/natural_modes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "msm/algebra/lobpcg.h"
+#include "msm/embedding/boundary.h"
+#include "msm/embedding/rigid_motions.h"
+#include "msm/statics/tangent_solver.h"
+#include "problem/system/progress.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof {
+namespace {
+
+constexpr long modes_direct_limit = 6000;  // free unknowns; one factorisation serves some hundred solutions
+constexpr int guards = 8;                  // modes computed beside those wanted: a cube has up to six of one frequency
+constexpr double mode_tolerance = 1e-6;    // residual; frequencies are then exact to its square or better
+constexpr double inner_residual = 1e-2;    // of the preconditioning solve
+constexpr int inner_iterations = 100, outer_iterations = 60;
+
+using NodalMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>;
+
+/// Rigid motions that the supports leave, as columns over all unknowns.
+Eigen::MatrixXd left_motions(const std::vector<char>& fixed, const NodalVectors& X) {
+  const RigidMotions rigid{X};
+  const auto motions = free_motions(fixed, rigid);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(fixed.size()), motions.cols());
+  for (int i = 0; i < static_cast<int>(fixed.size()); ++i)
+    if (!fixed[i]) columns.row(i) = rigid.at(i).transpose() * motions;
+  return columns;
+}
+
+/// Repeatable, different in every entry.
+Eigen::MatrixXd scattered(Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd X(rows, columns);
+  unsigned state = 1;
+  for (double& value : X.reshaped())
+    value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+  return X;
+}
+
+void clear(const std::vector<char>& fixed, Eigen::VectorXd& v) {
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (fixed[i]) v[static_cast<Eigen::Index>(i)] = 0;
+}
+
+/// Integral of rho N_a N_b over the filled part of a cell of mass rho l^3 = `full`, N the corners' trilinear weights:
+/// at the two Gauss points per axis of the part's own mean and variance; of a full cell exact.
+Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
+  Eigen::Matrix<double, 8, 8> C = Eigen::Matrix<double, 8, 8>::Zero();
+  for (int q = 0; q < 8; ++q) {
+    Eigen::Matrix<double, 8, 1> N;
+    for (int a = 0; a < 8; ++a) {
+      N[a] = 1;
+      for (int d = 0; d < 3; ++d) {
+        const double xi = part.mean[d] + (hexahedron_corners[q][d] == 0 ? -1 : 1) * std::sqrt(part.variance[d]);
+        N[a] *= hexahedron_corners[a][d] == 0 ? 0.5 - xi : 0.5 + xi;
+      }
+    }
+    C += full * part.fraction / 8 * N * N.transpose();
+  }
+  return C;
+}
+
+void compute(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta, int count,
+             NaturalModes& modes) {
+  const Network& network = model.network;
+  const Eigen::SparseMatrix<double> mass = mass_matrix(network, density, theta);
+  // Residuals are in equilibrium with themselves: held at just enough unknowns, a body answers them without reactions.
+  BoundaryConditions held;
+  held.fixed = fixed;
+  hold_free_motions(network.X, held);
+  TangentSolver stiffness(model, held.fixed, modes_direct_limit);
+  modes.solver = "LOBPCG + " + stiffness.name();
+  if (!stiffness.take(network.X)) {
+    modes.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
+    return;
+  }
+  const Operator K = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+    stiffness.multiply(x, y);
+    clear(fixed, y);
+  };
+  const Operator M = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+    y.resize(x.size());
+    Eigen::Map<NodalVectors>(y.data(), x.size() / 3, 3) = mass * NodalMap(x.data(), x.size() / 3, 3);
+    clear(fixed, y);
+  };
+  const Operator solve = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    stiffness.solve(r, inner_residual, inner_iterations, z);
+  };
+  const Eigen::MatrixXd rigid = orthonormalised(M, left_motions(fixed, network.X), {});
+  const long unknowns = std::count(fixed.begin(), fixed.end(), 0) - rigid.cols();
+  const auto wanted = static_cast<int>(std::min<long>(count, unknowns));
+  Eigen::MatrixXd start = scattered(3 * network.X.rows(), std::min<long>(wanted + guards, unknowns));
+  Eigen::VectorXd y, inertia, z;
+  for (Eigen::Index j = 0; j < start.cols(); ++j) {  // the answers to scattered loads in equilibrium: smooth
+    M(start.col(j), y);
+    M(rigid * (rigid.transpose() * y), inertia);
+    solve(y - inertia, z);
+    start.col(j) = z;
+  }
+  const SmallestEigenpairs found =
+      smallest_eigenpairs(K, M, solve, rigid, start, wanted, mode_tolerance, outer_iterations);
+  modes.rigid_motions = static_cast<int>(rigid.cols());
+  modes.iterations = found.iterations;
+  modes.residual = found.residual;
+  modes.ok = found.converged && found.values.size() > 0 && found.values[0] > 0;
+  if (!modes.ok)
+    modes.message =
+        fmt::format("{}: residual {:.2e} after {} iterations", modes.solver, found.residual, found.iterations);
+  for (int j = 0; modes.ok && j < wanted; ++j) {
+    modes.frequencies.push_back(std::sqrt(found.values[j]) / (2 * std::numbers::pi));
+    modes.shapes.emplace_back(NodalMap(found.vectors.col(j).data(), network.X.rows(), 3));
+  }
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, double theta) {
+  if (!(theta >= 0 && theta <= 1))
+    throw std::invalid_argument(fmt::format("share of consistent mass {:g} (allowed: 0 to 1)", theta));
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const auto C =
+        consistent_mass(network.filled.empty() ? FilledPart{} : network.filled[c], density * network.cell_volume());
+    for (int a = 0; a < 8; ++a) {
+      entries.emplace_back(network.cells[c][a], network.cells[c][a], (1 - theta) * C.row(a).sum());
+      for (int b = 0; theta > 0 && b < 8; ++b)
+        entries.emplace_back(network.cells[c][a], network.cells[c][b], theta * C(a, b));
+    }
+  }
+  if (network.cells.empty()) {
+    const Eigen::VectorXd lumped = masses(network, density);
+    for (int n = 0; n < network.nodes(); ++n) entries.emplace_back(n, n, lumped[n]);
+  }
+  Eigen::SparseMatrix<double> mass(network.nodes(), network.nodes());
+  mass.setFromTriplets(entries.begin(), entries.end());
+  return mass;
+}
+
+NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta,
+                           int count) {
+  const double start = cpu_seconds();
+  NaturalModes modes;
+  if (!conservative(model))
+    modes.message = "its forces have no potential, so it has no natural modes (allowed: symmetric dispersion)";
+  else
+    compute(model, fixed, density, theta, count, modes);
+  modes.seconds = cpu_seconds() - start;
+  return modes;
+}
+
+}  // namespace springproof

@@ -1,0 +1,36 @@
+// Natural frequencies and modes of a model about its rest state.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <string>
+#include <vector>
+
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+/// Mass between nodes [kg], n x n, the same for each axis: M = theta C + (1 - theta) L.  C: the consistent mass of the
+/// trilinear displacement in each cell, over the part that the body fills: of its mass, its first moments and its
+/// second along the axes.  L: the sums of the rows of C; of whole cells an eighth of the cell's mass per corner.
+/// Networks without cells have the lumped mass alone, masses().
+/// @throws std::invalid_argument unless 0 <= theta <= 1.
+Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, double theta);
+
+struct NaturalModes {
+  bool ok = false;
+  std::string message;               ///< why there is no result
+  std::vector<double> frequencies;   ///< ascending, without the rigid motions [Hz]
+  std::vector<NodalVectors> shapes;  ///< displacement of the nodes, M-orthonormal [kg^-1/2]
+  int rigid_motions = 0;             ///< number of motions that the supports leave
+  std::string solver;
+  int iterations = 0;
+  double residual = 0;  ///< largest |K x - omega^2 M x| / |omega^2 M x|
+  double seconds = 0;   ///< CPU time of the thread
+};
+
+/// The first `count` natural modes (fewer if the model has fewer) of small vibrations about rest, the unknowns
+/// 3 * node + axis that are `fixed` at zero.  Any model whose forces have a potential.
+NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta,
+                           int count);
+
+}  // namespace springproof

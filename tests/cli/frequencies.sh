@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# Natural frequencies of a free and of a held cube, beside the reference's, and what is refused.   frequencies.sh PROGRAM
+set -u
+program=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+
+cat >"$work/cube.toml" <<'TOML'
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [6, 6, 6]
+[material]
+youngs_modulus_Pa = 1e6
+poisson_ratio = [0.49, 0.25]
+density_kg_m3 = 1000
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "z_max"
+force_N = [0, 0, -1]
+[compare]
+models = ["hybmss_bt"]
+TOML
+
+# check NAME PYTHON-EXPRESSION: of the tables in frequencies.json
+check() {
+  python3 - "$work/out/frequencies.json" "$2" <<'PY' || fail "$1"
+import json, sys
+case = json.load(open(sys.argv[1]))
+tables = case["tables"]
+ok = eval(sys.argv[2])
+if not ok: print(json.dumps([[t["reference"]["rigid_motions"], [(m["mass_consistency"], m["rms_error"], m["largest_error"]) for m in t["models"]]] for t in tables]))
+sys.exit(not ok)
+PY
+}
+
+"$program" frequencies "$work/cube.toml" --free --poisson-ratio 0.49 --modes 8 --out "$work/out" --vtu >"$work/stdout" 2>"$work/stderr" ||
+  fail "free: status $?: $(cat "$work/stdout" "$work/stderr")"
+check "free: six rigid motions" 'len(tables) == 1 and all(t["reference"]["rigid_motions"] == 6 for t in tables) and case["supports"] == "free"'
+# Lumped masses are slow by (k h)^2/16 and more, at least; half consistent ones by a third of that.
+check "free: errors of lumped masses" 'all(0.02 < t["models"][0]["rms_error"] < 0.06 for t in tables)'
+check "free: errors of half consistent masses" 'all(t["models"][1]["rms_error"] < 0.022 for t in tables)'
+check "free: every mode has its partner" 'all(p["mac"] > 0.95 for t in tables for m in t["models"] for p in m["pairs"]) and len(tables[0]["models"][0]["pairs"]) == 8'
+check "free: the reference knows itself to 1e-3" 'all(r["uncertainty_Hz"] < 1e-3 * r["frequency_Hz"] for t in tables for r in t["reference"]["modes"])'
+[ -s "$work/out/cube-nu0.49-6x6x6-fem.vtu" ] || fail "no VTU of the reference: $(ls "$work/out")"
+[ -s "$work/out/cube-nu0.49-6x6x6-hybmss_bt-theta0.5.vtu" ] || fail "no VTU of the model: $(ls "$work/out")"
+
+"$program" frequencies "$work/cube.toml" --modes 5 --poisson-ratio 0.25 --mass-consistency 0.6 --out "$work/out" >"$work/stdout" 2>"$work/stderr" ||
+  fail "held: status $?: $(cat "$work/stdout" "$work/stderr")"
+check "held: no rigid motion, the force is no support" 'len(tables) == 1 and tables[0]["reference"]["rigid_motions"] == 0 and case["supports"] == "held on z_min"'
+check "held: errors" 'tables[0]["models"][0]["rms_error"] < 0.02 and tables[0]["models"][0]["mass_consistency"] == 0.6'
+grep -q "held on z_min" "$work/stdout" || fail "the table does not say what is held: $(cat "$work/stdout")"
+
+# refused PATTERN ARGUMENTS...
+refused() {
+  local pattern=$1
+  shift
+  "$program" frequencies "$@" >"$work/stdout" 2>"$work/stderr"
+  [ $? -eq 2 ] && grep -qE "$pattern" "$work/stderr" || fail "not refused: $* ($(cat "$work/stderr"))"
+}
+refused "none of the case's .allowed: 0.49, 0.25" "$work/cube.toml" --poisson-ratio 0.3
+refused "needs a folder" "$work/cube.toml" --vtu
+refused "mass-consistency" "$work/cube.toml" --mass-consistency 1.5
+sed 's/z_min/z_top/' "$work/cube.toml" >"$work/mistaken.toml"
+refused "mistaken.toml:9:.*z_top" "$work/mistaken.toml"
+exit $((failures > 0))

@@ -1,0 +1,95 @@
+// Natural modes by finite elements against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/bodies.h"
+#include "support/fem_block.h"
+
+namespace springproof {
+namespace {
+
+fem::GridProblem modes_of(const Vec3& size, const Cells& cells, int degree, double nu, int modes) {
+  fem::GridProblem problem = test::fem_block(size, cells, 0, degree, nu);
+  problem.modes = modes;
+  problem.points = test::points_inside(size, 5);
+  return problem;
+}
+
+/// Relative distance of the nearest frequency.
+double nearest(const fem::Solution& s, double frequency) {
+  double least = 1;
+  for (const double f : s.frequencies) least = std::min(least, std::abs(f / frequency - 1));
+  return least;
+}
+
+TEST(FemNaturalModes, OfAFreeCubeHoldLamesModes) {
+  // f = c_s / (sqrt(2) a) at every nu (Lame); order four, from the finest grid's error.
+  const double a = 0.5;
+  for (const double nu : {0.0, 0.3, 0.49, 0.4999}) {
+    double before = 0;
+    for (const int n : {3, 6}) {
+      const fem::GridProblem problem = modes_of({a, a, a}, {n, n, n}, 2, nu, 14);
+      const fem::Solution s = fem::solve_grid(problem);
+      ASSERT_TRUE(s.ok) << s.message;
+      EXPECT_EQ(s.rigid_motions, 6);
+      EXPECT_GE(s.frequencies.size(), 14u);
+      EXPECT_EQ(s.shapes.size(), s.frequencies.size());
+      EXPECT_EQ(s.shapes[0].rows(), 5);
+      EXPECT_LT(s.residual, 1e-8);
+      const double exact = std::sqrt(shear_modulus(problem.material) / problem.material.density) / (std::sqrt(2.0) * a);
+      const double error = nearest(s, exact);
+      EXPECT_LT(error, n == 3 ? 5e-3 : 5e-4) << nu;
+      if (before > 0) {
+        EXPECT_GT(before / error, 8) << nu;
+      }
+      before = error;
+    }
+  }
+}
+
+TEST(FemNaturalModes, OfAClampedBarWithoutContractionHoldItsStandingWave) {
+  // nu = 0: f = c / (4 L), plus the dispersion of consistent mass, (k h)^2/24 (linear) or (k h)^4/1440 (quadratic).
+  const Vec3 size(2, 0.5, 0.6);
+  for (const int degree : {1, 2}) {
+    fem::GridProblem problem = modes_of(size, {8, 1, 1}, degree, 0, 8);
+    problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, Traction{"x_max", {1, 0, 0}}};
+    const fem::Solution s = fem::solve_grid(problem);
+    ASSERT_TRUE(s.ok) << s.message;
+    EXPECT_EQ(s.rigid_motions, 0);
+    const double c = std::sqrt(problem.material.youngs_modulus / problem.material.density);
+    const double kh = std::numbers::pi / 2 / 8, expected = degree == 1 ? kh * kh / 24 : std::pow(kh, 4) / 1440;
+    EXPECT_NEAR(nearest(s, c / (4 * size[0])), expected, 0.01 * expected) << degree;
+  }
+}
+
+TEST(FemNaturalModes, OfThePressureFormAreThoseOfTheDisplacementForm) {
+  // The form changes at nu = 0.4.  Modes that change the volume are among the first twelve.
+  const Vec3 size(1, 1.1, 1.2);
+  const fem::Solution a = fem::solve_grid(modes_of(size, {5, 5, 5}, 2, 0.4, 12)),
+                      b = fem::solve_grid(modes_of(size, {5, 5, 5}, 2, 0.400001, 12));
+  ASSERT_TRUE(a.ok && b.ok) << a.message << b.message;
+  EXPECT_NE(a.form, b.form);
+  for (int i = 0; i < 12; ++i) EXPECT_NEAR(b.frequencies[i] / a.frequencies[i], 1, 1e-3) << i;
+}
+
+TEST(FemNaturalModes, OfABodyOnAPlateAreLeftThreeRigidMotions) {
+  fem::GridProblem problem = modes_of({1, 1, 1}, {2, 2, 2}, 2, 0.3, 4);
+  problem.loads = {PrescribedDisplacement{"z_min", {std::nullopt, std::nullopt, 0.0}}};
+  EXPECT_EQ(fem::solve_grid(problem).rigid_motions, 3);
+}
+
+TEST(FemNaturalModes, OfTetrahedraAreThoseOfHexahedraUpToPoissonsRatioOf04) {
+  const Vec3 size(1, 1, 1);
+  fem::GridProblem hexahedra = modes_of(size, {5, 5, 5}, 2, 0.4, 6), tetrahedra = hexahedra;
+  tetrahedra.coarse = test::tetrahedra_of(hexahedra.coarse);
+  const fem::Solution a = fem::solve_grid(hexahedra), b = fem::solve_grid(tetrahedra);
+  ASSERT_TRUE(a.ok && b.ok) << a.message << b.message;
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(b.frequencies[i] / a.frequencies[i], 1, 3e-3) << i;
+  tetrahedra.material.poisson_ratio = 0.45;
+  EXPECT_THROW(fem::solve_grid(tetrahedra), InputError);
+}
+
+}  // namespace
+}  // namespace springproof
