@@ -197,7 +197,9 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
   return std::make_unique<MotionOfList<double>>(model, inverse_mass, of_list);
 }
 
-const char* words(Integrator integrator) {
+}  // namespace
+
+const char* name_of(Integrator integrator) {
   switch (integrator) {
     case Integrator::energy_momentum:
       return "energy-momentum";
@@ -209,6 +211,8 @@ const char* words(Integrator integrator) {
       return "semi-implicit Euler";
   }
 }
+
+namespace {
 
 constexpr long steps_between_looks = 10;  // looks: checks for rest and divergence
 
@@ -275,7 +279,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   state.support = support_forces(model, x, bc);
   state.unknowns = std::count(bc.fixed.begin(), bc.fixed.end(), false);
   state.solver =
-      fmt::format("{}, {} steps of {:.3g} s, {}", words(options.integrator), result.steps, dt, motion->description());
+      fmt::format("{}, {} steps of {:.3g} s, {}", name_of(options.integrator), result.steps, dt, motion->description());
   state.iterations = static_cast<int>(result.steps);
   state.seconds = cpu_seconds() - start;
   state.memory_MiB = peak_memory_MiB();

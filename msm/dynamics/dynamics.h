@@ -10,6 +10,8 @@
 
 namespace springproof {
 
+const char* name_of(Integrator integrator);  ///< "energy-momentum"
+
 struct DynamicsOptions {
   Integrator integrator = Integrator::explicit_euler;
   std::optional<double> time_step;  ///< [s]; empty: 0.95 of safe_time_step(), implicit: 10 of it
