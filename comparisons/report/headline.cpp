@@ -263,6 +263,7 @@ class Collector {
     append(headline_.failures, failures_of(result));
     append(headline_.verification, verification_lines(result));
     append(headline_.deformations, {deformation_line(result)});
+    append(headline_.motions, motion_lines(result));
     append(headline_.warnings, {deformation_warning(result)});
     if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
     for (const Json& model : list_of(experiment, "models"))

@@ -156,6 +156,25 @@ std::string deformation_line(const Json& result) {
   return parts.empty() ? "" : fmt::format("{:<28} {}", name_of(result), fmt::join(parts, "; "));
 }
 
+std::vector<std::string> motion_lines(const Json& result) {
+  std::vector<std::string> lines;
+  for (const Json& h : list_of(result, "histories")) {
+    const Json measured = h.value("measured", Json::object());
+    std::string line = fmt::format("{}: {} at ν = {}, {}: {}, steps of {:.3g} s", name_of(result),
+                                   string_of(h, "model"), nu_text(number_of(h, "poisson_ratio")), cells_words(h),
+                                   string_of(h, "integrator"), number_of(h, "time_step").value_or(0));
+    if (const auto period = number_of(measured, "period"))
+      line += fmt::format("; {} swings with a period of {:.5g} s and an amplitude of {:.4g} m", string_of(h, "probe"),
+                          *period, number_of(measured, "amplitude").value_or(0));
+    if (const auto drift = number_of(measured, "energy_drift"))
+      line += fmt::format("; energy within {:.1e} of the largest kinetic energy", *drift);
+    if (const auto drift = number_of(measured, "momentum_drift"))
+      line += fmt::format("; momentum within {:.1e}", *drift);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
 std::string deformation_warning(const Json& result) {
   if (!has_models(result) || !is_linear(result)) return "";
   double strain = 0, rotation = 0;

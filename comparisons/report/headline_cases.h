@@ -14,6 +14,9 @@ std::string doubt_sentence(const nlohmann::json& cases);
 /// "bunny: ν = 0.45: 12 %, 31°; ...": largest principal strain and rotation of the reference; or nothing.
 std::string deformation_line(const nlohmann::json& result);
 
+/// Of each motion one line: period and amplitude of the first probe, drift of energy and momentum.
+std::vector<std::string> motion_lines(const nlohmann::json& result);
+
 /// A warning that linear theory does not apply to a linear case with models, and what to do; or nothing.
 std::string deformation_warning(const nlohmann::json& result);
 

@@ -133,10 +133,17 @@ Json json_of(const LineRecord& l) {
 Json json_of(const HistoryRecord& h) {
   Json values = Json::array();
   for (const std::vector<double>& of_one : h.values) values.push_back(numbers(of_one));
-  return {{"model", h.model},        {"poisson_ratio", number(h.poisson_ratio)},
-          {"cells", h.cells},        {"time_step", number(h.time_step)},
-          {"time", numbers(h.time)}, {"names", h.names},
-          {"units", h.units},        {"values", values}};
+  return {{"model", h.model},
+          {"poisson_ratio", number(h.poisson_ratio)},
+          {"cells", h.cells},
+          {"time_step", number(h.time_step)},
+          {"time", numbers(h.time)},
+          {"names", h.names},
+          {"units", h.units},
+          {"values", values},
+          {"integrator", h.integrator},
+          {"measured", h.measured},
+          {"probe", h.probe}};
 }
 
 Json json_of(const ErrorSplit& s) {

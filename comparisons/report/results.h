@@ -137,11 +137,15 @@ struct LineRecord : RunKey {
 
 /// What is recorded of a motion at one time after the other; of several networks, of the first.
 struct HistoryRecord : RunKey {
+  std::string integrator;          ///< in words
   double time_step = 0;            ///< [s]
   std::vector<double> time;        ///< [s]
   std::vector<std::string> names;  ///< of the quantities: "kinetic_energy", "force.z_max.z", "displacement.tip.z", ...
   std::vector<std::string> units;
   std::vector<std::vector<double>> values;  ///< of each quantity, one per time
+  /// What was measured: "period" [s] and "amplitude" [m] of `probe`, "energy_drift" and "momentum_drift" [1].
+  std::map<std::string, double> measured;
+  std::string probe;  ///< "displacement.tip.z"
 };
 
 /// Cracks of a model in a body that dries, means over its samples; the picture is of the first.

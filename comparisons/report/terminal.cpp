@@ -37,6 +37,7 @@ std::string terminal_text(const Headline& h) {
   out += group("Verification of the reference: value, target, error", h.verification);
   out +=
       group("Largest principal strain and rotation of the reference (99 % of the volume stay below)", h.deformations);
+  out += group("Motion in time", h.motions);
   const std::string marks = marked("warning", h.warnings) + marked("no result", h.failed_runs) +
                             marked("FAILED", h.failed_checks) + marked("FAILED", h.failures);
   return out + (marks.empty() ? "" : "\n" + marks) + "\n" + expectations_sentence(h) + "\n";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "comparisons/judge/swings.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
 #include "msm/dynamics/dynamics.h"
@@ -15,47 +16,83 @@ namespace springproof {
 namespace {
 
 constexpr double most_steps = 1e8;
+constexpr double implicit_ratio = 10;    // default step of implicit methods to the explicit bound
+constexpr double worthwhile_ratio = 30;  // of a wanted step to the explicit bound, above which "auto" takes it
 
 /// The steps of a motion.
 struct Steps {
+  Integrator integrator;
   double size;  ///< [s]
   long stride;  ///< from one sample of the history to the next
 };
 
+Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& model, double bound) {
+  if (motion.integrator == "explicit") return Integrator::explicit_euler;
+  if (motion.integrator == "implicit_euler") return Integrator::implicit_euler;
+  if (motion.integrator == "bdf2") return Integrator::bdf2;
+  const std::string why = EnergyMomentum::lacks(model);
+  if (motion.integrator == "auto") {
+    const double wanted = motion.time_step.value_or(motion.duration / std::max(motion.frames, 1));
+    return why.empty() && wanted > worthwhile_ratio * bound ? Integrator::energy_momentum : Integrator::explicit_euler;
+  }
+  if (!why.empty())
+    throw InputError(motion.integrator_where,
+                     fmt::format("dynamics.integrator: energy_momentum does not suit a model of the case: {} (allowed "
+                                 "for it: explicit, implicit_euler, bdf2)",
+                                 why));
+  return Integrator::energy_momentum;
+}
+
 Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material) {
-  const double bound = safe_time_step(model, material.density), size = motion.time_step.value_or(0.95 * bound);
-  if (size > bound)
+  const double bound = safe_time_step(model, material.density);
+  const Integrator integrator = integrator_of(motion, model, bound);
+  const bool implicit = integrator != Integrator::explicit_euler, chosen = motion.integrator == "auto";
+  double size =
+      motion.time_step.value_or(!implicit ? 0.95 * bound
+                                : chosen  ? motion.duration / std::max(motion.frames, 1)
+                                          : std::min(implicit_ratio * bound, motion.duration / motion.samples));
+  if (chosen && !implicit) size = std::min(size, 0.95 * bound);
+  if (size > bound && !implicit)
     throw InputError(
         motion.where,
         fmt::format("dynamics.time_step_s: {:.6g} s is not safe for a model of the case at nu = {} "
                     "(allowed: up to {:.6g} s, the bound of its springs and cells, or no time_step_s: each "
-                    "model then has its own)",
+                    "model then has its own; or integrator = \"energy_momentum\")",
                     size, material.poisson_ratio, bound));
   const double count = std::ceil(motion.duration / size);
   if (count > most_steps)
     throw InputError(motion.where, fmt::format("dynamics.duration_s: takes {:.3g} steps of {:.3g} s (allowed: up to "
                                                "{:.0g} steps)",
                                                count, size, most_steps));
-  return {size, std::max(1L, static_cast<long>(count) / motion.samples)};
+  return {integrator, size, std::max(1L, static_cast<long>(count) / motion.samples)};
 }
 
 /// Records the motion of one network, sample by sample.
 class Recorder {
  public:
   Recorder(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
-           const IsotropicMaterial& material, MotionRecord& record)
+           const IsotropicMaterial& material, const Steps& steps, double damping, MotionRecord& record)
       : prepared_(prepared),
         lattice_(lattice),
         built_(built),
         mass_(masses(built.model.network, material.density)),
+        behind_(steps.integrator == Integrator::explicit_euler ? steps.size / 2 : 0),
+        damping_(damping),
         record_(record) {}
 
-  void operator()(double time, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& conditions) {
+  void operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
+                  const BoundaryConditions& conditions) {
+    const NodalVectors v = at_positions(x, of_step, conditions);
     record_.history.time.push_back(time);
     const Field field = field_at(x, conditions);
     next_ = 0;
     add("kinetic_energy", "J", 0.5 * (v.rowwise().squaredNorm().array() * mass_.array()).sum());
     if (conservative(built_.model)) add("elastic_energy", "J", energy(built_.model, x));
+    add_vector("linear_momentum", "kg m/s", v.transpose() * mass_);
+    Vec3 spin = Vec3::Zero();
+    for (Eigen::Index n = 0; n < x.rows(); ++n)
+      spin += mass_[n] * Vec3(x.row(n).transpose()).cross(Vec3(v.row(n).transpose()));
+    add_vector("angular_momentum", "kg m^2/s", spin);
     const NodalVectors u = x - built_.model.network.X;
     add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());
     add("volume_change", "1", field.volume_change);
@@ -70,6 +107,15 @@ class Recorder {
   }
 
  private:
+  /// The velocity at the time of the positions: that of explicit steps is half a step behind.
+  NodalVectors at_positions(const NodalVectors& x, NodalVectors v, const BoundaryConditions& conditions) const {
+    if (behind_ == 0) return v;
+    const NodalVectors f = forces(built_.model, x) + conditions.external;
+    for (Eigen::Index i = 0; i < v.size(); ++i)
+      if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] / mass_[i / 3] - damping_ * v.data()[i]);
+    return v;
+  }
+
   Field field_at(const NodalVectors& x, const BoundaryConditions& conditions) const {
     const MassSpringModel& model = built_.model;
     Equilibrium state;
@@ -100,6 +146,8 @@ class Recorder {
   const Lattice& lattice_;
   const EmbeddedModel& built_;
   Eigen::VectorXd mass_;
+  double behind_;   ///< the velocities of a step [s]
+  double damping_;  ///< [1/s]
   MotionRecord& record_;
   std::size_t next_ = 0;  ///< quantity
 };
@@ -110,13 +158,76 @@ void check_motion(const MotionChoice& motion, const MassSpringModel& model, cons
   steps_of(motion, model, material);
 }
 
+namespace {
+
+const std::vector<double>* series(const HistoryRecord& h, const std::string& name) {
+  const auto at = std::find(h.names.begin(), h.names.end(), name);
+  return at == h.names.end() ? nullptr : &h.values[at - h.names.begin()];
+}
+
+/// The component of the probe's displacement that varies most.
+std::string liveliest(const HistoryRecord& h, const std::string& probe) {
+  std::string best;
+  double most = -1;
+  for (const char axis : {'x', 'y', 'z'}) {
+    const std::string name = fmt::format("displacement.{}.{}", probe, axis);
+    const auto [low, high] = std::minmax_element(series(h, name)->begin(), series(h, name)->end());
+    if (*high - *low > most) {
+      most = *high - *low;
+      best = name;
+    }
+  }
+  return best;
+}
+
+/// Period and amplitude of the first probe, and what is conserved: the energy of undamped motions after the loads have
+/// their final size, the momentum along axes in which nothing is held or loaded.
+void measure(const Experiment& e, const MotionChoice& motion, const BoundaryConditions& last, HistoryRecord& h) {
+  std::size_t first = 0;
+  while (first < h.time.size() && h.time[first] < motion.ramp) ++first;
+  if (!e.probes.empty() && h.time.size() > 1) {
+    h.probe = liveliest(h, e.probes.front().name);
+    const std::vector<double>& u = *series(h, h.probe);
+    const std::vector<double> time(h.time.begin() + static_cast<long>(first), h.time.end()),
+        value(u.begin() + static_cast<long>(first), u.end());
+    if (const auto swings = swings_of(time, value)) {
+      h.measured["period"] = swings->period;
+      h.measured["amplitude"] = swings->amplitude;
+    }
+  }
+  const std::vector<double>*kinetic = series(h, "kinetic_energy"), *elastic = series(h, "elastic_energy"),
+        *load = series(h, "load_potential");
+  if (motion.damping == 0 && elastic && first < h.time.size()) {
+    const auto total = [&](std::size_t i) { return (*kinetic)[i] + (*elastic)[i] + (*load)[i]; };
+    double drift = 0, largest = 0;
+    for (std::size_t i = first; i < h.time.size(); ++i) {
+      drift = std::max(drift, std::abs(total(i) - total(first)));
+      largest = std::max(largest, (*kinetic)[i]);
+    }
+    if (largest > 0) h.measured["energy_drift"] = drift / largest;
+  }
+  double drift = -1, scale = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& p = *series(h, fmt::format("linear_momentum.{}", "xyz"[axis]));
+    for (const double value : p) scale = std::max(scale, std::abs(value));
+    bool free = last.external.col(axis).isZero(0);
+    for (std::size_t i = axis; i < last.fixed.size(); i += 3) free = free && !last.fixed[i];
+    if (free && motion.damping == 0 && first < h.time.size())
+      for (std::size_t i = first; i < h.time.size(); ++i) drift = std::max(drift, std::abs(p[i] - p[first]));
+  }
+  if (drift >= 0 && scale > 0) h.measured["momentum_drift"] = drift / scale;
+}
+
+}  // namespace
+
 Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
                        const IsotropicMaterial& material, const LoadPath& path, MotionRecord& record) {
   const MotionChoice& motion = *prepared.experiment.dynamics;
   const Steps steps = steps_of(motion, built.model, material);
   record.history.time_step = steps.size;
-  Recorder recorder(prepared, lattice, built, material, record);
+  Recorder recorder(prepared, lattice, built, material, steps, motion.damping, record);
   DynamicsOptions options;
+  options.integrator = steps.integrator;
   options.time_step = steps.size;
   options.damping = motion.damping;
   options.ramp = motion.ramp;
@@ -126,7 +237,21 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
     recorder(time, x, v, bc);
     progress::detail(fmt::format("{:.3g} of {:.3g} s", time, motion.duration));
   };
-  return run_dynamics(built.model, material.density, path, options).state;
+  LoadPath in_time = path;
+  if (motion.released) {
+    const Equilibrium start = solve_finite(built.model, path);
+    if (!start.ok) return start;
+    options.start = built.model.network.X + start.displacement;
+    in_time = [&](double factor) {
+      BoundaryConditions bc = path(1.0);
+      bc.external *= 1 - factor;
+      return bc;
+    };
+  }
+  Equilibrium state = run_dynamics(built.model, material.density, in_time, options).state;
+  record.history.integrator = name_of(steps.integrator);
+  measure(prepared.experiment, motion, in_time(1.0), record.history);
+  return state;
 }
 
 }  // namespace springproof

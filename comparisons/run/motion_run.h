@@ -18,8 +18,9 @@ struct MotionRecord {
 };
 
 /// The state at the end of the case's motion; `path` gives the boundary conditions at a fraction of the load.
-/// History: kinetic_energy, elastic_energy (of conservative models) and load_potential [J], volume_change [1], the
-/// force of every support [N] and the displacement of every probe [m].
+/// History, all at the time of the positions: kinetic_energy, elastic_energy (of conservative models) and
+/// load_potential [J], linear [kg m/s] and angular momentum about the origin [kg m^2/s], volume_change [1], the force
+/// of every support [N] and the displacement of every probe [m].
 /// @throws InputError at time_step_s, if the step is not safe for the model.
 Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
                        const IsotropicMaterial& material, const LoadPath& path, MotionRecord& record);

@@ -22,7 +22,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Picture, model, poisson_ratio, cells, rest, d
                                    volume_change, frame_times, frames, surface)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LineRecord, model, poisson_ratio, cells, first, last, distance, strain, stress,
                                    exact_strain, exact_stress)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HistoryRecord, model, poisson_ratio, cells, time_step, time, names, units, values)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HistoryRecord, model, poisson_ratio, cells, time_step, time, names, units, values,
+                                   integrator, measured, probe)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorSplit, model, poisson_ratio, cells, voxel_edge, measure, unit, total,
                                    model_error, discretisation_error, geometry_error, voxel_uncertainty,
                                    body_uncertainty)

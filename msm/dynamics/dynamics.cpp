@@ -13,14 +13,21 @@
 namespace springproof {
 namespace {
 
+constexpr double implicit_ratio = 10;  // default step of implicit methods to the explicit bound
+
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
   const double bound = safe_time_step(model, density, options.lagged);
-  const double dt = options.time_step.value_or(0.95 * bound);
-  if (!(dt > 0) || dt > bound)
+  const bool implicit = options.integrator != Integrator::explicit_euler;
+  const double dt = options.time_step.value_or((implicit ? implicit_ratio : 0.95) * bound);
+  if (!(dt > 0) || (dt > bound && !implicit))
     throw InputError(
         fmt::format("time_step_s: {:.6g} s is not safe for this model (allowed: 0 < time_step_s <= {:.6g} s, the bound "
                     "of its springs and cells)",
                     dt, bound));
+  if (options.integrator == Integrator::energy_momentum)
+    if (const std::string why = EnergyMomentum::lacks(model); !why.empty())
+      throw InputError("integrator: energy_momentum does not suit this model: " + why);
+  if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
   if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
   const double least = options.lagged ? lagged_damping(model, density, dt) : 0;
   if (least > 0 && !(options.damping > least))
@@ -34,11 +41,13 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
 struct Motion {
   virtual ~Motion() = default;
   virtual void set_conditions(const BoundaryConditions& conditions) = 0;
-  virtual void move_supports() = 0;  ///< immediately
+  virtual void move_supports() = 0;               ///< immediately
+  virtual void place(const NodalVectors& x) = 0;  ///< at rest
   virtual ForceNorms advance(long steps) = 0;
   virtual NodalVectors positions() const = 0;
   virtual NodalVectors velocities() const = 0;
   virtual std::string description() const = 0;
+  virtual std::string failure() const { return ""; }
 };
 
 /// Time integration of any model by the plain force loops.
@@ -60,6 +69,8 @@ class PlainMotion : public Motion {
     for (Eigen::Index i = 0; i < x_.size(); ++i)
       if (conditions_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
   }
+
+  void place(const NodalVectors& x) override { x_ = x; }
 
   ForceNorms advance(long steps) override {
     ForceNorms norms;
@@ -117,6 +128,7 @@ class MotionOfList : public Motion {
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
   void move_supports() override { motion_.place_prescribed(); }
+  void place(const NodalVectors& x) override { motion_.place(x); }
   ForceNorms advance(long steps) override { return motion_.advance(steps); }
   NodalVectors positions() const override { return motion_.positions(); }
   NodalVectors velocities() const override { return motion_.velocities(); }
@@ -139,6 +151,7 @@ class MotionOfLattice : public Motion {
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.set_conditions(conditions); }
   void move_supports() override { motion_.move_supports(); }
+  void place(const NodalVectors& x) override { motion_.set_state(x, NodalVectors::Zero(x.rows(), 3)); }
   ForceNorms advance(long steps) override { return motion_.advance(steps, dt_, damping_); }
   NodalVectors positions() const override { return motion_.positions(); }
   NodalVectors velocities() const override { return motion_.velocities(); }
@@ -149,8 +162,29 @@ class MotionOfLattice : public Motion {
   double dt_, damping_;
 };
 
+class MotionInLargeSteps : public Motion {
+ public:
+  MotionInLargeSteps(const MassSpringModel& model, double density, const ImplicitOptions& options)
+      : motion_(model, density, options) {}
+
+  void set_conditions(const BoundaryConditions& conditions) override { motion_.set_conditions(conditions); }
+  void move_supports() override { motion_.move_supports(); }
+  void place(const NodalVectors& x) override { motion_.set_state(x, NodalVectors::Zero(x.rows(), 3)); }
+  ForceNorms advance(long steps) override { return motion_.advance(steps); }
+  NodalVectors positions() const override { return motion_.positions(); }
+  NodalVectors velocities() const override { return motion_.velocities(); }
+  std::string description() const override { return motion_.description(); }
+  std::string failure() const override { return motion_.failure(); }
+
+ private:
+  ImplicitMotion motion_;
+};
+
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double dt,
                                     const DynamicsOptions& options) {
+  if (options.integrator != Integrator::explicit_euler)
+    return std::make_unique<MotionInLargeSteps>(
+        model, density, ImplicitOptions{.integrator = options.integrator, .time_step = dt, .damping = options.damping});
   if (!options.lagged && LatticeMotion::suits(model))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
@@ -162,6 +196,23 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
     return std::make_unique<MotionOfList<float>>(model, inverse_mass, of_list);
   return std::make_unique<MotionOfList<double>>(model, inverse_mass, of_list);
 }
+
+}  // namespace
+
+const char* name_of(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::energy_momentum:
+      return "energy-momentum";
+    case Integrator::implicit_euler:
+      return "implicit Euler";
+    case Integrator::bdf2:
+      return "BDF2";
+    default:
+      return "semi-implicit Euler";
+  }
+}
+
+namespace {
 
 constexpr long steps_between_looks = 10;  // looks: checks for rest and divergence
 
@@ -181,14 +232,17 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   bool ramping = options.ramp > 0;
   BoundaryConditions bc = load_path(ramping ? 0.0 : 1.0);
   motion->set_conditions(bc);
+  if (options.start.size() > 0) motion->place(options.start);
   motion->move_supports();
+  // The explicit method takes loads and supports of the beginning of a step, implicit ones those of its end.
+  const long ahead = options.integrator == Integrator::explicit_euler ? 0 : 1;
   const long last = static_cast<long>(std::ceil(options.duration / dt));
   Equilibrium& state = result.state;
   bool at_rest = false;
   while (result.steps < last && !at_rest) {
     result.time = result.steps * dt;
     if (ramping) {
-      const double factor = std::min(1.0, result.time / options.ramp);
+      const double factor = std::min(1.0, (result.steps + ahead) * dt / options.ramp);
       bc = load_path(factor);
       motion->set_conditions(bc);
       ramping = factor < 1;
@@ -196,6 +250,11 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
     const long to_stop = options.after_step ? options.stride - result.steps % options.stride : steps_between_looks;
     const long steps = ramping ? 1 : std::min({steps_between_looks, to_stop, last - result.steps});
     const ForceNorms norms = motion->advance(steps);
+    if (const std::string why = motion->failure(); !why.empty()) {
+      state.message =
+          fmt::format("between t = {:.4g} and {:.4g} s {}", result.steps * dt, (result.steps + steps) * dt, why);
+      return result;
+    }
     result.steps += steps;
     if (options.after_step && (result.steps % options.stride == 0 || result.steps == last))
       options.after_step(result.steps * dt, motion->positions(), motion->velocities(), bc);
@@ -219,7 +278,8 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   state.displacement = x - X;
   state.support = support_forces(model, x, bc);
   state.unknowns = std::count(bc.fixed.begin(), bc.fixed.end(), false);
-  state.solver = fmt::format("semi-implicit Euler, {} steps of {:.3g} s, {}", result.steps, dt, motion->description());
+  state.solver =
+      fmt::format("{}, {} steps of {:.3g} s, {}", name_of(options.integrator), result.steps, dt, motion->description());
   state.iterations = static_cast<int>(result.steps);
   state.seconds = cpu_seconds() - start;
   state.memory_MiB = peak_memory_MiB();

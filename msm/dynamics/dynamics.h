@@ -1,16 +1,21 @@
-// Explicit dynamics: the semi-implicit Euler method of Golec et al. (2019), with a time step that is checked.
+// Dynamics: the semi-implicit Euler method of Golec et al. (2019), with a time step that is checked, or implicit steps.
 #pragma once
 
 #include <functional>
 #include <optional>
 
+#include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/statics/equilibrium.h"
 
 namespace springproof {
 
+const char* name_of(Integrator integrator);  ///< "energy-momentum"
+
 struct DynamicsOptions {
-  std::optional<double> time_step;  ///< [s]; empty: 0.95 of safe_time_step()
+  Integrator integrator = Integrator::explicit_euler;
+  std::optional<double> time_step;  ///< [s]; empty: 0.95 of safe_time_step(), implicit: 10 of it
+  NodalVectors start;               ///< positions at t = 0, at rest [m]; empty: X
   double damping = 0;  ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
                        ///< some, or it flutters
   double ramp = 0;     ///< the load grows linearly over this time [s]; 0 = at once
@@ -41,9 +46,11 @@ struct DynamicsResult {
 /// motion.  0 for a negative dispersed fraction, which the lag itself damps.  Non-conservative forms may need more.
 double lagged_damping(const MassSpringModel& model, double density, double time_step);
 
-/// Integrates v += dt (f/m - damping v), x += dt v (the damping implicit) with prescribed unknowns on their path.
+/// Integrates v += dt (f/m - damping v), x += dt v (the damping implicit) with prescribed unknowns on their path, or by
+/// an implicit method (ImplicitMotion).
 /// Models that have a kernel (LatticeMotion, ListMotion) use it.  Rest is checked every few steps.
-/// @throws InputError if the time step exceeds safe_time_step(), if the damping is negative, or, lagged, not above
+/// @throws InputError if the explicit time step exceeds safe_time_step(), if the integrator does not suit the model, if
+/// the damping is negative, or, lagged, not above
 ///   lagged_damping(); the bound is in the message.
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options);

@@ -52,6 +52,12 @@ void ListMotion<Real>::place_prescribed() {
   moved_ = false;
 }
 
+template <class Real>
+void ListMotion<Real>::place(const NodalVectors& x) {
+  for (std::size_t p = 0; p < x_.size(); ++p)
+    for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(x(forces_.blocks().order[p], d));
+}
+
 /// Moves the nodes begin <= n < end, whose forces are complete.  The total force on fixed unknowns is set to 0 first,
 /// so that they stay.
 template <class Real>

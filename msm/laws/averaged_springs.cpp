@@ -77,20 +77,6 @@ HourglassMatrix hourglass_matrix(const AveragedSprings& law, double l, const Fil
   return D;
 }
 
-/// What the energy of a cell depends on beside the positions of its corners.
-struct CellForm {
-  double volume;                         ///< of the filled part [m^3]
-  Eigen::Matrix<double, 3, 8> gradient;  ///< of the corners' weights [1/m]
-  HourglassMatrix hourglass;
-};
-
-CellForm form_of(const AveragedSprings& law, double l, const FilledPart& part) {
-  CellForm form{part.fraction * l * l * l, {}, hourglass_matrix(law, l, part)};
-  const std::array<Vec3, 8> g = mean_gradients(l, part);
-  for (int n = 0; n < 8; ++n) form.gradient.col(n) = g[n];
-  return form;
-}
-
 using Corners = Eigen::Matrix<double, 3, 8>;
 
 Corners corners_of(const Hexahedron& cell, const NodalVectors& x) {
@@ -144,10 +130,10 @@ CellMatrix tangent_of(const CellForm& form, const Deformed& s) {
 /// Calls act(cell, what its energy depends on); that of full cells is computed once.
 template <class Act>
 void for_each_form(const AveragedSprings& law, const Network& network, const Act& act) {
-  const CellForm full = form_of(law, network.cell_edge, {});
+  const CellForm full = cell_form(law, network.cell_edge, {});
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const FilledPart& part = part_of(network, c);
-    act(network.cells[c], part.fraction == 1 ? full : form_of(law, network.cell_edge, part));
+    act(network.cells[c], part.fraction == 1 ? full : cell_form(law, network.cell_edge, part));
   }
 }
 
@@ -170,6 +156,15 @@ Eigen::Matrix3d volume_curvature(double volume, const Eigen::Matrix3d& F, const 
 }
 
 }  // namespace
+
+CellForm cell_form(const AveragedSprings& law, double l, const FilledPart& part) {
+  CellForm form{part.fraction * l * l * l, {}, hourglass_matrix(law, l, part)};
+  const std::array<Vec3, 8> g = mean_gradients(l, part);
+  for (int n = 0; n < 8; ++n) form.gradient.col(n) = g[n];
+  return form;
+}
+
+const Eigen::Matrix<double, 8, 4>& corner_patterns() { return patterns(); }
 
 HourglassStiffness HourglassStiffness::of_pattern(double face_to_cube, double nu, bool exact_bending,
                                                   bool exact_torsion, bool slender) {

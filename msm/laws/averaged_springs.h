@@ -67,6 +67,17 @@ struct AveragedSprings {
   Eigen::Matrix<double, 24, 24> cell_matrix(double edge, const FilledPart& part) const;
 };
 
+/// What the energy of a cell depends on beside the positions of its corners.
+struct CellForm {
+  double volume;                            ///< of the filled part [m^3]
+  Eigen::Matrix<double, 3, 8> gradient;     ///< mean gradients of the corners' weights [1/m]
+  Eigen::Matrix<double, 12, 12> hourglass;  ///< quadratic form of v, 3 * pattern + axis [N/m]
+};
+CellForm cell_form(const AveragedSprings& law, double edge, const FilledPart& part);
+
+/// The four patterns of corner positions that F does not see: q = (positions of the corners, 3 x 8) times this.
+const Eigen::Matrix<double, 8, 4>& corner_patterns();
+
 /// Mean over the filled part of the gradients of the corners' trilinear weights [1/m].
 std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part);
 

@@ -84,22 +84,29 @@ void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kern
     }
 }
 
-Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, int smoothing_degree, bool may_float)
+Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, int smoothing_degree, bool may_float,
+                     double mass)
     : lattice_(std::move(levels)),
       degree_(smoothing_degree),
-      K_(lattice_.levels[0], reorder(cell_of_network, lattice_.axes)) {
+      K_(lattice_.levels[0], reorder(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_.axes)) {
   const CellMatrix cell = reorder(cell_of_network, lattice_.axes);
-  const double at_most = largest_scaled_eigenvalue(cell);
-  const double unit = cell.diagonal().mean();
+  // The stiffness of a cell grows with its edge, its mass with the cube.
+  const auto of_level = [&](const LatticeLevel& level) -> CellMatrix {
+    return cell + level.edge_ratio * level.edge_ratio * mass * CellMatrix::Identity();
+  };
+  const CellMatrix finest = of_level(lattice_.levels[0]);
+  const double unit = finest.diagonal().mean();
   unit_ = 1 / unit;
-  largest_diagonal_ = diagonal(lattice_.levels[0], cell).maxCoeff();
+  largest_diagonal_ = diagonal(lattice_.levels[0], finest).maxCoeff();
   for (const LatticeLevel& level : lattice_.levels) {
-    SmoothingLevel& l = levels_.emplace_back(level, cell / unit);
+    const CellMatrix here = of_level(level) / unit;
+    SmoothingLevel& l = levels_.emplace_back(level, here);
     if (levels_.size() == lattice_.levels.size()) break;
-    l.bound_eigenvalues(at_most);
-    l.find_thin_parts(cell / unit);
+    l.bound_eigenvalues(largest_scaled_eigenvalue(here));
+    l.find_thin_parts(here);
   }
-  factor_coarsest(assemble(lattice_.levels.back(), cell / unit), lattice_, may_float, coarsest_);
+  factor_coarsest(assemble(lattice_.levels.back(), of_level(lattice_.levels.back()) / unit), lattice_, may_float,
+                  coarsest_);
 }
 
 SmoothingLevel::SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell) : K(level, cell) {

@@ -66,14 +66,16 @@ double largest_scaled_eigenvalue(const CellMatrix& cell);
 
 /// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; matrix-free above the
 /// coarsest level.  The cycle works in single precision, the Krylov method that it preconditions in double.
-/// With `may_float` the lattice needs no supports.
+/// With `may_float` the lattice needs no supports.  `mass` [N/m] is added to the diagonal of every cell and grows with
+/// its volume on the coarser levels, as the masses of a time step do.
 /// Its smoother's eigenvalue bound comes from a few Lanczos steps on each level; it is at most the largest eigenvalue
 /// of diag(K_cell)^-1 K_cell, which bounds every lattice of such cells.  Thin parts of the body
 /// (msm/multigrid/thin_parts.h) are corrected on every level in addition to the next coarser lattice.  Vectors hold 3
 /// values per node of the network.
 class Multigrid {
  public:
-  Multigrid(LatticeLevels levels, const CellMatrix& cell, int smoothing_degree = 3, bool may_float = false);
+  Multigrid(LatticeLevels levels, const CellMatrix& cell, int smoothing_degree = 3, bool may_float = false,
+            double mass = 0);
 
   /// u = K^-1 b on the free unknowns, 0 on the fixed.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u);

@@ -51,16 +51,24 @@ struct ReferenceChoice {
 /// Elements of the reference: hexahedra "q1", "q2", tetrahedra "p1", "p2".
 std::vector<std::string> element_names();
 
-/// Motion in time of the models, from rest ([dynamics]): semi-implicit Euler, Golec et al. (2019), sec. 3 and 6.1.
+/// Integrators of [dynamics]: "explicit", semi-implicit Euler, Golec et al. (2019), sec. 3 and 6.1; the implicit
+/// "energy_momentum", "implicit_euler", "bdf2"; "auto".
+std::vector<std::string> integrator_names();
+
+/// Motion in time of the models, from rest ([dynamics]).
 struct MotionChoice {
-  double duration = 0;              ///< [s]
-  std::optional<double> time_step;  ///< [s]; empty: 0.95 of the bound of each model
-  double damping = 0;               ///< mass-proportional [1/s]
-  double ramp = 0;                  ///< the loads grow linearly over this time [s]; 0: they act at once
-  bool equilibrium = true;          ///< each model is also solved for its equilibrium
-  int samples = 200;                ///< of each history
-  int frames = 40;                  ///< of the animation; 0: none
-  SourceLocation where;             ///< of time_step_s, or of the table
+  std::string integrator = "explicit";
+  bool released = false;  ///< start = "equilibrium": under the loads, which are then removed
+  double duration = 0;    ///< [s]
+  std::optional<double>
+      time_step;            ///< [s]; empty: 0.95 of the bound of each model, implicit: a sample's, up to 10 of it
+  double damping = 0;       ///< mass-proportional [1/s]
+  double ramp = 0;          ///< the loads grow (or fall) linearly over this time [s]; 0: at once
+  bool equilibrium = true;  ///< each model is also solved for its equilibrium
+  int samples = 200;        ///< of each history
+  int frames = 40;          ///< of the animation; 0: none
+  SourceLocation where;     ///< of time_step_s, or of the table
+  SourceLocation integrator_where;  ///< of integrator, or of the table
 };
 
 enum class Source { analytic, extrapolated_fem, published, regression };

@@ -7,6 +7,8 @@ namespace springproof {
 namespace {
 
 constexpr Key dynamics_schema[] = {{"duration_s", "a finite number > 0"},
+                                   {"integrator"},
+                                   {"start"},
                                    {"time_step_s"},
                                    {"damping_1_s"},
                                    {"ramp_s"},
@@ -15,6 +17,10 @@ constexpr Key dynamics_schema[] = {{"duration_s", "a finite number > 0"},
                                    {"frames"}};
 
 }  // namespace
+
+std::vector<std::string> integrator_names() {
+  return {"explicit", "energy_momentum", "implicit_euler", "bdf2", "auto"};
+}
 
 void read_dynamics(const TomlTable& document, Experiment& experiment) {
   const auto value = document.find("dynamics");
@@ -25,8 +31,13 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
            "with kinematics = \"hencky\", \"neo_hooke\" or another finite-strain law");
   if (document.find("fracture")) refuse(*value, "stands beside [fracture]", "one of the two");
   MotionChoice motion;
-  motion.where = location_of(*value);
+  motion.where = motion.integrator_where = location_of(*value);
   motion.duration = as_number(table.at("duration_s"), positive_number);
+  if (const auto integrator = table.find("integrator")) {
+    motion.integrator = as_choice(*integrator, integrator_names());
+    motion.integrator_where = location_of(*integrator);
+  }
+  if (const auto start = table.find("start")) motion.released = as_choice(*start, {"rest", "equilibrium"}) != "rest";
   if (const auto step = table.find("time_step_s")) {
     motion.time_step = as_number(*step, {"a finite number > 0, up to duration_s", 0, motion.duration, false, true});
     motion.where = location_of(*step);

@@ -39,11 +39,12 @@ function motionChart(result, nu, name) {
 }
 
 function motionDrawing(result, nu, name) {
-  const steps = distinct(result.histories.filter(record => String(record.poisson_ratio) === nu).map(record => record.time_step));
+  const steps = distinct(result.histories.filter(record => String(record.poisson_ratio) === nu)
+    .map(record => `${record.integrator}, ${number(1000 * record.time_step, 3)} ms`));
   return {
     name: `${result.key}-motion-${name}-nu${nuDigits(Number(nu))}`,
     caption: `${result.name}: ${name.replace(/_/g, ' ')} in time, ν = ${nuText(Number(nu))}`,
-    notes: [`Semi-implicit Euler, steps of ${steps.map(step => number(1000 * step, 3)).join(', ')} ms. ` +
+    notes: [`Steps: ${steps.join('; ')}. ` +
             'Dashed: the same model at rest under the whole load. Of several disordered networks the first is drawn.'],
     make: () => motionChart(result, nu, name),
   };

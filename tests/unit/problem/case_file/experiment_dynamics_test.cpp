@@ -48,6 +48,10 @@ TEST(DynamicsTable, MistakesAreExplained) {
        "dynamics.ramp_s: is 2 (allowed: a finite number >= 0, up to duration_s)");
   says(message("duration_s = 1\nsamples = 1"), "dynamics.samples: is 1 (allowed: an integer from 2 to 100000)");
   says(message("duration_s = 1\nframes = -1"), "dynamics.frames: is -1");
+  says(message("duration_s = 1\nintegrator = \"midpoint\""),
+       "dynamics.integrator: 'midpoint' is not known (allowed: explicit, energy_momentum, implicit_euler, bdf2, auto)");
+  says(message("duration_s = 1\nstart = \"moving\""),
+       "dynamics.start: 'moving' is not known (allowed: rest, equilibrium)");
   says(message("duration_s = 1\nstep_s = 1"), "dynamics.step_s: unknown key");
   says(message_of(std::string(test::small_case) + "[dynamics]\nduration_s = 1\n"),
        "dynamics: moves the models by their forces at large displacements");

@@ -1,0 +1,62 @@
+#include "comparisons/judge/swings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springproof {
+namespace {
+
+constexpr double hysteresis = 0.1;  // of the largest deviation: a crossing counts after the value was so far below
+constexpr std::size_t least_samples = 8;
+
+/// An upward crossing of a level, between two samples.
+struct Crossing {
+  std::size_t after;  ///< last sample before it
+  double time;
+};
+
+std::vector<Crossing> upward_crossings(const std::vector<double>& t, const std::vector<double>& u, double level) {
+  double largest = 0;
+  for (const double value : u) largest = std::max(largest, std::abs(value - level));
+  std::vector<Crossing> all;
+  bool armed = false;
+  for (std::size_t i = 1; i < u.size(); ++i) {
+    armed = armed || u[i - 1] < level - hysteresis * largest;
+    if (!armed || u[i - 1] > level || u[i] <= level) continue;
+    all.push_back({i - 1, t[i - 1] + (level - u[i - 1]) / (u[i] - u[i - 1]) * (t[i] - t[i - 1])});
+    armed = false;
+  }
+  return all;
+}
+
+double mean_between(const std::vector<double>& t, const std::vector<double>& u, std::size_t begin, std::size_t end) {
+  double sum = 0;
+  for (std::size_t i = begin; i < end; ++i) sum += (u[i] + u[i + 1]) / 2 * (t[i + 1] - t[i]);
+  return sum / (t[end] - t[begin]);
+}
+
+}  // namespace
+
+std::optional<Swings> swings_of(const std::vector<double>& t, const std::vector<double>& u) {
+  if (t.size() < 2 * least_samples) return {};
+  Swings swings;
+  swings.mean = mean_between(t, u, 0, t.size() - 1);
+  std::vector<Crossing> crossings;
+  for (int pass = 0; pass < 3; ++pass) {  // the mean is that of whole swings
+    crossings = upward_crossings(t, u, swings.mean);
+    if (crossings.size() < 3 ||
+        crossings.back().after - crossings.front().after < least_samples * (crossings.size() - 1))
+      return {};
+    swings.mean = mean_between(t, u, crossings.front().after, crossings.back().after);
+  }
+  swings.count = static_cast<int>(crossings.size()) - 1;
+  swings.period = (crossings.back().time - crossings.front().time) / swings.count;
+  for (int s = 0; s < swings.count; ++s) {
+    const auto [least, most] = std::minmax_element(u.begin() + static_cast<long>(crossings[s].after),
+                                                   u.begin() + static_cast<long>(crossings[s + 1].after) + 1);
+    swings.amplitude += (*most - *least) / 2 / swings.count;
+  }
+  return swings;
+}
+
+}  // namespace springproof

@@ -1,0 +1,109 @@
+// Implicit dynamics: steps that may be larger than the explicit bound.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "msm/algebra/direct_solver.h"
+#include "msm/algebra/krylov.h"
+#include "msm/dynamics/energy_momentum.h"
+#include "msm/dynamics/lattice_motion.h"
+#include "msm/multigrid/multigrid.h"
+
+namespace springproof {
+
+enum class Integrator {
+  explicit_euler,   ///< semi-implicit Euler: order 1 in the energy, 2 in the positions; a bounded step
+  energy_momentum,  ///< midpoint kinematics with the forces of EnergyMomentum: order 2, undamped
+  implicit_euler,   ///< order 1, damps strongly
+  bdf2,             ///< order 2, damps; its first step is one of implicit Euler
+};
+
+struct ImplicitOptions {
+  Integrator integrator = Integrator::energy_momentum;
+  double time_step = 0;  ///< [s]
+  double damping = 0;    ///< mass-proportional [1/s]
+  /// Largest unbalanced force of a step relative to its inertial and internal forces; round-off where that is more.
+  double tolerance = 1e-11;
+  int max_iterations = 30;  ///< of Newton's method, per step
+};
+
+/// Each step is solved by Newton's method, whose linear equations GMRES solves with differences of the forces (their
+/// derivative is not symmetric).  Preconditioner: the factors of mass and tangent stiffness of an earlier state,
+/// renewed when GMRES is slow; on lattices of full cells of more than `cholesky_limit` unknowns one multigrid cycle of
+/// the rest state, turned with a body that is not held.
+class ImplicitMotion {
+ public:
+  /// At rest at X.  Keeps a reference to the model.
+  /// @throws std::invalid_argument if the model has no energy-momentum forces and these are asked for.
+  ImplicitMotion(const MassSpringModel& model, double density, const ImplicitOptions& options);
+
+  /// Sets supports and loads of the end of the next step; a step's loads are the mean of those of its two ends (energy-
+  /// momentum) or those of its end.
+  void set_conditions(const BoundaryConditions& conditions);
+  void move_supports();                                          ///< moves the fixed unknowns at once
+  void set_state(const NodalVectors& x, const NodalVectors& v);  ///< [m], [m/s]
+
+  /// @return the norms of internal and external forces over the last step; NaN if it has none, with the reason
+  ///   in failure().
+  ForceNorms advance(long steps);
+
+  const NodalVectors& positions() const { return x_; }   ///< [m]
+  const NodalVectors& velocities() const { return v_; }  ///< [m/s]; of fixed unknowns the mean over the last step
+  const std::string& failure() const { return failure_; }
+  long evaluations() const { return evaluations_; }  ///< of the forces, all steps together
+  long halved() const { return halved_; }            ///< steps that had no solution and were made in halves
+  std::string description() const;
+
+ private:
+  /// A step as m a (x1 - inertial) = force - damping m rate (x1 - before), v = rate (x1 - before).
+  struct Formula {
+    double a, rate;
+    double of_stiffness;  ///< df/dx1 relative to the tangent stiffness
+    NodalVectors inertial, before;
+  };
+  struct Balance {
+    NodalVectors force;          ///< internal and external [N]
+    Eigen::VectorXd unbalanced;  ///< with inertia and damping, zero on fixed unknowns [N]
+  };
+  Formula formula() const;
+  bool step(double dt, int halvings);
+  bool solve_step();
+  NodalVectors predicted() const;
+  Balance balance(const Formula& step, const NodalVectors& x1);
+  void iterate(const Formula& step, double enough, NodalVectors& x1, Balance& b);
+  void newton_step(const Formula& step, double relative, NodalVectors& x1, Balance& b);
+  NodalVectors with_supports(NodalVectors x) const;
+  Eigen::VectorXd free_part(NodalVectors v) const;
+  NodalVectors force(const NodalVectors& x1) const;
+  void prepare(const Formula& step);
+  void renew(const Formula& step, const NodalVectors& x1);
+  Eigen::VectorXd correction(const Eigen::VectorXd& r) const;
+  bool factored() const { return !cycle_; }
+  bool held() const;
+
+  const MassSpringModel& model_;
+  ImplicitOptions options_;
+  double density_, safe_step_;
+  Eigen::VectorXd mass_;
+  double spacing_;  ///< of the nodes [m]
+  std::unique_ptr<EnergyMomentum> secant_;
+  BoundaryConditions conditions_;
+  NodalVectors external_before_;
+  NodalVectors x_, v_, x_before_, v_before_;
+  double dt_ = 0;   ///< of the present step [s]
+  long steps_ = 0;  ///< of equal size so far
+  long advanced_ = 0, halved_ = 0, evaluations_ = 0, factorisations_ = 0;
+  std::string failure_;
+  ForceNorms norms_;
+
+  double prepared_for_ = 0;  ///< the mass term a that B was made for
+  bool renewed_ = false;
+  Tangent K_;
+  double scale_ = 1;  ///< B = (factors of K + a / scale M)^-1 / scale
+  std::unique_ptr<DirectSolver> factors_;
+  std::unique_ptr<Multigrid> cycle_;
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  ///< of the body since rest
+};
+
+}  // namespace springproof

@@ -1,0 +1,44 @@
+// Period and amplitude of recorded vibrations.
+#include "comparisons/judge/swings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace springproof {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::optional<Swings> of(double duration, int samples, double (*u)(double t)) {
+  std::vector<double> time, value;
+  for (int i = 0; i < samples; ++i) {
+    time.push_back(duration * i / (samples - 1));
+    value.push_back(u(time.back()));
+  }
+  return swings_of(time, value);
+}
+
+TEST(Swings, PeriodAmplitudeAndMeanOfACosine) {
+  const auto s = of(7.3, 700, [](double t) { return 3 - 0.2 * std::cos(2 * pi * t / 1.7); });
+  ASSERT_TRUE(s);
+  EXPECT_NEAR(s->period, 1.7, 1e-3);
+  EXPECT_NEAR(s->amplitude, 0.2, 1e-4);
+  EXPECT_NEAR(s->mean, 3, 2e-3);
+}
+
+TEST(Swings, ASmallSecondModeAddsNoSwings) {
+  const auto s = of(20, 2000, [](double t) { return std::sin(2 * pi * t) + 0.07 * std::sin(2 * pi * 9.3 * t); });
+  ASSERT_TRUE(s);
+  EXPECT_NEAR(s->period, 1, 5e-3);
+}
+
+TEST(Swings, TooFewSwingsOrSamplesGiveNothing) {
+  EXPECT_FALSE(of(2, 200, [](double t) { return std::sin(2 * pi * t); }));   // one upward crossing to the next
+  EXPECT_FALSE(of(20, 100, [](double t) { return std::sin(2 * pi * t); }));  // five samples to a swing
+  EXPECT_FALSE(of(2, 200, [](double) { return 1.0; }));
+}
+
+}  // namespace
+}  // namespace springproof
