@@ -16,8 +16,9 @@ namespace springproof {
 namespace {
 
 constexpr double most_steps = 1e8;
-constexpr double implicit_ratio = 10;    // default step of implicit methods to the explicit bound
-constexpr double worthwhile_ratio = 30;  // of a wanted step to the explicit bound, above which "auto" takes it
+constexpr double implicit_ratio = 10;  // default step of implicit methods to the explicit bound
+// Ratio of a wanted step to the explicit bound, above which "auto" takes it (docs/motion.md).
+constexpr double worthwhile_ratio = 50, worthwhile_ratio_beside_kernels = 500;
 
 /// The steps of a motion.
 struct Steps {
@@ -33,7 +34,8 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
   const std::string why = EnergyMomentum::lacks(model);
   if (motion.integrator == "auto") {
     const double wanted = motion.time_step.value_or(motion.duration / std::max(motion.frames, 1));
-    return why.empty() && wanted > worthwhile_ratio * bound ? Integrator::energy_momentum : Integrator::explicit_euler;
+    const double ratio = LatticeMotion::suits(model) ? worthwhile_ratio_beside_kernels : worthwhile_ratio;
+    return why.empty() && wanted > ratio * bound ? Integrator::energy_momentum : Integrator::explicit_euler;
   }
   if (!why.empty())
     throw InputError(motion.integrator_where,

@@ -16,8 +16,10 @@ plan() {
     "$springproof compare liver.toml "*) echo "run --poisson-ratio 0.45" ;;
     ./quickstart.sh | "./quickstart.sh test") echo "check it installs, builds and runs everything" ;;
     "ctest --test-dir build/release -"* | "cmake --build build/release --target "*) echo "check ctest would run itself" ;;
-    "$springproof compare golec_2019/"* | "$springproof compare verification" | "$springproof compare calibration")
+    "$springproof compare golec_2019/"* | "$springproof compare verification" | "$springproof compare calibration" | \
+      "$springproof compare large_strain")
       echo "check minutes; the tests experiment.* run these cases" ;;
+    "$springproof frequencies "*) echo "check it takes half a minute; cli.frequencies runs such" ;;
     "$springproof cross-check "*) echo "check it needs CalculiX; cli.cross_check runs it" ;;
     "$springproof reproduce "*) echo "check minutes; cli.reproduce draws figures from results" ;;
     "$springproof diff "*) echo "check it takes the folders of two runs; the tests Differences.* compare such" ;;
