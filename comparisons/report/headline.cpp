@@ -160,6 +160,7 @@ std::string run_line(const std::string& case_name, const Json& run) {
 
 struct Candidate {
   std::string name;
+  bool large_deformation;
   const ModelErrors* errors;
   ByNu rank;  ///< where the model is valid
   double error() const { return largest(rank).second.error; }
@@ -167,12 +168,19 @@ struct Candidate {
   auto breadth() const { return std::tuple(errors->cases.size(), rank.size()); }
 };
 
-/// The spring models that were compared most widely in linear cases, the closest first.
+/// Whether the models are judged by cases of large deformation: where there are no linear ones.
+bool judged_by_large(const std::map<ModelKey, ModelErrors>& models) {
+  return std::all_of(models.begin(), models.end(),
+                     [](const auto& m) { return m.first.large_deformation || m.first.fem; });
+}
+
+/// The spring models that were compared most widely, the closest first.
 std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models) {
   std::vector<Candidate> all;
+  const bool large = judged_by_large(models);
   for (const auto& [key, errors] : models)
-    if (Candidate c{key.name, &errors, ranked(errors, errors.rank)};
-        !key.large_deformation && !key.fem && !c.rank.empty())
+    if (Candidate c{key.name, large, &errors, ranked(errors, errors.rank)};
+        key.large_deformation == large && !key.fem && !c.rank.empty())
       all.push_back(c);
   if (all.empty()) return all;
   const auto widest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
@@ -185,7 +193,8 @@ std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models)
 
 std::string where_text(const Candidate& c) {
   const auto cases = c.errors->cases.size();
-  return fmt::format("{}, in {} linear case{}", range_text(c.rank), cases, cases == 1 ? "" : "s");
+  return fmt::format("{}, in {} {}case{}{}", range_text(c.rank), cases, c.large_deformation ? "" : "linear ",
+                     cases == 1 ? "" : "s", c.large_deformation ? " of large deformation" : "");
 }
 
 std::string closest_text(const Candidate& best) {

@@ -18,7 +18,8 @@ struct ModelVerdict {
 struct Headline {
   std::string doubt;   ///< where the reference does not converge or is uncertain by more than 5 %; empty: nowhere.
                        ///< Printed first
-  std::string answer;  ///< which spring model comes closest in the linear cases; empty: none was compared
+  std::string answer;  ///< which spring model comes closest in the linear cases, or, where there are none, in those of
+                       ///< large deformation; empty: none was compared
   std::vector<std::string> closest;  ///< that model, or those that cannot be told apart
   std::vector<ModelVerdict> models;  ///< springs first, then finite elements; linear cases before large deformation
   std::vector<std::string> deformations;  ///< per case the reference's largest principal strain and rotation at each nu
@@ -34,8 +35,7 @@ struct Headline {
 /// Titles of the two groups of models.
 inline constexpr const char* linear_title =
     "Linear elasticity: the largest error of all cases, each at its finest resolution";
-inline constexpr const char* large_title =
-    "Large deformation, beside a finite-strain law: reported, not part of the verdict";
+inline constexpr const char* large_title = "Large deformation, beside a finite-strain law";
 
 /// Judges each model by its largest "displacement_error", "reaction_error" and "volume_change" error over the cases and
 /// Poisson's ratios, at the finest resolution of each case.  The closest is found at the Poisson's ratios that a model
