@@ -12,6 +12,7 @@
 #include "msm/measure/stability.h"
 #include "msm/measure/statistics.h"
 #include "msm/measure/validity.h"
+#include "msm/measure/waves.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/bulk_calibration.h"
@@ -109,6 +110,8 @@ void print(const DispersionFacts& f, const ModelParameters& p, const IsotropicMa
           : "no flutter");
 }
 
+constexpr double wave_cells = 10;  // per wavelength
+
 /// All values printed for a material in a model.
 struct MaterialFacts {
   const IsotropicMaterial& m;
@@ -132,6 +135,20 @@ struct MaterialFacts {
 
 nlohmann::json moduli_json(double E, double nu, double G) {
   return {{"youngs_modulus_Pa", E}, {"poisson_ratio", nu}, {"shear_modulus_Pa", G}};
+}
+
+PhaseError phase_error_of(const MaterialFacts& f, double consistent) {
+  return phase_error(f.model, shear_modulus(f.m), lame_lambda(f.m), wave_cells, consistent);
+}
+
+nlohmann::json waves_json(const MaterialFacts& f) {
+  const PhaseError lumped = phase_error_of(f, 0), half = phase_error_of(f, 0.5);
+  const SoftestWave softest = softest_wave(f.model, shear_modulus(f.m));
+  return {{"cells_per_wavelength", wave_cells},
+          {"phase_error", {{"longitudinal", lumped.longitudinal}, {"transverse", lumped.transverse}}},
+          {"phase_error_half_consistent", {{"longitudinal", half.longitudinal}, {"transverse", half.transverse}}},
+          {"softest_short_wave",
+           {{"stiffness_over_Gl", softest.stiffness}, {"k_l_over_pi", {softest.k[0], softest.k[1], softest.k[2]}}}}};
 }
 
 nlohmann::json json_of(const MaterialFacts& f) {
@@ -159,6 +176,7 @@ nlohmann::json json_of(const MaterialFacts& f) {
                                          {"model_Pa", s.model ? nlohmann::json(*s.model) : nlohmann::json(nullptr)},
                                          {"hencky_Pa", s.hencky},
                                          {"neo_hooke_Pa", s.neo_hooke}});
+  if (f.has_limits) out["waves"] = waves_json(f);
   if (f.model.network.springs.empty() || !f.lattice) out.erase("springs");
   out.update(json_of(f.dispersion, p, f.m));
   return out;
@@ -202,6 +220,19 @@ void print_limits(const MaterialFacts& f) {
                strain(f.limits.bounded_energy), strain(f.limits.paper_energy));
   else if (f.has_limits)
     fmt::print("tension limit of a free-sided cell: {}\n", strain(f.limits.bounded_energy));
+}
+
+void print_waves(const MaterialFacts& f) {
+  const PhaseError lumped = phase_error_of(f, 0), half = phase_error_of(f, 0.5);
+  const SoftestWave softest = softest_wave(f.model, shear_modulus(f.m));
+  fmt::print("\nwaves of {:g} cells, phase velocity in the worst direction\n", wave_cells);
+  fmt::print("  longitudinal {:+.2f} %, transverse {:+.2f} %   (corner masses)\n", 100 * lumped.longitudinal,
+             100 * lumped.transverse);
+  fmt::print("  longitudinal {:+.2f} %, transverse {:+.2f} %   (half of the mass consistent)\n",
+             100 * half.longitudinal, 100 * half.transverse);
+  fmt::print("softest wave of less than four cells: {:.2g} G l at k l = ({:.2g}, {:.2g}, {:.2g}) pi{}\n",
+             std::max(0.0, softest.stiffness), softest.k[0], softest.k[1], softest.k[2],
+             softest.stiffness < 1e-9 ? ", which costs no energy" : "");
 }
 
 void print_stresses(const MaterialFacts& f) {
@@ -277,6 +308,7 @@ int MaterialCommand::run() const {
   print(facts.dispersion, p, m);
   print_limits(facts);
   print_stresses(facts);
+  if (facts.has_limits) print_waves(facts);
   print_measured(facts);
   print_warnings(p, m);
   return 0;

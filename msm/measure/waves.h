@@ -1,0 +1,27 @@
+// Plane waves of an infinite lattice of cells at rest: how fast they travel, and the softest of the short ones.
+#pragma once
+
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+/// Largest relative error of the phase velocity over directions; negative: too slow.
+struct PhaseError {
+  double longitudinal, transverse;
+};
+
+/// Waves u exp(i k x) of K(k) u = omega^2 m(k) u, K(k) the sum of the blocks of a cell's stiffness times cos(k d), d
+/// the distance of their corners, against the velocities of the solid.  `cells` per wavelength; `consistent`: share
+/// theta of consistent mass, m(k) = rho l^3 (theta prod (2 + cos k_i l) / 3 + 1 - theta).
+/// @throws std::invalid_argument unless the model consists of cells (msm/multigrid/cell_stiffness.h).
+PhaseError phase_error(const MassSpringModel& model, double shear_modulus, double lame_lambda, double cells,
+                       double consistent);
+
+/// The wave of least energy among those shorter than four cells.
+struct SoftestWave {
+  double stiffness;  ///< smallest eigenvalue of K(k) over G l; 0: a mode without energy
+  Vec3 k;            ///< in units of pi / l
+};
+SoftestWave softest_wave(const MassSpringModel& model, double shear_modulus);
+
+}  // namespace springproof
