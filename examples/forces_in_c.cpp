@@ -39,6 +39,17 @@ int main(int count, char** arguments) try {
                         {derived.at("hourglass_bending_N_m"), derived.at("hourglass_coupling_N_m"),
                          derived.at("hourglass_torsion_N_m"), derived.at("hourglass_torsion_coupling_N_m")},
                         X.data(), x.data(), f);
+    if (laws.contains("averaged_springs")) {
+      const json& law = laws.at("averaged_springs");
+      const std::string curve = law.at("curve");
+      W += sp_averaged(cells.size() / 8, cells.data(), file.at("cells").at("edge_m"),
+                       {curve == "hencky"      ? SP_HENCKY
+                        : curve == "neo_hooke" ? SP_NEO_HOOKE
+                                               : SP_NEO_HOOKE_ISOCHORIC,
+                        law.at("shear_modulus_Pa"), law.at("lame_lambda_Pa"), law.at("bending"), law.at("coupling"),
+                        law.at("torsion"), law.at("twist"), law.at("warping")},
+                       x.data(), f);
+    }
     return W;
   };
 
@@ -50,7 +61,7 @@ int main(int count, char** arguments) try {
   for (double force : wanted) largest = std::max(largest, std::abs(force));
   for (std::size_t i = 0; i < x.size(); ++i) off = std::max(off, std::abs(f[i] - wanted[i]));
   for (std::size_t i = 0; i < std::min<std::size_t>(30, x.size()); ++i) {
-    const double h = 1e-6 * L.front(), at = x[i];
+    const double h = 1e-6 * file.at("cells").at("edge_m").get<double>(), at = x[i];
     x[i] = at + h;
     const double above = energy(x, nullptr);
     x[i] = at - h;

@@ -1,7 +1,8 @@
-/* Forces of HybMSS and its hourglass correction in C99, for an engine or a shader that has the springs of a springs
- * file (springproof export BODY --to springs) and nothing else of springproof.  SI units; nodes count from 0; a vector
- * is three numbers in a row.  Every function adds to the forces f [N] and returns its energy [J]; f may be null.
- * Equations: Golec et al. (2019); the hourglass correction: docs/papers.md, section 4. */
+/* Forces of averaged springs (hybmss_avg), of HybMSS and its hourglass correction in C99, for an engine or a shader
+ * that has a springs file (springproof export BODY --model hybmss_avg --to springs) and nothing else of springproof. SI
+ * units; nodes count from 0; a vector is three numbers in a row.  Every function adds to the forces f [N] and returns
+ * its energy [J]; f may be null. Equations: Golec et al. (2019); averaged springs: docs/large_strain.md; the hourglass
+ * correction: docs/papers.md, section 4. */
 #ifndef SPRINGPROOF_FORCES_H
 #define SPRINGPROOF_FORCES_H
 
@@ -93,6 +94,98 @@ static double sp_hourglass(size_t cells, const int* nodes, struct sp_hourglass_s
         for (int corner = 0; corner < 8; ++corner)
           f[3 * n[corner] + c] -=
               force[c][out] * sp_sign[corner][(out + 1) % 3] * sp_sign[corner][(out + 2) % 3] / sqrt(8.0);
+      }
+  }
+  return energy;
+}
+
+/* laws.averaged_springs of the file: moduli [Pa], hourglass springs [1]. */
+enum sp_curve { SP_HENCKY, SP_NEO_HOOKE, SP_NEO_HOOKE_ISOCHORIC };
+struct sp_averaged {
+  enum sp_curve curve;
+  double shear_modulus, lame_lambda;
+  double bending, coupling, torsion, twist, warping;
+};
+
+/* Energy density W [Pa] of a deformation gradient F (row by row), and P = dW/dF; infinite if F turns a cell inside out.
+ */
+static double sp_strain_energy(struct sp_averaged law, double F[3][3], double P[3][3]) {
+  const double G = law.shear_modulus, K = law.lame_lambda + 2 * G / 3;
+  double cofactor[3][3], C[3][3], I1 = 0, I2, CC = 0, W, of_F, of_FC = 0, of_cofactor;
+  for (int i = 0; i < 3; ++i) sp_cross(F[(i + 1) % 3], F[(i + 2) % 3], cofactor[i]);
+  const double J = F[0][0] * cofactor[0][0] + F[0][1] * cofactor[0][1] + F[0][2] * cofactor[0][2];
+  if (!(J > 0)) return INFINITY;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      C[i][j] = F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j];
+      CC += C[i][j] * C[i][j];
+      if (i == j) I1 += C[i][i];
+    }
+  I2 = (I1 * I1 - CC) / 2;
+  const double e = log(J), m = pow(J, -2.0 / 3), n = m * m;
+  if (law.curve == SP_NEO_HOOKE) {
+    W = G / 2 * (I1 - 3 - 2 * e) + law.lame_lambda / 2 * e * e;
+    of_F = G;
+    of_cofactor = law.lame_lambda * e - G;
+  } else if (law.curve == SP_NEO_HOOKE_ISOCHORIC) {
+    W = G / 2 * (m * I1 - 3) + K / 2 * (J - 1) * (J - 1);
+    of_F = G * m;
+    of_cofactor = K * (J - 1) * J - G * m * I1 / 3;
+  } else { /* lengths of edges and areas of faces: Hencky's law */
+    const double y = (m * I1 + n * I2 - 6) / 4, s = G / 2 * (1 - y / 3 + 2 * y * y / 15);
+    W = G * y * (1 - y / 6 + 2 * y * y / 45) + K / 2 * e * e;
+    of_F = s * (m + n * I1);
+    of_FC = -s * n;
+    of_cofactor = K * e - s * (m * I1 + 2 * n * I2) / 3;
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      P[i][j] = of_F * F[i][j] + of_FC * (F[i][0] * C[0][j] + F[i][1] * C[1][j] + F[i][2] * C[2][j]) +
+                of_cofactor / J * cofactor[i][j];
+  return W;
+}
+
+/* Averaged springs: W = V w(F) + v . D v / 2 of each cell, F its mean deformation gradient, v = F^T q, q its corners'
+ * positions in the patterns yz, zx, xy, xyz that F does not see.  For any strain and rotation. */
+static double sp_averaged(size_t cells, const int* nodes, double edge, struct sp_averaged law, const double* x,
+                          double* f) {
+  const double V = edge * edge * edge, unit = law.shear_modulus * edge / 2;
+  double energy = 0;
+  for (size_t cell = 0; cell < cells; ++cell) {
+    const int* n = nodes + 8 * cell;
+    double F[3][3] = {{0}}, P[3][3], q[3][4] = {{0}}, v[4][3] = {{0}}, w[4][3], h[8][4];
+    for (int corner = 0; corner < 8; ++corner) {
+      const int* s = sp_sign[corner];
+      for (int m = 0; m < 3; ++m) h[corner][m] = s[(m + 1) % 3] * s[(m + 2) % 3] / 2.0;
+      h[corner][3] = s[0] * s[1] * s[2];
+      for (int i = 0; i < 3; ++i) {
+        const double at = x[3 * n[corner] + i];
+        for (int j = 0; j < 3; ++j) F[i][j] += at * s[j] / (4 * edge);
+        for (int m = 0; m < 4; ++m) q[i][m] += at * h[corner][m];
+      }
+    }
+    for (int m = 0; m < 4; ++m)
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) v[m][j] += F[i][j] * q[i][m];
+    const double twisted = v[0][0] + v[1][1] + v[2][2];
+    for (int j = 0; j < 3; ++j) {
+      for (int m = 0; m < 3; ++m)
+        w[m][j] = unit * (m == j ? law.torsion * (v[m][m] + twisted) + law.twist * v[m][m]
+                                 : law.bending * v[m][j] + law.coupling * v[j][m]);
+      w[3][j] = unit / 4 * law.warping * v[3][j];
+    }
+    energy += V * sp_strain_energy(law, F, P);
+    for (int m = 0; m < 4; ++m)
+      for (int j = 0; j < 3; ++j) energy += 0.5 * v[m][j] * w[m][j];
+    if (!f) continue;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        double stress = V * P[i][j];
+        for (int m = 0; m < 4; ++m) stress += q[i][m] * w[m][j];
+        for (int corner = 0; corner < 8; ++corner) {
+          f[3 * n[corner] + i] -= stress * sp_sign[corner][j] / (4 * edge);
+          for (int m = 0; m < 4; ++m) f[3 * n[corner] + i] -= h[corner][m] * F[i][j] * w[m][j];
+        }
       }
   }
   return energy;
