@@ -127,24 +127,34 @@ CellMatrix tangent_of(const CellForm& form, const Deformed& s) {
   return K;
 }
 
-/// Calls act(cell, what its energy depends on); that of full cells is computed once.
-template <class Act>
-void for_each_form(const AveragedSprings& law, const Network& network, const Act& act) {
-  const CellForm full = cell_form(law, network.cell_edge, {});
-  for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart& part = part_of(network, c);
-    act(network.cells[c], part.fraction == 1 ? full : cell_form(law, network.cell_edge, part));
-  }
+/// Calls act(cell, make(its filled part)); that of full cells is made once.
+template <class Make, class Act>
+void for_each_cell(const Network& network, const Make& make, const Act& act) {
+  const auto full = make(FilledPart{});
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    if (const FilledPart& part = part_of(network, c); part.fraction == 1)
+      act(network.cells[c], full);
+    else
+      act(network.cells[c], make(part));
 }
 
-/// Calls act(cell, its stiffness at rest); that of full cells is computed once.
+template <class Act>
+void for_each_form(const AveragedSprings& law, const Network& network, const Act& act) {
+  for_each_cell(
+      network, [&](const FilledPart& part) { return cell_form(law, network.cell_edge, part); }, act);
+}
+
 template <class Act>
 void for_each_stiffness(const AveragedSprings& law, const Network& network, const Act& act) {
-  const CellMatrix full = law.cell_matrix(network.cell_edge, {});
-  for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart& part = part_of(network, c);
-    act(network.cells[c], part.fraction == 1 ? full : law.cell_matrix(network.cell_edge, part));
-  }
+  for_each_cell(
+      network, [&](const FilledPart& part) { return law.cell_matrix(network.cell_edge, part); }, act);
+}
+
+/// Sum over the corners of a cell of a nodal field times their mean gradients: of positions, F.
+Eigen::Matrix3d mean_gradient(const Hexahedron& cell, const std::array<Vec3, 8>& g, const NodalVectors& field) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (int n = 0; n < 8; ++n) sum += field.row(cell[n]).transpose() * g[n].transpose();
+  return sum;
 }
 
 /// d2V/dx2 = volume [F (g_m x g_n)] as the matrix of a cross product.
@@ -289,8 +299,7 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
 CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x) {
   const FilledPart& part = part_of(network, cell);
   const std::array<Vec3, 8> g = mean_gradients(network.cell_edge, part);
-  Eigen::Matrix3d F = Eigen::Matrix3d::Zero();
-  for (int n = 0; n < 8; ++n) F += x.row(network.cells[cell][n]).transpose() * g[n].transpose();
+  const Eigen::Matrix3d F = mean_gradient(network.cells[cell], g, x);
   Eigen::Matrix3d cofactor;
   for (int i = 0; i < 3; ++i) cofactor.col(i) = F.col((i + 1) % 3).cross(F.col((i + 2) % 3));
   const double volume = part.fraction * network.cell_volume();
@@ -304,8 +313,7 @@ void add_volume_curvature(const Network& network, std::size_t cell, const NodalV
   const FilledPart& part = part_of(network, cell);
   const Hexahedron& corners = network.cells[cell];
   const std::array<Vec3, 8> g = mean_gradients(network.cell_edge, part);
-  Eigen::Matrix3d F = Eigen::Matrix3d::Zero();
-  for (int n = 0; n < 8; ++n) F += x.row(corners[n]).transpose() * g[n].transpose();
+  const Eigen::Matrix3d F = mean_gradient(corners, g, x);
   for (int m = 0; m < 8; ++m)
     for (int n = 0; n < 8; ++n)
       K.add(corners[m], corners[n], volume_curvature(pressure * part.fraction * network.cell_volume(), F, g[m], g[n]));
@@ -318,8 +326,7 @@ VolumeChange volume_change(const Network& network, const NodalVectors& u) {
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const FilledPart& part = part_of(network, c);
     const std::array<Vec3, 8> g = part.fraction == 1 ? of_full : mean_gradients(network.cell_edge, part);
-    Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
-    for (int n = 0; n < 8; ++n) F += u.row(network.cells[c][n]).transpose() * g[n].transpose();
+    const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + mean_gradient(network.cells[c], g, u);
     volume += part.fraction;
     change.first_order += part.fraction * (F.trace() - 3);
     change.exact += part.fraction * (F.determinant() - 1);

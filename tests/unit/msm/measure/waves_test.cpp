@@ -25,9 +25,8 @@ TEST(Waves, VelocitiesConvergeWithOrderTwo) {
   }
 }
 
-// Along an axis a lattice of springs is a chain: omega = 2 sqrt(k/m) sin(k l / 2), and with half of the mass consistent
-// the error is of fourth order.
-TEST(Waves, AlongAnAxisTheyAreThoseOfAChain) {
+// Along an axis a lattice of springs is a chain, omega = 2 sqrt(k/m) sin(k l / 2): the worst direction is no better.
+TEST(Waves, AreInTheWorstDirectionSlowerThanInAChain) {
   const double wave = 2 * std::numbers::pi / 10;
   const PhaseError e = error_of("hybmss_bt", 10, 0);
   EXPECT_LT(e.longitudinal, std::sin(wave / 2) / (wave / 2) - 1 + 1e-12);  // the worst direction is worse
