@@ -21,7 +21,7 @@ VtuFile vtu_of(const Field& field, const std::vector<std::pair<std::string, Noda
   const Mesh& mesh = *field.mesh;
   const Eigen::VectorXd rest = cell_volumes(mesh, mesh.nodes);
   const Eigen::VectorXd change = (cell_volumes(mesh, mesh.nodes + field.displacement) - rest).cwiseQuotient(rest);
-  VtuFile vtu{mesh.nodes, {}, {}, {}, {}, {}};
+  VtuFile vtu{mesh.nodes, {}, {}, {}, {}, {}, {}};
   for (const Hexahedron& cell : mesh.hexahedra) vtu.add_cell(cell, vtk_hexahedron);
   for (const Tetrahedron& cell : mesh.tetrahedra) vtu.add_cell(cell, vtk_tetrahedron);
   vtu.point_data.push_back(nodal_vectors("displacement", field.displacement));
@@ -33,13 +33,15 @@ VtuFile vtu_of(const Field& field, const std::vector<std::pair<std::string, Noda
 }  // namespace
 
 void write_vtu(const std::filesystem::path& file, const Field& field,
-               const std::vector<std::pair<std::string, NodalVectors>>& extra) {
+               const std::vector<std::pair<std::string, NodalVectors>>& extra, const VtuNotes& notes) {
   const Eigen::Index nodes = field.mesh->nodes.rows();
   if (field.displacement.rows() != nodes) throw std::invalid_argument("write_vtu: one displacement per node");
   for (const auto& [name, values] : extra)
     if (values.rows() != nodes) throw std::invalid_argument("write_vtu: '" + name + "': one vector per node");
 
-  write_file(file, text_of(vtu_of(field, extra)));
+  VtuFile vtu = vtu_of(field, extra);
+  vtu.notes = notes;
+  write_file(file, text_of(vtu));
 }
 
 void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<double, std::string>>& series) {
@@ -56,7 +58,7 @@ void write_lines_vtu(const std::filesystem::path& file, const NodalVectors& poin
                      const std::vector<std::array<int, 2>>& lines,
                      const std::vector<std::pair<std::string, std::vector<double>>>& values) {
   if (displacement.rows() != points.rows()) throw std::invalid_argument("write_lines_vtu: one displacement per point");
-  VtuFile vtu{points, {}, {}, {}, {nodal_vectors("displacement", displacement)}, {}};
+  VtuFile vtu{points, {}, {}, {}, {nodal_vectors("displacement", displacement)}, {}, {}};
   for (const std::array<int, 2>& line : lines) vtu.add_cell(line, vtk_line);
   for (const auto& [name, numbers] : values) {
     if (numbers.size() != lines.size()) throw std::invalid_argument("write_lines_vtu: one number per line");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "meshes/mesh.h"
+#include "meshes/vtu.h"
 
 namespace springproof {
 
@@ -30,9 +31,10 @@ struct Field {
 /// relative volume change of each cell.
 /// @throws std::runtime_error if the file cannot be written.
 void write_vtu(const std::filesystem::path& file, const Field& field,
-               const std::vector<std::pair<std::string, NodalVectors>>& extra = {});
+               const std::vector<std::pair<std::string, NodalVectors>>& extra = {}, const VtuNotes& notes = {});
 
-/// Writes a ParaView collection: the time [s] and the name of each VTU file of a series, beside which it lies.
+/// Writes a ParaView collection: the time [s], or Poisson's ratio, and the name of each VTU file of a series, beside
+/// which it lies.
 /// @throws std::runtime_error if the file cannot be written.
 void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<double, std::string>>& series);
 /// Writes lines between points: displacement of the points, one number of each name per line.

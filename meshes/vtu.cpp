@@ -40,13 +40,40 @@ void write_integers(std::ostream& out, const std::string& name, const char* type
   write_array(out, name, type, 1, values.data(), values.size());
 }
 
+void write_reals(std::ostream& out, const std::string& name, int components, const double* data, std::size_t count,
+                 bool single) {
+  if (single) {
+    const std::vector<float> rounded(data, data + count);
+    write_array(out, name, "Float32", components, rounded.data(), count);
+  } else {
+    write_array(out, name, "Float64", components, data, count);
+  }
+}
+
+/// Texts as VTK stores strings: the codes of their bytes, then 0.
+void write_notes(std::ostream& out, const VtuNotes& notes) {
+  if (notes.texts.empty() && notes.numbers.empty()) return;
+  out << "    <FieldData>\n";
+  for (const auto& [name, text] : notes.texts) {
+    out << "      <DataArray type=\"String\" Name=\"" << xml_escaped(name)
+        << "\" NumberOfTuples=\"1\" format=\"ascii\">";
+    for (const unsigned char c : text) out << int(c) << ' ';
+    out << "0</DataArray>\n";
+  }
+  for (const auto& [name, number] : notes.numbers)
+    out << "      <DataArray type=\"Float64\" Name=\"" << xml_escaped(name)
+        << "\" NumberOfTuples=\"1\" format=\"binary\">" << encoded(&number, 1) << "</DataArray>\n";
+  out << "    </FieldData>\n";
+}
+
 /// The first array of the list is the one that is shown first.
-void write_data(std::ostream& out, const char* element, const char* shown, const std::vector<VtuArray>& arrays) {
+void write_data(std::ostream& out, const char* element, const char* shown, const std::vector<VtuArray>& arrays,
+                bool single) {
   out << "      <" << element;
   if (!arrays.empty()) out << " " << shown << "=\"" << xml_escaped(arrays.front().name) << "\"";
   out << ">\n";
   for (const VtuArray& a : arrays)
-    write_array(out, xml_escaped(a.name), "Float64", a.components, a.values.data(), a.values.size());
+    write_reals(out, xml_escaped(a.name), a.components, a.values.data(), a.values.size(), single);
   out << "      </" << element << ">\n";
 }
 
@@ -57,13 +84,15 @@ std::string text_of(const VtuFile& vtu) {
   out << "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
-         "  <UnstructuredGrid>\n"
-      << "    <Piece NumberOfPoints=\"" << vtu.points.rows() << "\" NumberOfCells=\"" << vtu.types.size() << "\">\n";
+         "  <UnstructuredGrid>\n";
+  write_notes(out, vtu.notes);
+  const bool single = vtu.notes.single;
+  out << "    <Piece NumberOfPoints=\"" << vtu.points.rows() << "\" NumberOfCells=\"" << vtu.types.size() << "\">\n";
   const bool vectors = !vtu.point_data.empty() && vtu.point_data.front().components == 3;
-  write_data(out, "PointData", vectors ? "Vectors" : "Scalars", vtu.point_data);
-  write_data(out, "CellData", "Scalars", vtu.cell_data);
+  write_data(out, "PointData", vectors ? "Vectors" : "Scalars", vtu.point_data, single);
+  write_data(out, "CellData", "Scalars", vtu.cell_data, single);
   out << "      <Points>\n";
-  write_array(out, "position", "Float64", 3, vtu.points.data(), static_cast<std::size_t>(vtu.points.size()));
+  write_reals(out, "position", 3, vtu.points.data(), static_cast<std::size_t>(vtu.points.size()), single);
   out << "      </Points>\n      <Cells>\n";
   write_integers(out, "connectivity", "Int32", vtu.connectivity);
   write_integers(out, "offsets", "Int32", vtu.offsets);

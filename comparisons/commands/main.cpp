@@ -94,6 +94,8 @@ int main(int argc, char** argv) try {
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
   compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
   compare_command->add_flag("--vtu,!--no-vtu", options.vtu, "also write a VTU file of every run, for ParaView");
+  compare_command->add_flag("--vtu-single", options.vtu_single, "VTU files in single precision, half the size")
+      ->needs("--vtu");
   compare_command->footer(
       "Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, "
       "or nothing was compared, 2 the input is unusable, 130 interrupted.");

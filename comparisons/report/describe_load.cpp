@@ -79,7 +79,26 @@ std::string sentence(const PointForce& load) {
   return fmt::format("point {} m: loaded by a force of {} N", text(load.at), text(load.force));
 }
 
+LoadMark mark_of(const PrescribedDisplacement& load) {
+  Vec3 u = Vec3::Zero();
+  for (int c = 0; c < 3; ++c) u[c] = load.displacement[c].value_or(0);
+  return {u.isZero(0) ? "held" : "moved", load.on, u};
+}
+LoadMark mark_of(const PrescribedAffine& load) { return {"moved", load.on}; }
+LoadMark mark_of(const PrescribedRotation& load) { return {"turned", load.on, load.angle * load.axis, load.point}; }
+LoadMark mark_of(const PrescribedField& load) { return {"moved", load.on}; }
+LoadMark mark_of(const FieldBodyForce&) { return {}; }
+LoadMark mark_of(const Pressure& load) { return {"pressure", load.on, {load.pressure, 0, 0}}; }
+LoadMark mark_of(const Traction& load) { return {"force", load.on, load.traction}; }
+LoadMark mark_of(const PatchForce& load) { return {"force", load.on, load.force}; }
+LoadMark mark_of(const Gravity& load) { return {"gravity", "", load.acceleration}; }
+LoadMark mark_of(const PointForce& load) { return {"point", "", load.force, load.at}; }
+
 }  // namespace
+
+LoadMark mark(const Load& load) {
+  return std::visit([](const auto& l) { return mark_of(l); }, load);
+}
 
 std::string describe(const Load& load) {
   return std::visit([](const auto& l) { return sentence(l); }, load);

@@ -1,5 +1,7 @@
 #include "comparisons/report/picture.h"
 
+#include <algorithm>
+
 #include "comparisons/report/thin_surface.h"
 #include "meshes/locate/locate.h"
 #include "meshes/locate/outer_facets.h"
@@ -40,9 +42,12 @@ void append(const Eigen::RowVector3d& v, std::vector<float>& out) {
   for (double value : v) out.push_back(static_cast<float>(value));
 }
 
-/// Numbers the nodes of the facets in order of appearance; `add` appends the values of one node to the picture.
+/// The outer facets and patches of a mesh: numbers their nodes in order of appearance; `add` appends the values of one
+/// node to the picture.
 template <class Add>
-void add_facets(const std::vector<Facet>& facets, const NodalVectors& points, Picture& p, const Add& add) {
+void add_facets(const Mesh& mesh, Picture& p, const Add& add) {
+  const NodalVectors& points = mesh.nodes;
+  const std::vector<Facet> facets = surface_of(mesh);
   std::vector<int> number(static_cast<std::size_t>(points.rows()), -1);
   int used = 0;
   for (const Facet& facet : facets)
@@ -54,6 +59,12 @@ void add_facets(const std::vector<Facet>& facets, const NodalVectors& points, Pi
       }
       p.quads.push_back(n < 0 ? -1 : number[n]);
     }
+  for (const Patch& patch : mesh.patches) {
+    std::vector<int>& nodes = p.patches[patch.name];
+    for (int n : nodes_of(patch))
+      if (number[n] >= 0) nodes.push_back(number[n]);
+    std::sort(nodes.begin(), nodes.end());
+  }
 }
 
 }  // namespace
@@ -61,7 +72,7 @@ void add_facets(const std::vector<Facet>& facets, const NodalVectors& points, Pi
 Picture picture(const RunKey& key, const Field& field, const NodalVectors* truth) {
   Picture p{key, {}, {}, {}, {}, {}, "cells"};
   const Eigen::VectorXd volume_change = nodal_volume_change(field);
-  add_facets(surface_of(*field.mesh), field.mesh->nodes, p, [&](int n) {
+  add_facets(*field.mesh, p, [&](int n) {
     append(field.displacement.row(n), p.displacement);
     p.volume_change.push_back(static_cast<float>(volume_change[n]));
     if (truth) p.difference.push_back(static_cast<float>((field.displacement.row(n) - truth->row(n)).norm()));
@@ -73,7 +84,7 @@ Picture smooth_picture(const RunKey& key, const Field& field, const Mesh& body, 
   Picture p{key, {}, {}, {}, {}, {}, "smooth"};
   const Eigen::VectorXd volume_change = nodal_volume_change(field);
   Locator locator(*field.mesh);
-  add_facets(surface_of(body), body.nodes, p, [&](int n) {
+  add_facets(body, p, [&](int n) {
     const Location at = locator(body.nodes.row(n).transpose());
     Eigen::RowVector3d u = Eigen::RowVector3d::Zero(), v = u;
     double change = 0;

@@ -119,8 +119,9 @@ struct Picture : RunKey {
   std::vector<int> quads;            ///< 4 surface-node numbers per facet; of a triangle the last is -1
   std::vector<float> volume_change;  ///< V'/V - 1, mean over the cells at each surface node [1]
   std::string surface = "cells";  ///< "cells": outer facets of the mesh; "smooth": the true surface, carried by voxels
-  std::vector<double> frame_times = {};         ///< of the animation of a motion [s]
-  std::vector<std::vector<float>> frames = {};  ///< displacement at each of these times, as `displacement` [m]
+  std::vector<double> frame_times = {};                  ///< of the animation of a motion [s]
+  std::vector<std::vector<float>> frames = {};           ///< displacement at each of these times, as `displacement` [m]
+  std::map<std::string, std::vector<int>> patches = {};  ///< surface nodes of each patch of the mesh, ascending
 };
 
 /// xx yy zz xy yz xz at each point of a line, one point after the other.
@@ -202,12 +203,22 @@ double cell_count(const Cells& cells);
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".
 std::string describe(const Load& load);
 
+/// How a load is drawn.
+struct LoadMark {
+  std::string kind;            ///< "held", "moved", "turned", "force", "pressure", "gravity", "point"; empty: not drawn
+  std::string on;              ///< patch; empty: the whole body, or the point `at`
+  Vec3 vector = Vec3::Zero();  ///< displacement [m], axis times angle [rad], force [N], traction [Pa], acceleration
+                               ///< [m/s^2]; of a pressure [Pa] its x
+  Vec3 at = Vec3::Zero();      ///< of a point force, or a point of the axis [m]
+};
+LoadMark mark(const Load& load);
+
 /// Everything but pictures; the schema is written out in docs/results.md.
 /// Numbers that are not finite become null.
 nlohmann::json to_json(const CaseResult& result);
 
-/// {"case", "folder", "meshes", "pictures"}: surfaces of equal rest shape are stored once; arrays are base64 of
-/// little-endian numbers, displacements as 16-bit multiples of a scale (docs/results.md).
+/// {"case", "folder", "marks", "meshes", "pictures"}: surfaces of equal rest shape are stored once; arrays are base64
+/// of little-endian numbers, displacements as 16-bit multiples of a scale (docs/results.md).
 /// @throws std::invalid_argument if the arrays of a picture do not fit each other.
 nlohmann::json pictures_to_json(const CaseResult& result);
 

@@ -1,4 +1,6 @@
 // Pictures as JSON: what the report's 3D view reads.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -63,6 +65,19 @@ Json quads_json(const std::vector<int>& quads, std::size_t nodes) {
   return {{"type", small ? "uint16" : "uint32"}, {"base64", base64(bytes.data(), bytes.size())}};
 }
 
+/// Of the patches that a load acts on, the surface nodes.
+Json patches_json(const Picture& p, const std::vector<Load>& loads) {
+  Json out = Json::object();
+  for (const Load& load : loads)
+    if (const std::string* on = patch_of(load); on && p.patches.count(*on)) out[*on] = p.patches.at(*on);
+  return out;
+}
+
+Json json_of(const LoadMark& m) {
+  const auto list = [](const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); };
+  return {{"kind", m.kind}, {"on", m.on}, {"vector", list(m.vector)}, {"at", list(m.at)}};
+}
+
 void check_sizes(const Picture& p) {
   const auto nodes = p.rest.size() / 3;
   if (p.rest.size() % 3 != 0 || p.displacement.size() != p.rest.size() || p.quads.size() % 4 != 0 ||
@@ -84,7 +99,9 @@ Json pictures_to_json(const CaseResult& result) {
     while (mesh < owners.size() && (owners[mesh]->rest != p.rest || owners[mesh]->quads != p.quads)) ++mesh;
     if (mesh == owners.size()) {
       owners.push_back(&p);
-      meshes.push_back({{"rest", base64_floats(p.rest)}, {"quads", quads_json(p.quads, p.rest.size() / 3)}});
+      meshes.push_back({{"rest", base64_floats(p.rest)},
+                        {"quads", quads_json(p.quads, p.rest.size() / 3)},
+                        {"patches", patches_json(p, result.experiment.loads)}});
     }
     pictures.push_back({{"model", p.model},
                         {"poisson_ratio", p.poisson_ratio},
@@ -102,8 +119,12 @@ Json pictures_to_json(const CaseResult& result) {
   Json cracks = Json::array();
   for (const CrackRecord& c : result.cracks)
     cracks.push_back({{"model", c.model}, {"poisson_ratio", c.poisson_ratio}, {"cells", c.cells}, {"svg", c.svg}});
+  Json marks = Json::array();
+  for (const Load& load : result.experiment.loads)
+    if (const LoadMark m = mark(load); !m.kind.empty()) marks.push_back(json_of(m));
   return {{"case", result.experiment.name},
           {"folder", result.experiment.folder},
+          {"marks", marks},
           {"meshes", meshes},
           {"pictures", pictures},
           {"cracks", cracks}};

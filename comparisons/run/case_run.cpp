@@ -38,7 +38,7 @@ struct Reference {
 struct PartRun {
   const PreparedCase& prepared;
   const IsotropicMaterial& material;
-  const std::filesystem::path& vtu_folder;
+  const VtuOutput& vtu;
   Part part;
 
   ReferenceGrids grids;                             ///< no elements: no reference
@@ -225,8 +225,12 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
   add_distances(run, blank, of_samples, of_sample(doubt, values_of(reference->scalars, 1)));
 }
 
-std::string vtu_stem(const RunKey& key) {
-  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
+/// What a file of a run says of itself.
+VtuNotes vtu_notes(const PartRun& run, const RunKey& key) {
+  return {
+      {{"case", run.experiment().name}, {"model", key.model}, {"cells", fmt::format("{}", fmt::join(key.cells, "x"))}},
+      {{"poisson_ratio", key.poisson_ratio}, {"youngs_modulus_Pa", run.material.youngs_modulus}},
+      run.vtu.single};
 }
 
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
@@ -239,10 +243,10 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
     if (run.experiment().body.is_voxels())
       run.part.pictures.push_back(smooth_picture(key, field, *run.prepared.tetrahedra.back(), difference_to));
   }
-  if (run.vtu_folder.empty()) return;
+  if (run.vtu.folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  write_vtu(run.vtu_folder / (vtu_stem(key) + ".vtu"), field, extra);
+  write_vtu(run.vtu.folder / (vtu_stem(key) + ".vtu"), field, extra, vtu_notes(run, key));
 }
 
 /// The history of a motion; its frames become those of the first lattice's pictures, and a series of VTU files.
@@ -253,9 +257,11 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
   std::vector<std::pair<double, std::string>> series;
   for (auto& [time, displacement] : motion.frames) {
     field.displacement = std::move(displacement);
-    if (!run.vtu_folder.empty()) {
+    if (!run.vtu.folder.empty()) {
       series.emplace_back(time, fmt::format("{}_{:04}.vtu", vtu_stem(key), series.size() + 1));
-      write_vtu(run.vtu_folder / series.back().second, field);
+      VtuNotes notes = vtu_notes(run, key);
+      notes.numbers.emplace_back("time_s", time);
+      write_vtu(run.vtu.folder / series.back().second, field, {}, notes);
     }
     for (Picture& p : run.part.pictures) {
       if (!same_run(p, key)) continue;
@@ -265,7 +271,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
                              : smooth_picture(key, field, *run.prepared.tetrahedra.back(), nullptr).displacement);
     }
   }
-  if (!series.empty()) write_pvd(run.vtu_folder / (vtu_stem(key) + ".pvd"), series);
+  if (!series.empty()) write_pvd(run.vtu.folder / (vtu_stem(key) + ".pvd"), series);
 }
 
 void add_line(PartRun& run, std::size_t lattice, const std::string& model, LineRecord line) {
@@ -348,7 +354,7 @@ void run_fracture_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const RunKey key = run.key(run.experiment().models[number].label, lattice);
   FractureSamples samples =
       run_fracture_samples(run.prepared, run.prepared.lattices[lattice], number, run.material,
-                           run.vtu_folder.empty() ? run.vtu_folder : run.vtu_folder / (vtu_stem(key) + ".vtu"));
+                           run.vtu.folder.empty() ? run.vtu.folder : run.vtu.folder / (vtu_stem(key) + ".vtu"));
   for (Run& sample : samples.runs) {
     static_cast<RunKey&>(sample) = key;
     run.part.runs.push_back(std::move(sample));
@@ -381,9 +387,13 @@ void add_fem(PartRun& run, std::size_t lattice) {
 
 }  // namespace
 
-Part run_part(const PreparedCase& prepared, std::size_t material, const std::filesystem::path& vtu_folder) {
-  PartRun run{prepared, prepared.experiment.materials[material], vtu_folder, {}, {}, {}, {}, {}};
-  if (!vtu_folder.empty()) std::filesystem::create_directories(vtu_folder);
+std::string vtu_stem(const RunKey& key) {
+  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
+}
+
+Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu) {
+  PartRun run{prepared, prepared.experiment.materials[material], vtu, {}, {}, {}, {}, {}};
+  if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);
   if (!prepared.experiment.reference.elements.empty()) run_fem(run);
   record_elements(run);
   build_reference(run);

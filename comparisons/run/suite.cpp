@@ -62,7 +62,7 @@ struct Task {
   const PreparedCase* prepared;
   std::size_t material;
   fs::path file;  ///< where the finished part is kept
-  fs::path vtu;
+  VtuOutput vtu;
   std::string stamp;
   std::string title;
   Part part;
@@ -90,12 +90,12 @@ std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const Su
     for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
       const std::string key = key_of(p.experiment.file);
       const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
-      const std::string stamp =
-          fmt::format("{} | {} | {} | {} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu, options.finer, sum);
+      const std::string stamp = fmt::format("{} | {} | {} | {}{} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu,
+                                            options.vtu_single ? " single" : "", options.finer, sum);
       tasks.push_back({&p,
                        m,
                        options.out / "parts" / (key + "-" + nu + ".cbor"),
-                       options.vtu ? options.out / "vtu" / key : fs::path(),
+                       {options.vtu ? options.out / "vtu" / key : fs::path(), options.vtu_single},
                        stamp,
                        fmt::format("{}  {}", case_name(p.experiment.file), nu),
                        {}});
@@ -285,6 +285,22 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
   return results;
 }
 
+/// A series over Poisson's ratio of each model and resolution of a case, of the files that were written.
+void write_series(const CaseResult& result, const fs::path& folder) {
+  std::map<std::string, std::map<double, std::string>> series;
+  std::vector<RunKey> keys(result.runs.begin(), result.runs.end());
+  for (const IsotropicMaterial& m : result.experiment.materials)
+    for (const Cells& cells : result.cells) keys.push_back({"fem", m.poisson_ratio, cells});
+  for (const RunKey& key : keys) {
+    const std::string file = vtu_stem(key) + ".vtu";
+    if (fs::exists(folder / file))
+      series[fmt::format("{}_{}", file_name(key.model), fmt::join(key.cells, "x"))][key.poisson_ratio] = file;
+  }
+  for (const auto& [name, files] : series) {
+    if (files.size() > 1) write_pvd(folder / (name + ".pvd"), {files.begin(), files.end()});
+  }
+}
+
 nlohmann::json host() {
   utsname u{};
   uname(&u);
@@ -370,7 +386,10 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
                tasks.size(), options.out.string());
     return 130;
   }
-  return write_results(collect(prepared, tasks), options.out) ? 0 : 1;
+  const std::vector<CaseResult> results = collect(prepared, tasks);
+  if (options.vtu)
+    for (const CaseResult& r : results) write_series(r, options.out / "vtu" / key_of(r.experiment.file));
+  return write_results(results, options.out) ? 0 : 1;
 }
 
 }  // namespace springproof

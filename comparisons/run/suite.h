@@ -12,6 +12,7 @@ struct SuiteOptions {
   int jobs = 0;                        ///< parts at once; 0 = one per processor core
   bool resume = false;                 ///< take finished parts from `out`
   bool vtu = false;                    ///< write a VTU per run
+  bool vtu_single = false;             ///< in single precision
   bool quiet = false;                  ///< show no progress
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
   int finer = 1;                       ///< reference grids with so many times the cells along each direction

@@ -8,7 +8,7 @@ function colors() {
 
 function lineDataset(model, label, data) {
   const {color, marker, dash} = modelStyle(model);
-  return {label, data, borderColor: color, backgroundColor: color, pointBorderColor: color, pointStyle: marker,
+  return {model, label, data, borderColor: color, backgroundColor: color, pointBorderColor: color, pointStyle: marker,
           borderDash: dash, borderWidth: 2, pointRadius: 5, pointHoverRadius: 7, pointBorderWidth: 2, tension: 0,
           pointBackgroundColor: context => context.raw && context.raw.below ? colors().paper : color};
 }
@@ -136,13 +136,73 @@ function missingNotes(chosen, resolution) {
     .concat(failed.length > 4 ? [`${failed.length - 4} more runs without a result.`] : []);
 }
 
+/// Shades an axis from its lower end to `limit`.
+const shadeBelow = limit => ({
+  id: 'shadeBelow',
+  beforeDatasetsDraw({ctx, chartArea: {left, right, top, bottom}, scales: {x}}) {
+    if (!(limit > 0)) return;
+    ctx.save();
+    ctx.fillStyle = colors().band;
+    ctx.fillRect(left, top, Math.min(right, Math.max(left, x.getPixelForValue(limit))) - left, bottom - top);
+    ctx.restore();
+  },
+});
+
+/// Of a single Poisson's ratio: a bar per model, the closest first.
+function barsAtOneNu(byModel, band, measure, unit) {
+  const {ink} = colors(), bars = [...byModel].map(([model, points]) => ({model, ...[...points.values()][0]})).filter(bar => bar.error > 0)
+    .sort((a, b) => a.error - b.error);
+  const options = baseOptions(), limit = [...band.values()][0];
+  const axis = logAxis(`${measureText(measure)} [${unit}]`, decades(bars.map(bar => bar.error), limit > 0 ? [limit] : []));
+  options.indexAxis = 'y';
+  options.plugins.legend = {display: false};
+  options.plugins.tooltip = {callbacks: {label: ({raw}) => `${number(raw.x, 3)} ${unit}`,
+    afterLabel: ({raw}) => raw.uncertainty === null ? 'reference without uncertainty' : `uncertainty of the reference: ${number(raw.uncertainty, 2)} ${unit}`}};
+  options.scales = {x: axis, y: {type: 'category', labels: bars.map(bar => bar.model), offset: true, grid: {display: false}, ticks: {color: ink, autoSkip: false}}};
+  const style = bar => modelStyle(bar.model).color;
+  return {type: 'bar', options, plugins: [shadeBelow(limit)], data: {labels: bars.map(bar => bar.model), datasets: [{
+    data: bars.map(bar => ({x: bar.error, y: bar.model, ...bar})), base: axis.min, maxBarThickness: 26, borderWidth: 2, borderColor: bars.map(style),
+    backgroundColor: bars.map(bar => bar.uncertainty !== null && bar.error <= bar.uncertainty ? 'transparent' : style(bar))}]}};
+}
+
+/// Writes the name of each line at its last point, pushed apart where they would overlap.
+const lineEndLabels = {
+  id: 'lineEndLabels',
+  afterDatasetsDraw(chart) {
+    const {ctx, chartArea} = chart;
+    const ends = chart.data.datasets.flatMap((dataset, i) => {
+      const meta = chart.getDatasetMeta(i), points = meta.data.filter((point, j) => isNumber((dataset.data[j] || {}).y));
+      return dataset.model && chart.isDatasetVisible(i) && points.length > 0 ? [{text: dataset.model, color: dataset.borderColor, y: points[points.length - 1].y}] : [];
+    }).sort((a, b) => a.y - b.y);
+    const apart = 15;
+    ends.forEach((end, i) => { if (i > 0) end.y = Math.max(end.y, ends[i - 1].y + apart); });
+    const over = ends.length > 0 ? Math.max(0, ends[ends.length - 1].y - (chartArea.bottom - 4)) : 0;
+    if (over > 0) ends.slice().reverse().forEach((end, i, all) => { end.y = i === 0 ? end.y - over : Math.min(end.y, all[i - 1].y - apart); });
+    ctx.save();
+    ctx.font = '600 12px system-ui, sans-serif';
+    ctx.textBaseline = 'middle';
+    for (const {text, color, y} of ends) { ctx.fillStyle = color; ctx.fillText(text, chartArea.right + 8, y); }
+    ctx.restore();
+  },
+};
+
+/// Room for the labels at the ends of lines, with the legend below to switch them.
+function withLineEnds(options, datasets) {
+  if (window.innerWidth <= 760) return [];
+  const ruler = document.createElement('canvas').getContext('2d');
+  ruler.font = '600 12px system-ui, sans-serif';
+  options.layout.padding.right = 16 + Math.max(40, ...datasets.filter(d => d.model).map(d => ruler.measureText(d.model).width));
+  options.plugins.legend.position = 'bottom';
+  return [lineEndLabels];
+}
+
 function poissonChart(chosen, measure, resolution, even) {
   const byModel = errorsByNu(chosen, measure, resolution);
   const band = uncertaintyByNu(chosen, measure, resolution);
   const nus = distinct([...byModel.values()].flatMap(points => [...points.keys()])).sort((a, b) => a - b);
-  if (nus.length === 1) even = false;   // a band needs width
   const x = nu => even ? nuText(nu) : nu;
   const unit = (chosen.find(c => c.scales.has(measure)) || {scales: new Map()}).scales.get(measure)?.unit ?? '';
+  if (nus.length === 1) return barsAtOneNu(byModel, band, measure, unit);
   const springModels = [...byModel.keys()].filter(model => !isFem(model));
   const datasets = [...byModel].map(([model, points]) => ({hidden: springModels.indexOf(model) >= mostLines, ...lineDataset(model, model, nus.map(nu => {
     const point = points.get(nu);
@@ -151,9 +211,8 @@ function poissonChart(chosen, measure, resolution, even) {
   }))}));
   const values = [...byModel.values()].flatMap(points => [...points.values()].map(p => p.error));
   const limits = decades(values, [...band.values()]);
-  const room = nus.length === 1 ? 0.05 : 0.03 * (nus[nus.length - 1] - nus[0]);
-  const edges = nus.length === 1 ? [nus[0] - room, nus[0] + room] : nus;
-  if (band.size > 0) datasets.push(bandDataset(edges.map((nu, i) => ({x: x(nu), y: band.get(nus[i] ?? nus[0]) ?? null}))));
+  const room = 0.03 * (nus[nus.length - 1] - nus[0]);
+  if (band.size > 0) datasets.push(bandDataset(nus.map(nu => ({x: x(nu), y: band.get(nu) ?? null}))));
   const {ink, grid} = colors();
   const options = baseOptions();
   options.plugins.tooltip = poissonTooltip(unit);
@@ -164,7 +223,7 @@ function poissonChart(chosen, measure, resolution, even) {
         ticks: {color: ink, includeBounds: false}},
     y: logAxis(`${measureText(measure)} [${unit}]`, limits),
   };
-  return {type: 'line', data: {datasets}, options};
+  return {type: 'line', data: {datasets}, options, plugins: withLineEnds(options, datasets)};
 }
 
 /// "displacement error", "error of the volume change"

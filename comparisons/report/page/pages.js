@@ -65,7 +65,7 @@ function heldText(result) {
 /// The models of most cases get a column each, the others share one.
 function splitModels() {
   const counts = new Map(models.map(model => [model, cases.filter(c => c.models.includes(model)).length]));
-  const leading = [...models].sort((a, b) => counts.get(b) - counts.get(a)).slice(0, models.length > 8 ? 7 : 8);
+  const leading = [...models].sort((a, b) => counts.get(b) - counts.get(a)).slice(0, models.length > 6 ? 5 : 6);
   return {leading: models.filter(m => leading.includes(m)), others: models.filter(m => !leading.includes(m))};
 }
 
@@ -313,6 +313,17 @@ function runsPart(result) {
 
 // ---- the page of a case
 
+/// How far the models are from the reference, in one sentence, with the checks beside it.
+function outcome(result) {
+  const worst = models.filter(model => result.models.includes(model) && !isFem(model)).map(model => ({model, worst:
+    worstOf(result, rowsAt(result, 'displacement_error').filter(row => row.model === model && claims(result, model, row.poisson_ratio)))}))
+    .filter(entry => entry.worst).sort((a, b) => a.worst.error - b.worst.error);
+  const words = worst.length === 0 ? '' : `Largest displacement errors: ${worst.slice(0, 3).map(({model, worst: {error}}) => `${model} ${percent(error)}`).join(', ')}` +
+    (worst.length > 3 ? `; ${worst[worst.length - 1].model} ${percent(worst[worst.length - 1].worst.error)}` : '') +
+    `. The reference is uncertain by ${worstUncertainty(result)}.`;
+  return el('p', {class: 'outcome'}, verdictChip(caseVerdict(result)), ' ', heldText(result) || '', heldText(result) && words ? '. ' : '', words);
+}
+
 function casePage(result, jumps) {
   const body = el('div', {class: 'case-body'});
   const links = jumps.filter(jump => jump.has(result.id)).map(jump =>
@@ -322,9 +333,11 @@ function casePage(result, jumps) {
        verdictChip(caseVerdict(result))), body);
   const fill = () => {
     if (body.childElementCount > 0) return;
-    body.append(...[el('p', {class: 'jumps'}, links), problemPart(result), referencePart(result),
+    const picture = problemPicture(result);
+    if (picture) charts.push(picture.redraw);
+    body.append(...[picture && picture.node, outcome(result), el('p', {class: 'jumps'}, links), referencePart(result),
       result.verifies ? [] : resultsPart(result),
-      checksPart(result), publishedPart(result), runsPart(result)].flat(Infinity).filter(Boolean));
+      checksPart(result), publishedPart(result), problemPart(result), runsPart(result)].flat(Infinity).filter(Boolean));
     if (result.experiment.text)
       body.append(el('details', {class: 'fold'}, el('summary', {}, 'The case file'), el('pre', {}, result.experiment.text)));
   };

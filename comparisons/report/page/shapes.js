@@ -51,11 +51,11 @@ function paintPanels(panels, colouring, amplification) {
   return top;
 }
 
-/// Points the viewer at all bodies as drawn, and at rest.
-function aimAtPanels(viewer, panels, amplification) {
-  const clouds = [panels[0].shape.rest, ...panels.map(({shape}) => shape.rest.map((x, i) => x + amplification * shape.displacement[i]))];
-  const box = boundsOf(clouds[0]);
-  for (const points of clouds) box.union(boundsOf(points));
+/// Points the viewer at all bodies as drawn, and at rest, and at other points (xyz triples).
+function aimAtPanels(viewer, panels, amplification, others = []) {
+  const clouds = [others, panels[0].shape.rest, ...panels.map(({shape}) => shape.rest.map((x, i) => x + amplification * shape.displacement[i]))];
+  const box = boundsOf(clouds[1]);
+  for (const points of clouds.slice(1)) box.union(boundsOf(points));
   viewer.aim(box, clouds);
 }
 

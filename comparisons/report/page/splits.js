@@ -155,7 +155,7 @@ function splitsSection(section) {
 
   function update() {
     replaceOptions(measureChoice, measuresOfSplits(result()).map(m => [m, measureText(m)]));
-    replaceOptions(modelChoice, [...modelsOfSplits(result()).map(m => [m, m]), [allModels, allModels + ' at this ν']]);
+    replaceOptions(modelChoice, [[allModels, allModels + ' at this ν'], ...modelsOfSplits(result()).map(m => [m, m])]);
     replaceOptions(nuChoice, nusOfSplits(result()).map(nu => [String(nu), nuText(nu)]));
     draw();
   }

@@ -4,8 +4,8 @@
 class Viewer {
   constructor() {
     this.canvas = el('canvas', {'aria-hidden': 'true'});
-    this.node = el('div', {class: 'viewer', role: 'img',
-                           'aria-label': 'Deformed shapes; drag to turn all of them together'}, this.canvas);
+    this.node = el('div', {class: 'viewer', role: 'img', tabindex: 0,
+                           'aria-label': 'Deformed shapes; drag or use the arrow keys to turn all of them together'}, this.canvas);
     this.panels = [];
     this.stale = true;
     this.visible = false;
@@ -27,8 +27,24 @@ class Viewer {
     this.controls.enableZoom = false;   // until clicked, the wheel scrolls the page
     this.controls.addEventListener('change', () => this.request());
     this.node.addEventListener('pointerdown', () => { this.controls.enableZoom = true; });
+    this.node.addEventListener('keydown', event => this.turnByKey(event));
     this.node.addEventListener('pointerleave', () => { this.controls.enableZoom = false; this.onhover(null); });
     this.node.addEventListener('pointermove', event => { if (event.buttons === 0) this.onhover(this.nodeAt(event)); });
+  }
+
+  /// Arrow keys turn the bodies by 10 degrees, + and - bring them nearer.
+  turnByKey(event) {
+    const step = Math.PI / 18, [across, up, nearer] = {ArrowLeft: [-step, 0, 1], ArrowRight: [step, 0, 1], ArrowUp: [0, step, 1],
+      ArrowDown: [0, -step, 1], '+': [0, 0, 0.9], '-': [0, 0, 1 / 0.9]}[event.key] || [];
+    if (nearer === undefined) return;
+    event.preventDefault();
+    const arm = this.camera.position.clone().sub(this.controls.target), radius = nearer * arm.length();
+    const longitude = Math.atan2(arm.y, arm.x) + across;
+    const latitude = Math.max(-1.5, Math.min(1.5, Math.asin(arm.z / arm.length()) + up));
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(Math.cos(latitude) * Math.cos(longitude),
+      Math.cos(latitude) * Math.sin(longitude), Math.sin(latitude)).multiplyScalar(radius));
+    this.controls.update();
+    this.request();
   }
 
   /// Where a panel's body is drawn: below the label.

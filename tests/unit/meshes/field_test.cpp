@@ -124,6 +124,27 @@ TEST_F(Vtu, EveryArrayReadsBack) {
   for (const double change : changes) EXPECT_NEAR(change, 1.1 * 0.95 * 1.2 - 1, test::round_off);
 }
 
+TEST_F(Vtu, SaysWhatItIsOf) {
+  write_vtu(folder_ / "a.vtu", example(), {}, {{{"model", "hybmss"}}, {{"poisson_ratio", 0.25}}});
+  const std::string document = read(folder_ / "a.vtu");
+  EXPECT_NE(document.find("Name=\"model\" NumberOfTuples=\"1\" format=\"ascii\">104 121 98 109 115 115 0<"),
+            std::string::npos);
+  EXPECT_EQ(read_array<double>(document, "poisson_ratio"), std::vector<double>{0.25});
+}
+
+TEST_F(Vtu, SinglePrecisionIsRoundedAndSmaller) {
+  const Field field = example();
+  write_vtu(folder_ / "double.vtu", field);
+  write_vtu(folder_ / "single.vtu", field, {}, {{}, {}, true});
+  const std::string document = read(folder_ / "single.vtu");
+  const auto values = read_array<float>(document, "displacement");
+  ASSERT_EQ(values.size(), static_cast<std::size_t>(field.displacement.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    EXPECT_EQ(values[i], static_cast<float>(field.displacement.data()[i]));
+  EXPECT_EQ(document.find("Float64"), std::string::npos);
+  EXPECT_LT(document.size(), read(folder_ / "double.vtu").size());
+}
+
 TEST_F(Vtu, IsCompressed) {
   Field field;
   field.mesh = std::make_shared<const Mesh>(block_mesh({1, 1, 1}, {20, 20, 20}));

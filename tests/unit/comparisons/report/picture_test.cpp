@@ -45,6 +45,15 @@ TEST(Picture, VolumeChangeOfAnAffineFieldIsItsDeterminant) {
   }
 }
 
+TEST(Picture, PatchesAreNumberedAsTheSurface) {
+  const Picture p =
+      picture({"m", 0.25, {3, 2, 2}}, field_on(block_mesh({3, 2, 2}, {3, 2, 2}), some_gradient()), nullptr);
+  ASSERT_EQ(p.patches.size(), 6u);
+  const std::vector<int>& end = p.patches.at("x_max");
+  EXPECT_EQ(end.size(), 9u);
+  for (int n : end) EXPECT_EQ(p.rest[3 * static_cast<std::size_t>(n)], 3);
+}
+
 TEST(Picture, VolumeChangeIsTheMeanOverTheCellsAtANode) {
   Field f = field_on(block_mesh({2, 1, 1}, {2, 1, 1}), Eigen::Matrix3d::Zero());
   for (Eigen::Index n = 0; n < f.displacement.rows(); ++n)

@@ -193,6 +193,26 @@ TEST(PicturesJson, EqualSurfacesAreStoredOnce) {
   EXPECT_EQ(json.at("pictures").at(1).at("difference").at("base64"), "");
 }
 
+TEST(PicturesJson, PatchesOfLoadsAndTheirMarksAreTold) {
+  CaseResult c = sample_case();
+  c.pictures = {sample_picture("fem", 0.25)};
+  c.pictures[0].patches = {{"z_max", {1, 3}}, {"x_min", {0}}};
+  const Json json = pictures_to_json(c);
+  EXPECT_EQ(json.at("meshes").at(0).at("patches"), Json::parse(R"({"z_max": [1, 3]})")) << "x_min is not loaded";
+  EXPECT_EQ(json.at("marks").at(0).at("kind"), "held");
+  EXPECT_EQ(json.at("marks").at(1).at("kind"), "moved");
+  EXPECT_EQ(json.at("marks").at(1).at("vector"), Json::parse("[0, 0, -0.05]"));
+}
+
+TEST(LoadMarks, HaveAKindAndAVector) {
+  EXPECT_EQ(mark(Pressure{"top", 12.0}).kind, "pressure");
+  EXPECT_EQ(mark(Pressure{"top", 12.0}).vector.x(), 12);
+  EXPECT_EQ(mark(Traction{"top", {1, 2, 3}}).vector, Vec3(1, 2, 3));
+  EXPECT_EQ(mark(PointForce{{1, 2, 3}, {0, 4, 0}}).at, Vec3(1, 2, 3));
+  EXPECT_EQ(mark(PrescribedRotation{"end", Vec3::Zero(), Vec3::UnitZ(), 0.5}).vector, Vec3(0, 0, 0.5));
+  EXPECT_EQ(mark(FieldBodyForce{"trigonometric"}).kind, "");
+}
+
 TEST(PicturesJson, TrianglesRepeatTheirLastCorner) {
   CaseResult c;
   c.pictures = {sample_picture("fem", 0.25)};
