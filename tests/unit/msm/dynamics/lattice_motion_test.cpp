@@ -72,11 +72,11 @@ std::string label(const ModelParameters& p, const Body& body, const LatticeMotio
                      options.threads);
 }
 
-std::vector<LatticeMotionOptions> every_kernel() {
+std::vector<LatticeMotionOptions> every_kernel(const std::vector<int>& thread_counts = {1, 2, 3}) {
   std::vector<LatticeMotionOptions> all;
   for (InstructionSet set : usable_instruction_sets())
     for (Precision precision : {Precision::float64, Precision::float32})
-      for (int threads : {1, 2, 3}) all.push_back({precision, threads, set});
+      for (int threads : thread_counts) all.push_back({precision, threads, set});
   return all;
 }
 
@@ -159,10 +159,11 @@ TEST(LatticeMotion, StepsAreThoseOfThePlainLoops) {
       const double dt = 0.8 * safe_time_step(model, density), damping = 5;
       const BoundaryConditions bc = conditions_of(model.network);
       const State rest = {X, NodalVectors::Zero(X.rows(), 3), {}, 0};
-      const int steps = body.mesh.hexahedra.size() > 500 ? 20 : 200;
+      const int steps = body.mesh.hexahedra.size() > 500 ? 20 : 60;
       const double scale = bc.external.norm();
       const State plain = plain_steps(model, rest, bc, steps, dt, damping);
-      for (const LatticeMotionOptions& options : every_kernel()) {
+      // Three threads wait for each other on two cores; ThreadsDoNotChangeTheMotionAndRepeatIt has them.
+      for (const LatticeMotionOptions& options : every_kernel({1, 2})) {
         const bool exact = options.precision == Precision::float64;
         LatticeMotion motion(model, density, options);
         motion.set_conditions(bc);
