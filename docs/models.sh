@@ -19,32 +19,33 @@ for load in compression tension shear torsion bending; do
 done
 "$springproof" compare "$folder"/{compression,tension,shear,torsion,bending}.toml --out "$folder/results" --resume >"$folder/log"
 
-# error MEASURE: a table per model, a row per load, a column per Poisson's ratio; per cent.
-error() {
-  awk -F, -v wanted="$1" '
-    function per_cent(x) { x = x < 0 ? -x : x; x *= 100; return x < 0.005 ? "0" : x < 1 ? sprintf("%.2f", x) : x < 10 ? sprintf("%.1f", x) : sprintf("%.0f", x) }
-    FNR > 1 && $6 == wanted && $11 != "" { n = split($1, path, "/"); value[$3, path[n], $4] = per_cent($11) }
-    END {
-      split("compression tension shear torsion bending", load, " "); split("-0.5 0 0.25 0.4 0.499", nu, " ")
-      count = split(rows, model, "\n")
-      for (m = 1; m <= count; ++m) {
-        printf "\n%s\n\n| | ν = −0.5 | 0 | 0.25 | 0.4 | 0.499 |\n|---|---|---|---|---|---|\n", model[m]
-        for (l = 1; l <= 5; ++l) {
-          line = "| " load[l]
-          for (k = 1; k <= 5; ++k) { v = value[model[m], load[l], nu[k]]; line = line " | " (v == "" ? "–" : v) }
-          print line " |"
+# A table per model, a row per load, a column per Poisson's ratio: per cent, of displacements and in brackets of the reaction.
+awk -F, '
+  function per_cent(x) { x = (x < 0 ? -x : x) * 100; return x < 0.005 ? "0" : x < 1 ? sprintf("%.2f", x) : x < 10 ? sprintf("%.1f", x) : sprintf("%.0f", x) }
+  FNR > 1 && $11 != "" && ($6 == "displacement_error" || $6 == "reaction_error") { value[$3, $1, $4, $6] = per_cent($11) }
+  END {
+    split("compression tension shear torsion bending", load, " "); split("-0.5 0 0.25 0.4 0.499", nu, " ")
+    count = split(rows, model, "\n")
+    for (m = 1; m <= count; ++m) {
+      printf "%s\n| ν = | −0.5 | 0 | 0.25 | 0.4 | 0.499 |\n|---|---|---|---|---|---|\n", model[m]
+      for (l = 1; l <= 5; ++l) {
+        line = "| " load[l]
+        for (k = 1; k <= 5; ++k) {
+          u = value[model[m], load[l], nu[k], "displacement_error"]; r = value[model[m], load[l], nu[k], "reaction_error"]
+          line = line " | " (u == "" ? "–" : u) (r == "" ? "" : " (" r ")")
         }
+        print line " |"
       }
-    }' rows="$solid" "$folder/results/results.csv"
-}
-for measure in displacement_error reaction_error; do printf '\n# %s, per cent\n' $measure; error $measure; done
+      print ""
+    }
+  }' rows="$solid" "$folder/results/results.csv"
 
-printf '\n# moduli, measured back: ν for a wanted ν, and E over the wanted E\n\n'
+echo "moduli, measured back: ν for a wanted ν, and E over the wanted E"
 for model in $rows; do
-  printf '%s' "$model"
+  line="| \`$model\`"
   for nu in -0.5 0 0.25 0.4 0.499; do
-    "$springproof" material -E 1e4 --nu=$nu --cell-size 0.1 --model "$model" 2>/dev/null |
-      awk '/^measured back/ { inside = 1 } inside && $1 == "E" { E = $3 / 1e4 } inside && $1 == "nu" { nu = $3 } END { printf " | %.3f, %.3f", nu, E }'
+    line+=$("$springproof" material -E 1e4 --nu=$nu --cell-size 0.1 --model "$model" 2>/dev/null |
+      awk '$1 == "E" && /relative/ { E = $3 / 1e4 } $1 == "nu" { nu = $3 } END { if (E != "") printf " | %.3f, %.3f", nu, E; else printf " | –" }') || true
   done
-  echo
+  echo "$line |"
 done
