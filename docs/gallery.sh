@@ -36,7 +36,7 @@ picture twisted shapes-volume_change "$(case_with large_strain/torsion '"hybmss_
 picture rabbit shapes-displacement-smooth "$(case_with bodies/rabbit '"hybmss_avg", { model = "hybmss_avg", cut = false }, "msm_18"')" --poisson-ratio 0.4
 picture hand shapes-displacement-smooth "$(case_with bodies/hand_pressed '"hybmss_avg", "hybmss", "emsm_random"')" --poisson-ratio 0.49
 picture armadillo shapes-displacement-smooth "$(case_with kot_2015/fig_11 '"hybmss", { model = "emsm_random", label = "random 315", nodes_per_m3 = 110000, springs_per_node = 24 }')"
-picture cut_cells shapes-displacement-nu "$(case_with bodies/cylinder_compression '"hybmss_avg", { model = "hybmss_avg", cut = false }')"
+picture cut_cells convergence-reaction_error "$(case_with bodies/cylinder_compression '"hybmss_avg", { model = "hybmss_avg", cut = false }')"
 picture refinement convergence-displacement_error "$(case_with bodies/rabbit_refinement '"hybmss_avg", { model = "hybmss_avg", cut = false }, "emsm"')"
 picture wrinkles shapes-displacement "$(case_with golec_2019/ten_seconds/table2_compression_20 '"hybmss", "hybmss_fd"')" --poisson-ratio 0.25
 picture cost error-against-time "$(case_with cost/compression '"hybmss_avg", "hybmss", "emsm", "msm_18"')" --poisson-ratio 0.25
