@@ -34,7 +34,6 @@ picture() {
 picture bent shapes-displacement "$(case_with large_strain/bending '"hybmss_avg", "hybmss", "emsm"')" --poisson-ratio 0.45
 picture twisted shapes-volume_change "$(case_with large_strain/torsion '"hybmss_avg", "hybmss"')" --poisson-ratio 0.25
 picture rabbit shapes-displacement-smooth "$(case_with bodies/rabbit '"hybmss_avg", { model = "hybmss_avg", cut = false }, "msm_18"')" --poisson-ratio 0.4
-picture hand shapes-displacement-smooth "$(case_with bodies/hand_pressed '"hybmss_avg", "hybmss", "emsm_random"')" --poisson-ratio 0.49
 picture cut_cells convergence-reaction_error "$(case_with bodies/cylinder_compression '"hybmss_avg", { model = "hybmss_avg", cut = false }')"
 picture wrinkles shapes-displacement "$(case_with golec_2019/ten_seconds/table2_compression_20 '"hybmss", "hybmss_fd"')" --poisson-ratio 0.25
 picture squeezed shapes-volume_change "$(case_with kot_2015/fig_9 '"hybmss", { model = "emsm", label = "emsm" }, "hybmss_avg"')" --poisson-ratio 0.47
