@@ -14,13 +14,14 @@ namespace springproof {
 /// Force [N] and torque [N m] that the support of a patch exerts on the body; the torque is about the patch's rest
 /// centroid, with lever arms at rest (linear) or deformed (finite).
 struct PatchReaction {
-  std::string patch;
-  Vec3 force = Vec3::Zero();
-  Vec3 torque = Vec3::Zero();
+  std::string patch;           ///< its name
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 torque = Vec3::Zero();  ///< [N m]
 };
 
+/// A solution on a mesh.
 struct Field {
-  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<const Mesh> mesh;      ///< at whose nodes the displacement is given
   NodalVectors displacement;             ///< n x 3 [m]
   std::vector<PatchReaction> reactions;  ///< one per patch with prescribed displacement
   double volume_change = 0;              ///< (V' - V)/V of the solver's own interpolation, exact [1]

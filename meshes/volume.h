@@ -7,6 +7,7 @@ namespace springproof {
 
 /// Volume [m^3] of a trilinear hexahedron with the given corners (gmsh order): integral of det J, exact.
 double hexahedron_volume(const Eigen::Matrix<double, 8, 3>& x);
+/// Volume [m^3] of a tetrahedron with the given corners; negative if it is inverted.
 double tetrahedron_volume(const Eigen::Matrix<double, 4, 3>& x);
 
 /// Volume [m^3] of every cell (hexahedra first, then tetrahedra) at node positions `x` (n x 3).

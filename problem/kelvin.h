@@ -8,10 +8,11 @@
 
 namespace springproof {
 
+/// The force, where it acts, and the solid.
 struct KelvinSolution {
-  Vec3 force = Vec3::Zero();  ///< [N]
-  Vec3 at = Vec3::Zero();     ///< where it acts [m]
-  IsotropicMaterial material{};
+  Vec3 force = Vec3::Zero();     ///< [N]
+  Vec3 at = Vec3::Zero();        ///< where it acts [m]
+  IsotropicMaterial material{};  ///< of the infinite solid
 };
 
 /// With r = X - at, R = |r|: u = (1 + nu) / (8 pi E (1 - nu) R) ((3 - 4 nu) F + (F.r) r / R^2) [m].

@@ -20,7 +20,7 @@ struct PrescribedDisplacement {
 
 /// An affine displacement u = gradient * X + offset on a patch (the patch test).
 struct PrescribedAffine {
-  std::string on;
+  std::string on;                                      ///< patch name
   Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();  ///< [1]
   Vec3 offset = Vec3::Zero();                          ///< [m]
 };
@@ -28,7 +28,7 @@ struct PrescribedAffine {
 /// Rigid rotation of a patch about an axis.
 /// Under linear kinematics the rotation is the linearised one, u = angle * axis x (X - point).
 struct PrescribedRotation {
-  std::string on;
+  std::string on;             ///< patch name
   Vec3 point = Vec3::Zero();  ///< a point of the axis [m]
   Vec3 axis = Vec3::UnitZ();  ///< direction, normalised by the reader
   double angle = 0;           ///< [rad]
@@ -36,58 +36,61 @@ struct PrescribedRotation {
 
 /// A named displacement field, prescribed on a patch (problem/exact_field.h); "kelvin": that of the case's point force.
 struct PrescribedField {
-  std::string on;
-  std::string field;
+  std::string on;                             ///< patch name
+  std::string field;                          ///< name of the field
   std::optional<KelvinSolution> kelvin = {};  ///< of the field "kelvin"
 };
 
 /// Resultant of a load: force [N], and moment [N m] about a point [m].
 struct Wrench {
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero(), about = Vec3::Zero();
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 moment = Vec3::Zero();  ///< [N m]
+  Vec3 about = Vec3::Zero();   ///< point that the moment refers to [m]
 };
 
 // The loads below may carry their resultant on the true body.  A discretisation, whose patches and volume only
 // approximate the body's, then adds the field a + b x (X - c), over the patch's area or the volume, so that its
-// resultant is exactly this wrench.
+// resultant is exactly this wrench.  `wrench` empty: no field is added.
 
 /// Force per rest area, constant in direction (dead load) [Pa].
 struct Traction {
-  std::string on;
-  Vec3 traction = Vec3::Zero();
-  std::optional<Wrench> wrench = {};
+  std::string on;                     ///< patch name
+  Vec3 traction = Vec3::Zero();       ///< [Pa]
+  std::optional<Wrench> wrench = {};  ///< resultant on the true body
 };
 
 /// Traction -pressure * outward rest normal (dead load) [Pa]; positive presses on the body.
 struct Pressure {
-  std::string on;
-  double pressure = 0;
-  std::optional<Wrench> wrench = {};
+  std::string on;                     ///< patch name
+  double pressure = 0;                ///< [Pa]
+  std::optional<Wrench> wrench = {};  ///< resultant on the true body
 };
 
 /// Total force [N], spread over the patch as a uniform traction.
 struct PatchForce {
-  std::string on;
-  Vec3 force = Vec3::Zero();
-  std::optional<Wrench> wrench = {};
+  std::string on;                     ///< patch name
+  Vec3 force = Vec3::Zero();          ///< [N]
+  std::optional<Wrench> wrench = {};  ///< resultant on the true body
 };
 
 /// Acceleration field acting on the whole body [m/s^2].
 struct Gravity {
-  Vec3 acceleration = Vec3::Zero();
-  std::optional<Wrench> wrench = {};
+  Vec3 acceleration = Vec3::Zero();   ///< [m/s^2]
+  std::optional<Wrench> wrench = {};  ///< resultant on the true body
 };
 
 /// Force [N] at the rest point `at` [m]; distributed over the nodes of the element that contains the point.
 struct PointForce {
-  Vec3 at = Vec3::Zero();
-  Vec3 force = Vec3::Zero();
+  Vec3 at = Vec3::Zero();     ///< [m]
+  Vec3 force = Vec3::Zero();  ///< [N]
 };
 
 /// The body force that keeps a named displacement field in equilibrium (problem/exact_field.h); small strains.
 struct FieldBodyForce {
-  std::string field;
+  std::string field;  ///< name of the field
 };
 
+/// Any load or prescribed displacement.
 using Load = std::variant<PrescribedDisplacement, PrescribedAffine, PrescribedRotation, PrescribedField, Traction,
                           Pressure, PatchForce, Gravity, PointForce, FieldBodyForce>;
 
@@ -96,21 +99,25 @@ const std::string* patch_of(const Load& load);
 
 /// The wrench that a load carries, or nullptr for the kinds that carry none.
 const std::optional<Wrench>* wrench_of(const Load& load);
-std::optional<Wrench>* wrench_of(Load& load);
+std::optional<Wrench>* wrench_of(Load& load);  ///< the same, to be set
 
 /// The field a + b x (X - c) of force per area or volume, determined by the moments of the region that it acts on.
 struct RigidField {
-  Vec3 a = Vec3::Zero(), b = Vec3::Zero(), c = Vec3::Zero();
+  Vec3 a = Vec3::Zero();  ///< [Pa], of a body force [N/m^3]
+  Vec3 b = Vec3::Zero();  ///< [Pa/m], [N/m^4]
+  Vec3 c = Vec3::Zero();  ///< [m]
 
+  /// Its value at rest position X.
   Vec3 at(const Vec3& X) const;
 };
 
 /// Moments of a region, from which the rigid field with a given resultant follows.
 struct RegionMoments {
-  double measure = 0;                                ///< area or volume
+  double measure = 0;                                ///< area [m^2] or volume [m^3]
   Vec3 first = Vec3::Zero();                         ///< integral of X
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  ///< integral of X X^T
 
+  /// Adds a piece of the region: its area or volume, at X.
   void add(double weight, const Vec3& X);
 };
 
@@ -125,8 +132,10 @@ Wrench moved(const Wrench& wrench, const Vec3& about);
 /// True for the loads that prescribe displacement.
 bool prescribes_displacement(const Load& load);
 
+/// Small displacements from rest, or any.
 enum class Kinematics { linear, finite };
 
+/// Displacement along x, y and z [m]; empty where it is free.
 using PrescribedValue = std::array<std::optional<double>, 3>;
 
 /// Displacement [m] that `load` prescribes at rest position X when a fraction `factor` of it is applied.

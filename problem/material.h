@@ -24,11 +24,11 @@ double kappa(const IsotropicMaterial& m);
 
 /// Any subset of the moduli of an isotropic solid [Pa, nu in 1].
 struct Moduli {
-  std::optional<double> youngs_modulus;
-  std::optional<double> poisson_ratio;
-  std::optional<double> shear_modulus;
-  std::optional<double> bulk_modulus;
-  std::optional<double> lame_lambda;
+  std::optional<double> youngs_modulus;  ///< E [Pa]
+  std::optional<double> poisson_ratio;   ///< nu [1]
+  std::optional<double> shear_modulus;   ///< G [Pa]
+  std::optional<double> bulk_modulus;    ///< K [Pa]
+  std::optional<double> lame_lambda;     ///< lambda [Pa]
 };
 
 /// The material with exactly two given moduli.

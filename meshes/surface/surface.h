@@ -16,7 +16,8 @@ struct Surface {
 
 /// Box with edges along the axes.
 struct Box {
-  Vec3 low, high;
+  Vec3 low;   ///< lowest corner
+  Vec3 high;  ///< highest corner
 };
 
 /// Volume enclosed by a closed surface [m^3]; negative if its facets point inward.

@@ -19,37 +19,38 @@ struct CutCell {
   std::array<int, 3> index;  ///< of the cube
   Hexahedron corners;        ///< points of the lattice; two parts of one cube share only corners through which they are
                              ///< connected outside it
-  FilledPart filled;
+  FilledPart filled;         ///< what the body fills of the cube
 };
 
 /// The part of a patch in one cell, by the trilinear weights N_a of the cell's corners.
 struct PatchInCell {
-  int cell;
+  int cell;                      ///< its number
   std::array<double, 8> area{};  ///< integral of N_a [m^2]
   std::array<Vec3, 8> normal;    ///< integral of N_a n, n the outward unit normal [m^2]
 
-  double total_area() const;
+  double total_area() const;  ///< [m^2]
 };
 
+/// A body in cells, with the parts of its patches in them.
 class CutBody {
  public:
-  VoxelGrid grid;
-  NodalVectors points;         ///< corners of the cells [m]
-  std::vector<CutCell> cells;  ///< by layers: x fastest, then y, then z
-  std::map<std::string, std::vector<PatchInCell>> patches;
-  std::vector<std::string> notes;  ///< what was left out or is too thin, for the user
+  VoxelGrid grid;                                           ///< of the cubes
+  NodalVectors points;                                      ///< corners of the cells [m]
+  std::vector<CutCell> cells;                               ///< by layers: x fastest, then y, then z
+  std::map<std::string, std::vector<PatchInCell>> patches;  ///< by name
+  std::vector<std::string> notes;                           ///< what was left out or is too thin, for the user
 
   /// A point by the corners of the cell that holds it; a point outside the body by those of a cell near to it,
   /// continued.
   struct Place {
-    int cell;
+    int cell;                       ///< its number
     std::array<double, 8> weights;  ///< trilinear; they sum to 1 and reproduce the point
   };
-  Place place(const Vec3& point) const;
+  Place place(const Vec3& point) const;  ///< of a point [m]
 
   /// Trilinear weights of the corners of a cell at a point.
   std::array<double, 8> weights(int cell, const Vec3& point) const;
-  Vec3 centre(int cell) const;
+  Vec3 centre(int cell) const;  ///< of the cube of a cell [m]
 
  private:
   friend CutBody cut_body(const VoxelGrid& grid, const Mesh& body);

@@ -10,19 +10,21 @@ namespace springproof {
 
 /// The cubes that a body may take: cube (i,j,k) spans origin + edge * [i,i+1]x[j,j+1]x[k,k+1].
 struct VoxelGrid {
-  Vec3 origin = Vec3::Zero();  ///< [m]
-  double edge = 0;             ///< [m]
-  std::array<int, 3> cells = {0, 0, 0};
+  Vec3 origin = Vec3::Zero();            ///< [m]
+  double edge = 0;                       ///< [m]
+  std::array<int, 3> cells = {0, 0, 0};  ///< numbers of cubes along x, y and z
 };
 
-/// Number of cube (i,j,k), x fastest, and the cube that holds a point; of a point outside the nearest one.
+/// Number of cube (i,j,k), x fastest.
 long cube_number(const VoxelGrid& grid, const std::array<int, 3>& cube);
+/// The cube (i,j,k) that holds a point; of a point outside the nearest one.
 std::array<int, 3> cube_at(const VoxelGrid& grid, const Vec3& point);
 
 /// The smallest grid of cubes of that edge [m] that holds the body, centred on its bounding box.
 /// @throws std::invalid_argument if the body has no cells, or the edge is not positive or gives more than 10^9 cubes.
 VoxelGrid voxel_grid(const Mesh& body, double edge);
 
+/// The cubes of a body.
 struct Voxels {
   Mesh mesh;                       ///< hexahedra, x fastest, and the nodes they use; the grid is set
   std::vector<std::string> notes;  ///< what was left out, for the user

@@ -8,8 +8,10 @@
 
 namespace springproof {
 
+/// A block.
 using Blocks = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+/// The stiffness of a network: block (i, j) couples the displacements of nodes i and j.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
@@ -17,9 +19,11 @@ class BlockMatrix {
   /// Pattern: for each node the nodes it couples to, ascending, itself included.
   explicit BlockMatrix(const std::vector<std::vector<int>>& coupled);
 
+  /// Number of block rows.
   int nodes() const { return static_cast<int>(row_begin_.size()) - 1; }
+  /// Number of stored blocks.
   std::size_t blocks() const { return blocks_.size(); }
-  void set_zero();
+  void set_zero();  ///< the pattern stays
 
   /// Adds to block (i, j), which must be in the pattern.
   void add(int i, int j, const Eigen::Matrix3d& block) { blocks_[find(i, j)] += block; }

@@ -10,11 +10,12 @@ using NodalForms = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// K = local + outflow^T inflow.  The second term couples neighbours of neighbours and is stored as its two factors.
 struct Tangent {
-  BlockMatrix local;
-  NodalForms inflow;   ///< dJ_n/dx of momentum dispersion; no rows if the model has none
-  NodalForms outflow;  ///< d(force)/dJ_n, with the sign of a stiffness
-  bool symmetric = true;
+  BlockMatrix local;      ///< between nodes that share a spring, a triangle or a cell [N/m]
+  NodalForms inflow;      ///< dJ_n/dx of momentum dispersion; no rows if the model has none
+  NodalForms outflow;     ///< d(force)/dJ_n, with the sign of a stiffness
+  bool symmetric = true;  ///< false for dispersion without an energy
 
+  /// Whether the second term is there.
   bool dispersive() const { return inflow.rows() > 0; }
 
   /// y = K x (vectors of 3 n).

@@ -10,12 +10,16 @@
 
 namespace springproof {
 
-const char* name_of(Integrator integrator);  ///< "energy-momentum"
+/// Name of an integrator, for people.
+/// @param integrator any
+/// @return "energy-momentum"
+const char* name_of(Integrator integrator);
 
+/// How to move a model in time.
 struct DynamicsOptions {
-  Integrator integrator = Integrator::explicit_euler;
-  std::optional<double> time_step;  ///< [s]; empty: 0.95 of safe_time_step(), implicit: 10 of it
-  NodalVectors start;               ///< positions at t = 0, at rest [m]; empty: X
+  Integrator integrator = Integrator::explicit_euler;  ///< explicit, or one that takes large steps
+  std::optional<double> time_step;                     ///< [s]; empty: 0.95 of safe_time_step(), implicit: 10 of it
+  NodalVectors start;                                  ///< positions at t = 0, at rest [m]; empty: X
   double damping = 0;  ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
                        ///< some, or it flutters
   double ramp = 0;     ///< the load grows linearly over this time [s]; 0 = at once
@@ -28,14 +32,15 @@ struct DynamicsOptions {
   /// [m/s] and the boundary conditions then.
   std::function<void(double time, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& conditions)>
       after_step = {};
-  long stride = 1;
+  long stride = 1;  ///< steps between two calls of after_step
 };
 
+/// How a motion ended.
 struct DynamicsResult {
-  Equilibrium state;     ///< final state; ok if at rest within rest_tolerance, or if rest_tolerance is 0
-  double time = 0;       ///< [s]
-  double time_step = 0;  ///< [s]
-  long steps = 0;
+  Equilibrium state;          ///< final state; ok if at rest within rest_tolerance, or if rest_tolerance is 0
+  double time = 0;            ///< [s]
+  double time_step = 0;       ///< [s]
+  long steps = 0;             ///< made
   double kinetic_energy = 0;  ///< [J]
 };
 
@@ -44,14 +49,22 @@ struct DynamicsResult {
 /// characteristic equation (1 + c dt) z^2 - (2 + c dt - dt^2 omega_s^2) z + (1 + dt^2 omega*^2) = 0, and the product of
 /// its roots is below 1 only if c > dt omega*^2; for matrices the same holds with Rayleigh quotients, hence for every
 /// motion.  0 for a negative dispersed fraction, which the lag itself damps.  Non-conservative forms may need more.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @param time_step [s]
+/// @return damping [1/s]; 0 without momentum dispersion
 double lagged_damping(const MassSpringModel& model, double density, double time_step);
 
 /// Integrates v += dt (f/m - damping v), x += dt v (the damping implicit) with prescribed unknowns on their path, or by
 /// an implicit method (ImplicitMotion).
 /// Models that have a kernel (LatticeMotion, ListMotion) use it.  Rest is checked every few steps.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @param load_path conditions at a fraction of the loads, which grows to 1 within DynamicsOptions::ramp
+/// @param options integrator, step, duration, what is called after steps
+/// @return the last state
 /// @throws InputError if the explicit time step exceeds safe_time_step(), if the integrator does not suit the model, if
-/// the damping is negative, or, lagged, not above
-///   lagged_damping(); the bound is in the message.
+///   the damping is negative, or, lagged, not above lagged_damping(); the bound is in the message.
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options);
 

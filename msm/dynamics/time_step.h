@@ -15,13 +15,19 @@ namespace springproof {
 ///  - any other law: the norms of the 3x3 blocks of its stiffness.
 /// A non-conservative form of dispersion can have complex frequencies, whose flutter only damping prevents, no time
 /// step; its bound is that of their real part.
-/// `lagged`: dispersion of the J of the previous step (DynamicsOptions::lagged), for which a negative dispersed
-/// fraction needs a smaller step.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @param lagged dispersion of the J of the previous step (DynamicsOptions::lagged), for which a negative dispersed
+///   fraction needs a smaller step
+/// @return [s]
 /// @throws std::invalid_argument if a node has no mass.
 double safe_time_step(const MassSpringModel& model, double density, bool lagged = false);
 
 /// Bound on omega*^2 [1/s^2], the part of the squared frequencies that momentum dispersion adds; 0 if it adds none or
 /// reduces them.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @return [1/s^2]
 double dispersion_frequency_squared(const MassSpringModel& model, double density);
 
 }  // namespace springproof

@@ -17,6 +17,7 @@ struct PatchShares {
   NodalVectors normal;   ///< integral of N_n times the outward unit normal [m^2]
 };
 
+/// How a body's mesh hangs in a network.
 struct Embedding {
   /// Displacement of the mesh's nodes = weights * displacement of the network's, mesh nodes x network nodes.  Affine
   /// displacements are reproduced exactly, so that the transpose preserves the resultant and moment of loads.

@@ -25,13 +25,16 @@ struct EmbeddedSurface {
 
 /// Where a springs file comes from.  Not read back.
 struct SpringsOrigin {
-  std::string program, model;  ///< model: its name in the table
-  std::map<std::string, std::variant<bool, double, std::string>> options;
-  std::string input, checksum;  ///< the body's file and the checksum of all files that the springs follow from
+  std::string program;                                                     ///< that wrote it, with its version
+  std::string model;                                                       ///< its name in the table
+  std::map<std::string, std::variant<bool, double, std::string>> options;  ///< of the model
+  std::string input;                                                       ///< the body's file
+  std::string checksum;  ///< of all files that the springs follow from
 };
 
+/// What a springs file holds.
 struct SpringsFile {
-  MassSpringModel model;
+  MassSpringModel model;                      ///< network and laws
   double density = 1000;                      ///< [kg/m^3]; a node's mass is this times its volume share
   std::optional<IsotropicMaterial> material;  ///< what the springs stand for; empty: not known
   double grip = 0;  ///< depth [m] to which a support holds nodes, for nodes that are no mesh's
@@ -39,30 +42,44 @@ struct SpringsFile {
       false;  ///< measured from the surface of the cells that the body is cut into, not from the true one
   std::map<std::string, std::vector<int>> patches;  ///< name -> nodes that its supports hold, ascending
   EmbeddedSurface surface;                          ///< no vertices: none
-  SpringsOrigin origin;
+  SpringsOrigin origin;                             ///< where it comes from
   std::map<std::string, double> derived;  ///< what follows from the rest, as "safe_time_step_s".  Not read back.
 };
 
 /// Reads a springs file (JSON).  Checked: the schema, that every number is finite and in range, every index a node,
 /// every mass positive, every pair of nodes connected once, and that the network is in equilibrium at rest.  A network
 /// of equal cells whose springs are superposed from them is recognised and gets the kernels and solvers of lattices.
+/// @param file its name
+/// @return the model and what belongs to it
 /// @throws InputError "FILE: /pointer: what is wrong (allowed: ...)", or with line and column where it is no JSON.
 SpringsFile read_springs(const std::filesystem::path& file);
 
-/// As read_springs, from text; `name` is used for messages.
+/// As read_springs(), from text.
+/// @param text JSON
+/// @param name for messages
+/// @return the model and what belongs to it
 SpringsFile parse_springs(std::string_view text, const std::string& name);
 
 /// Writes .json, .npz (the same as arrays of NumPy) or .vtu (lines for ParaView), by the ending of the name.
+/// @param file its name
+/// @param springs what to write
 /// @throws InputError for any other ending; std::runtime_error if the file cannot be written.
 void write_springs(const std::filesystem::path& file, const SpringsFile& springs);
 
+/// Checks a name before a long computation.
+/// @param file its name
 /// @throws InputError unless write_springs() knows the name's ending.
 void require_springs_ending(const std::filesystem::path& file);
 
+/// The text of a springs file.
+/// @param springs what to write
+/// @return JSON
 std::string springs_as_json(const SpringsFile& springs);
 
 /// Smooth positions near rest [m], the same on every machine, whose forces a springs file states: what an
 /// implementation of its laws is tested with.
+/// @param X positions at rest [m], n x 3
+/// @return positions [m], n x 3
 NodalVectors check_positions(const NodalVectors& X);
 
 }  // namespace springproof

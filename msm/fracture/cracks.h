@@ -19,7 +19,8 @@ struct CrackDirections {
   int springs = 0;     ///< broken springs with at least three others around them
   double along_4 = 0;  ///< weighted mean of cos 4 phi: 1 along x or y, -1 along their diagonals, 0 no preference
   double along_8 = 0;  ///< of cos 8 phi: 1 along x, y or their diagonals, -1 half way between
-  double order_4 = 0, order_8 = 0;             ///< moduli of the means of exp(4 i phi), exp(8 i phi): along any axes
+  double order_4 = 0;  ///< modulus of the mean of exp(4 i phi): along any two axes at right angles
+  double order_8 = 0;  ///< of exp(8 i phi): along those or their diagonals
   std::array<double, direction_bins> share{};  ///< of the weight, per bin of phi from 0 to 180 degrees
 };
 

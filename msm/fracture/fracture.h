@@ -19,14 +19,16 @@ struct FractureStep {
   double relaxed = 0;        ///< lost by the others as they found new equilibria, r . du / 2, r the force released [J]
 };
 
+/// How a network broke.
 struct FractureResult {
-  std::vector<FractureStep> steps;
-  std::vector<int> broken_at;   ///< per spring: step in which it broke, from 1; 0: intact
+  std::vector<FractureStep> steps;  ///< one per step of drying
+  std::vector<int> broken_at;       ///< per spring: step in which it broke, from 1; 0: intact
   std::vector<double> stretch;  ///< of the intact springs at the end [1]; 0 of broken ones and of those of the support
   NodalVectors displacement;    ///< at the end [m]
   std::vector<char> held;       ///< per node, as given
-  long solves = 0, iterations = 0;
-  double worst_residual = 0;  ///< of all equilibria, as in ShrinkingSprings::solve
+  long solves = 0;              ///< equilibria
+  long iterations = 0;          ///< of conjugate gradients, all together
+  double worst_residual = 0;    ///< of all equilibria, as in ShrinkingSprings::solve
 
   double released() const { return steps.empty() ? 0 : steps.back().broken_energy + steps.back().relaxed; }  ///< [J]
   /// Largest |stored - (work - broken_energy - relaxed)| of all steps over the work at the end [1].

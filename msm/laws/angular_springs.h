@@ -13,10 +13,12 @@ namespace springproof {
 /// An angle belongs to one triangle only, so triangles superpose and a boundary needs no special rule.
 /// No triangle may be degenerate (phi = 0 or pi: no direction for the force).
 struct AngularSprings {
+  /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"angular springs", Reach::springs};
 
   double beta = 0;  ///< stiffness of an angle [N m]
 
+  /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
   void fields(Fields& f) {
     f.number("beta_Nm", beta);

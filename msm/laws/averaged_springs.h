@@ -31,20 +31,22 @@ struct HourglassStiffness {
 /// cut cells, at any size, and so is, for circular and rectangular sections, the bending and torsional stiffness of the
 /// section; no constant is negative for -1 < nu < 1/2.  Cells: Network::cells and Network::filled.
 struct AveragedSprings {
+  /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"averaged springs", Reach::cells, true};
   static constexpr double least_variance = 0.1;  ///< of a full cell's; for the solvers
 
-  double shear_modulus = 0;  ///< G [Pa]
-  double lame_lambda = 0;    ///< of springs (G) and volume term (kappa = lambda - G) [Pa]
-  HourglassStiffness hourglass = {};
+  double shear_modulus = 0;           ///< G [Pa]
+  double lame_lambda = 0;             ///< of springs (G) and volume term (kappa = lambda - G) [Pa]
+  HourglassStiffness hourglass = {};  ///< of the modes that F does not see [G l]
   /// theta: fraction of the second derivatives that a cell assumes beside those of its trilinear field, by which its
   /// strain is shifted from the middle of the cell to the centroid of the filled part, in the deviator only.  1/2 makes
   /// limbs bend better that lie askew in the lattice, at the price of the patch test, and holds for small displacements
   /// from rest only.
   double shift = 0;
-  double contraction = 0;  ///< nu/(1 - nu) of these second derivatives
-  StrainCurve curve = StrainCurve::hencky;
+  double contraction = 0;                   ///< nu/(1 - nu) of these second derivatives
+  StrainCurve curve = StrainCurve::hencky;  ///< the law at large strain
 
+  /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
   void fields(Fields& f) {
     f.number("shear_modulus_Pa", shear_modulus);
@@ -73,6 +75,7 @@ struct CellForm {
   Eigen::Matrix<double, 3, 8> gradient;     ///< mean gradients of the corners' weights [1/m]
   Eigen::Matrix<double, 12, 12> hourglass;  ///< quadratic form of v, 3 * pattern + axis [N/m]
 };
+/// The form of a cell of edge l [m] of which the body fills `part`.
 CellForm cell_form(const AveragedSprings& law, double edge, const FilledPart& part);
 
 /// The four patterns of corner positions that F does not see: q = (positions of the corners, 3 x 8) times this.
@@ -89,6 +92,7 @@ struct CellVolume {
   double value;                           ///< [m^3]
   Eigen::Matrix<double, 24, 1> gradient;  ///< [m^2]; 3 * corner + axis
 };
+/// Volume of the filled part of cell number `cell` at positions x [m].
 CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x);
 
 /// K += pressure d2V/dx2 of that volume [N/m].
@@ -98,8 +102,10 @@ void add_volume_curvature(const Network& network, std::size_t cell, const NodalV
 /// Relative change of the volume of a network of cells, filled or cut, by the mean deformation gradients of the cells:
 /// to first order in the displacement, and exact.
 struct VolumeChange {
-  double first_order, exact;
+  double first_order;  ///< trace of the mean strain [1]
+  double exact;        ///< (V' - V)/V [1]
 };
+/// Of displacements [m], n x 3.
 VolumeChange volume_change(const Network& network, const NodalVectors& displacement);
 
 }  // namespace springproof

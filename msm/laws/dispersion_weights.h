@@ -7,11 +7,12 @@
 
 namespace springproof {
 
+/// Weights, and which nodes share an inflow.
 struct DispersionWeights {
   std::vector<double> weight;  ///< per spring end, i then j: w [N], for Dispersion::symmetric
   std::vector<int> group;      ///< for MomentumDispersion::group
-  int iterations = 0;
-  double residual = 0;  ///< |unmet conditions| / |conditions|
+  int iterations = 0;          ///< of the least squares; 0 in closed form
+  double residual = 0;         ///< |unmet conditions| / |conditions|
 };
 
 /// Nodes whose springs lie to one side (surfaces) share the J of the inner node that their shortest spring leads to: a
@@ -28,10 +29,13 @@ std::vector<int> volume_groups(const Network& network);
 /// Superposed cells meet both with w = k c on their edges and none on their diagonals, in any body: each cell gives an
 /// eighth of its volume to each corner by the three edges there.  Other networks get the weights nearest to k L, in the
 /// sum of (w - k L)^2 / (k L).
-/// @param volume_gradient dV/dx of the body at the nodes [m^2], n x 3; zero for periodic networks.
 /// Planar networks: J_n = V_n (the in-plane divergence), the factor is 8 G.
 /// Nodes at the surface of a disordered network may have too few springs to meet all conditions, which are then met
 /// approximately, with a slack of 1e-3.
+/// @param network of the springs
+/// @param volume_gradient dV/dx of the body at the nodes [m^2], n x 3; zero for periodic networks
+/// @param shear_modulus G [Pa]
+/// @return weights [N] and groups
 /// @throws std::runtime_error if the residual exceeds 0.2.
 DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus);
 

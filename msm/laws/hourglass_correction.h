@@ -16,13 +16,15 @@ double paired_stiffness(double face_to_cube);
 /// orthogonal to affine fields, so the patch test and the moduli are unaffected.
 /// Valid for small displacements from rest only (no corotated frame): linear kinematics.
 struct HourglassCorrection {
+  /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"hourglass correction", Reach::cells, true};
 
   double shear_modulus = 0;  ///< G [Pa]
-  double poisson_ratio = 0;
-  double face_to_cube = 2;  ///< A of the springs it corrects
-  bool torsion = false;     ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
+  double poisson_ratio = 0;  ///< nu [1]
+  double face_to_cube = 2;   ///< A of the springs it corrects
+  bool torsion = false;      ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
 
+  /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
   void fields(Fields& f) {
     f.number("shear_modulus_Pa", shear_modulus);
@@ -35,11 +37,14 @@ struct HourglassCorrection {
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 
-  /// Stiffness added to the normalised modes of a cell of edge l [N/m]: to each bending mode, between the two that
-  /// share a neutral plane; to each torsional mode, among all three.
+  /// Stiffness added to the normalised modes of a cell [N/m]: G l times what docs/papers.md, section 4, derives.
   struct Stiffness {
-    double bending, coupling, torsion = 0, torsion_coupling = 0;
+    double bending;               ///< of each bending mode
+    double coupling;              ///< between the two that share a neutral plane
+    double torsion = 0;           ///< of each torsional mode
+    double torsion_coupling = 0;  ///< between two of them
   };
+  /// That of a cell of edge l [m].
   Stiffness stiffness(double edge) const;
 
   /// The added stiffness of one cell of edge l [N/m]; unknown 3 * corner + axis.

@@ -14,9 +14,10 @@ enum class Reach {
   second_neighbours,  ///< also their neighbours: not part of a cell's stiffness
 };
 
+/// Properties of a force law.
 struct LawTraits {
-  const char* name;
-  Reach reach;
+  const char* name;              ///< "momentum dispersion"
+  Reach reach;                   ///< which nodes the force at a node depends on
   bool lattice_kernels = false;  ///< implemented in msm/kernels/lattice_kernel.h; otherwise the plain loops are used
   bool list_kernels = false;     ///< implemented in msm/kernels/list_kernels.h; otherwise the plain loops are used
 };

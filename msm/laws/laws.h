@@ -15,34 +15,61 @@
 
 namespace springproof {
 
+/// Any of the force laws.
 using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion, AngularSprings,
                               AveragedSprings, Anchors>;
 
+/// Properties of a law.
+/// @param law any of the list
+/// @return its `traits`
 inline const LawTraits& traits(const ForceLaw& law) {
   return std::visit([](const auto& l) -> const LawTraits& { return l.traits; }, law);
 }
 
 /// A mass-spring model: a network and its force laws.
 struct MassSpringModel {
-  Network network;
-  std::vector<ForceLaw> laws;
+  Network network;                        ///< nodes, springs and cells
+  std::vector<ForceLaw> laws;             ///< their forces are added
   bool small_displacements_only = false;  ///< valid for linear kinematics only
 };
 
-double energy(const MassSpringModel& model, const NodalVectors& x);  ///< elastic energy [J] of a conservative model
-NodalVectors forces(const MassSpringModel& model, const NodalVectors& x);  ///< internal forces -dE/dx [N]
-Tangent tangent(const MassSpringModel& model, const NodalVectors& x);      ///< -df/dx [N/m]
+/// Elastic energy; the sum of those of the laws.
+/// @param model a model; laws without an energy count 0 (conservative())
+/// @param x positions [m], n x 3
+/// @return [J]; +infinity where a law has none, as in an inverted cell
+double energy(const MassSpringModel& model, const NodalVectors& x);
+
+/// Internal forces, -dE/dx of a conservative model, by plain loops on one thread.
+/// @param model a model
+/// @param x positions [m], n x 3
+/// @return force on each node [N], n x 3
+NodalVectors forces(const MassSpringModel& model, const NodalVectors& x);
+
+/// Tangent stiffness.
+/// @param model a model
+/// @param x positions [m], n x 3
+/// @return -df/dx [N/m]
+Tangent tangent(const MassSpringModel& model, const NodalVectors& x);
 
 /// Recomputes a tangent made by tangent() at another state, keeping its sparsity pattern.
+/// @param model the same model
+/// @param x positions [m], n x 3
+/// @param K the tangent, overwritten
 void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent& K);
 
-/// The model's momentum dispersion; nullptr if it has none.
+/// The model's momentum dispersion.
+/// @param model a model
+/// @return it, or nullptr if the model has none
 const MomentumDispersion* dispersion_of(const MassSpringModel& model);
 
-/// The model's averaged springs; nullptr if it has none.
+/// The model's averaged springs.
+/// @param model a model
+/// @return them, or nullptr if the model has none
 const AveragedSprings* averaged_springs_of(const MassSpringModel& model);
 
 /// Whether the forces derive from an energy, so that the tangent is symmetric.
+/// @param model a model
+/// @return false for dispersion as published or weighted by shares
 bool conservative(const MassSpringModel& model);
 
 }  // namespace springproof

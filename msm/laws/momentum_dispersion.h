@@ -20,17 +20,20 @@ enum class Dispersion {
   published_transposed,  ///< a = q k / L, c = L / b: the paper's other form, for lattices of 18 springs only
 };
 
+/// A node takes in a fraction of what stretches the springs around it, and gives it back to them as tension.
 struct MomentumDispersion {
+  /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"momentum dispersion", Reach::second_neighbours, true, true};
 
-  double q = 0;  ///< Q / 2, the fraction of the incoming force that a node disperses
-  Dispersion form = Dispersion::symmetric;
+  double q = 0;                             ///< Q / 2, the fraction of the incoming force that a node disperses
+  Dispersion form = Dispersion::symmetric;  ///< which inflow and outflow
   /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring;
   /// empty: 1.
   std::vector<double> weight = {};
   /// Per node, the node whose J receives its springs' inflow; empty: its own.  Symmetric form only.
   std::vector<int> group = {};
 
+  /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
   void fields(Fields& f) {
     f.number("q", q);
@@ -39,6 +42,7 @@ struct MomentumDispersion {
     f.of_nodes("group", group);
   }
 
+  /// Whether the forces derive from an energy.
   bool conservative() const { return form == Dispersion::symmetric; }
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; 0 for non-conservative forms
@@ -58,6 +62,7 @@ struct MomentumDispersion {
     std::vector<std::array<double, 2>> in;   ///< a_si, a_sj
     std::vector<std::array<double, 2>> out;  ///< c_si, c_sj
   };
+  /// Those of a network at rest.
   Coefficients coefficients(const Network& network) const;
 
   /// The node whose J the springs at a node add to.

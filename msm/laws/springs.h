@@ -9,8 +9,10 @@ namespace springproof {
 
 /// Energy sum_s k/2 (L' - L)^2; geometrically nonlinear (L' is the length between the moved nodes).
 struct Springs {
+  /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"springs", Reach::springs, true, true};
 
+  /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
   void fields(Fields&) {}
 

@@ -18,13 +18,14 @@ enum class StrainCurve {
   springs_neo_hooke,    ///< thirteen springs tuned to neo_hooke_isochoric
 };
 
+/// Of two entries of F each.
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 /// W [Pa], P = dW/dF [Pa] and d2W/dF2 [Pa], whose index of F(i, j) is i + 3 j.
 struct StrainEnergy {
-  double value = 0;
-  Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();
-  Matrix9 tangent = Matrix9::Zero();
+  double value = 0;                                  ///< W [Pa]
+  Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();  ///< P [Pa]
+  Matrix9 tangent = Matrix9::Zero();                 ///< d2W/dF2 [Pa]
 };
 
 /// What to compute of a strain energy: all up to this.

@@ -16,11 +16,13 @@ enum class VolumeEnergy {
 /// Energy sum_c V psi(V'/V) with V' = a . (b x c), a, b, c the mean edge vectors of the cell;
 /// Golec et al. (2019), eqs. (5.13)-(5.16).  DEVIATION from eq. (5.16): factor 1/4, docs/papers.md.
 struct VolumeCorrection {
+  /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"volume correction", Reach::cells, true};
 
-  double kappa = 0;  ///< lambda - G [Pa]
-  VolumeEnergy form = VolumeEnergy::bounded;
+  double kappa = 0;                           ///< lambda - G [Pa]
+  VolumeEnergy form = VolumeEnergy::bounded;  ///< how the energy grows with J
 
+  /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
   void fields(Fields& f) {
     f.number("kappa_Pa", kappa);
@@ -34,16 +36,22 @@ struct VolumeCorrection {
 
 /// Mean-edge volume V' = a . (b x c) of a cell and its gradient (rows: corners in mesh order) [m^3, m^2].
 struct MeanEdgeVolume {
-  Vec3 a, b, c;
-  double value;
-  Eigen::Matrix<double, 8, 3> gradient;
+  Vec3 a;                                ///< mean edge along x [m]
+  Vec3 b;                                ///< along y
+  Vec3 c;                                ///< along z
+  double value;                          ///< V' [m^3]
+  Eigen::Matrix<double, 8, 3> gradient;  ///< dV'/dx [m^2]
 };
+/// That of a cell at positions x [m].
 MeanEdgeVolume mean_edge_volume(const Hexahedron& cell, const NodalVectors& x);
 
 /// psi(J), psi'(J), psi''(J) per unit kappa.
 struct VolumeDensity {
-  double value, slope, curvature;
+  double value;      ///< psi
+  double slope;      ///< dpsi/dJ
+  double curvature;  ///< d2psi/dJ2
 };
+/// At J = V'/V; the bounded form needs J > 0.
 VolumeDensity volume_density(VolumeEnergy form, double J);
 
 /// K += pressure d2V'/dx2 of one cell [N/m].

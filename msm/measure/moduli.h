@@ -5,10 +5,11 @@
 
 namespace springproof {
 
+/// Moduli that a model has.
 struct MeasuredModuli {
   double youngs_modulus;  ///< [Pa]
-  double poisson_ratio;
-  double shear_modulus;  ///< [Pa]
+  double poisson_ratio;   ///< [1]
+  double shear_modulus;   ///< [Pa]
 };
 
 /// Lattices whose nodes are the mesh's: uniaxial test between slipping plates (end force / (area * strain), lateral

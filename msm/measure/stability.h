@@ -5,6 +5,7 @@
 
 namespace springproof {
 
+/// Whether a free block is stable, and how fast it flutters if not.
 struct BlockStability {
   double asymmetry;            ///< |K - K^T| / |K| (Frobenius); 0 if conservative
   double smallest_eigenvalue;  ///< real part of those of M^-1 K without rigid motions, over the largest; negative:

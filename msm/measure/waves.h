@@ -7,7 +7,8 @@ namespace springproof {
 
 /// Largest relative error of the phase velocity over directions; negative: too slow.
 struct PhaseError {
-  double longitudinal, transverse;
+  double longitudinal;  ///< of the wave that moves along k [1]
+  double transverse;    ///< of the two that move across it [1]
 };
 
 /// Waves u exp(i k x) of K(k) u = omega^2 m(k) u, K(k) the sum of the blocks of a cell's stiffness times cos(k d), d
@@ -22,6 +23,7 @@ struct SoftestWave {
   double stiffness;  ///< smallest eigenvalue of K(k) over G l; 0: a mode without energy
   Vec3 k;            ///< in units of pi / l
 };
+/// Of a model of cells with the shear modulus G [Pa].
 SoftestWave softest_wave(const MassSpringModel& model, double shear_modulus);
 
 }  // namespace springproof

@@ -40,40 +40,48 @@ enum class Calibration {
   patch_test,  ///< G, spring by spring: every affine strain is in equilibrium at every node (parameters/patch_fit.h)
 };
 
+/// A row of the table.
 struct ModelRow {
-  std::string name;
-  std::string what;  ///< one line for --help and the report
-  Topology topology;
-  double face_to_cube;    ///< default A = k_f / k_c, of cubic lattices
-  bool any_face_to_cube;  ///< A may be chosen
-  Extension extension;
-  bool bending_correction;
-  bool torsion_correction;
-  Calibration calibration;
+  std::string name;         ///< "hybmss_avg"
+  std::string what;         ///< one line for --help and the report
+  Topology topology;        ///< nodes and connections
+  double face_to_cube;      ///< default A = k_f / k_c, of cubic lattices
+  bool any_face_to_cube;    ///< A may be chosen
+  Extension extension;      ///< what gives another Poisson's ratio than 1/4
+  bool bending_correction;  ///< hourglass modes of bending have the stiffness of the solid
+  bool torsion_correction;  ///< those of torsion too
+  Calibration calibration;  ///< of the springs
 };
 
+/// All models.
+/// @return the rows, in the order of `springproof list`
 const std::vector<ModelRow>& model_table();
 
-/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4; empty: any (of
-/// a springs file: not known).
+/// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4.
+/// @param row of the table
+/// @return 1/4; empty: any (of a springs file: not known)
 std::optional<double> own_poisson_ratio(const ModelRow& row);
 
 /// Whether the model is valid under finite kinematics; hourglass corrections of springs are for small displacements
 /// only.
+/// @param row of the table
+/// @return true: it is, and solve_finite() and run_dynamics() may take it
 inline bool holds_at_large_displacement(const ModelRow& row) {
   return !row.bending_correction || row.extension == Extension::averaging;
 }
 
 /// Whether each spring has its own constant, by the patch test at its nodes.
+/// @param row of the table
+/// @return true for emsm_patch
 inline bool passes_patch_test(const ModelRow& row) { return row.calibration == Calibration::patch_test; }
 
 /// A model choice with all options resolved.
 struct ModelParameters {
-  ModelRow row;
-  double face_to_cube = 2;
+  ModelRow row;               ///< its row
+  double face_to_cube = 2;    ///< A = k_f / k_c
   bool paper_e_form = false;  ///< springs from E by Golec et al. (2019), (5.12) right, as in its tables
-  VolumeEnergy volume_energy = VolumeEnergy::bounded;
-  Dispersion dispersion = Dispersion::symmetric;
+  VolumeEnergy volume_energy = VolumeEnergy::bounded;  ///< of the volume correction
+  Dispersion dispersion = Dispersion::symmetric;       ///< form of momentum dispersion
   std::optional<bool> exact_volumes;   ///< dispersion weights: exact nodal volumes (msm/laws/dispersion_weights.h) or w
                                        ///< = k L; empty: exact where q >= 0
   bool homogenised = true;             ///< random networks: calibrated by homogenisation in bulk; false: by eq. (20)
@@ -89,13 +97,22 @@ struct ModelParameters {
   int seeds = 1;                       ///< number of random networks to average: random.seed and those after it
   std::shared_ptr<const SpringsFile> springs = {};  ///< of Topology::file: network, laws and material as read
 
+  /// Whether the model has this extension.
+  /// @param extension which
+  /// @return true: it has
   bool has(Extension extension) const { return row.extension == extension; }
 };
 
+/// Looks up a model and sets its options.
+/// @param choice name of a row, or springs file, and options: `resolve({"hybmss_avg", {}, "", {}})`
+/// @return the row with all options set, those not given to their defaults
 /// @throws InputError (with the place in the case file) for an unknown model or option, the nearest name suggested.
 ModelParameters resolve(const ModelChoice& choice);
 
-/// Shear modulus [Pa] that the springs of this model are calibrated to.
+/// Shear modulus that the springs of this model are calibrated to.
+/// @param parameters of the model
+/// @param material of the body
+/// @return [Pa]; of models that can only have nu = 1/4 that of the same E
 double spring_shear_modulus(const ModelParameters& parameters, const IsotropicMaterial& material);
 
 }  // namespace springproof

@@ -17,11 +17,11 @@ struct Homogenised {
   double bulk_modulus;            ///< [Pa]
   double shear_modulus;           ///< [Pa]
   double youngs_modulus;          ///< [Pa]
-  double poisson_ratio;
-  double anisotropy;  ///< |C - C_isotropic| / |C|, Kelvin's norm (that of the tensor)
-  double asymmetry;   ///< |C - C^T| / |C|; 0 if conservative
-  int iterations;     ///< of the linear solver, all strains together
-  double residual;    ///< largest |unbalanced force| / |force of the unrelaxed nodes|
+  double poisson_ratio;           ///< [1]
+  double anisotropy;              ///< |C - C_isotropic| / |C|, Kelvin's norm (that of the tensor)
+  double asymmetry;               ///< |C - C^T| / |C|; 0 if conservative
+  int iterations;                 ///< of the linear solver, all strains together
+  double residual;                ///< largest |unbalanced force| / |force of the unrelaxed nodes|
 };
 
 /// The same in the plane of a planar network, per volume: plane stress if the volume shares are area times thickness.
@@ -31,11 +31,13 @@ struct HomogenisedPlane {
   double shear_modulus;   ///< [Pa]
   double youngs_modulus;  ///< E_2D [Pa]; Kot et al. (2014), eq. (10)
   double poisson_ratio;   ///< nu_2D
-  double anisotropy, asymmetry;
-  int iterations;
-  double residual;
+  double anisotropy;      ///< as in Homogenised
+  double asymmetry;       ///< as in Homogenised
+  int iterations;         ///< of the linear solver, all strains together
+  double residual;        ///< as in Homogenised
 };
 
+/// How exactly.
 struct HomogeniseOptions {
   double tolerance = 1e-10;    ///< relative residual
   int max_iterations = 20000;  ///< per strain
@@ -48,6 +50,7 @@ struct HomogeniseOptions {
 /// @throws std::invalid_argument if the network has no images; std::runtime_error if a mode of negative energy is found
 ///   or the iteration does not converge.
 Homogenised homogenise(const MassSpringModel& model, const HomogeniseOptions& options = {});
+/// The same for a planar network: the three unit strains of its plane.
 HomogenisedPlane homogenise_plane(const MassSpringModel& model, const HomogeniseOptions& options = {});
 
 /// The stiffness of an isotropic solid, in the notation of Homogenised::C.

@@ -12,7 +12,8 @@ namespace springproof {
 
 /// Linear spring between nodes i < j: energy k/2 (L' - L)^2.
 struct Spring {
-  int i, j;
+  int i;               ///< node
+  int j;               ///< node, j > i
   double stiffness;    ///< k [N/m]
   double rest_length;  ///< L [m]
 };
@@ -20,12 +21,13 @@ struct Spring {
 /// Spring of rest length zero between a weighted mean of the corners of a cell and a node, by which a support holds the
 /// part of a patch in that cell: energy k/2 |sum_a w_a x_a - x_node|^2.
 struct Anchor {
-  Hexahedron corners;
+  Hexahedron corners;             ///< nodes of the cell
   std::array<double, 8> weights;  ///< they sum to 1
-  int node;
-  double stiffness;  ///< k [N/m]
+  int node;                       ///< held by the support
+  double stiffness;               ///< k [N/m]
 };
 
+/// Nodes, springs and cells of a body; laws (msm/laws/laws.h) say what forces they have.
 struct Network {
   NodalVectors X;                    ///< rest positions [m], n x 3
   std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
@@ -39,20 +41,33 @@ struct Network {
   std::vector<int> image_of;         ///< per node the node it is a periodic image of (itself if none); empty: no images
   std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
 
+  /// @return number of nodes, periodic images included
   int nodes() const { return static_cast<int>(X.rows()); }
+  /// @param node a node
+  /// @return the node that it is an image of; itself if it is none
   int master(int node) const { return image_of.empty() ? node : image_of[node]; }
+  /// @return of a full cell [m^3]
   double cell_volume() const { return cell_edge * cell_edge * cell_edge; }
 };
 
 /// Merges springs of the same pair by adding their stiffness (Kirchhoff's law, Golec et al. 2019, sec. 5.4) and
 /// sorts by (i, j).
+/// @param springs in any order, i < j
+/// @return each pair once
 /// @throws std::invalid_argument if merged springs differ in rest length.
 std::vector<Spring> merge_springs(std::vector<Spring> springs);
 
-/// Displacement of the corners of a cell at positions x [m]; 3 * corner + axis.
+/// Displacement of the corners of a cell.
+/// @param cell its corners
+/// @param network that it is in
+/// @param x positions [m], n x 3
+/// @return [m]; 3 * corner + axis
 Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Network& network, const NodalVectors& x);
 
-/// Mass of each node [kg]: rho times its volume share (rho V/8 per cell corner, Golec et al. 2019, sec. 5.4).
+/// Mass of each node: rho times its volume share (rho V/8 per cell corner, Golec et al. 2019, sec. 5.4).
+/// @param network with Network::volume
+/// @param density rho [kg/m^3]
+/// @return [kg], one per node
 Eigen::VectorXd masses(const Network& network, double density);
 
 }  // namespace springproof

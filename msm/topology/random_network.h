@@ -10,11 +10,12 @@
 
 namespace springproof {
 
+/// How nodes are placed and joined.
 struct RandomParameters {
   double spacing;                    ///< l = (V/N)^(1/3) [m]
   double min_length = 0.8;           ///< minL / l; addition jams near 0.895
   std::optional<double> max_length;  ///< maxL / l; if empty, chosen to give springs_per_node
-  double springs_per_node = 15;      ///< mean number <S> inside the bulk
+  double springs_per_node = 15;      ///< mean number `<S>` inside the bulk
   double edge_clearance = 0;         ///< distance / l that nodes on faces keep from sharp edges
   int least_springs = 0;             ///< nodes that have fewer are joined to the nearest within 2 maxL as well
   double stiffness_exponent = 0;     ///< p: k = (L/l)^-p [N/m]
@@ -31,7 +32,7 @@ struct NetworkRepair {
 };
 
 /// Network of a body.  Springs join all nodes closer than maxL whose line stays in the body (tested at three points).
-/// If max_length is empty, maxL is that of a periodic sample of 8000 nodes with the same minL/l and <S> =
+/// If max_length is empty, maxL is that of a periodic sample of 8000 nodes with the same minL/l and `<S>` =
 /// springs_per_node.  Volume shares: nearest node of each point of a lattice of l/3, scaled to the body's volume.
 /// With surface nodes: corners, sharp edges and faces are filled first, to one node per l, l^2; then the inside, to the
 /// number that gives the density 1/l^3 far from the surface.
@@ -39,8 +40,8 @@ struct NetworkRepair {
 ///   the largest possible minL/l); more than 20 % of the nodes removed as floppy or detached.
 Network random_network(const Region& region, const RandomParameters& parameters, NetworkRepair* repaired = nullptr);
 
-/// Network of the periodic box [0, box], N = V/l^3 nodes.  maxL follows from the network's own pairs, so <S> is exact.
-/// A spring that crosses the box ends on a ghost (Network::image_of), which has no volume.
+/// Network of the periodic box [0, box], N = V/l^3 nodes.  maxL follows from the network's own pairs, so `<S>` is
+/// exact. A spring that crosses the box ends on a ghost (Network::image_of), which has no volume.
 /// @throws std::invalid_argument as above, and for a box narrower than 3 maxL.
 Network periodic_random_network(const Vec3& box, const RandomParameters& parameters, NetworkRepair* repaired = nullptr);
 

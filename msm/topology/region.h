@@ -9,14 +9,17 @@
 
 namespace springproof {
 
+/// A body as the set of its points.
 struct Region {
-  Vec3 lower, upper;                                  ///< bounding box [m]
+  Vec3 lower;                                         ///< of the bounding box [m]
+  Vec3 upper;                                         ///< of the bounding box [m]
   double volume;                                      ///< [m^3]
   std::function<bool(const Vec3&)> inside;            ///< boundary included, within 1e-12 of size()
   std::vector<Vec3> surface_points;                   ///< [m]; empty: no surface known
   std::vector<std::array<int, 3>> surface_triangles;  ///< anticlockwise seen from outside
   std::vector<Patch> patches = {};                    ///< by numbers of surface points
 
+  /// Diagonal of the bounding box [m].
   double size() const { return (upper - lower).norm(); }
 };
 

@@ -8,15 +8,17 @@ namespace springproof {
 
 /// Location in a case file; line and column count from 1, 0 = unknown.
 struct SourceLocation {
-  std::string file;
-  int line = 0;
-  int column = 0;
+  std::string file;  ///< its name
+  int line = 0;      ///< from 1
+  int column = 0;    ///< from 1
 };
 
 /// An input that cannot be used.  what() reads "file:line:column: key: what is wrong, what is allowed".
 class InputError : public std::runtime_error {
  public:
+  /// With its location.
   InputError(const SourceLocation& where, const std::string& message);
+  /// Without one.
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
 };
 
