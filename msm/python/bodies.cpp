@@ -22,12 +22,10 @@ constexpr int about_tetrahedra = 20000;  // of the true body, as in the finest m
 using OptionalNumber = std::optional<double>;
 
 IsotropicMaterial material_of(OptionalNumber E, OptionalNumber nu, OptionalNumber G, OptionalNumber K,
-                              OptionalNumber lambda, double density) try {
+                              OptionalNumber lambda, double density) {
   const IsotropicMaterial material = material_from({E, nu, G, K, lambda}, density);
   check(material);
   return material;
-} catch (const std::invalid_argument& e) {
-  throw InputError(e.what());
 }
 
 PatchRule rule_of(const std::string& name, const std::optional<std::pair<Numbers, Numbers>>& box,

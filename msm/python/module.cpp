@@ -1,6 +1,9 @@
 // Python: the module, its errors, and arrays.
 #include <fmt/format.h>
 
+#include <exception>
+#include <stdexcept>
+
 #include "msm/python/bindings.h"
 
 namespace springproof::python {
@@ -34,10 +37,18 @@ Vec3 vector_of(const Numbers& values, const char* name) {
 PYBIND11_MODULE(_springproof, m) {
   using namespace springproof;
   m.doc() = "Mass-spring models of elastic solids: bindings of the library msm.";
-  pybind11::register_exception<InputError>(m, "InputError", PyExc_ValueError).doc() =
-      "An input that cannot be used: the place, the value, what is allowed.";
+  static const pybind11::handle input_error =
+      pybind11::register_exception<InputError>(m, "InputError", PyExc_ValueError).inc_ref();
+  input_error.doc() = "An input that cannot be used: the place, the value, what is allowed.";
   pybind11::register_exception<python::SolveError>(m, "SolveError", PyExc_RuntimeError).doc() =
       "There is no equilibrium, or a motion diverges.";
+  pybind11::register_local_exception_translator([](std::exception_ptr thrown) {
+    try {
+      std::rethrow_exception(std::move(thrown));
+    } catch (const std::invalid_argument& e) {  // of the library, where no place in a file is known
+      PyErr_SetString(input_error.ptr(), e.what());
+    }
+  });
   python::bind_bodies(m);
   python::bind_loads(m);
   python::bind_models(m);

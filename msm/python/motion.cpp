@@ -128,13 +128,7 @@ std::shared_ptr<MovingModel> motion_of(const ModelPointer& model, const std::vec
   options.precision = float32 ? Precision::float32 : Precision::float64;
   options.threads = threads;
   NodeConditions nodes = node_conditions(*model, held, displacement, forces);
-  return long_call([&]() -> std::shared_ptr<MovingModel> {
-    try {
-      return std::make_shared<MovingModel>(model, loads_of(loads), std::move(nodes), options);
-    } catch (const std::invalid_argument& e) {
-      throw InputError(fmt::format("{}: {}", model->parameters.row.name, e.what()));
-    }
-  });
+  return long_call([&] { return std::make_shared<MovingModel>(model, loads_of(loads), std::move(nodes), options); });
 }
 
 }  // namespace

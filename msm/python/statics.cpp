@@ -155,11 +155,7 @@ BoundaryConditions conditions_of(const BodyModel& model, const std::vector<Load>
   const Network& network = model.network();
   BoundaryConditions bc;
   if (model.body) {
-    try {
-      bc = transfer(loads, *model.body->mesh, model.embedding, network, model.springs.density, kinematics, factor);
-    } catch (const std::invalid_argument& e) {
-      throw InputError(e.what());
-    }
+    bc = transfer(loads, *model.body->mesh, model.embedding, network, model.springs.density, kinematics, factor);
   } else {
     if (!loads.empty()) throw InputError("loads: the springs of a file have no body (allowed: held, forces)");
     bc.fixed.assign(3 * static_cast<std::size_t>(network.nodes()), 0);

@@ -7,6 +7,7 @@ import springproof as sp
 
 if not sp.find_program():
     pytest.skip("no program springproof", allow_module_level=True)
+pytestmark = pytest.mark.filterwarnings("error")
 
 CASE = {
     "name": "bar",
@@ -16,6 +17,7 @@ CASE = {
     "probe": [{"name": "tip", "at_m": [0.2, 0.05, 0.05]}],
     "compare": {"models": ["hybmss_avg", {"model": "hybmss", "face_to_cube": 1, "label": "A1"}], "measures": ["probe", "reaction", "volume_change"]},
     "reference": {"elements": []},
+    "expect": [{"model": "A1", "measure": "force.x_min.z", "source": "analytic", "value": 0.1, "within_relative": 1e-6, "where": "balance"}],
 }
 COLUMNS = "case kinematics model poisson_ratio cells measure value unit reference reference_uncertainty error samples spread published published_where".split()
 
@@ -71,7 +73,9 @@ def test_springs_of_a_file_are_a_model_of_a_case(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     body, material = sp.block((0.2, 0.1, 0.1), (4, 2, 2)), sp.Material(1e4, 0.4, density=1100)
     sp.Model("hybmss", body, material).write("mine.json")
-    rows = sp.compare({**CASE, "compare": {**CASE["compare"], "models": ["hybmss", {"file": "mine.json", "label": "mine"}]}}, poisson_ratio=0.4)
+    case = {**CASE, "compare": {**CASE["compare"], "models": ["hybmss", {"file": "mine.json", "label": "mine"}]}}
+    case["expect"] = [{**CASE["expect"][0], "model": "mine"}]
+    rows = sp.compare(case, poisson_ratio=0.4)
     value = {row["model"]: row["value"] for row in rows if row["measure"] == "displacement.tip.z"}
     assert value["mine"] == pytest.approx(value["hybmss"], rel=1e-9)
 
@@ -88,6 +92,7 @@ def test_a_body_by_voxels_is_that_of_compare(tmp_path):
     assert body.notes and {"foot", "top", "surface"} <= set(body.patches) and abs(len(body.cells) - 200) < 40
     rows = sp.compare({
         "name": "t",
+        "expect": [{"model": "cubes", "measure": "force.top.x", "source": "analytic", "value": 0, "within": 1, "where": "it is finite"}],
         "body": {"geo": str(tmp_path / "t.stl"), "voxels": 200},
         "patch": [{"name": "foot", "beyond": {"point_m": [0, 0, 0.005], "normal": [0, 0, -1]}}, {"name": "top", "near": {"point_m": [0.02, 0.02, 0.1], "radius_m": 0.03}}],
         "material": {"youngs_modulus_Pa": 1e4, "poisson_ratio": 0.4},

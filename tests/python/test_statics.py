@@ -11,9 +11,7 @@ RUBBER = sp.Material(E=1e5, nu=0.4, density=1100)
 def body_for(name):
     if "hexagonal" in name or name == "kirkwood":
         return sp.block((0.4, 0.2, 0.1), (4, 2, 1))
-    if name == "emsm_patch":
-        return sp.block((0.4, 0.2, 0.2), (8, 4, 4))
-    return sp.block((0.4, 0.2, 0.2), (4, 2, 2))
+    return sp.block((0.4, 0.2, 0.2), (8, 4, 4))
 
 
 def test_any_two_moduli_give_the_material():
@@ -42,15 +40,10 @@ def test_the_bar_of_the_tutorial_bends_as_from_cpp():
 
 @pytest.mark.parametrize("name", [row["name"] for row in sp.models()])
 def test_every_model_of_the_table_carries_its_load(name):
-    options = {"hold_rigid_motions": True} if name == "hybmss_fd" else {}
-    model = sp.Model(name, body_for(name), RUBBER, **options)
+    model = sp.Model(name, body_for(name), RUBBER)
     assert np.isclose(model.masses.sum(), 1100 * np.prod(body_for(name).nodes.max(axis=0)))
     X, rng = model.positions, np.random.default_rng(1)
     assert abs(model.forces(X)).max() < 1e-6 * 1e5 * 0.04
-    if name == "hybmss_fd":  # mechanisms: no equilibrium, as the exception says
-        with pytest.raises((sp.SolveError, sp.InputError)):
-            model.solve([sp.Displacement("x_min"), sp.Force("x_max", (1, 0, 0))])
-        return
     # Forces are the gradient of the energy.
     x, h = X + 1e-3 * rng.uniform(-1, 1, X.shape), 1e-7
     p = rng.uniform(-1, 1, X.shape)
@@ -85,10 +78,10 @@ def test_held_nodes_are_a_support_and_forces_a_load():
     by_patch = model.solve([sp.Displacement("x_min", (1e-3, None, 0)), sp.Displacement("y_min", (None, 0, None)), sp.Force("x_max", force)])
     nodes = np.zeros(model.positions.shape)
     end, area = body.patches["x_max"], np.zeros(len(nodes))
-    for y in range(2):
-        for z in range(2):  # a quarter of each facet to its corners
-            near = (abs(body.nodes[end, 1] - 0.1 * (y + 0.5)) < 0.06) & (abs(body.nodes[end, 2] - 0.1 * (z + 0.5)) < 0.06)
-            area[end[near]] += 1 / 16
+    for y in range(4):
+        for z in range(4):  # a quarter of each facet to its corners
+            near = (abs(body.nodes[end, 1] - 0.05 * (y + 0.5)) < 0.03) & (abs(body.nodes[end, 2] - 0.05 * (z + 0.5)) < 0.03)
+            area[end[near]] += 1 / 64
     nodes += area[:, None] * force
     held = np.concatenate([body.patches["x_min"], body.patches["y_min"]])
     u = np.full((len(held), 3), np.nan)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import zipfile
 
 import numpy
 
@@ -24,7 +25,7 @@ def read_springs(file: "str | os.PathLike[str]") -> "_springproof.Model":
     try:
         with numpy.load(name, allow_pickle=False) as arrays:
             tree = _with_lists(json.loads(bytes(arrays["springs.json"])), arrays)
-    except (KeyError, ValueError, OSError) as error:
+    except (KeyError, ValueError, OSError, zipfile.BadZipFile) as error:
         raise _springproof.InputError(f"{name}: is no springs file: {error}") from None
     return _springproof._parse_springs(json.dumps(tree), name)
 
