@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "msm/dynamics/dynamics.h"
 #include "msm/python/bindings.h"
+#include "problem/system/run_cost.h"
 
 namespace springproof::python {
 namespace {
@@ -70,14 +70,14 @@ class MovingModel {
   std::string description() const { return motion_->description(); }
   const BodyModel& model() const { return *model_; }
 
-  /// Mean seconds of a step that C++ makes, one after the other: what a call from Python is compared with.
+  /// CPU time of n steps that C++ makes one after the other, per step [s]: what a call from Python is compared with.
   double seconds_per_step(long n) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = cpu_seconds();
     for (long i = 0; i < n; ++i) motion_->advance(1);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const double seconds = cpu_seconds() - start;
     steps_ += n;
     fresh_x_ = fresh_v_ = fresh_f_ = false;
-    return seconds.count() / static_cast<double>(n);
+    return seconds / static_cast<double>(n);
   }
 
  private:
@@ -170,7 +170,8 @@ copy what is to be kept.)")
       .def_property_readonly("time_step", &MovingModel::time_step, "[s]")
       .def_property_readonly("steps", &MovingModel::steps, "since the start")
       .def_property_readonly("description", &MovingModel::description, "which loop runs")
-      .def("_seconds_per_step", &MovingModel::seconds_per_step, "n"_a, "Mean of n steps made by a loop of C++ [s].");
+      .def("_seconds_per_step", &MovingModel::seconds_per_step, "n"_a,
+           "CPU time of a step, of n made by a loop of C++ [s].");
   model.def("motion", &motion_of, "loads"_a = std::vector<BoundLoad>(), py::kw_only(), "held"_a = py::none(),
             "displacement"_a = py::none(), "forces"_a = py::none(), "time_step"_a = py::none(), "damping"_a = 0.0,
             "integrator"_a = "explicit", "float32"_a = false, "threads"_a = 1,
