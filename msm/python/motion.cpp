@@ -138,9 +138,8 @@ void bind_motion(py::module_& m, py::class_<BodyModel, std::shared_ptr<BodyModel
 
 The arrays are views of one piece of memory each, which is renewed when the attribute is read: read it again after a step, and
 copy what is to be kept.)")
-      .def(
-          "step", [](MovingModel& s, long n) { long_call([&] { return s.step(n), 0; }); }, "n"_a = 1,
-          "n time steps.  Raises SolveError if the motion diverges.")
+      .def("step", &MovingModel::step, "n"_a = 1, py::call_guard<py::gil_scoped_release>(),
+           "n time steps.  Raises SolveError if the motion diverges.")
       .def(
           "set_state",
           [](MovingModel& s, const Numbers& positions, const Numbers& velocities) {
