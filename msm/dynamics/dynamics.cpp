@@ -15,6 +15,8 @@ namespace {
 
 constexpr double implicit_ratio = 10;  // default step of implicit methods to the explicit bound
 
+}  // namespace
+
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
   const double bound = safe_time_step(model, density, options.lagged);
   const bool implicit = options.integrator != Integrator::explicit_euler;
@@ -37,18 +39,7 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
   return dt;
 }
 
-/// Interface of the time integrators.
-struct Motion {
-  virtual ~Motion() = default;
-  virtual void set_conditions(const BoundaryConditions& conditions) = 0;
-  virtual void move_supports() = 0;               ///< immediately
-  virtual void place(const NodalVectors& x) = 0;  ///< at rest
-  virtual ForceNorms advance(long steps) = 0;
-  virtual NodalVectors positions() const = 0;
-  virtual NodalVectors velocities() const = 0;
-  virtual std::string description() const = 0;
-  virtual std::string failure() const { return ""; }
-};
+namespace {
 
 /// Time integration of any model by the plain force loops.
 class PlainMotion : public Motion {
@@ -70,7 +61,10 @@ class PlainMotion : public Motion {
       if (conditions_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
   }
 
-  void place(const NodalVectors& x) override { x_ = x; }
+  void set_state(const NodalVectors& x, const NodalVectors& v) override {
+    x_ = x;
+    v_ = v;
+  }
 
   ForceNorms advance(long steps) override {
     ForceNorms norms;
@@ -128,7 +122,7 @@ class MotionOfList : public Motion {
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
   void move_supports() override { motion_.place_prescribed(); }
-  void place(const NodalVectors& x) override { motion_.place(x); }
+  void set_state(const NodalVectors& x, const NodalVectors& v) override { motion_.set_state(x, v); }
   ForceNorms advance(long steps) override { return motion_.advance(steps); }
   NodalVectors positions() const override { return motion_.positions(); }
   NodalVectors velocities() const override { return motion_.velocities(); }
@@ -151,7 +145,7 @@ class MotionOfLattice : public Motion {
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.set_conditions(conditions); }
   void move_supports() override { motion_.move_supports(); }
-  void place(const NodalVectors& x) override { motion_.set_state(x, NodalVectors::Zero(x.rows(), 3)); }
+  void set_state(const NodalVectors& x, const NodalVectors& v) override { motion_.set_state(x, v); }
   ForceNorms advance(long steps) override { return motion_.advance(steps, dt_, damping_); }
   NodalVectors positions() const override { return motion_.positions(); }
   NodalVectors velocities() const override { return motion_.velocities(); }
@@ -169,7 +163,7 @@ class MotionInLargeSteps : public Motion {
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.set_conditions(conditions); }
   void move_supports() override { motion_.move_supports(); }
-  void place(const NodalVectors& x) override { motion_.set_state(x, NodalVectors::Zero(x.rows(), 3)); }
+  void set_state(const NodalVectors& x, const NodalVectors& v) override { motion_.set_state(x, v); }
   ForceNorms advance(long steps) override { return motion_.advance(steps); }
   NodalVectors positions() const override { return motion_.positions(); }
   NodalVectors velocities() const override { return motion_.velocities(); }
@@ -179,6 +173,8 @@ class MotionInLargeSteps : public Motion {
  private:
   ImplicitMotion motion_;
 };
+
+}  // namespace
 
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double dt,
                                     const DynamicsOptions& options) {
@@ -196,8 +192,6 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
     return std::make_unique<MotionOfList<float>>(model, inverse_mass, of_list);
   return std::make_unique<MotionOfList<double>>(model, inverse_mass, of_list);
 }
-
-}  // namespace
 
 const char* name_of(Integrator integrator) {
   switch (integrator) {
@@ -232,7 +226,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   bool ramping = options.ramp > 0;
   BoundaryConditions bc = load_path(ramping ? 0.0 : 1.0);
   motion->set_conditions(bc);
-  if (options.start.size() > 0) motion->place(options.start);
+  if (options.start.size() > 0) motion->set_state(options.start, NodalVectors::Zero(X.rows(), 3));
   motion->move_supports();
   // The explicit method takes loads and supports of the beginning of a step, implicit ones those of its end.
   const long ahead = options.integrator == Integrator::explicit_euler ? 0 : 1;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/lattice_motion.h"
@@ -43,6 +45,31 @@ struct DynamicsResult {
   long steps = 0;             ///< made
   double kinetic_energy = 0;  ///< [J]
 };
+
+/// A model in motion, step by step.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  /// Sets supports and loads of the following steps; fixed unknowns are moved at the end of the first of them.
+  virtual void set_conditions(const BoundaryConditions& conditions) = 0;
+  virtual void move_supports() = 0;                                          ///< immediately
+  virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;  ///< [m], [m/s]
+  virtual ForceNorms advance(long steps) = 0;   ///< returns the norms at the beginning of the last step
+  virtual NodalVectors positions() const = 0;   ///< [m]
+  virtual NodalVectors velocities() const = 0;  ///< [m/s]
+  virtual std::string description() const = 0;
+  virtual std::string failure() const { return ""; }  ///< why the last advance() has no result
+};
+
+/// The time step [s] of a motion: options.time_step, or the default.
+/// @throws InputError as run_dynamics().
+double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options);
+
+/// At rest at X, in the fastest way that there is for the model: kernels (LatticeMotion, ListMotion), else plain loops.
+/// Keeps a reference to the model.  Of the options: integrator, damping, precision, threads, lagged.
+/// `time_step` [s]: of checked_time_step().
+std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double time_step,
+                                    const DynamicsOptions& options);
 
 /// Smallest damping [1/s] with which lagged dispersion is stable: step * omega*^2, omega* a bound on what dispersion
 /// adds (dispersion_frequency_squared()).  For a mode of frequencies omega_s (springs) and omega* the step has the

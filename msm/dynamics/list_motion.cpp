@@ -53,9 +53,14 @@ void ListMotion<Real>::place_prescribed() {
 }
 
 template <class Real>
-void ListMotion<Real>::place(const NodalVectors& x) {
+void ListMotion<Real>::set_state(const NodalVectors& x, const NodalVectors& v) {
   for (std::size_t p = 0; p < x_.size(); ++p)
-    for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(x(forces_.blocks().order[p], d));
+    for (int d = 0; d < 3; ++d) {
+      const int n = forces_.blocks().order[p];
+      x_[p].v[d] = static_cast<Real>(x(n, d));
+      s_[p].v[d] = static_cast<Real>(v(n, d) * decay_ / external_[p].v[gain]);  // as velocities() reads it
+    }
+  for (const Held& h : held_) s_[h.place].v[h.component] = 0;
 }
 
 /// Moves the nodes begin <= n < end, whose forces are complete.  The total force on fixed unknowns is set to 0 first,

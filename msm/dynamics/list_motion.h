@@ -26,8 +26,8 @@ class ListMotion {
 
   /// Sets the loads of the following steps; prescribed unknowns are moved at the end of the next step.
   void load(const BoundaryConditions& conditions);
-  void place_prescribed();            ///< moves them at once
-  void place(const NodalVectors& x);  ///< moves all nodes [m]
+  void place_prescribed();                                       ///< moves them at once
+  void set_state(const NodalVectors& x, const NodalVectors& v);  ///< [m], [m/s]
   /// @return the norms at the beginning of the last step.
   ForceNorms advance(long steps);
   NodalVectors positions() const;   ///< [m]

@@ -1,0 +1,184 @@
+// Python: motion in time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "msm/dynamics/dynamics.h"
+#include "msm/python/bindings.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof::python {
+namespace {
+
+using namespace py::literals;
+
+constexpr long nodes_between_looks = 2000000;  // nodes times steps until the next look for Ctrl-C, some 50 ms
+
+/// A model in motion, with copies of its state for Python that are renewed when they are asked for.
+class MovingModel {
+ public:
+  MovingModel(ModelPointer model, std::vector<Load> loads, NodeConditions nodes, const DynamicsOptions& options)
+      : model_(std::move(model)), loads_(std::move(loads)), nodes_(std::move(nodes)) {
+    const double density = model_->springs.density;
+    dt_ = checked_time_step(model_->model(), density, options);
+    motion_ = make_motion(model_->model(), density, dt_, options);
+    apply();
+    motion_->move_supports();
+  }
+
+  void step(long n) {
+    const long chunk = std::max(1L, nodes_between_looks / std::max(1, model_->network().nodes()));
+    while (n > 0) {
+      const long now = std::min(n, chunk);
+      const ForceNorms norms = motion_->advance(now);
+      n -= now;
+      steps_ += now;
+      fresh_x_ = fresh_v_ = fresh_f_ = false;
+      if (const std::string why = motion_->failure(); !why.empty()) throw SolveError(why);
+      if (!std::isfinite(norms.unbalanced) || !std::isfinite(norms.support))
+        throw SolveError(fmt::format("the motion diverged at t = {:.4g} s", time()));
+      if (n > 0) check_interruption();
+    }
+  }
+
+  void set_state(const NodalVectors& x, const NodalVectors& v) {
+    motion_->set_state(x, v);
+    fresh_x_ = fresh_v_ = fresh_f_ = false;
+  }
+  void set_forces(NodalVectors forces) {
+    nodes_.forces = std::move(forces);
+    apply();
+  }
+
+  const NodalVectors& positions() const {
+    return renew(x_, fresh_x_, [&] { return motion_->positions(); });
+  }
+  const NodalVectors& velocities() const {
+    return renew(v_, fresh_v_, [&] { return motion_->velocities(); });
+  }
+  const NodalVectors& forces() const {
+    return renew(f_, fresh_f_, [&] { return springproof::forces(model_->model(), positions()); });
+  }
+  double kinetic_energy() const {
+    return 0.5 * (velocities().rowwise().squaredNorm().array() * model_->mass.array()).sum();
+  }
+  double elastic_energy() const { return energy(model_->model(), positions()); }
+  double time() const { return static_cast<double>(steps_) * dt_; }
+  double time_step() const { return dt_; }
+  long steps() const { return steps_; }
+  std::string description() const { return motion_->description(); }
+  const BodyModel& model() const { return *model_; }
+
+  /// CPU time of n steps that C++ makes one after the other, per step [s]: what a call from Python is compared with.
+  double seconds_per_step(long n) {
+    const double start = cpu_seconds();
+    for (long i = 0; i < n; ++i) motion_->advance(1);
+    const double seconds = cpu_seconds() - start;
+    steps_ += n;
+    fresh_x_ = fresh_v_ = fresh_f_ = false;
+    return seconds / static_cast<double>(n);
+  }
+
+ private:
+  void apply() {
+    const Kinematics kinematics = model_->model().small_displacements_only ? Kinematics::linear : Kinematics::finite;
+    motion_->set_conditions(conditions_of(*model_, loads_, nodes_, kinematics, 1));
+  }
+
+  /// Into the same memory, which views of Python refer to.
+  template <class Make>
+  static const NodalVectors& renew(NodalVectors& kept, bool& fresh, const Make& make) {
+    if (fresh) return kept;
+    if (kept.size() == 0)
+      kept = make();
+    else
+      std::copy_n(make().data(), kept.size(), kept.data());
+    fresh = true;
+    return kept;
+  }
+
+  ModelPointer model_;
+  std::vector<Load> loads_;
+  NodeConditions nodes_;
+  double dt_ = 0;
+  std::unique_ptr<Motion> motion_;
+  long steps_ = 0;
+  mutable NodalVectors x_, v_, f_;
+  mutable bool fresh_x_ = false, fresh_v_ = false, fresh_f_ = false;
+};
+
+Integrator integrator_of(const std::string& name) {
+  if (name == "explicit") return Integrator::explicit_euler;
+  if (name == "energy_momentum") return Integrator::energy_momentum;
+  if (name == "implicit_euler") return Integrator::implicit_euler;
+  if (name == "bdf2") return Integrator::bdf2;
+  throw InputError(fmt::format("integrator: is '{}' (allowed: explicit, energy_momentum, implicit_euler, bdf2)", name));
+}
+
+std::shared_ptr<MovingModel> motion_of(const ModelPointer& model, const std::vector<BoundLoad>& loads,
+                                       const py::object& held, const py::object& displacement, const py::object& forces,
+                                       std::optional<double> time_step, double damping, const std::string& integrator,
+                                       bool float32, int threads) {
+  if (threads < 1 || threads > 1024) throw InputError(fmt::format("threads: is {} (allowed: 1 to 1024)", threads));
+  DynamicsOptions options;
+  options.integrator = integrator_of(integrator);
+  options.time_step = time_step;
+  options.damping = damping;
+  options.precision = float32 ? Precision::float32 : Precision::float64;
+  options.threads = threads;
+  NodeConditions nodes = node_conditions(*model, held, displacement, forces);
+  return long_call([&] { return std::make_shared<MovingModel>(model, loads_of(loads), std::move(nodes), options); });
+}
+
+}  // namespace
+
+void bind_motion(py::module_& m, py::class_<BodyModel, std::shared_ptr<BodyModel>>& model) {
+  py::class_<MovingModel, std::shared_ptr<MovingModel>>(m, "Motion", R"(A model in motion; made by Model.motion().
+
+The arrays are views of one piece of memory each, which is renewed when the attribute is read: read it again after a step, and
+copy what is to be kept.)")
+      .def("step", &MovingModel::step, "n"_a = 1, py::call_guard<py::gil_scoped_release>(),
+           "n time steps.  Raises SolveError if the motion diverges.")
+      .def(
+          "set_state",
+          [](MovingModel& s, const Numbers& positions, const Numbers& velocities) {
+            const int n = s.model().network().nodes();
+            s.set_state(rows_of(positions, "positions", n), rows_of(velocities, "velocities", n));
+          },
+          "positions"_a, "velocities"_a, "Puts all nodes there, n x 3 [m] and [m/s].")
+      .def(
+          "set_forces",
+          [](MovingModel& s, const Numbers& forces) {
+            s.set_forces(rows_of(forces, "forces", s.model().network().nodes()));
+          },
+          "forces"_a, "Forces on the nodes, n x 3 [N], from now on, beside the loads; instead of those given before.")
+      .def_property_readonly(
+          "positions", [](const py::object& self) { return view(self.cast<MovingModel&>().positions(), self); },
+          "n x 3 [m]; a view, renewed when read")
+      .def_property_readonly(
+          "velocities", [](const py::object& self) { return view(self.cast<MovingModel&>().velocities(), self); },
+          "n x 3 [m/s]; a view, renewed when read")
+      .def_property_readonly(
+          "forces", [](const py::object& self) { return view(self.cast<MovingModel&>().forces(), self); },
+          "internal forces, n x 3 [N]; a view, renewed when read")
+      .def_property_readonly("kinetic_energy", &MovingModel::kinetic_energy, "[J]")
+      .def_property_readonly("elastic_energy", &MovingModel::elastic_energy,
+                             "[J] of a model whose forces have a potential")
+      .def_property_readonly("time", &MovingModel::time, "since the start [s]")
+      .def_property_readonly("time_step", &MovingModel::time_step, "[s]")
+      .def_property_readonly("steps", &MovingModel::steps, "since the start")
+      .def_property_readonly("description", &MovingModel::description, "which loop runs")
+      .def("_seconds_per_step", &MovingModel::seconds_per_step, "n"_a,
+           "CPU time of a step, of n made by a loop of C++ [s].");
+  model.def("motion", &motion_of, "loads"_a = std::vector<BoundLoad>(), py::kw_only(), "held"_a = py::none(),
+            "displacement"_a = py::none(), "forces"_a = py::none(), "time_step"_a = py::none(), "damping"_a = 0.0,
+            "integrator"_a = "explicit", "float32"_a = false, "threads"_a = 1,
+            R"(The model in motion from rest, under loads and supports as of solve().
+
+time_step [s]: default 0.95 of safe_time_step (10 of it where the integrator is implicit: "energy_momentum", "implicit_euler",
+"bdf2"); damping: in proportion to the mass [1/s]; float32: kernels in single precision.
+Raises InputError for an explicit step above safe_time_step, which the message names.)");
+}
+
+}  // namespace springproof::python

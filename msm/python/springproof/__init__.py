@@ -1,0 +1,43 @@
+"""Mass-spring models of elastic solids, proved against finite elements.
+
+    import springproof as sp
+    bar = sp.block(size=(0.06, 0.01, 0.01), cells=(24, 4, 4))                       # [m]
+    model = sp.Model("hybmss_avg", bar, sp.Material(E=1e6, nu=0.49, density=1100))  # [Pa], [kg/m^3]
+    state = model.solve([sp.Displacement("x_min"), sp.Force("x_max", (0, 0, -0.005))])
+    print(state.at([(0.06, 0.005, 0.005)]))                                         # [m]
+
+SI units throughout.  docs/python.md has the table of functions.
+"""
+
+from ._compare import compare, find_program
+from ._springproof import (
+    Body,
+    Displacement,
+    Force,
+    Gravity,
+    InputError,
+    Material,
+    Model,
+    Motion,
+    Patch,
+    PointForce,
+    Pressure,
+    Rotation,
+    SolveError,
+    State,
+    Traction,
+    block,
+    homogenise,
+    measure_moduli,
+    models,
+    voxels,
+    write_pvd,
+    write_vtu,
+)
+from ._springs import read_springs
+
+__all__ = [name for name in dir() if not name.startswith("_")]
+
+for _name in __all__:
+    if hasattr(globals()[_name], "__module__"):
+        globals()[_name].__module__ = __name__

@@ -1,0 +1,112 @@
+"""compare(), beside the same model solved here."""
+import subprocess
+
+import numpy as np
+import pytest
+import springproof as sp
+
+if not sp.find_program():
+    pytest.skip("no program springproof", allow_module_level=True)
+pytestmark = pytest.mark.filterwarnings("error")
+
+CASE = {
+    "name": "bar",
+    "body": {"geo": "block.geo", "size_m": [0.2, 0.1, 0.1], "cells": [4, 2, 2]},
+    "material": {"youngs_modulus_Pa": 1e4, "poisson_ratio": [0.25, 0.4], "density_kg_m3": 1100},
+    "load": [{"on": "x_min", "displacement_m": np.zeros(3)}, {"on": "x_max", "force_N": (0, 0, -0.1)}],
+    "probe": [{"name": "tip", "at_m": [0.2, 0.05, 0.05]}],
+    "compare": {"models": ["hybmss_avg", {"model": "hybmss", "face_to_cube": 1, "label": "A1"}], "measures": ["probe", "reaction", "volume_change"]},
+    "reference": {"elements": []},
+    "expect": [{"model": "A1", "measure": "force.x_min.z", "source": "analytic", "value": 0.1, "within_relative": 1e-6, "where": "balance"}],
+}
+COLUMNS = "case kinematics model poisson_ratio cells measure value unit reference reference_uncertainty error samples spread published published_where".split()
+
+
+def test_rows_are_those_of_the_same_models():
+    rows = sp.compare(CASE)
+    assert list(rows[0]) == COLUMNS
+    for nu in (0.25, 0.4):
+        for label, name, options in (("hybmss_avg", "hybmss_avg", {}), ("A1", "hybmss", {"face_to_cube": 1})):
+            model = sp.Model(name, sp.block((0.2, 0.1, 0.1), (4, 2, 2)), sp.Material(1e4, nu, density=1100), **options)
+            state = model.solve([sp.Displacement("x_min"), sp.Force("x_max", (0, 0, -0.1))])
+            own = {row["measure"]: row for row in rows if row["model"] == label and row["poisson_ratio"] == nu}
+            assert own["displacement.tip.z"]["value"] == pytest.approx(state.at([(0.2, 0.05, 0.05)])[0, 2], rel=1e-9)
+            assert own["force.x_min.z"]["value"] == pytest.approx(0.1, rel=1e-9)
+            assert own["volume_change"]["value"] == pytest.approx(state.volume_change, rel=1e-6)
+            assert own["volume_change"]["reference"] is None and own["volume_change"]["samples"] == 1
+            assert own["displacement.tip.z"]["unit"] == "m" and own["displacement.tip.z"]["case"] == "bar"
+    array = np.array([(row["model"], row["value"]) for row in rows if row["measure"] == "volume_change"], dtype=[("model", "U20"), ("value", float)])
+    assert array.size == 4 and np.isfinite(array["value"]).all()
+
+
+def test_one_ratio_and_a_folder_that_is_kept(tmp_path):
+    rows = sp.compare(CASE, poisson_ratio=0.4, out=tmp_path / "kept", jobs=1)
+    assert {row["poisson_ratio"] for row in rows} == {0.4}
+    assert (tmp_path / "kept" / "report.html").is_file() and (tmp_path / "kept" / "results.json").is_file()
+    again = sp.compare(CASE, poisson_ratio=[0.4], out=tmp_path / "kept", resume=True)
+    assert again == rows
+
+
+def test_errors_have_the_programs_text(tmp_path):
+    wrong = {**CASE, "material": {**CASE["material"], "poison_ratio": 0.3}}
+    with pytest.raises(sp.InputError, match="bar.toml:.*material.poison_ratio: .*did you mean 'poisson_ratio'") as refused:
+        sp.compare(wrong)
+    file = tmp_path / "bar.toml"
+    file.write_text("[body]\ngeo = 3\n")
+    said = subprocess.run([sp.find_program(), "compare", file, "--out", tmp_path / "out"], capture_output=True, text=True)
+    assert said.returncode == 2
+    with pytest.raises(sp.InputError) as refused:
+        sp.compare(file)
+    assert str(refused.value) == said.stderr.strip()
+    with pytest.raises(sp.InputError, match="body.odd: is"):
+        sp.compare({"body": {"odd": object()}})
+
+
+def test_an_expectation_that_does_not_hold_is_a_warning():
+    expect = {"model": "hybmss_avg", "measure": "force.x_min.z", "source": "analytic", "value": 0.2, "within_relative": 1e-6, "where": "nowhere"}
+    with pytest.warns(UserWarning, match="bar"):
+        rows = sp.compare({**CASE, "expect": [expect]}, poisson_ratio=0.25)
+    assert rows
+
+
+def test_springs_of_a_file_are_a_model_of_a_case(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    body, material = sp.block((0.2, 0.1, 0.1), (4, 2, 2)), sp.Material(1e4, 0.4, density=1100)
+    sp.Model("hybmss", body, material).write("mine.json")
+    case = {**CASE, "compare": {**CASE["compare"], "models": ["hybmss", {"file": "mine.json", "label": "mine"}]}}
+    case["expect"] = [{**CASE["expect"][0], "model": "mine"}]
+    rows = sp.compare(case, poisson_ratio=0.4)
+    value = {row["model"]: row["value"] for row in rows if row["measure"] == "displacement.tip.z"}
+    assert value["mine"] == pytest.approx(value["hybmss"], rel=1e-9)
+
+
+def test_a_body_by_voxels_is_that_of_compare(tmp_path):
+    """A tetrahedron in an STL file: whole cubes and cut cells, by compare() and here."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, 1)]) * 0.1
+    text = "solid t\n"
+    for facet in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)):
+        text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex {} {} {}\n".format(*corners[i]) for i in facet) + "endloop\nendfacet\n"
+    (tmp_path / "t.stl").write_text(text + "endsolid t\n")
+    foot = dict(beyond=((0, 0, 0.005), (0, 0, -1)))
+    body = sp.voxels(tmp_path / "t.stl", cubes=200, patches=[sp.Patch("foot", **foot), sp.Patch("top", near=((0.02, 0.02, 0.1), 0.03))])
+    assert body.notes and {"foot", "top", "surface"} <= set(body.patches) and abs(len(body.cells) - 200) < 40
+    rows = sp.compare({
+        "name": "t",
+        "expect": [{"model": "cubes", "measure": "force.top.x", "source": "analytic", "value": 0, "within": 1, "where": "it is finite"}],
+        "body": {"geo": str(tmp_path / "t.stl"), "voxels": 200},
+        "patch": [{"name": "foot", "beyond": {"point_m": [0, 0, 0.005], "normal": [0, 0, -1]}}, {"name": "top", "near": {"point_m": [0.02, 0.02, 0.1], "radius_m": 0.03}}],
+        "material": {"youngs_modulus_Pa": 1e4, "poisson_ratio": 0.4},
+        "load": [{"on": "foot", "displacement_m": [0, 0, 0]}, {"on": "top", "displacement_m": [0.001, 0, 0]}],
+        "probe": [{"name": "middle", "at_m": [0.03, 0.03, 0.03]}],
+        "compare": {"models": ["hybmss_avg", {"model": "hybmss_avg", "cut": False, "label": "cubes"}], "measures": ["probe", "reaction"]},
+        "reference": {"elements": []}})
+    loads = [sp.Displacement("foot"), sp.Displacement("top", (0.001, 0, 0))]
+    for label, options in (("hybmss_avg", dict(cut=True, held=["foot", "top"])), ("cubes", {})):
+        state = sp.Model("hybmss_avg", body, sp.Material(1e4, 0.4), **options).solve(loads)
+        value = {row["measure"]: row["value"] for row in rows if row["model"] == label}
+        assert value["displacement.middle.x"] == pytest.approx(state.at([(0.03, 0.03, 0.03)])[0, 0], rel=1e-6), label
+        assert value["force.top.x"] == pytest.approx(state.reactions["top"][0, 0], rel=1e-6), label
+    with pytest.raises(sp.InputError, match="no file 'rabit.geo' .*rabbit.geo"):
+        sp.voxels("rabit.geo", size=(1, 1, 1))
+    with pytest.raises(sp.InputError, match="foot"):
+        sp.Model("hybmss_avg", body, sp.Material(1e4, 0.4), cut=True, held=["feet"])

@@ -1,0 +1,95 @@
+"""examples/*.py: each runs, and the springs file's body hangs as compare says."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+import springproof as sp
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+EXAMPLES = SOURCE / "examples"
+
+
+def run(*command, cwd):
+    path = str(pathlib.Path(sp.__file__).absolute().parents[1])
+    made = subprocess.run([str(c) for c in command], cwd=cwd, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"})
+    assert made.returncode == 0, made.stderr
+    return made.stdout
+
+
+def test_plot(tmp_path):
+    pytest.importorskip("matplotlib")
+    out = run(sys.executable, EXAMPLES / "plot_bending.py", "bending.png", cwd=tmp_path)
+    assert (tmp_path / "bending.png").stat().st_size > 10000
+    off = {model: [abs(float(word)) for word in values.split()] for model, values in re.findall(r"(\w+) +off by (.*) %", out)}
+    assert off["hybmss_avg"][1] < 0.5, out  # [%], at nu = 0, where a clamped end hinders no contraction
+    assert all(best < other for name in ("hybmss", "emsm") for best, other in zip(off["hybmss_avg"], off[name])), out
+
+
+def test_vtu(tmp_path):
+    out = run(sys.executable, EXAMPLES / "twist_vtu.py", cwd=tmp_path)
+    assert len(list((tmp_path / "twist").glob("*.vtu"))) == 20 and (tmp_path / "twist" / "motion.pvd").is_file()
+    # A square bar of side a twisted by an angle t over its length L: torque 0.1406 G t a^4 / L, to 15 % at a quarter turn.
+    torque = float(re.search(r"torque (\S+) mN m", out).group(1)) / 1e3
+    assert torque == pytest.approx(0.1406 * 1e5 / 2.9 * 1.5708 * 0.02**4 / 0.08, rel=0.15), out
+
+
+CASE = """
+[body]
+geo = "icosahedron.stl"
+scale = 0.05
+voxels = 300
+cut = false
+[[patch]]
+name = "top"
+beyond = {{ point_m = [0, 0, 0.03], normal = [0.2, 0, 1] }}
+[material]
+youngs_modulus_Pa = 2e4
+poisson_ratio = 0.4
+density_kg_m3 = 1100
+[[load]]
+on = "top"
+displacement_m = [0, 0, 0]
+[[load]]
+gravity_m_s2 = [0, 0, -9.81]
+[[probe]]
+name = "lowest"
+at_m = {at}
+[compare]
+models = ["hybmss_avg"]
+measures = ["probe", "reaction"]
+[reference]
+elements = []
+[[expect]]
+model = "hybmss_avg"
+measure = "force.top.x"
+source = "analytic"
+value = 0
+within = 1e-6
+where = "balance"
+"""
+
+
+def test_springs_alone(tmp_path):
+    example = EXAMPLES / "drop_springs.py"
+    text = example.read_text()
+    assert "import springproof" not in text and len(text.splitlines()) <= 60
+    program = sp.find_program()
+    if not program:
+        pytest.skip("no program springproof")
+    (tmp_path / "icosahedron.stl").write_bytes((SOURCE / "comparisons/experiments/calibration/icosahedron.stl").read_bytes())
+    case = tmp_path / "hung.toml"
+    case.write_text(CASE.format(at=[0, 0, 0]))
+    run(program, "export", case, "--to", "springs", "--out", "body.npz", cwd=tmp_path)
+    sp.read_springs(tmp_path / "body.npz").write(tmp_path / "body.json")
+    alone = "import sys; sys.modules['springproof'] = None; sys.argv = ['', '{}', 'top']; exec(open(r'{}').read())"
+    out, again = (run(sys.executable, "-c", alone.format(file, example), cwd=tmp_path) for file in ("body.npz", "body.json"))
+    assert out == again
+    sag, node = re.search(r"sags by (\S+) m at node (\d+)", out).groups()
+    case.write_text(CASE.format(at=sp.read_springs(tmp_path / "body.npz").positions[int(node)].tolist()))
+    value = next(row["value"] for row in sp.compare(case) if row["measure"] == "displacement.lowest.z")
+    assert float(sag) == pytest.approx(-value, rel=1e-6) and float(sag) > 1e-4
+    rebound = re.search(r"rebounds after (\S+) s, squeezed to (\S+) of", out)
+    assert float(rebound.group(1)) < 1 and 0.3 < float(rebound.group(2)) < 0.999, out

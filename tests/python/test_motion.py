@@ -1,0 +1,134 @@
+"""Motion in time, long calls, Ctrl-C."""
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+import springproof as sp
+
+RUBBER = sp.Material(E=1e5, nu=0.4, density=1100)
+KERNELS = {"hybmss": "lattice", "hybmss_avg": "lattice", "emsm": "lattice", "msm_random": "list", "emsm_random": "list", "emsm_patch": "list"}
+
+
+def model_of(name):
+    return sp.Model(name, sp.block((0.2, 0.1, 0.1), (8, 4, 4)), RUBBER)
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_steps_are_those_of_semi_implicit_euler(name):
+    model = model_of(name)
+    loads = [sp.Force("x_max", (0, 0, -0.2)), sp.Gravity((0, -9.81, 0))]
+    motion = model.motion([sp.Displacement("x_min"), *loads], damping=3)
+    pushed = model.motion(loads)
+    pushed.step()
+    load = pushed.velocities * model.masses[:, None] / pushed.time_step  # from rest: f = m v / dt
+    np.testing.assert_allclose(load.sum(axis=0), (0, -9.81 * model.masses.sum(), -0.2), rtol=1e-9, atol=1e-9)
+    x, v, dt = model.positions.copy(), np.zeros(model.positions.shape), motion.time_step
+    free = np.ones((len(x), 1))
+    free[model.patches["x_min"]] = 0
+    for _ in range(25):
+        v = free * (v + dt * (model.forces(x) + load) / model.masses[:, None]) / (1 + 3 * dt)
+        x = x + dt * v
+    motion.step(25)
+    scale = abs(x - model.positions).max()
+    np.testing.assert_allclose(motion.positions, x, atol=1e-9 * scale)
+    np.testing.assert_allclose(motion.velocities, v, atol=1e-9 * abs(v).max())
+    np.testing.assert_allclose(motion.forces, model.forces(x), atol=1e-9 * abs(motion.forces).max())
+    assert motion.kinetic_energy == pytest.approx(0.5 * (model.masses[:, None] * v**2).sum())
+    assert motion.elastic_energy == pytest.approx(model.energy(x))
+    assert (motion.steps, motion.time) == (25, pytest.approx(25 * dt)) and KERNELS[name] in motion.description
+
+
+@pytest.mark.parametrize("name", [*KERNELS, "hybmss_fd"])
+def test_a_state_that_is_set_goes_on_as_the_first(name):
+    model = model_of(name)
+    first, second, single = (model.motion([sp.Displacement("x_min"), sp.Gravity((0, 0, -9.81))], damping=2) for _ in range(3))
+    first.step(30)
+    second.set_state(first.positions, first.velocities)
+    first.step(20)
+    second.step(20)
+    for _ in range(50):
+        single.step()
+    scale = abs(first.positions - model.positions).max()
+    np.testing.assert_allclose(second.positions, first.positions, atol=1e-9 * scale)
+    np.testing.assert_allclose(single.positions, first.positions, atol=1e-12 * scale)
+
+
+def test_energy_is_kept_and_a_free_body_falls():
+    model = model_of("hybmss_avg")
+    motion = model.motion(held=model.patches["x_min"])
+    push = np.zeros(model.positions.shape)
+    push[:, 2] = model.positions[:, 0]
+    motion.set_state(model.positions, push)
+    motion.step()
+    energies = []
+    for _ in range(50):
+        motion.step(10)
+        energies.append(motion.kinetic_energy + motion.elastic_energy)
+    assert np.ptp(energies) < 0.03 * np.mean(energies)  # of a symplectic method
+    falling = model.motion([sp.Gravity((0, 0, -9.81))])
+    falling.step(40)
+    dt = falling.time_step
+    np.testing.assert_allclose(falling.positions - model.positions, np.full((len(push), 1), -9.81 * dt**2 * 40 * 41 / 2) * (0, 0, 1), atol=1e-12)
+    falling.set_forces(model.masses[:, None] * (0, 0, 9.81))  # beside the load
+    v = falling.velocities.copy()
+    falling.step(10)
+    np.testing.assert_allclose(falling.velocities, v, atol=1e-10)
+
+
+def test_implicit_steps_and_single_precision():
+    model = model_of("hybmss_avg")
+    loads = [sp.Displacement("x_min"), sp.Gravity((0, 0, -9.81))]
+    fine = model.motion(loads)
+    large = model.motion(loads, integrator="energy_momentum", time_step=10 * fine.time_step)
+    single = model.motion(loads, float32=True)
+    fine.step(200), single.step(200), large.step(int(200 / 10))
+    scale = abs(fine.positions - model.positions).max()
+    assert abs(single.positions - fine.positions).max() < 1e-3 * scale
+    assert abs(large.positions - fine.positions).max() < 0.05 * scale
+    with pytest.raises(sp.InputError, match="integrator: is 'rk4'"):
+        model.motion(loads, integrator="rk4")
+
+
+def test_steps_that_are_not_safe_are_refused_and_divergence_is_found():
+    model = model_of("hybmss")
+    with pytest.raises(sp.InputError, match="time_step_s: .* s is not safe for this model") as refused:
+        model.motion(time_step=2 * model.safe_time_step)
+    assert f"{model.safe_time_step:.6g}" in str(refused.value)
+    with pytest.raises(sp.InputError, match="damping_1_s: must be >= 0"):
+        model.motion(damping=-1)
+    motion = model.motion()
+    motion.set_state(np.full(model.positions.shape, np.nan), np.zeros(model.positions.shape))
+    with pytest.raises(sp.SolveError, match="the motion diverged at t = "):
+        motion.step(5)
+
+
+def test_long_calls_leave_the_interpreter_free_and_hear_ctrl_c():
+    motion = model_of("hybmss_avg").motion()
+    counted, ended = [0], threading.Event()
+
+    def count():
+        while not ended.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    try:
+        motion.step(3)
+        before = counted[0]
+        signal.setitimer(signal.ITIMER_REAL, 0.5)
+        old = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        start = time.monotonic()
+        with pytest.raises(KeyboardInterrupt):
+            motion.step(10**9)
+        assert time.monotonic() - start < 5
+        assert counted[0] - before > 20
+        signal.signal(signal.SIGALRM, old)
+    finally:
+        ended.set()
+        counter.join()
+    steps = motion.steps
+    motion.step()  # as usable as before
+    assert motion.steps == steps + 1 > 4
