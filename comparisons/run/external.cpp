@@ -44,7 +44,7 @@ struct External {
   const Mesh& mesh() const { return *prepared.lattices[lattice].mesh; }
 
   [[noreturn]] void fail(const std::string& message, int line = 0) const {
-    throw InputError({choice.file.string(), line, 0}, message);
+    throw InputError({choice.file.string(), line, line > 0 ? 1 : 0}, message);
   }
 };
 
@@ -125,7 +125,7 @@ WantedPoints wanted_points(const External& e) {
 /// A node where nothing is known: no point within the spacing of the points.
 void check_covered(const External& e) {
   const double volume_spacing = std::cbrt(volume(e.mesh(), e.mesh().nodes) / double(e.points.X.rows()));
-  const double allowed = std::max(e.field.spacing(), volume_spacing);
+  const double allowed = 1.1 * std::max(e.field.spacing(), volume_spacing);
   const auto covered = [&](const Vec3& p) { return e.field.distance(p) <= allowed; };
   const auto refuse_gap = [&](const std::string& what) {
     e.fail(

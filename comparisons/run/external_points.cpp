@@ -89,8 +89,9 @@ class CsvReader {
       points.lines.push_back(number);
     }
     if (points.lines.empty())
-      throw InputError({file_, number, 0}, fmt::format("there is no point (needed: {}, and a line for each point)",
-                                                       columns ? "lines below the header" : header_words));
+      throw InputError({file_, number, number > 0 ? 1 : 0},
+                       fmt::format("there is no point (needed: {}, and a line for each point)",
+                                   columns ? "lines below the header" : header_words));
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> all(
         numbers.data(), static_cast<Eigen::Index>(points.lines.size()), 6);
     points.X = all.leftCols(3);
