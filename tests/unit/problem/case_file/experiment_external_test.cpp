@@ -47,9 +47,9 @@ TEST(ExternalTable, IsRefusedWithItsPlace) {
   EXPECT_EQ(message_of(whole), "accepted");
   refused(whole + "poisson_ratio = 0.4\n", ":17:17: external.poisson_ratio: 0.4 is not in the case (allowed: 0.3)");
   refused(whole + "scale = 0\n", "external.scale: is 0");
-  refused(whole + "up_axis = \"w\"\n", "external.up_axis: is 'w'");
+  refused(whole + "up_axis = \"w\"\n", "external.up_axis: 'w' is not known");
   refused(whole + "reaction_N = [1, 2, 3]\n", "external.reaction_N: is no table of patches");
-  refused(whole + "unit = \"mm\"\n", "external.unit: is an unknown key");
+  refused(whole + "unit = \"mm\"\n", "external.unit: unknown key");
   refused(whole + external, "the label 'jolt' is taken");
   refused(std::string(small_case) + "\n[[external]]\nname = \"jolt\"\n", "external.file: is missing");
   std::string several = whole;
