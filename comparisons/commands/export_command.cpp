@@ -9,12 +9,14 @@
 
 #include "comparisons/calculix/cross_check.h"
 #include "comparisons/calculix/deck.h"
+#include "comparisons/commands/export_engines.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/springs_of_case.h"
 #include "comparisons/run/status.h"
 #include "meshes/mesher/mesher.h"
 #include "msm/exchange/lammps.h"
+#include "problem/case_file/external.h"
 #include "problem/system/files.h"
 #include "problem/system/nearest_name.h"
 
@@ -112,6 +114,7 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
                     "--voxels)",
                     request.what));
   e.materials = {material_of(e, request.moduli.poisson_ratio)};
+  std::erase_if(e.models, is_external);
   e.models = {chosen_model(e, request.model)};
   if (!e.body.cells.empty()) e.body.cells.resize(1);
   if (e.body.voxel_edges.size() > 1) e.body.voxel_edges.resize(1);
@@ -200,6 +203,12 @@ int export_lammps(const ExportRequest& request) {
   return 0;
 }
 
+int export_engine(const ExportRequest& request) {
+  const SpringsFile springs = springs_of(for_engine(request));
+  return export_to_engine(request, springs,
+                          is_body(request.what) ? std::vector<std::string>{} : held_patches(read_case(request.what)));
+}
+
 /// A form of export: a row.
 struct ExportForm {
   const char* name;
@@ -209,7 +218,10 @@ struct ExportForm {
 constexpr ExportForm forms[] = {
     {"calculix", "a deck for CalculiX and Abaqus", export_calculix},
     {"springs", "all that the springs of a body are, as .json, .npz or .vtu by the name's ending", export_springs},
-    {"lammps", "a data file and an input for LAMMPS", export_lammps}};
+    {"lammps", "a data file and an input for LAMMPS", export_lammps},
+    {"jolt", "springs of nu = 1/4 for Jolt Physics, as .json", export_engine},
+    {"bullet", "tetrahedra for Bullet's deformable bodies, as .json", export_engine},
+    {"mujoco", "tetrahedra for MuJoCo, as .xml", export_engine}};
 
 }  // namespace
 
@@ -223,7 +235,7 @@ void ExportCommand::add_options(CLI::App& command) {
   command.add_option("CASE", r.what, "case file (*.toml), built-in name (springproof list), or a body (*.stl, ...)")
       ->required();
   command.add_option("--to", r.to, fmt::format("{}", fmt::join(words, "; ")))->required()->check(CLI::IsMember(names));
-  command.add_option("--out", r.out, "file to write (default: NAME.inp, NAME.json, NAME.data here)");
+  command.add_option("--out", r.out, "file to write (default: NAME.inp, NAME.json, NAME.data, NAME.xml here)");
   command.add_option("--poisson-ratio,--nu", r.moduli.poisson_ratio, "of a case: one of its own (default: its first)");
   command
       .add_option("--cells", r.cells,

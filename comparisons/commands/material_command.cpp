@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/engines/engine_facts.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
 #include "msm/measure/stability.h"
@@ -116,7 +117,8 @@ constexpr double wave_cells = 10;  // per wavelength
 struct MaterialFacts {
   const IsotropicMaterial& m;
   const ModelParameters& p;
-  double l;  ///< edge of the cells [m]
+  double l;          ///< edge of the cells [m]
+  double frequency;  ///< that engines damp [Hz]
   MassSpringModel model = build_model(p, sample_mesh(p.row, l), m);
   bool lattice = p.row.topology == Topology::cells;
   std::array<double, 3> k = lattice_constants(model);
@@ -131,6 +133,10 @@ struct MaterialFacts {
   double correction = p.has(Extension::volume_correction) || p.has(Extension::averaging) ? kappa(m) : 0.0;
 
   double corner_mass() const { return m.density * l * l * l / 8; }
+  EngineFacts for_engines() const {
+    const bool springs = lattice && !model.network.springs.empty();
+    return {m, l, springs ? k : std::array<double, 3>{0, 0, 0}, springs ? correction : 0, frequency};
+  }
 };
 
 nlohmann::json moduli_json(double E, double nu, double G) {
@@ -178,6 +184,7 @@ nlohmann::json json_of(const MaterialFacts& f) {
                                          {"neo_hooke_Pa", s.neo_hooke}});
   if (f.has_limits) out["waves"] = waves_json(f);
   if (f.model.network.springs.empty() || !f.lattice) out.erase("springs");
+  out["engines"] = json_of(f.for_engines());
   out.update(json_of(f.dispersion, p, f.m));
   return out;
 }
@@ -282,6 +289,9 @@ void MaterialCommand::add_options(CLI::App& command) {
   command.add_option("--dispersion", dispersion_, "eMSM: symmetric, share_weighted, published or published_transposed");
   command.add_option("--weights", weights_, "eMSM, symmetric: volume or kL (default: by the sign of q)");
   command.add_option("--springs-per-node", springs_per_node_, "random: mean number of springs at a node (default 15)");
+  command.add_option("--frequency", frequency_, "a vibration [Hz] whose damping by implicit Euler is printed")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command.add_flag("--json", json_, "print JSON");
 }
 
@@ -298,7 +308,7 @@ int MaterialCommand::run() const {
   if (weights_) choice.options["weights"] = *weights_;
   if (springs_per_node_) choice.options["springs_per_node"] = *springs_per_node_;
   const ModelParameters p = resolve(choice);
-  const MaterialFacts facts{m, p, cell_size_};
+  const MaterialFacts facts{m, p, cell_size_, frequency_};
   if (json_) {
     fmt::print("{}\n", json_of(facts).dump(2));
     return 0;
@@ -310,6 +320,7 @@ int MaterialCommand::run() const {
   print_stresses(facts);
   if (facts.has_limits) print_waves(facts);
   print_measured(facts);
+  fmt::print("{}", text_of(facts.for_engines()));
   print_warnings(p, m);
   return 0;
 }

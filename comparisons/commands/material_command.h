@@ -22,7 +22,7 @@ class MaterialCommand {
  private:
   Moduli moduli_;
   double density_ = 1000;
-  double cell_size_ = 0.1;
+  double cell_size_ = 0.1, frequency_ = 1;
   ModelChoice choice_{"hybmss", {}, "hybmss", {}};
   std::optional<double> face_to_cube_, springs_per_node_;
   std::optional<std::string> dispersion_, weights_;

@@ -25,6 +25,9 @@ struct SpringsDocument {
 
 SpringsDocument document_of(const SpringsFile& springs);
 
+/// One key per line, an array in one line.
+std::string as_json(const SpringsDocument& document);
+
 /// The name of a law as a key, "volume_correction".
 std::string key_of_law(const LawTraits& traits);
 

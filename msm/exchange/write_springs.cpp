@@ -101,14 +101,15 @@ const SpringsForm& form_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string springs_as_json(const SpringsFile& springs) {
-  const SpringsDocument document = document_of(springs);
+std::string as_json(const SpringsDocument& document) {
   std::map<std::string, const NamedArray*> arrays;
   for (const NamedArray& array : document.arrays) arrays["npy:" + array.name] = &array;
   std::string out;
   append(document.head, arrays, 0, out);
   return out + "\n";
 }
+
+std::string springs_as_json(const SpringsFile& springs) { return as_json(document_of(springs)); }
 
 void require_springs_ending(const std::filesystem::path& file) { form_of(file); }
 

@@ -1,0 +1,15 @@
+// Displacements of another program, compared beside the models: [[external]] of a case file.
+#pragma once
+
+#include "problem/model_choice.h"
+
+namespace springproof {
+
+/// Name of such an entry among Experiment::models.  Its file holds points and displacements (docs/engines.md); options:
+/// "poisson_ratio", whose solid they are of; "scale", which turns the file's lengths into metres; "up_axis", "y" or
+/// "z"; "force.PATCH.x", "..y", "..z": reactions [N].
+inline constexpr const char* external_model = "external displacements";
+
+inline bool is_external(const ModelChoice& choice) { return choice.name == external_model; }
+
+}  // namespace springproof

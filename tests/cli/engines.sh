@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# Bodies for real-time engines: what is written, and what an engine cannot have.   engines.sh PROGRAM
+set -u
+program=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+fail() {
+  echo "FAILED: $1"
+  failures=$((failures + 1))
+}
+cat >bar.toml <<'TOML'
+[body]
+geo = "block.geo"
+size_m = [1, 0.5, 0.5]
+cells = [4, 2, 2]
+[material]
+youngs_modulus_Pa = 1e6
+poisson_ratio = [0.25, 0.4]
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "y_min"
+displacement_m = ["free", 0, "free"]
+[[load]]
+on = "x_max"
+force_N = [0, 0, -1]
+[compare]
+models = ["hybmss", "msm_18"]
+TOML
+for engine in jolt bullet; do
+  "$program" export bar.toml --to $engine --out $engine.json >log 2>&1 || fail "$engine: $(cat log)"
+  grep -q 'pinned: x_min$' log || fail "$engine: what is pinned: $(cat log)"
+  grep -q "\"format\": \"springproof $engine\"" $engine.json || fail "$engine.json: no format"
+done
+grep -q 'edges.*E = 1e+06 Pa, nu = 0.25' <("$program" export bar.toml --to jolt --out jolt.json) || fail "a line about it"
+"$program" export bar.toml --to mujoco --nu 0.4 >log 2>&1 && [ -s bar.xml ] || fail "mujoco: $(cat log)"
+grep -q '<elasticity young="1000000" poisson="0.4" damping="0"/>' bar.xml || fail "bar.xml"
+[ "$(grep -c '<body name="n[0-9]*" pos="0 [^/]*/>' bar.xml)" -eq 9 ] || fail "the pins of bar.xml: $(grep '<body' bar.xml | head -3)"
+
+refused() {
+  local pattern=$1
+  shift
+  rm -f no.json no.xml
+  "$program" export "$@" >log 2>&1
+  local status=$?
+  [ $status -eq 2 ] && grep -qE -- "$pattern" log && [ ! -e no.json ] && [ ! -e no.xml ] || fail "$*: status $status: $(head -c 600 log)"
+}
+refused 'hybmss has more than springs.*lock \(allowed: msm_18, msm_14, hybmss_cf\)' bar.toml --to jolt --model hybmss --out no.json
+refused 'is 0.4, and springs alone.*\(allowed: 0.25;' bar.toml --to jolt --nu 0.4 --out no.json
+refused 'msm_18: Bullet.s links have no modulus' bar.toml --to bullet --model msm_18 --out no.json
+refused 'a name that ends in .xml' bar.toml --to mujoco --out no.json
+refused 'not the corners of whole cubes' bar.toml --to jolt --model msm_centred --out no.json
+
+# The numbers of `material` are those of the file: a spring inside, on the surface, on an edge.
+"$program" material -E 1e6 --nu 0.25 --cell-size 0.25 --model msm_18 --json >material.json || fail "material"
+/usr/bin/env python3 - <<'END' || fail "material and export differ"
+import json
+want = json.load(open("material.json"))["engines"]["compliance_m_N"]
+file = json.load(open("jolt.json"))
+found = {"k_e": set(), "k_f": set()}
+for length, c in zip(file["edges"]["rest_length_m"], file["edges"]["compliance_m_N"]):
+    found["k_e" if length < 0.3 else "k_f"].add(float("%.9g" % c))
+assert {k: {float("%.9g" % c) for c in v.values()} for k, v in want.items()} == found, (want, found)
+assert abs(sum(file["nodes"]["mass_kg"]) - 250) < 1e-9
+END
+"$program" material -E 1e6 --nu 0.4 --frequency 3 >log || fail "material: $(cat log)"
+grep -qE "Bullet's neo-Hooke: mu = 4/3 G = 476190 Pa" log && grep -q 'damps 3 Hz by pi f dt of the critical: 0.157 at 1/60 s, 0.0393' log || fail "material: $(cat log)"
+exit $((failures > 0))
