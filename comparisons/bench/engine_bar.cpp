@@ -9,9 +9,9 @@
 namespace springproof::bench {
 namespace {
 
-const Vec3 size(4, 1, 1), end_centre(4, 0.5, 0.5);
+const Vec3 bar_size(4, 1, 1), end_centre(4, 0.5, 0.5);
 
-constexpr double torque = 300, pressure = 2000;  // [N m], [Pa]: 0.02 rad, strains of 0.002
+constexpr double end_torque = 300, end_pressure = 2000;  // [N m], [Pa]: 0.02 rad, strains of 0.002
 
 }  // namespace
 
@@ -19,7 +19,7 @@ IsotropicMaterial bar_material(double poisson_ratio) { return {1e6, poisson_rati
 
 EngineBar engine_bar(const Cells& cells) {
   if (cells[1] % 2 != 0 || cells[2] % 2 != 0) throw std::invalid_argument("the section needs an even number of cells");
-  EngineBar bar{cells, block_mesh(size, cells), {}, {}, {}};
+  EngineBar bar{cells, block_mesh(bar_size, cells), {}, {}, {}};
   bar.mass = bar_material(0).density * nodal_volumes(bar.mesh);
   for (int n = 0; n < bar.mesh.nodes.rows(); ++n) {
     const Vec3 at = 2 * (bar.mesh.nodes.row(n).transpose() - end_centre);
@@ -35,8 +35,8 @@ std::vector<Load> loads_of(BarLoad load, bool held) {
   if (held) loads.emplace_back(PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}});
   if (load == BarLoad::gravity) loads.emplace_back(Gravity{Vec3(0, 0, -bar_gravity), {}});
   if (load == BarLoad::torque)
-    loads.emplace_back(Traction{"x_max", Vec3::Zero(), Wrench{Vec3::Zero(), Vec3(torque, 0, 0), end_centre}});
-  if (load == BarLoad::pressure) loads.emplace_back(Pressure{"x_max", pressure, {}});
+    loads.emplace_back(Traction{"x_max", Vec3::Zero(), Wrench{Vec3::Zero(), Vec3(end_torque, 0, 0), end_centre}});
+  if (load == BarLoad::pressure) loads.emplace_back(Pressure{"x_max", end_pressure, {}});
   return loads;
 }
 
@@ -70,17 +70,17 @@ double measure_of(BarLoad load, const EngineBar& bar, const NodalVectors& u) {
     const int axis = patch.name[0] - 'x';
     flux += (patch.name.ends_with("max") ? 1 : -1) * nodal_areas(bar.mesh, patch).dot(u.col(axis));
   }
-  return flux / size.prod();
+  return flux / bar_size.prod();
 }
 
 std::vector<TestField> test_fields(const EngineBar& bar, const IsotropicMaterial& m) {
   constexpr double e = 1e-3, curvature = 1e-3, twist = 1e-3;
-  const double E = m.youngs_modulus, nu = m.poisson_ratio, G = shear_modulus(m), V = size.prod(), L = size[0];
+  const double E = m.youngs_modulus, nu = m.poisson_ratio, G = shear_modulus(m), V = bar_size.prod(), L = bar_size[0];
   std::vector<TestField> fields;
   const auto add = [&](const char* name, double energy, const auto& at) {
     NodalVectors u(bar.mesh.nodes.rows(), 3);
     for (Eigen::Index n = 0; n < u.rows(); ++n)
-      u.row(n) = at(Vec3(bar.mesh.nodes.row(n).transpose() - size / 2)).transpose();
+      u.row(n) = at(Vec3(bar.mesh.nodes.row(n).transpose() - bar_size / 2)).transpose();
     fields.push_back({name, u, energy});
   };
   add("stretch", E * e * e * V / 2, [&](const Vec3& r) { return Vec3(e * Vec3(r[0], -nu * r[1], -nu * r[2])); });
@@ -97,7 +97,7 @@ std::vector<TestField> test_fields(const EngineBar& bar, const IsotropicMaterial
 }
 
 NodalVectors bending_velocities(const EngineBar& bar, const Vec3& d, double tip_velocity) {
-  const double b = 1.8751040687 / size[0], s = 0.7340955;  // cos cosh = -1; (sinh - sin) / (cosh + cos)
+  const double b = 1.8751040687 / bar_size[0], s = 0.7340955;  // cos cosh = -1; (sinh - sin) / (cosh + cos)
   const auto shape = [&](double x) {
     return (std::cosh(b * x) - std::cos(b * x) - s * (std::sinh(b * x) - std::sin(b * x))) / 2;
   };
@@ -106,7 +106,7 @@ NodalVectors bending_velocities(const EngineBar& bar, const Vec3& d, double tip_
   };
   NodalVectors v(bar.mesh.nodes.rows(), 3);
   for (Eigen::Index n = 0; n < v.rows(); ++n) {
-    const Vec3 r = bar.mesh.nodes.row(n).transpose() - Vec3(0, size[1] / 2, size[2] / 2);
+    const Vec3 r = bar.mesh.nodes.row(n).transpose() - Vec3(0, bar_size[1] / 2, bar_size[2] / 2);
     v.row(n) = tip_velocity * (shape(r[0]) * d - slope(r[0]) * r.dot(d) * Vec3::UnitX()).transpose();
   }
   return v;
@@ -115,7 +115,7 @@ NodalVectors bending_velocities(const EngineBar& bar, const Vec3& d, double tip_
 NodalVectors spin_velocities(const EngineBar& bar, double rate) {
   NodalVectors v(bar.mesh.nodes.rows(), 3);
   for (Eigen::Index n = 0; n < v.rows(); ++n)
-    v.row(n) = (rate * Vec3::UnitZ()).cross(Vec3(bar.mesh.nodes.row(n).transpose() - size / 2)).transpose();
+    v.row(n) = (rate * Vec3::UnitZ()).cross(Vec3(bar.mesh.nodes.row(n).transpose() - bar_size / 2)).transpose();
   return v;
 }
 

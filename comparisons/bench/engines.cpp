@@ -32,6 +32,12 @@ struct Settling {
 constexpr Settling gravity = {BarLoad::gravity, "tip", 2.4, 9, 0.3}, torque = {BarLoad::torque, "twist", 8, 3, 1.2},
                    pressure = {BarLoad::pressure, "volume change", 8, 3, 2};
 
+std::vector<std::string> names_of_set_ups() {
+  std::vector<std::string> names;
+  for (const EngineSetUp& s : engine_set_ups()) names.push_back(s.name);
+  return names;
+}
+
 std::string size_of(const Cells& c) { return fmt::format("{}x{}x{}", c[0], c[1], c[2]); }
 
 /// Mean speed at the end, as a share of the mean displacement's that the motion would still make.
@@ -47,7 +53,10 @@ class EngineBench {
   EngineBench(const BenchOptions& options, Findings& findings, EngineFindings& out)
       : options_(options), findings_(findings), out_(out) {
     for (const EngineSetUp& s : engine_set_ups())
-      if (options.engine.empty() || s.adapter == options.engine) wanted_.push_back(s);
+      if (s.name.find(options.engine) != std::string::npos) wanted_.push_back(s);
+    if (wanted_.empty())
+      throw InputError(fmt::format("--engine: no set-up has '{}' in its name (allowed: a part of {})", options.engine,
+                                   fmt::join(names_of_set_ups(), "; ")));
     out.quick = options.quick;
   }
 

@@ -39,8 +39,8 @@ void add_options(CLI::App& app, BenchOptions& options) {
   app.add_option("--threads", options.threads, "of the rows that compare several threads with one")
       ->check(CLI::Range(2, 256))
       ->capture_default_str();
-  app.add_option("--engine", options.engine, "engines: only this one")
-      ->check(CLI::IsMember({"jolt", "bullet", "mujoco"}));
+  app.add_option("--engine", options.engine,
+                 "engines: only set-ups with this in their name, as Jolt, \"MuJoCo, full\"");
   app.add_flag("--install", options.install,
                "engines: first install the packages of those that run in node, by npm ci, in a cache folder");
   const auto pass_on = [&options](const char* option, const std::string& value) {
