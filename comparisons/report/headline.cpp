@@ -41,8 +41,8 @@ struct ModelErrors {
 };
 
 struct ModelKey {
-  bool large_deformation, fem;
-  std::size_t order;  // of first appearance
+  bool large_deformation, beside;  // beside: elements or another program, not springs
+  std::size_t order;               // of first appearance
   std::string name;
   auto operator<=>(const ModelKey&) const = default;
 };
@@ -171,7 +171,7 @@ struct Candidate {
 /// Whether the models are judged by cases of large deformation: where there are no linear ones.
 bool judged_by_large(const std::map<ModelKey, ModelErrors>& models) {
   return std::all_of(models.begin(), models.end(),
-                     [](const auto& m) { return m.first.large_deformation || m.first.fem; });
+                     [](const auto& m) { return m.first.large_deformation || m.first.beside; });
 }
 
 /// The spring models that were compared most widely, the closest first.
@@ -180,7 +180,7 @@ std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models)
   const bool large = judged_by_large(models);
   for (const auto& [key, errors] : models)
     if (Candidate c{key.name, large, &errors, ranked(errors, errors.rank)};
-        key.large_deformation == large && !key.fem && !c.rank.empty())
+        key.large_deformation == large && !key.beside && !c.rank.empty())
       all.push_back(c);
   if (all.empty()) return all;
   const auto widest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
@@ -231,7 +231,7 @@ std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
 std::string no_claim_text(const std::map<ModelKey, ModelErrors>& models) {
   std::vector<std::string> names;
   for (const auto& [key, errors] : models)
-    if (!key.large_deformation && !key.fem && errors.own_nu && !errors.rank.empty())
+    if (!key.large_deformation && !key.beside && errors.own_nu && !errors.rank.empty())
       names.push_back(fmt::format("{} (a solid of ν = {} alone)", key.name, nu_text(errors.own_nu)));
   if (names.empty()) return "";
   return fmt::format("No spring model was compared at a Poisson's ratio that it claims: {}.", listed(names));
@@ -282,11 +282,11 @@ class Collector {
   Headline take() {
     std::map<ModelKey, ModelErrors> sorted;
     for (auto& [key, errors] : models_) {
-      const bool fem = fem_.contains(key.second);
-      sorted[{key.first, fem, order_of(key.second), key.second}] = errors;
+      const bool springs = !fem_.contains(key.second) && !external_.contains(key.second);
+      sorted[{key.first, !springs, order_of(key.second), key.second}] = errors;
     }
     for (const auto& [key, errors] : sorted)
-      headline_.models.push_back({key.name, key.fem, key.large_deformation, sentence(errors)});
+      headline_.models.push_back({key.name, fem_.contains(key.name), key.large_deformation, sentence(errors)});
     headline_.answer = answer(sorted, headline_.closest);
     return headline_;
   }
@@ -312,6 +312,7 @@ class Collector {
   void add_run(const Json& run) {
     const std::string model = string_of(run, "model");
     if (string_of(run, "kind") == "fem") fem_.insert(model);
+    if (string_of(run, "kind") == "external") external_.insert(model);
     if (compares_displacement_ && string_of(run, "kind") == "msm" && !motions_.contains(model))
       models_[{large_, model}];
     order_of(model);
@@ -371,8 +372,8 @@ class Collector {
   std::string case_name_;
   bool large_ = false, compares_displacement_ = false;
   std::map<std::pair<bool, std::string>, ModelErrors> models_;
-  std::set<std::string> fem_;
-  std::set<std::string> motions_;  ///< models of the case that are in motion: shown, not judged
+  std::set<std::string> fem_, external_;  ///< elements; displacements of other programs
+  std::set<std::string> motions_;         ///< models of the case that are in motion: shown, not judged
   std::vector<std::string> order_;
 };
 

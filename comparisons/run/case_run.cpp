@@ -12,6 +12,7 @@
 #include "comparisons/report/picture.h"
 #include "comparisons/run/case_checks.h"
 #include "comparisons/run/cut_extrapolation.h"
+#include "comparisons/run/external_points.h"
 #include "comparisons/run/fracture_run.h"
 #include "comparisons/run/model_run.h"
 #include "comparisons/run/reference_grids.h"
@@ -20,9 +21,11 @@
 #include "meshes/mesher/mesher.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
+#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/child.h"
 #include "problem/system/file_name.h"
+#include "problem/system/files.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -243,6 +246,7 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
   write_vtu(run.vtu_folder / (vtu_stem(key) + ".vtu"), field, extra);
+  write_file(run.vtu_folder / (vtu_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
 }
 
 /// The history of a motion; its frames become those of the first lattice's pictures, and a series of VTU files.
@@ -266,11 +270,6 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
     }
   }
   if (!series.empty()) write_pvd(run.vtu_folder / (vtu_stem(key) + ".pvd"), series);
-}
-
-void add_line(PartRun& run, std::size_t lattice, const std::string& model, LineRecord line) {
-  static_cast<RunKey&>(line) = run.key(model, lattice);
-  run.part.lines.push_back(std::move(line));
 }
 
 void add_splits(PartRun& run, std::size_t lattice, const std::string& model, const std::vector<NodalVectors>& u,
@@ -312,12 +311,13 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   std::vector<std::map<std::string, double>> scalars;
   for (const ModelSample& sample : samples) {
     const Equilibrium& s = sample.state;
-    run.part.runs.push_back({run.key(label, lattice), "msm", kind, s.ok, s.message, s.solver, s.iterations, s.residual,
-                             sample.times.solve, s.unknowns, s.memory_MiB, sample.times.set_up});
+    run.part.runs.push_back({run.key(label, lattice), is_external(e.models[number]) ? "external" : "msm", kind, s.ok,
+                             s.message, s.solver, s.iterations, s.residual, sample.times.solve, s.unknowns,
+                             s.memory_MiB, sample.times.set_up});
     if (!s.ok) continue;
     if (fields.empty()) {
       save(run, lattice, label, sample.field);
-      if (sample.line) add_line(run, lattice, label, *sample.line);
+      if (sample.line) static_cast<RunKey&>(run.part.lines.emplace_back(*sample.line)) = run.key(label, lattice);
       if (e.models[number].in_motion) add_motion(run, lattice, label, sample.field, sample.motion);
     }
     fields.push_back(sample.field.displacement);

@@ -10,6 +10,7 @@
 #include "meshes/volume.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/embedding/boundary.h"
+#include "problem/case_file/external.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -161,6 +162,7 @@ Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
   e.expectations.clear();
   e.elements.clear();
   e.kinematics = "linear";
+  std::erase_if(e.models, is_external);
   for (ModelChoice& m : e.models) m.in_motion = false;
   return e;
 }

@@ -6,6 +6,7 @@
 
 #include "comparisons/judge/line_measure.h"
 #include "comparisons/judge/measures.h"
+#include "comparisons/run/external.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
@@ -13,6 +14,7 @@
 #include "msm/measure/statistics.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
+#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/progress.h"
 #include "problem/system/run_cost.h"
@@ -134,6 +136,7 @@ void add_network(const Network& network, std::map<std::string, double>& out) {
 
 std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material) {
+  if (is_external(prepared.experiment.models[number])) return external_samples(prepared, lattice, number, material);
   std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   const bool in_motion = prepared.experiment.models[number].in_motion;

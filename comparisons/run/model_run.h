@@ -27,7 +27,8 @@ struct ModelSample {
 /// Rows of the measure `network`.
 void add_network(const Network& network, std::map<std::string, double>& out);
 
-/// Solves model `number` of the case on a lattice; one sample per seed.
+/// Solves model `number` of the case on a lattice; one sample per seed.  Of displacements of another program:
+/// external_samples().
 std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material);
 

@@ -8,6 +8,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/results.h"
 #include "comparisons/run/case_checks.h"
+#include "comparisons/run/external.h"
 #include "comparisons/run/fracture_run.h"
 #include "comparisons/run/motion_run.h"
 #include "comparisons/run/sampling.h"
@@ -15,6 +16,7 @@
 #include "meshes/mesher/mesher.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
+#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/child.h"
 #include "problem/system/progress.h"
@@ -92,6 +94,7 @@ void check_own_models(const PreparedCase& prepared) {
 /// Builds the model and applies the loads, to find errors in either.
 void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number) try {
   const Experiment& experiment = prepared.experiment;
+  if (is_external(experiment.models[number])) return;
   const ModelParameters& parameters = prepared.models[number];
   const Mesh& mesh = *lattice.mesh;
   const auto [model, embedding] = build_chosen(prepared, lattice, number, experiment.materials.front());
@@ -184,7 +187,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     prepared.loads = experiment.loads;
     prepared.size = experiment.body.size;
     for (const ModelChoice& choice : experiment.models) {
-      prepared.models.push_back(resolve(choice));
+      prepared.models.push_back(is_external(choice) ? parameters_of_external(choice) : resolve(choice));
       choose_curve(experiment, prepared.models.back());
     }
     check_own_models(prepared);
@@ -208,6 +211,8 @@ PreparedCase prepare(const Experiment& experiment) {
       progress::phase(fmt::format("trying loads and models on {} cells", cells_text(lattice.cells, " x ")));
       try_lattice(prepared, lattice);
     }
+    for (std::size_t m = 0; m < prepared.models.size(); ++m)
+      if (is_external(experiment.models[m])) check_external(prepared, m);
     return prepared;
   });
 }

@@ -206,6 +206,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
 
   for (const auto& [measure, limit] : voxels.limits) {
     if (!wanted(measure, e.measures) || !comparable(prepared, measure) || !body.scalars.contains(measure)) continue;
+    if (values.empty() || !values.front().contains(measure)) continue;
     ErrorSplit s = blank;
     s.measure = measure;
     s.unit = unit_of(measure);

@@ -100,28 +100,15 @@ ModelChoice read_model(const TomlValue& value) {
   return choice;
 }
 
-/// Labels also serve as file names.
-void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others) {
-  const bool unseen = std::any_of(label.begin(), label.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
-  if (unseen || label.size() > longest_file_name)
-    refuse(item, fmt::format("the label '{}' cannot name a file", label),
-           fmt::format("up to {} letters, no control characters", longest_file_name));
-  const std::string key = file_name_key(label);
-  if (is_fem(key)) refuse(item, fmt::format("the label '{}' is taken", label), "a label of its own for each model");
-  for (const ModelChoice& other : others) {
-    if (file_name_key(other.label) != key) continue;
-    const std::string same = other.label == label ? "" : fmt::format(" as the name of a file, by '{}'", other.label);
-    refuse(item, fmt::format("the label '{}' is taken{}", label, same), "a label of its own for each model");
-  }
-}
-
 /// An empty list means a case of the reference alone; [reference] must then name its elements.
 std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& document) {
   std::vector<ModelChoice> models;
   if (const auto* array = value.node->as_array(); array && array->empty()) {
     const auto reference = document.find("reference");
     if (reference && reference->node->as_table()->contains("elements")) return models;
-    refuse(value, "is an empty list", "model names, or none where [reference] has elements = [\"q2\", ...]");
+    if (document.find("external")) return models;
+    refuse(value, "is an empty list",
+           "model names, or none where [reference] has elements = [\"q2\", ...] or there is an [[external]]");
   }
   for (const TomlValue& item : as_list(value, "a list of model names and { model = \"...\" } tables")) {
     const ModelChoice choice = read_model(item);
@@ -156,17 +143,6 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
     measures.push_back(measure);
   }
   return measures;
-}
-
-/// The material's own value, so that results can be looked up by exact comparison.
-double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) {
-  const double nu = as_number(value);
-  std::vector<double> known;
-  for (const IsotropicMaterial& m : experiment.materials) {
-    if (std::abs(m.poisson_ratio - nu) <= 1e-9) return m.poisson_ratio;
-    known.push_back(m.poisson_ratio);
-  }
-  refuse(value, fmt::format("{} is not in the case", nu), fmt::format("{}", fmt::join(known, ", ")));
 }
 
 bool asks_for(const Experiment& experiment, const std::string& measure) {
@@ -282,11 +258,36 @@ void read_compare_table(const TomlValue& value, const TomlTable& document, Exper
 
 }  // namespace
 
+void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others) {
+  const bool unseen = std::any_of(label.begin(), label.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+  if (unseen || label.size() > longest_file_name)
+    refuse(item, fmt::format("the label '{}' cannot name a file", label),
+           fmt::format("up to {} letters, no control characters", longest_file_name));
+  const std::string key = file_name_key(label);
+  if (is_fem(key)) refuse(item, fmt::format("the label '{}' is taken", label), "a label of its own for each model");
+  for (const ModelChoice& other : others) {
+    if (file_name_key(other.label) != key) continue;
+    const std::string same = other.label == label ? "" : fmt::format(" as the name of a file, by '{}'", other.label);
+    refuse(item, fmt::format("the label '{}' is taken{}", label, same), "a label of its own for each model");
+  }
+}
+
+double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) {
+  const double nu = as_number(value);
+  std::vector<double> known;
+  for (const IsotropicMaterial& m : experiment.materials) {
+    if (std::abs(m.poisson_ratio - nu) <= 1e-9) return m.poisson_ratio;
+    known.push_back(m.poisson_ratio);
+  }
+  refuse(value, fmt::format("{} is not in the case", nu), fmt::format("{}", fmt::join(known, ", ")));
+}
+
 void read_compare(const TomlTable& document, Experiment& experiment) {
   experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
   experiment.measures = experiment.fracture ? std::vector<std::string>{"fracture"} : default_measures;
   if (const auto value = document.find("compare")) read_compare_table(*value, document, experiment);
   if (experiment.dynamics) experiment.models = with_motions(experiment.models, *experiment.dynamics);
+  read_externals(document, experiment);
   // Displacement errors alone are not enough for a body that is moved by its supports.
   if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
     experiment.measures.emplace_back("reaction_error");

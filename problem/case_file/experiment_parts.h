@@ -15,6 +15,15 @@ std::vector<PatchRule> read_patch_rules(const TomlTable& document);
 /// A list of elements, each once.
 std::vector<std::string> read_elements(const TomlValue& value, const std::vector<std::string>& allowed);
 
+/// Refuses a label, which also serves as the name of files, that is taken by one of the others or by finite elements.
+void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others);
+
+/// The Poisson's ratio of a material of the case: its own value, so that results are found by exact comparison.
+double read_poisson_ratio(const TomlValue& value, const Experiment& experiment);
+
+/// The [[external]] tables, as models; the rest of the models and [fracture] must have been read.
+void read_externals(const TomlTable& document, Experiment& experiment);
+
 /// [line]; loads, materials and kinematics must have been read.
 void read_line(const TomlTable& document, Experiment& experiment);
 
