@@ -48,6 +48,7 @@ set(report_assets
     bench_js=${report_dir}/report/page/data.js
     bench_js=${report_dir}/report/page/figure.js
     bench_js=${report_dir}/report/page/charts.js
+    bench_js=${report_dir}/bench/page/engines.js
     bench_js=${report_dir}/bench/page/bench.js
     chart_js=${SPRINGPROOF_CHART_JS}
     three_js=${SPRINGPROOF_THREE_JS}

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/bench/dynamics.h"
+#include "comparisons/bench/engines.h"
 #include "comparisons/bench/experiments.h"
 #include "comparisons/bench/fem.h"
 #include "comparisons/bench/interrupt.h"
@@ -28,15 +29,20 @@ void add_options(CLI::App& app, BenchOptions& options) {
   app.add_option("WHAT", options.what,
                  "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
                  "damped dynamics), "
-                 "fem (the finite element reference), experiments (built-in cases), all")
+                 "fem (the finite element reference), experiments (built-in cases), all of these; "
+                 "engines (real-time engines and our springs by the same measures; some 15 minutes)")
       ->required()
-      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "all"}));
+      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "engines", "all"}));
   app.add_option("--json", options.json, "write the figures to this file too");
   app.add_option("--out", options.out, "folder for bench.html, with the roofline, and bench.json");
   app.add_flag("--quick", options.quick, "small sizes: a look at the table in half a minute, no measurement");
   app.add_option("--threads", options.threads, "of the rows that compare several threads with one")
       ->check(CLI::Range(2, 256))
       ->capture_default_str();
+  app.add_option("--engine", options.engine,
+                 "engines: only set-ups with this in their name, as Jolt, \"MuJoCo, full\"");
+  app.add_flag("--install", options.install,
+               "engines: first install the packages of those that run in node, by npm ci, in a cache folder");
   const auto pass_on = [&options](const char* option, const std::string& value) {
     options.fem_arguments.insert(options.fem_arguments.end(), {option, value});
   };
@@ -55,7 +61,15 @@ void add_options(CLI::App& app, BenchOptions& options) {
 
 bool wants(const BenchOptions& options, const char* what) { return options.what == what || options.what == "all"; }
 
-void measure(const BenchOptions& options, Machine& machine, Findings& findings, Json& fem) {
+struct Measured {
+  Machine machine = this_machine();
+  Findings findings;
+  EngineFindings engines;
+  Json fem;
+};
+
+void measure(const BenchOptions& options, Measured& m) {
+  auto& [machine, findings, engines, fem] = m;
   if (wants(options, "statics")) bench_statics(options, findings);
   if (wants(options, "dynamics")) {
     fmt::print(stderr, "limits of this machine ...\n");
@@ -64,6 +78,10 @@ void measure(const BenchOptions& options, Machine& machine, Findings& findings, 
   }
   if (wants(options, "experiments")) bench_experiments(options, findings);
   if (wants(options, "fem")) fem = bench_fem(options, findings);
+  if (options.what == "engines") {
+    if (options.install) install_packages();
+    bench_engines(options, findings, engines);
+  }
 }
 
 void write(const BenchOptions& options, const Json& document) {
@@ -78,11 +96,10 @@ void write(const BenchOptions& options, const Json& document) {
 
 int run(const BenchOptions& options) {
   catch_interrupts();
-  Machine machine = this_machine();
-  Findings findings;
-  Json fem;
+  Measured measured;
+  auto& [machine, findings, engines, fem] = measured;
   try {
-    measure(options, machine, findings, fem);
+    measure(options, measured);
   } catch (const std::runtime_error&) {
     if (!interrupted()) throw;
     findings.remarks.push_back("interrupted: the rows are those measured before");
@@ -94,6 +111,10 @@ int run(const BenchOptions& options) {
       {"version", SPRINGPROOF_VERSION}, {"instruction_set", name_of(instruction_set())}, {"quick", options.quick}};
   document["machine"] = to_json(machine);
   if (!fem.is_null()) document["fem"] = fem;
+  if (options.what == "engines") {
+    document["engines"] = to_json(engines);
+    fmt::print("{}\n", text_of(engines));
+  }
   fmt::print("{}", table_text(machine, findings));
   write(options, document);
   if (interrupted()) return 130;

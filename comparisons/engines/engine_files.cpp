@@ -15,7 +15,7 @@
 namespace springproof {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;  // not Json, which is another type in sources of the same unit
 
 constexpr double standard_gravity = 9.81, slowest_frame = 1.0 / 60;
 
@@ -50,9 +50,9 @@ void require_springs_alone(const SpringsFile& springs) {
 /// A document whose arrays are added by name.
 class EngineDocument {
  public:
-  explicit EngineDocument(Json head) { document_.head = std::move(head); }
+  explicit EngineDocument(OrderedJson head) { document_.head = std::move(head); }
 
-  Json& head() { return document_.head; }
+  OrderedJson& head() { return document_.head; }
 
   template <class T>
   void array(const std::string& table, const std::string& key, std::vector<T> values, std::size_t columns = 1) {
@@ -80,7 +80,7 @@ class EngineDocument {
 /// Every name of a patch with its nodes.
 void add_patches(const std::string& table, const std::vector<std::string>& names, const SpringsFile& springs,
                  EngineDocument& out) {
-  out.head()[table] = Json::object();
+  out.head()[table] = OrderedJson::object();
   for (const std::string& name : names) {
     const std::vector<int>& nodes = springs.patches.at(name);
     out.array(table, name, std::vector<std::int32_t>(nodes.begin(), nodes.end()));
@@ -96,8 +96,8 @@ std::vector<std::array<int, 3>> surface_of(const NodalVectors& X, const std::vec
   return facets;
 }
 
-Json head_of(const SpringsFile& springs, const std::string& format, const std::string& model, double own_poisson_ratio,
-             double safe_step) {
+OrderedJson head_of(const SpringsFile& springs, const std::string& format, const std::string& model,
+                    double own_poisson_ratio, double safe_step) {
   const IsotropicMaterial& m = *springs.material;
   return {{"format", "springproof " + format},
           {"version", 1},

@@ -2,7 +2,7 @@
 // The page of `springproof bench`: ratios against targets, the roofline, all rows, the machine.
 
 const subjects = distinct(results.rows.map(row => row.subject));
-const subjectNames = {dynamics: 'Dynamics: explicit steps', statics: 'Statics: equilibrium', fem: 'The finite element reference', experiments: 'Built-in experiments'};
+const subjectNames = {dynamics: 'Dynamics: explicit steps', statics: 'Statics: equilibrium', fem: 'The finite element reference', experiments: 'Built-in experiments', engines: 'Real-time engines: checks'};
 const limitOf = row => row.target ? row.target.at_least ?? row.target.at_most : null;
 const targetText = row => !row.target ? '' : `${'at_least' in row.target ? '≥' : '≤'} ${number(limitOf(row), 3)}`;
 const judgedText = row => number(row.judged, 3) + (row.baseline ? '×' : '');
@@ -222,7 +222,7 @@ function startBench() {
   decorateBenchHead();
   Chart.defaults.font.family = paperFont;
   Chart.defaults.font.size = 13;
-  for (const [id, make] of [['targets', targetsSection], ['roofline', rooflineSection], ['rows', rowsSection], ['machine', machineSection]]) {
+  for (const [id, make] of [['targets', targetsSection], ['roofline', rooflineSection], ['engines', enginesSection], ['rows', rowsSection], ['machine', machineSection]]) {
     const section = document.getElementById(id);
     try {
       make(section);
