@@ -1,16 +1,53 @@
 #include "comparisons/run/prepared_case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
+#include "msm/exchange/anchored_springs.h"
+
 namespace springproof {
 
+namespace {
+
+/// In motion no node may be without mass: supports hold nodes at their patch instead of anchors.
+EmbeddedModel build_cut_in_motion(const ModelParameters& parameters, const Lattice& lattice,
+                                  const std::set<std::string>& held, const IsotropicMaterial& material) {
+  EmbeddedModel built = build_cut(parameters, *lattice.cut, {}, *lattice.mesh, material);
+  for (const std::string& name : held) built.embedding.held[name] = nodes_at_patch(*lattice.cut, name);
+  return built;
+}
+
+/// @throws InputError unless the file has, of each patch of the loads, what the case needs.
+EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelParameters& parameters,
+                                     const Lattice& lattice, const std::set<std::string>& held, bool in_motion) try {
+  const SpringsFile& file = *parameters.springs;
+  for (const Load& load : prepared.loads)
+    if (const std::string* on = patch_of(load);
+        on && !(file.loads.contains(*on) && file.patches.contains(*on) && file.anchors.contains(*on)))
+      throw InputError(
+          fmt::format("/loads, /patches or /anchors: has no patch '{}', on which the case has a load", *on));
+  auto [model, embedding] = anchored(file, in_motion ? std::set<std::string>{} : held, *lattice.mesh);
+  if (in_motion) embedding.held = file.patches;
+  return {std::move(model), std::move(embedding)};
+} catch (const InputError& e) {
+  throw InputError(fmt::format("{}: {}", parameters.row.name, e.what()));
+}
+
+}  // namespace
+
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                       const IsotropicMaterial& material) {
-  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
+                       const IsotropicMaterial& material, bool in_motion) {
   std::set<std::string> held;
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
+  if (parameters.springs && !parameters.springs->model.network.filled.empty()) {
+    require_material(parameters, material);
+    return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
+  }
+  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
+  if (in_motion) return build_cut_in_motion(parameters, lattice, held, material);
   return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
 }
 

@@ -29,6 +29,6 @@ SpringsDocument document_of(const SpringsFile& springs);
 std::string key_of_law(const LawTraits& traits);
 
 inline constexpr const char* springs_format = "springproof springs";
-inline constexpr int springs_version = 1;
+inline constexpr int springs_version = 1, springs_version_of_cut_cells = 2;
 
 }  // namespace springproof

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msm/dynamics/dynamics.h"
+#include "support/solids.h"
 #include "support/zoo.h"
 
 namespace springproof {
@@ -52,6 +53,24 @@ TEST(SafeTimeStep, IsSafeOnEveryNetworkAndNotWastefulOnAny) {
       EXPECT_LE(used, 1 + 1e-9) << row.name << " nu = " << nu;
       EXPECT_GE(used, 0.4) << row.name << " nu = " << nu;
     }
+}
+
+/// Slivers have little mass and stiffness, and share nodes with whole cells.
+TEST(SafeTimeStep, IsSafeOnCutBodiesAndNotWasteful) {
+  for (const ModelRow& row : model_table()) {
+    if (!has_cut_cells(row)) continue;
+    for (double nu : {-0.5, 0.0, 0.25, 0.45, 0.49})
+      for (unsigned seed : {1u, 2u}) {
+        if (row.extension == Extension::none && nu != 0.25) continue;
+        const double edge = 0.3;
+        const Mesh body = test::mapped(test::ball_of_tetrahedra(6), test::random_placement(seed, edge));
+        const CutBody cut = cut_body(test::grid_about(body, edge), body);
+        const MassSpringModel model = build_cut(test::model(row.name), cut, {}, Mesh{}, {1e4, nu, density}).model;
+        const double used = safe_time_step(model, density) * std::sqrt(spectral_radius(model)) / 2;
+        EXPECT_LE(used, 1 + 1e-9) << row.name << " nu = " << nu << ", place " << seed;
+        EXPECT_GE(used, 0.5) << row.name << " nu = " << nu << ", place " << seed;
+      }
+  }
 }
 
 TEST(SafeTimeStep, HoldsForEveryFormOfDispersionAndItsWeights) {
