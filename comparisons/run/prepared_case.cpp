@@ -11,11 +11,32 @@ namespace springproof {
 
 namespace {
 
-/// In motion no node may be without mass: supports hold nodes at their patch instead of anchors.
-EmbeddedModel build_cut_in_motion(const ModelParameters& parameters, const Lattice& lattice,
-                                  const std::set<std::string>& held, const IsotropicMaterial& material) {
-  EmbeddedModel built = build_cut(parameters, *lattice.cut, {}, *lattice.mesh, material);
-  for (const std::string& name : held) built.embedding.held[name] = nodes_at_patch(*lattice.cut, name);
+/// Whether the loads prescribe all components on a patch.
+bool holds_wholly(const std::vector<Load>& loads, const std::string& patch) {
+  std::array<bool, 3> held{};
+  for (const Load& load : loads)
+    if (prescribes_displacement(load) && *patch_of(load) == patch) {
+      const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
+      for (int d = 0; d < 3; ++d) held[d] = held[d] || value[d];
+    }
+  return held[0] && held[1] && held[2];
+}
+
+/// In motion every free node has a mass: a patch that is held in some components only has no anchors, but nodes at it.
+/// Anchors of cells that are filled in part are as much softer, which leaves them a time step.
+EmbeddedModel build_cut_in_motion(const PreparedCase& prepared, const ModelParameters& parameters,
+                                  const Lattice& lattice, const std::set<std::string>& held,
+                                  const IsotropicMaterial& material) {
+  const CutBody& body = *lattice.cut;
+  std::vector<std::string> anchored;
+  for (const std::string& name : held)
+    if (holds_wholly(prepared.loads, name)) anchored.push_back(name);
+  EmbeddedModel built = build_cut(parameters, body, anchored, *lattice.mesh, material);
+  auto anchor = built.model.network.anchors.begin();
+  for (const std::string& name : anchored)
+    for (const PatchInCell& p : body.patches.at(name)) anchor++->stiffness *= body.cells[p.cell].filled.fraction;
+  for (const std::string& name : held)
+    if (!built.embedding.held.contains(name)) built.embedding.held[name] = nodes_at_patch(body, name);
   return built;
 }
 
@@ -47,7 +68,7 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
     return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
   }
   if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
-  if (in_motion) return build_cut_in_motion(parameters, lattice, held, material);
+  if (in_motion) return build_cut_in_motion(prepared, parameters, lattice, held, material);
   return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
 }
 
