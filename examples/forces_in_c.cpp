@@ -28,6 +28,9 @@ int main(int count, char** arguments) try {
   const auto ends = flat<int>(file.at("springs").at("nodes")), cells = flat<int>(file.at("cells").at("nodes"));
   const auto k = flat<double>(file.at("springs").at("stiffness_N_m")),
              L = flat<double>(file.at("springs").at("rest_length_m"));
+  const auto moment = [&](const char* key) { return flat<double>(file.at("cells").value(key, json::array())); };
+  const auto fraction = moment("fraction"), mean = moment("mean"), mixed = moment("mixed"),
+             variance = moment("variance");
   const auto energy = [&](const std::vector<double>& x, double* f) {
     double W = sp_springs(k.size(), ends.data(), k.data(), L.data(), x.data(), f);
     if (laws.contains("volume_correction"))
@@ -42,13 +45,14 @@ int main(int count, char** arguments) try {
     if (laws.contains("averaged_springs")) {
       const json& law = laws.at("averaged_springs");
       const std::string curve = law.at("curve");
-      W += sp_averaged(cells.size() / 8, cells.data(), file.at("cells").at("edge_m"),
-                       {curve == "hencky"      ? SP_HENCKY
-                        : curve == "neo_hooke" ? SP_NEO_HOOKE
-                                               : SP_NEO_HOOKE_ISOCHORIC,
-                        law.at("shear_modulus_Pa"), law.at("lame_lambda_Pa"), law.at("bending"), law.at("coupling"),
-                        law.at("torsion"), law.at("twist"), law.at("warping")},
-                       x.data(), f);
+      W += sp_averaged_cut(cells.size() / 8, cells.data(), file.at("cells").at("edge_m"),
+                           {fraction.empty() ? nullptr : fraction.data(), mean.data(), mixed.data(), variance.data()},
+                           {curve == "hencky"      ? SP_HENCKY
+                            : curve == "neo_hooke" ? SP_NEO_HOOKE
+                                                   : SP_NEO_HOOKE_ISOCHORIC,
+                            law.at("shear_modulus_Pa"), law.at("lame_lambda_Pa"), law.at("bending"), law.at("coupling"),
+                            law.at("torsion"), law.at("twist"), law.at("warping")},
+                           x.data(), f);
     }
     return W;
   };

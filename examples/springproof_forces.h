@@ -1,8 +1,8 @@
-/* Forces of averaged springs (hybmss_avg), of HybMSS and its hourglass correction in C99, for an engine or a shader
- * that has a springs file (springproof export BODY --model hybmss_avg --to springs) and nothing else of springproof. SI
- * units; nodes count from 0; a vector is three numbers in a row.  Every function adds to the forces f [N] and returns
- * its energy [J]; f may be null. Equations: Golec et al. (2019); averaged springs: docs/large_strain.md; the hourglass
- * correction: docs/papers.md, section 4. */
+/* Forces of averaged springs (hybmss_avg) in whole and in cut cells, of HybMSS and its hourglass correction in C99, for
+ * an engine or a shader that has a springs file (springproof export BODY --to springs) and nothing else of springproof.
+ * SI units; nodes count from 0; a vector is three numbers in a row.  Every function adds to the forces f [N] and
+ * returns its energy [J]; f may be null.  Equations: Golec et al. (2019); averaged springs: docs/large_strain.md; cut
+ * cells and anchors: docs/cut_cells.md; the hourglass correction: docs/papers.md, section 4. */
 #ifndef SPRINGPROOF_FORCES_H
 #define SPRINGPROOF_FORCES_H
 
@@ -13,21 +13,23 @@
 static const int sp_sign[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                   {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 
-/* Springs: W = k/2 (L' - L)^2 (4.1).  nodes: count x 2. */
+/* One spring between nodes i and j: W = k/2 (L' - L)^2 (4.1). */
+static double sp_spring(int i, int j, double k, double L, const double* x, double* f) {
+  const double *a = x + 3 * i, *b = x + 3 * j;
+  const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), stretch = length - L;
+  for (int c = 0; f && c < 3; ++c) {
+    const double pull = k * stretch / length * d[c];
+    f[3 * i + c] += pull;
+    f[3 * j + c] -= pull;
+  }
+  return 0.5 * k * stretch * stretch;
+}
+
+/* nodes: count x 2. */
 static double sp_springs(size_t count, const int* nodes, const double* k, const double* L, const double* x, double* f) {
   double energy = 0;
-  for (size_t s = 0; s < count; ++s) {
-    const double *a = x + 3 * nodes[2 * s], *b = x + 3 * nodes[2 * s + 1];
-    const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), stretch = length - L[s];
-    energy += 0.5 * k[s] * stretch * stretch;
-    if (!f) continue;
-    for (int c = 0; c < 3; ++c) {
-      const double pull = k[s] * stretch / length * d[c];
-      f[3 * nodes[2 * s] + c] += pull;
-      f[3 * nodes[2 * s + 1] + c] -= pull;
-    }
-  }
+  for (size_t s = 0; s < count; ++s) energy += sp_spring(nodes[2 * s], nodes[2 * s + 1], k[s], L[s], x, f);
   return energy;
 }
 
@@ -145,49 +147,122 @@ static double sp_strain_energy(struct sp_averaged law, double F[3][3], double P[
   return W;
 }
 
-/* Averaged springs: W = V w(F) + v . D v / 2 of each cell, F its mean deformation gradient, v = F^T q, q its corners'
- * positions in the patterns yz, zx, xy, xyz that F does not see.  For any strain and rotation. */
+/* The part of a cell that the body fills, by its moments [1]; xi is the place in the cell, -1/2 to 1/2, <.> the mean
+ * over that part: its share of the cell, <xi_i>, <xi_j xi_k> and <xi_i^2> - <xi_i>^2. */
+struct sp_part {
+  double fraction, mean[3], mixed[3], variance[3];
+};
+
+/* cells.fraction, .mean, .mixed, .variance of the file; fraction = null: all cells are full. */
+struct sp_parts {
+  const double *fraction, *mean, *mixed, *variance;
+};
+
+static struct sp_part sp_part_of(struct sp_parts all, size_t cell) {
+  struct sp_part part = {1, {0, 0, 0}, {0, 0, 0}, {1 / 12.0, 1 / 12.0, 1 / 12.0}};
+  if (!all.fraction) return part;
+  part.fraction = all.fraction[cell];
+  for (int i = 0; i < 3; ++i) {
+    part.mean[i] = all.mean[3 * cell + i];
+    part.mixed[i] = all.mixed[3 * cell + i];
+    part.variance[i] = all.variance[3 * cell + i];
+  }
+  return part;
+}
+
+/* Forces w [N] of the hourglass springs, whose energy is v . w / 2, of v [m], by pattern and axis.  The first three
+ * patterns are taken at the centroid of the part, the springs weighted with its second moments. */
+static void sp_hourglass_springs(struct sp_averaged law, double edge, struct sp_part part, double v[4][3],
+                                 double w[4][3]) {
+  const double unit = part.fraction * law.shear_modulus * edge / 2;
+  double rho[3], c[3][3]; /* second moments over those of a full cell; the patterns at the centroid */
+  for (int m = 0; m < 3; ++m) {
+    rho[m] = fmax(12 * part.variance[m], 0.1);
+    for (int j = 0; j < 3; ++j) c[m][j] = v[m][j] + part.mean[m] * v[3][j];
+  }
+  for (int j = 0; j < 3; ++j) {
+    const int k = (j + 1) % 3, l = (j + 2) % 3;
+    w[k][l] = unit * rho[j] * (law.bending * c[k][l] + law.coupling * c[l][k]);
+    w[l][k] = unit * rho[j] * (law.bending * c[l][k] + law.coupling * c[k][l]);
+    w[j][j] = unit * (law.torsion * (rho[k] * (c[j][j] + c[l][l]) + rho[l] * (c[j][j] + c[k][k])) +
+                      law.twist * (rho[k] + rho[l]) / 2 * c[j][j]);
+  }
+  for (int j = 0; j < 3; ++j) {
+    const int k = (j + 1) % 3, l = (j + 2) % 3;
+    w[3][j] = unit / 4 * law.warping * (0.3 * rho[k] * rho[l] + rho[j] * (rho[k] + rho[l])) / 2.3 * v[3][j];
+    for (int m = 0; m < 3; ++m) w[3][j] += part.mean[m] * w[m][j];
+  }
+}
+
+/* Averaged springs of one cell with the corners n: W = V w(F) + v . w / 2, V the volume of the filled part, F its mean
+ * deformation gradient, v = F^T q, q the corners' positions in the patterns yz, zx, xy, xyz that F does not see.  For
+ * any strain and rotation. */
+static double sp_averaged_cell(struct sp_averaged law, double edge, struct sp_part part, const int n[8],
+                               const double* x, double* f) {
+  const double V = part.fraction * edge * edge * edge;
+  double F[3][3] = {{0}}, P[3][3], q[3][4] = {{0}}, v[4][3] = {{0}}, w[4][3], h[8][4], g[8][3];
+  for (int corner = 0; corner < 8; ++corner) {
+    const int* s = sp_sign[corner];
+    for (int i = 0; i < 3; ++i) { /* g: mean gradient of the corner's trilinear weight */
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      h[corner][i] = s[j] * s[k] / 2.0;
+      g[corner][i] =
+          s[i] / edge * (0.25 + (s[j] * part.mean[j] + s[k] * part.mean[k]) / 2 + s[j] * s[k] * part.mixed[i]);
+    }
+    h[corner][3] = s[0] * s[1] * s[2];
+    for (int i = 0; i < 3; ++i) {
+      const double at = x[3 * n[corner] + i];
+      for (int j = 0; j < 3; ++j) F[i][j] += at * g[corner][j];
+      for (int m = 0; m < 4; ++m) q[i][m] += at * h[corner][m];
+    }
+  }
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) v[m][j] += F[i][j] * q[i][m];
+  sp_hourglass_springs(law, edge, part, v, w);
+  double energy = V * sp_strain_energy(law, F, P);
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) energy += 0.5 * v[m][j] * w[m][j];
+  for (int i = 0; f && i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      double stress = V * P[i][j];
+      for (int m = 0; m < 4; ++m) stress += q[i][m] * w[m][j];
+      for (int corner = 0; corner < 8; ++corner) {
+        f[3 * n[corner] + i] -= stress * g[corner][j];
+        for (int m = 0; m < 4; ++m) f[3 * n[corner] + i] -= h[corner][m] * F[i][j] * w[m][j];
+      }
+    }
+  return energy;
+}
+
+/* Of all cells; nodes: cells x 8. */
+static double sp_averaged_cut(size_t cells, const int* nodes, double edge, struct sp_parts parts,
+                              struct sp_averaged law, const double* x, double* f) {
+  double energy = 0;
+  for (size_t cell = 0; cell < cells; ++cell)
+    energy += sp_averaged_cell(law, edge, sp_part_of(parts, cell), nodes + 8 * cell, x, f);
+  return energy;
+}
+
+/* The same of full cells. */
 static double sp_averaged(size_t cells, const int* nodes, double edge, struct sp_averaged law, const double* x,
                           double* f) {
-  const double V = edge * edge * edge, unit = law.shear_modulus * edge / 2;
+  const struct sp_parts full = {0, 0, 0, 0};
+  return sp_averaged_cut(cells, nodes, edge, full, law, x, f);
+}
+
+/* Anchors by which a support holds a patch: W = k/2 |sum_a w_a x_a - point|^2, anchors.NAME of the file.  nodes,
+ * weights: count x 8; points: where they are held. */
+static double sp_anchors(size_t count, const int* nodes, const double* weights, const double* k, const double* points,
+                         const double* x, double* f) {
   double energy = 0;
-  for (size_t cell = 0; cell < cells; ++cell) {
-    const int* n = nodes + 8 * cell;
-    double F[3][3] = {{0}}, P[3][3], q[3][4] = {{0}}, v[4][3] = {{0}}, w[4][3], h[8][4];
-    for (int corner = 0; corner < 8; ++corner) {
-      const int* s = sp_sign[corner];
-      for (int m = 0; m < 3; ++m) h[corner][m] = s[(m + 1) % 3] * s[(m + 2) % 3] / 2.0;
-      h[corner][3] = s[0] * s[1] * s[2];
-      for (int i = 0; i < 3; ++i) {
-        const double at = x[3 * n[corner] + i];
-        for (int j = 0; j < 3; ++j) F[i][j] += at * s[j] / (4 * edge);
-        for (int m = 0; m < 4; ++m) q[i][m] += at * h[corner][m];
-      }
+  for (size_t a = 0; a < count; ++a)
+    for (int c = 0; c < 3; ++c) {
+      double d = -points[3 * a + c];
+      for (size_t n = 8 * a; n < 8 * a + 8; ++n) d += weights[n] * x[3 * nodes[n] + c];
+      energy += 0.5 * k[a] * d * d;
+      for (size_t n = 8 * a; f && n < 8 * a + 8; ++n) f[3 * nodes[n] + c] -= k[a] * weights[n] * d;
     }
-    for (int m = 0; m < 4; ++m)
-      for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) v[m][j] += F[i][j] * q[i][m];
-    const double twisted = v[0][0] + v[1][1] + v[2][2];
-    for (int j = 0; j < 3; ++j) {
-      for (int m = 0; m < 3; ++m)
-        w[m][j] = unit * (m == j ? law.torsion * (v[m][m] + twisted) + law.twist * v[m][m]
-                                 : law.bending * v[m][j] + law.coupling * v[j][m]);
-      w[3][j] = unit / 4 * law.warping * v[3][j];
-    }
-    energy += V * sp_strain_energy(law, F, P);
-    for (int m = 0; m < 4; ++m)
-      for (int j = 0; j < 3; ++j) energy += 0.5 * v[m][j] * w[m][j];
-    if (!f) continue;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        double stress = V * P[i][j];
-        for (int m = 0; m < 4; ++m) stress += q[i][m] * w[m][j];
-        for (int corner = 0; corner < 8; ++corner) {
-          f[3 * n[corner] + i] -= stress * sp_sign[corner][j] / (4 * edge);
-          for (int m = 0; m < 4; ++m) f[3 * n[corner] + i] -= h[corner][m] * F[i][j] * w[m][j];
-        }
-      }
-  }
   return energy;
 }
 

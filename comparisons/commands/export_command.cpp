@@ -1,6 +1,7 @@
 #include "comparisons/commands/export_command.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -68,6 +69,13 @@ int export_calculix(const ExportRequest& request) {
   return 0;
 }
 
+/// The row that the table recommends.
+std::string recommended_model() {
+  const auto& rows = model_table();
+  return std::find_if(rows.begin(), rows.end(), [](const ModelRow& row) { return row.what.starts_with("recommended"); })
+      ->name;
+}
+
 ModelChoice named_model(const std::string& name) { return {name, {}, name, {}}; }
 
 /// A body alone, of the material and the model of the command line.
@@ -86,7 +94,7 @@ Experiment body_alone(const ExportRequest& request) {
     throw InputError(
         fmt::format("{}: {} (a body alone needs -E and --nu, or another two moduli)", request.what, error.what()));
   }
-  e.models = {named_model(request.model.empty() ? "hybmss" : request.model)};
+  e.models = {named_model(request.model.empty() ? recommended_model() : request.model)};
   if (request.cells.empty()) e.body.voxel_counts = {request.voxels.value_or(default_voxels)};
   return e;
 }
@@ -133,13 +141,17 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
   return e;
 }
 
-SpringsFile springs_of(const ExportRequest& request) {
+/// `cut`: of cut cells where the model has them and the case does not say otherwise.
+SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(read_case(request.what), request);
   if (!request.cells.empty()) {
     if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");
     e.body.cells = {cells_of_option(request.cells)};
   }
-  e.body.cut = false;  // springs between nodes: whole cubes
+  if (!cut) {
+    e.body.cut = false;
+    for (ModelChoice& m : e.models) m.options.erase("cut");
+  }
   Status status(false);
   const Status::Working working(status, request.what);
   return springs_of(prepare_lattices(e));
@@ -150,15 +162,31 @@ fs::path out_or(const ExportRequest& request, const std::string& ending) {
 }
 
 void report(const fs::path& file, const SpringsFile& s) {
-  fmt::print("{}: {}, {} nodes, {} springs, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(),
-             s.origin.model, s.model.network.nodes(), s.model.network.springs.size(), s.derived.at("mass_kg"),
-             s.derived.at("safe_time_step_s"), s.material->poisson_ratio);
+  const Network& network = s.model.network;
+  const std::string parts = network.filled.empty() ? fmt::format("{} springs", network.springs.size())
+                                                   : fmt::format("{} cut cells", network.cells.size());
+  fmt::print("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(), s.origin.model,
+             network.nodes(), parts, s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
+             s.material->poisson_ratio);
+}
+
+/// Before the work.
+void require_writable(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const char* why = fs::is_directory(file)                ? "is a folder"
+                    : !fs::is_directory(folder)           ? "its folder does not exist"
+                    : ::access(folder.c_str(), W_OK) != 0 ? "its folder is write-protected"
+                                                          : nullptr;
+  if (why)
+    throw InputError(fmt::format("--out: cannot write {}: {} (allowed: a name in a folder that can be written)",
+                                 file.string(), why));
 }
 
 int export_springs(const ExportRequest& request) {
   const fs::path file = out_or(request, ".json");
   require_springs_ending(file);
-  const SpringsFile springs = springs_of(request);
+  require_writable(file);
+  const SpringsFile springs = springs_of(request, !request.whole_cubes);
   write_springs(file, springs);
   report(file, springs);
   return 0;
@@ -242,10 +270,13 @@ void ExportCommand::add_options(CLI::App& command) {
                   "cells along each side of a body of hexahedra (default: the case's first resolution)")
       ->expected(3)
       ->check(CLI::Range(1, 1000));
-  command.add_option("--model", r.model,
-                     "springs: a model of the case or of the table (default: the case's first; hybmss)");
+  command.add_option(
+      "--model", r.model,
+      fmt::format("springs: a model of the case or of the table (default: the case's first; {})", recommended_model()));
   command.add_option("--voxels", r.voxels, "springs: about so many cubes (default: the case's first; 2000)")
       ->check(CLI::Range(1, 4000000));
+  command.add_flag("--whole-cubes", r.whole_cubes,
+                   "springs: whole cubes of a body that is no block (default: cells cut along its surface)");
   command.add_option("--youngs-modulus,-E", r.moduli.youngs_modulus, "of a body alone: Young's modulus [Pa]");
   command.add_option("--density", r.density, "of a body alone [kg/m^3]")
       ->check(CLI::PositiveNumber)

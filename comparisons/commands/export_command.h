@@ -23,6 +23,7 @@ struct ExportRequest {
   std::vector<double> size;
   std::vector<int> cells;
   std::optional<int> voxels;
+  bool whole_cubes = false;
 };
 
 /// `springproof export CASE --to FORM`.

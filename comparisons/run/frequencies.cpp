@@ -126,7 +126,7 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
   ModelFrequencies out;
   out.label = prepared.experiment.models[number].label;
   out.consistency = theta;
-  const auto [model, embedding] = build_on(prepared, lattice, prepared.models[number], material);
+  const auto [model, embedding] = build_on(prepared, lattice, prepared.models[number], material, false);
   const BoundaryConditions supports = transfer(prepared.experiment.loads, *lattice.mesh, embedding, model.network,
                                                material.density, Kinematics::linear);
   const NaturalModes found = natural_modes(model, supports.fixed, material.density, theta, modes + modes_beside);

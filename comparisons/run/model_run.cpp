@@ -56,7 +56,7 @@ Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const
   const Kinematics kinematics = e.model_kinematics();
   const Mesh& mesh = *lattice.mesh;
   const double start = cpu_seconds();
-  Solved s{build_on(prepared, lattice, parameters, material), {}, {}, {}, {}};
+  Solved s{build_on(prepared, lattice, parameters, material, in_motion), {}, {}, {}, {}};
   const LoadPath path = [&](double factor) {
     BoundaryConditions bc =
         transfer(prepared.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
@@ -104,12 +104,12 @@ ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, con
   sample.field =
       to_field(sample.state, mesh, built.embedding, network, prepared.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  const bool cut = parameters.cut.value_or(false);
-  if (cut) {
+  if (!network.filled.empty()) {
     const VolumeChange change = volume_change(network, sample.state.displacement);
     sample.field.volume_change = change.exact;
     sample.field.volume_change_first_order = change.first_order;
   }
+  const bool cut = parameters.cut.value_or(false);
   sample.scalars =
       field_measures(prepared, sample.field,
                      cut ? displacement_at(*lattice.cut, sample.state.displacement, measured_points(prepared))

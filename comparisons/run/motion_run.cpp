@@ -80,6 +80,7 @@ class Recorder {
         mass_(masses(built.model.network, material.density)),
         behind_(steps.integrator == Integrator::explicit_euler ? steps.size / 2 : 0),
         damping_(damping),
+        cut_(lattice.cut && !built.model.network.filled.empty()),
         record_(record) {}
 
   void operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
@@ -97,10 +98,11 @@ class Recorder {
     add_vector("angular_momentum", "kg m^2/s", spin);
     const NodalVectors u = x - built_.model.network.X;
     add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());
-    add("volume_change", "1", field.volume_change);
+    add("volume_change", "1", cut_ ? volume_change(built_.model.network, u).exact : field.volume_change);
     for (const PatchReaction& r : field.reactions) add_vector("force." + r.patch, "N", r.force);
     const std::vector<Probe>& probes = prepared_.experiment.probes;
-    const NodalVectors at_points = at_measured_points(prepared_, lattice_, field.displacement);
+    const NodalVectors at_points = cut_ ? displacement_at(*lattice_.cut, u, measured_points(prepared_))
+                                        : at_measured_points(prepared_, lattice_, field.displacement);
     for (std::size_t p = 0; p < probes.size(); ++p)
       add_vector("displacement." + probes[p].name, "m", at_points.row(static_cast<Eigen::Index>(p)).transpose());
     const MotionChoice& motion = *prepared_.experiment.dynamics;
@@ -150,6 +152,7 @@ class Recorder {
   Eigen::VectorXd mass_;
   double behind_;   ///< the velocities of a step [s]
   double damping_;  ///< [1/s]
+  bool cut_;        ///< the network is of cut cells of the lattice
   MotionRecord& record_;
   std::size_t next_ = 0;  ///< quantity
 };

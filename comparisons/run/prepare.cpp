@@ -45,7 +45,7 @@ Cells reference_cells(const Experiment& e) {
 /// @throws InputError at the model's location in the case, if its options yield no network.
 EmbeddedModel build_chosen(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                            const IsotropicMaterial& material) try {
-  return build_on(prepared, lattice, prepared.models[number], material);
+  return build_on(prepared, lattice, prepared.models[number], material, prepared.experiment.models[number].in_motion);
 } catch (const InputError& e) {
   throw InputError(prepared.experiment.models[number].where, fmt::format("compare.models: {}", e.what()));
 }
@@ -56,18 +56,20 @@ void choose_cut_cells(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     ModelParameters& p = prepared.models[m];
-    const char* reason = !has_cut_cells(p.row)   ? "this model has none"
-                         : !e.body.is_voxels()   ? "the body is a block"
-                         : e.fracture            ? "the body breaks"
-                         : e.models[m].in_motion ? "it is to move in time"
+    const char* reason = !has_cut_cells(p.row)                                   ? "this model has none"
+                         : !e.body.is_voxels()                                   ? "the body is a block"
+                         : e.fracture                                            ? "the body breaks"
+                         : e.models[m].in_motion && !p.has(Extension::averaging) ? "it is to move in time"
                          : e.model_kinematics() != Kinematics::linear && !p.has(Extension::averaging)
                              ? "the displacements are large"
                              : nullptr;
     if (reason && p.cut.value_or(false))
-      throw InputError(e.models[m].where,
-                       fmt::format("compare.models: {}: cut = true: {} (allowed: lattices of cells in a body of "
-                                   "voxels, at rest under small displacements)",
-                                   p.row.name, reason));
+      throw InputError(
+          e.models[m].where,
+          fmt::format("compare.models: {}: cut = true: {} (allowed: lattices of cells in a body of "
+                      "voxels, at rest under small displacements; averaged springs also under large ones and in "
+                      "motion)",
+                      p.row.name, reason));
     p.cut = p.cut.value_or(e.body.cut && !reason);
   }
 }

@@ -1,16 +1,74 @@
 #include "comparisons/run/prepared_case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
+#include "msm/exchange/anchored_springs.h"
+
 namespace springproof {
 
+namespace {
+
+/// Whether the loads prescribe all components on a patch.
+bool holds_wholly(const std::vector<Load>& loads, const std::string& patch) {
+  std::array<bool, 3> held{};
+  for (const Load& load : loads)
+    if (prescribes_displacement(load) && *patch_of(load) == patch) {
+      const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
+      for (int d = 0; d < 3; ++d) held[d] = held[d] || value[d];
+    }
+  return held[0] && held[1] && held[2];
+}
+
+/// In motion every free node has a mass: a patch that is held in some components only has no anchors, but nodes at it.
+/// Anchors of cells that are filled in part are as much softer, which leaves them a time step.
+EmbeddedModel build_cut_in_motion(const PreparedCase& prepared, const ModelParameters& parameters,
+                                  const Lattice& lattice, const std::set<std::string>& held,
+                                  const IsotropicMaterial& material) {
+  const CutBody& body = *lattice.cut;
+  std::vector<std::string> anchored;
+  for (const std::string& name : held)
+    if (holds_wholly(prepared.loads, name)) anchored.push_back(name);
+  EmbeddedModel built = build_cut(parameters, body, anchored, *lattice.mesh, material);
+  auto anchor = built.model.network.anchors.begin();
+  for (const std::string& name : anchored)
+    for (const PatchInCell& p : body.patches.at(name)) anchor++->stiffness *= body.cells[p.cell].filled.fraction;
+  for (const std::string& name : held)
+    if (!built.embedding.held.contains(name)) built.embedding.held[name] = nodes_at_patch(body, name);
+  return built;
+}
+
+/// @throws InputError unless the file has, of each patch of the loads, what the case needs.
+EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelParameters& parameters,
+                                     const Lattice& lattice, const std::set<std::string>& held, bool in_motion) try {
+  const SpringsFile& file = *parameters.springs;
+  for (const Load& load : prepared.loads)
+    if (const std::string* on = patch_of(load);
+        on && !(file.loads.contains(*on) && file.patches.contains(*on) && file.anchors.contains(*on)))
+      throw InputError(
+          fmt::format("/loads, /patches or /anchors: has no patch '{}', on which the case has a load", *on));
+  auto [model, embedding] = anchored(file, in_motion ? std::set<std::string>{} : held, *lattice.mesh);
+  if (in_motion) embedding.held = file.patches;
+  return {std::move(model), std::move(embedding)};
+} catch (const InputError& e) {
+  throw InputError(fmt::format("{}: {}", parameters.row.name, e.what()));
+}
+
+}  // namespace
+
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                       const IsotropicMaterial& material) {
-  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
+                       const IsotropicMaterial& material, bool in_motion) {
   std::set<std::string> held;
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
+  if (parameters.springs && !parameters.springs->model.network.filled.empty()) {
+    require_material(parameters, material);
+    return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
+  }
+  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
+  if (in_motion) return build_cut_in_motion(prepared, parameters, lattice, held, material);
   return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
 }
 

@@ -62,9 +62,9 @@ struct PreparedCase {
   }
 };
 
-/// Builds a model on a lattice, of cut cells if ModelParameters::cut says so.
+/// Builds a model on a lattice, of cut cells if ModelParameters::cut says so.  `in_motion`: every free node has a mass.
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                       const IsotropicMaterial& material);
+                       const IsotropicMaterial& material, bool in_motion);
 
 /// Adds the next lattice.
 void add_lattice(Lattice lattice, PreparedCase& prepared);

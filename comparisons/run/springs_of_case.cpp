@@ -14,6 +14,48 @@ EmbeddedSurface carried_surface(const PreparedCase& prepared, const EmbeddedMode
                          built.embedding);
 }
 
+EmbeddedSurface carried_surface(const PreparedCase& prepared, const CutBody& body) {
+  EmbeddedSurface surface = surface_of_mesh(*prepared.tetrahedra.back());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int v = 0; v < surface.vertices.rows(); ++v) {
+    const CutBody::Place at = body.place(surface.vertices.row(v).transpose());
+    for (int n = 0; n < 8; ++n)
+      if (at.weights[n] != 0) entries.emplace_back(v, body.cells[at.cell].corners[n], at.weights[n]);
+  }
+  surface.weights.resize(surface.vertices.rows(), body.points.rows());
+  surface.weights.setFromTriplets(entries.begin(), entries.end());
+  return surface;
+}
+
+/// Whole cells, or a network without cells.
+void add_network(const PreparedCase& prepared, SpringsFile& file) {
+  const Lattice& lattice = prepared.lattices.front();
+  const ModelParameters& parameters = prepared.models.front();
+  EmbeddedModel built = build_embedded(parameters, *lattice.mesh, *file.material, lattice.region.get());
+  file.grip = parameters.springs ? parameters.springs->grip : grip_of(parameters, *lattice.mesh);
+  file.grip_from_cells =
+      parameters.springs ? parameters.springs->grip_from_cells : parameters.row.topology != Topology::random;
+  file.patches = built.embedding.held;
+  file.surface = carried_surface(prepared, built);
+  file.model = std::move(built.model);
+}
+
+/// Cut cells.  Every node has a mass: anchors are kept apart, each patch has beside them the nodes at it.
+void add_cut_network(const PreparedCase& prepared, SpringsFile& file) {
+  const Lattice& lattice = prepared.lattices.front();
+  const CutBody& body = *lattice.cut;
+  file.model = build_cut(prepared.models.front(), body, {}, *lattice.mesh, *file.material).model;
+  std::erase_if(file.model.laws, [](const ForceLaw& law) { return std::holds_alternative<Anchors>(law); });
+  Embedding loads = embed(body, {}, file.model.network, Mesh{});
+  file.loads = std::move(loads.patches);
+  file.volumes = std::move(loads.volumes);
+  for (const auto& [name, parts] : body.patches) {
+    file.patches[name] = nodes_at_patch(body, name);
+    file.anchors[name] = cut_lattice(body, {name}, file.material->youngs_modulus).anchors;
+  }
+  file.surface = carried_surface(prepared, body);
+}
+
 std::map<std::string, double> derived_of(const SpringsFile& file, const ModelParameters& parameters) {
   std::map<std::string, double> derived = springproof::derived_of(file);
   if (!parameters.springs) {
@@ -28,22 +70,12 @@ std::map<std::string, double> derived_of(const SpringsFile& file, const ModelPar
 }  // namespace
 
 SpringsFile springs_of(const PreparedCase& prepared) {
-  const Lattice& lattice = prepared.lattices.front();
   const ModelParameters& parameters = prepared.models.front();
-  const IsotropicMaterial& material = prepared.experiment.materials.front();
   const ModelChoice& choice = prepared.experiment.models.front();
-  if (parameters.cut.value_or(false))
-    throw InputError(choice.where, "compare.models: cut = true: springs files hold whole cubes (allowed: cut = false)");
-  EmbeddedModel built = build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
   SpringsFile file;
-  file.density = material.density;
-  file.material = material;
-  file.grip = parameters.springs ? parameters.springs->grip : grip_of(parameters, *lattice.mesh);
-  file.grip_from_cells =
-      parameters.springs ? parameters.springs->grip_from_cells : parameters.row.topology != Topology::random;
-  file.patches = built.embedding.held;
-  file.surface = carried_surface(prepared, built);
-  file.model = std::move(built.model);
+  file.material = prepared.experiment.materials.front();
+  file.density = file.material->density;
+  parameters.cut.value_or(false) ? add_cut_network(prepared, file) : add_network(prepared, file);
   file.origin = {"springproof " SPRINGPROOF_VERSION, choice.name, choice.options,
                  prepared.experiment.text.empty() ? prepared.geo.filename().string()
                                                   : prepared.experiment.file.filename().string(),

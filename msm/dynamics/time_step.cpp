@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "msm/algebra/eigenvalues.h"
@@ -49,8 +51,10 @@ void add_norms(const Network& network, const Eigen::VectorXd& mass, const Law& l
 
 Eigen::VectorXd checked_masses(const Network& network, double density) {
   const Eigen::VectorXd mass = masses(network, density);
+  std::vector<char> held(static_cast<std::size_t>(network.nodes()), 0);
+  for (const Anchor& a : network.anchors) held[a.node] = 1;
   for (int n = 0; n < network.nodes(); ++n)
-    if (network.master(n) == n && !(mass[n] > 0))
+    if (network.master(n) == n && !held[n] && !(mass[n] > 0))
       throw std::invalid_argument("a node has no mass: explicit dynamics cannot move it");
   return mass;
 }
@@ -62,6 +66,83 @@ double cell_frequency_squared(const MassSpringModel& model, double density) {
   return symmetric_eigenvalues(s.total)[23] / (density * s.volume / 8);
 }
 
+/// Averaged springs by cells: no squared frequency is above the largest that a cell has alone, with any shares of its
+/// nodes' masses that add up over the cells of a node (Irons and Treharne).  A cell's share is in proportion to its own
+/// stiffness at the node; in a second round times the frequency that it then has.
+class CellFrequencies {
+ public:
+  CellFrequencies(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass)
+      : law_(law), network_(network), mass_(mass), weight_(network.cells.size()) {
+    std::map<Hexahedron, int> number;
+    for (const Anchor& a : network.anchors) number[a.corners] = -1;
+    for (std::size_t c = 0; c < weight_.size(); ++c)
+      if (const auto at = number.find(network.cells[c]); at != number.end()) at->second = static_cast<int>(c);
+    for (const Anchor& a : network.anchors) anchors_.emplace(number.at(a.corners), &a);
+    for (std::size_t c = 0; c < weight_.size(); ++c) {
+      const CellMatrix K = stiffness(c);
+      for (int n = 0; n < 8; ++n) weight_[c][n] = K.block<3, 3>(3 * n, 3 * n).trace();
+    }
+  }
+
+  /// Largest squared frequency of a cell alone; raises the weights of stiff ones.
+  double round() {
+    Eigen::VectorXd total = Eigen::VectorXd::Zero(network_.nodes());
+    for (std::size_t c = 0; c < weight_.size(); ++c)
+      for (int n = 0; n < 8; ++n) total[node(c, n)] += weight_[c][n];
+    std::map<std::array<float, 8>, double> of_full;  // by the shares, whose neighbours are the same for most cells
+    double largest = 0;
+    for (std::size_t c = 0; c < weight_.size(); ++c) {
+      std::array<double, 8> share;
+      std::array<float, 8> key;
+      for (int n = 0; n < 8; ++n) key[n] = float(share[n] = mass_[node(c, n)] * weight_[c][n] / total[node(c, n)]);
+      const bool full =
+          (network_.filled.empty() || network_.filled[c].fraction == 1) && !anchors_.contains(static_cast<int>(c));
+      const auto known = full ? of_full.find(key) : of_full.end();
+      const double own = known != of_full.end() ? known->second : alone(c, share);
+      if (full) of_full[key] = own;
+      largest = std::max(largest, own);
+      for (double& w : weight_[c]) w *= std::sqrt(own);
+    }
+    return largest * (1 + rounding);
+  }
+
+ private:
+  static constexpr double rounding = 1e-6;  // of the keys
+
+  int node(std::size_t cell, int corner) const { return network_.master(network_.cells[cell][corner]); }
+
+  /// With the anchors of the cell, to points that are held.
+  CellMatrix stiffness(std::size_t cell) const {
+    CellMatrix K = law_.cell_matrix(network_.cell_edge, network_.filled.empty() ? FilledPart{} : network_.filled[cell]);
+    const auto [first, last] = anchors_.equal_range(static_cast<int>(cell));
+    for (auto a = first; a != last; ++a)
+      for (int m = 0; m < 8; ++m)
+        for (int n = 0; n < 8; ++n)
+          K.block<3, 3>(3 * m, 3 * n).diagonal().array() +=
+              a->second->stiffness * a->second->weights[m] * a->second->weights[n];
+    return K;
+  }
+
+  double alone(std::size_t cell, const std::array<double, 8>& share) const {
+    CellVector scale;
+    for (int n = 0; n < 8; ++n) scale.segment<3>(3 * n).setConstant(1 / std::sqrt(share[n]));
+    const CellMatrix K = scale.asDiagonal() * stiffness(cell) * scale.asDiagonal();
+    return Eigen::SelfAdjointEigenSolver<CellMatrix>(K, Eigen::EigenvaluesOnly).eigenvalues()[23];
+  }
+
+  const AveragedSprings& law_;
+  const Network& network_;
+  const Eigen::VectorXd& mass_;
+  std::vector<std::array<double, 8>> weight_;  ///< of a cell in the mass of its nodes
+  std::multimap<int, const Anchor*> anchors_;  ///< by the number of their cell
+};
+
+double averaged_frequency_squared(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass) {
+  CellFrequencies cells(law, network, mass);
+  const double first = cells.round();
+  return std::min(first, cells.round());
+}
+
 }  // namespace
 
 double safe_time_step(const MassSpringModel& model, double density, bool lagged) {
@@ -70,9 +151,12 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged)
   const bool cells =
       !network.cell_springs.empty() && std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);
   NodeBlocks blocks(network.nodes(), Eigen::Matrix3d::Zero());
+  const AveragedSprings* averaged = cells ? nullptr : averaged_springs_of(model);
   for (const ForceLaw& law : model.laws) {
     if (const auto* dispersion = std::get_if<MomentumDispersion>(&law))
       add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
+    else if (averaged && (std::holds_alternative<AveragedSprings>(law) || std::holds_alternative<Anchors>(law)))
+      continue;  // below
     else if (cells && (belongs_to_cells(law) || std::holds_alternative<Springs>(law)))
       continue;  // part of the cell's stiffness
     else if (std::holds_alternative<Springs>(law)) {
@@ -82,7 +166,14 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged)
     } else
       std::visit([&](const auto& l) { add_norms(network, mass, l, blocks); }, law);
   }
-  return 2 / std::sqrt(largest_eigenvalue(blocks) + (cells ? cell_frequency_squared(model, density) : 0));
+  double largest = largest_eigenvalue(blocks) + (cells ? cell_frequency_squared(model, density) : 0);
+  if (averaged) {  // the smaller of two bounds
+    largest += averaged_frequency_squared(*averaged, network, mass);
+    if (!network.anchors.empty()) return 2 / std::sqrt(largest);
+    add_norms(network, mass, *averaged, blocks);
+    largest = std::min(largest, largest_eigenvalue(blocks));
+  }
+  return 2 / std::sqrt(largest);
 }
 
 double dispersion_frequency_squared(const MassSpringModel& model, double density) {

@@ -1,5 +1,7 @@
 #include "msm/embedding/cut_lattice.h"
 
+#include <set>
+
 namespace springproof {
 namespace {
 
@@ -90,6 +92,14 @@ Embedding embed(const CutBody& body, const std::vector<std::string>& held, const
   for (const std::string& name : held)
     for (std::size_t p = 0; p < body.patches.at(name).size(); ++p) e.held[name].push_back(node++);
   return e;
+}
+
+std::vector<int> nodes_at_patch(const CutBody& body, const std::string& patch) {
+  std::set<int> nodes;
+  for (const PatchInCell& p : body.patches.at(patch))
+    for (int n = 0; n < 8; ++n)
+      if (p.area[n] >= p.total_area() / 8) nodes.insert(body.cells[p.cell].corners[n]);
+  return {nodes.begin(), nodes.end()};
 }
 
 NodalVectors displacement_at(const CutBody& body, const NodalVectors& u, const NodalVectors& points) {

@@ -22,6 +22,10 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
 /// cube's middle.  Loads are integrals over the true body and its patches.
 Embedding embed(const CutBody& body, const std::vector<std::string>& held, const Network& network, const Mesh& mesh);
 
+/// Nodes by which a support holds a patch where it cannot be anchored, as in motion: of each cell that the patch
+/// crosses the corners nearest to it, whose weights over the patch are those of the middle of the cell or larger.
+std::vector<int> nodes_at_patch(const CutBody& body, const std::string& patch);
+
 /// Displacement of the network at points of the body [m].
 NodalVectors displacement_at(const CutBody& body, const NodalVectors& displacement, const NodalVectors& points);
 

@@ -8,6 +8,7 @@
 
 #include "msm/exchange/json_place.h"
 #include "msm/exchange/lattice_of_cells.h"
+#include "msm/exchange/read_cut_cells.h"
 #include "msm/exchange/springs_document.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
@@ -114,7 +115,7 @@ std::vector<std::array<int, n>> rows(const JsonPlace& place, int largest) {
 void read_nodes(const JsonPlace& document, SpringsFile& file) {
   file.density = document.at("density_kg_m3").number(smallest_of_file, largest_number_of_file);
   const JsonPlace nodes = document.at("nodes");
-  nodes.require_known({"position_m", "mass_kg"});
+  nodes.require_known({"position_m", "mass_kg", "weight_kg"});
   Network& network = file.model.network;
   network.X = vectors(nodes.at("position_m"));
   if (network.nodes() == 0) nodes.at("position_m").refuse("is empty", "at least one node");
@@ -146,7 +147,7 @@ void read_cells(const JsonPlace& document, Network& network) {
   if (const auto triangles = document.find("triangles")) network.triangles = rows<3>(*triangles, last);
   const auto cells = document.find("cells");
   if (!cells) return;
-  cells->require_known({"nodes", "edge_m"});
+  cells->require_known({"nodes", "edge_m", "fraction", "mean", "mixed", "variance"});
   network.cells = rows<8>(cells->at("nodes"), last);
   network.cell_edge = cells->at("edge_m").number(smallest_of_file, farthest_node);
   for (std::size_t c = 0; c < network.cells.size(); ++c)
@@ -158,7 +159,8 @@ void read_cells(const JsonPlace& document, Network& network) {
                                   "axis-aligned cubes, corners (0,0,0) (1,0,0) (1,1,0) (0,1,0) (0,0,1) (1,0,1) (1,1,1) "
                                   "(0,1,1)");
     }
-  if (!network.cells.empty()) recognise_lattice(network);
+  read_filled(*cells, network);
+  if (!network.cells.empty() && network.filled.empty()) recognise_lattice(network);
 }
 
 /// Calls `act` with a default value of each law of the list.
@@ -170,6 +172,8 @@ void for_each_law(std::variant<Laws...>*, const Act& act) {
 void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
   if (traits(law).reach == Reach::cells && network.cells.empty())
     place.refuse("has no cells to act on", "beside cells");
+  if (traits(law).reach == Reach::cells && !network.filled.empty() && !std::holds_alternative<AveragedSprings>(law))
+    place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
 }
@@ -253,9 +257,10 @@ void read_surface(const JsonPlace& document, SpringsFile& file) {
 void require_format(const JsonPlace& document) {
   if (const auto format = document.find("format"); !format || format->text() != springs_format)
     document.refuse("is no springs file", fmt::format("\"format\": \"{}\"", springs_format));
-  document.at("version").number(springs_version, springs_version);
+  document.at("version").number(springs_version, springs_version_of_cut_cells);
   document.require_known({"format", "version", "origin", "material", "density_kg_m3", "grip_m", "grip_from", "derived",
-                          "laws", "nodes", "springs", "cells", "triangles", "patches", "surface", "check"});
+                          "laws", "nodes", "springs", "cells", "triangles", "patches", "anchors", "loads", "surface",
+                          "check"});
 }
 
 SpringsFile read_document(const JsonPlace& document) {
@@ -283,6 +288,7 @@ SpringsFile read_document(const JsonPlace& document) {
   read_laws(document, order, file.model);
   require_rest(document, file.model);
   read_patches(document, file);
+  read_supports_and_loads(document, file);
   read_surface(document, file);
   return file;
 }

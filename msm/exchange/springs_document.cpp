@@ -101,6 +101,23 @@ Json origin_json(const SpringsOrigin& origin) {
           {"checksum_xxh3_128", origin.checksum}};
 }
 
+/// Moments of the filled parts (meshes/voxels/filled_part.h).
+void add_filled(const std::vector<FilledPart>& filled, DocumentWriter& out) {
+  std::vector<double> fraction;
+  NodalVectors mean(filled.size(), 3), mixed(filled.size(), 3), variance(filled.size(), 3);
+  for (std::size_t c = 0; c < filled.size(); ++c) {
+    const auto row = static_cast<Eigen::Index>(c);
+    fraction.push_back(filled[c].fraction);
+    mean.row(row) = filled[c].mean.transpose();
+    mixed.row(row) = filled[c].mixed.transpose();
+    variance.row(row) = filled[c].variance.transpose();
+  }
+  out.numbers({"cells", "fraction"}, std::move(fraction));
+  out.vectors({"cells", "mean"}, mean);
+  out.vectors({"cells", "mixed"}, mixed);
+  out.vectors({"cells", "variance"}, variance);
+}
+
 void add_network(const Network& network, double density, DocumentWriter& out) {
   out.vectors({"nodes", "position_m"}, network.X);
   const Eigen::VectorXd mass = masses(network, density);
@@ -118,6 +135,7 @@ void add_network(const Network& network, double density, DocumentWriter& out) {
   if (!network.cells.empty()) {
     out.at({"cells", "edge_m"}) = network.cell_edge;
     out.rows({"cells", "nodes"}, network.cells);
+    if (!network.filled.empty()) add_filled(network.filled, out);
   }
   if (!network.triangles.empty()) out.rows({"triangles"}, network.triangles);
 }
@@ -131,6 +149,38 @@ void add_laws(const MassSpringModel& model, DocumentWriter& out) {
     LawWriter writer(out, keys, model.network.springs.size());
     std::visit([&](auto l) { l.fields(writer); }, law);
   }
+}
+
+void add_anchors(const std::string& patch, const std::vector<Anchor>& anchors, const NodalVectors& X,
+                 DocumentWriter& out) {
+  std::vector<Hexahedron> corners;
+  std::vector<double> weights, stiffness;
+  NodalVectors points(anchors.size(), 3);
+  for (const Anchor& a : anchors) {
+    points.row(static_cast<Eigen::Index>(corners.size())) = anchored_point(a, X).transpose();
+    corners.push_back(a.corners);
+    weights.insert(weights.end(), a.weights.begin(), a.weights.end());
+    stiffness.push_back(a.stiffness);
+  }
+  out.vectors({"anchors", patch, "position_m"}, points);
+  out.rows({"anchors", patch, "nodes"}, corners);
+  out.array<double>({"anchors", patch, "weights"}, {anchors.size(), 8}, std::move(weights));
+  out.numbers({"anchors", patch, "stiffness_N_m"}, std::move(stiffness));
+}
+
+void add_load(const std::string& patch, const PatchShares& shares, DocumentWriter& out) {
+  std::vector<int> nodes;
+  std::vector<double> area;
+  for (Eigen::Index n = 0; n < shares.area.size(); ++n)
+    if (shares.area[n] != 0) {
+      nodes.push_back(static_cast<int>(n));
+      area.push_back(shares.area[n]);
+    }
+  NodalVectors normal(nodes.size(), 3);
+  for (std::size_t n = 0; n < nodes.size(); ++n) normal.row(static_cast<Eigen::Index>(n)) = shares.normal.row(nodes[n]);
+  out.indices({"loads", patch, "nodes"}, nodes);
+  out.numbers({"loads", patch, "area_m2"}, std::move(area));
+  out.vectors({"loads", patch, "normal_m2"}, normal);
 }
 
 void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
@@ -152,6 +202,12 @@ void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
 }
 
 }  // namespace
+
+Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X) {
+  Vec3 point = Vec3::Zero();
+  for (int n = 0; n < 8; ++n) point += anchor.weights[n] * X.row(anchor.corners[n]).transpose();
+  return point;
+}
 
 std::string key_of_law(const LawTraits& traits) {
   std::string key = traits.name;
@@ -175,7 +231,8 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
-  out.document.head = {{"format", springs_format}, {"version", springs_version}};
+  out.document.head = {{"format", springs_format},
+                       {"version", network.filled.empty() ? springs_version : springs_version_of_cut_cells}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material)
     out.at({"material"}) = {{"youngs_modulus_Pa", springs.material->youngs_modulus},
@@ -188,6 +245,12 @@ SpringsDocument document_of(const SpringsFile& springs) {
   add_network(network, springs.density, out);
   out.at({"patches"}) = Json::object();
   for (const auto& [name, nodes] : springs.patches) out.indices({"patches", name}, nodes);
+  for (const auto& [name, anchors] : springs.anchors) add_anchors(name, anchors, network.X, out);
+  for (const auto& [name, shares] : springs.loads) add_load(name, shares, out);
+  if (springs.volumes.size() > 0) {
+    const Eigen::VectorXd weight = springs.density * springs.volumes;
+    out.numbers({"nodes", "weight_kg"}, {weight.begin(), weight.end()});
+  }
   add_surface(springs.surface, out);
   const NodalVectors x = check_positions(network.X);
   out.vectors({"check", "position_m"}, x);

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "msm/embedding/embedding.h"
 #include "msm/laws/laws.h"
 #include "problem/material.h"
 
@@ -41,10 +42,18 @@ struct SpringsFile {
   bool grip_from_cells =
       false;  ///< measured from the surface of the cells that the body is cut into, not from the true one
   std::map<std::string, std::vector<int>> patches;  ///< name -> nodes that its supports hold, ascending
-  EmbeddedSurface surface;                          ///< no vertices: none
-  SpringsOrigin origin;                             ///< where it comes from
+  std::map<std::string, std::vector<Anchor>>
+      anchors;                               ///< of cut cells: name -> springs by which supports hold the patch
+                                             ///< itself, each to its point (anchored_point), without nodes
+  std::map<std::string, PatchShares> loads;  ///< of cut cells: name -> shares of the nodes in loads on the true patch
+  Eigen::VectorXd volumes;                   ///< of cut cells: Embedding::volumes; empty: those of the masses
+  EmbeddedSurface surface;                   ///< no vertices: none
+  SpringsOrigin origin;                      ///< where it comes from
   std::map<std::string, double> derived;  ///< what follows from the rest, as "safe_time_step_s".  Not read back.
 };
+
+/// The point that an anchor of a springs file is held in at rest [m]: the mean of its corners.
+Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X);
 
 /// Reads a springs file (JSON).  Checked: the schema, that every number is finite and in range, every index a node,
 /// every mass positive, every pair of nodes connected once, and that the network is in equilibrium at rest.  A network

@@ -70,7 +70,7 @@ std::string springs_as_npz(const SpringsFile& springs) {
 }
 
 std::string springs_as_vtu(const SpringsFile& springs) {
-  constexpr std::uint8_t line = 3;
+  constexpr std::uint8_t line = 3, hexahedron = 12;
   const Network& network = springs.model.network;
   VtuFile vtu{network.X, {}, {}, {}, {}, {}};
   VtuArray stiffness{"stiffness_N_m", 1, {}}, rest_length{"rest_length_m", 1, {}};
@@ -82,6 +82,13 @@ std::string springs_as_vtu(const SpringsFile& springs) {
   const Eigen::VectorXd mass = masses(network, springs.density);
   vtu.point_data = {{"mass_kg", 1, {mass.begin(), mass.end()}}};
   vtu.cell_data = {std::move(stiffness), std::move(rest_length)};
+  if (!network.springs.empty()) return text_of(vtu);
+  VtuArray fraction{"fraction", 1, {}};
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    vtu.add_cell(network.cells[c], hexahedron);
+    fraction.values.push_back(network.filled.empty() ? 1 : network.filled[c].fraction);
+  }
+  vtu.cell_data = {std::move(fraction)};
   return text_of(vtu);
 }
 

@@ -78,6 +78,38 @@ HourglassMatrix hourglass_matrix(const AveragedSprings& law, double l, const Fil
 }
 
 using Corners = Eigen::Matrix<double, 3, 8>;
+using InPatterns = Eigen::Matrix<double, 3, 4>;  // a vector per pattern
+
+/// The product of hourglass_matrix() with v [N], without the matrix.
+InPatterns hourglass_forces(const AveragedSprings& law, double l, const FilledPart& part, const InPatterns& v) {
+  const HourglassStiffness& k = law.hourglass;
+  const Eigen::Matrix3d at_centroid = v.leftCols<3>() + v.col(3) * part.mean.transpose();
+  const auto H = [&](int pattern, int axis) { return at_centroid(axis, pattern); };
+  const Vec3 rho = (12 * part.variance).cwiseMax(AveragedSprings::least_variance);
+  InPatterns w;
+  for (int y = 0; y < 3; ++y) {
+    const int z = (y + 1) % 3, x = (y + 2) % 3;
+    w(x, z) = rho[y] * (k.bending * H(z, x) + k.coupling * H(x, z));
+    w(z, x) = rho[y] * (k.bending * H(x, z) + k.coupling * H(z, x));
+    w(y, y) = k.torsion * (rho[z] * (H(y, y) + H(x, x)) + rho[x] * (H(y, y) + H(z, z))) +
+              k.twist * (rho[z] + rho[x]) / 2 * H(y, y);
+    w(y, 3) = k.warping / 4 * (0.3 * rho[z] * rho[x] + rho[y] * (rho[z] + rho[x])) / 2.3 * v(y, 3);
+  }
+  w.col(3) += w.leftCols<3>() * part.mean;
+  return part.fraction * law.shear_modulus * l / 2 * w;
+}
+
+/// What the forces of a cell depend on beside the positions of its corners.
+struct CellShape {
+  FilledPart part;
+  double edge, volume;
+  Corners gradient;  ///< mean gradients of the corners' weights [1/m]
+
+  CellShape(double l, const FilledPart& filled) : part(filled), edge(l), volume(filled.fraction * l * l * l) {
+    const std::array<Vec3, 8> g = mean_gradients(l, filled);
+    for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
+  }
+};
 
 Corners corners_of(const Hexahedron& cell, const NodalVectors& x) {
   Corners p;
@@ -88,15 +120,16 @@ Corners corners_of(const Hexahedron& cell, const NodalVectors& x) {
 /// State of a cell.
 struct Deformed {
   Eigen::Matrix3d F;
-  Eigen::Matrix<double, 3, 4> q;  ///< the patterns of the positions [m]
-  Eigen::Matrix<double, 3, 4> v;  ///< F^T q
-  Eigen::Matrix<double, 3, 4> w;  ///< derivative of the hourglass energy to v [N]
-  StrainEnergy strain;            ///< per unit of volume
+  InPatterns q;         ///< the patterns of the positions [m]
+  InPatterns v;         ///< F^T q
+  InPatterns w;         ///< derivative of the hourglass energy to v [N]
+  StrainEnergy strain;  ///< per unit of volume
 
-  Deformed(const AveragedSprings& law, const CellForm& form, const Corners& x, Derivative up_to)
-      : F(x * form.gradient.transpose()), q(x * patterns()), v(F.transpose() * q) {
-    Eigen::Map<Eigen::Matrix<double, 12, 1>>(w.data()) =
-        form.hourglass * Eigen::Map<const Eigen::Matrix<double, 12, 1>>(v.data());
+  Deformed(const AveragedSprings& law, const CellShape& shape, const Corners& x, Derivative up_to)
+      : F(x * shape.gradient.transpose()),
+        q(x * patterns()),
+        v(F.transpose() * q),
+        w(hourglass_forces(law, shape.edge, shape.part, v)) {
     if (F.determinant() <= 0) {
       strain.value = std::numeric_limits<double>::infinity();
       strain.stress.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -139,9 +172,9 @@ void for_each_cell(const Network& network, const Make& make, const Act& act) {
 }
 
 template <class Act>
-void for_each_form(const AveragedSprings& law, const Network& network, const Act& act) {
+void for_each_shape(const Network& network, const Act& act) {
   for_each_cell(
-      network, [&](const FilledPart& part) { return cell_form(law, network.cell_edge, part); }, act);
+      network, [&](const FilledPart& part) { return CellShape(network.cell_edge, part); }, act);
 }
 
 template <class Act>
@@ -261,9 +294,9 @@ double AveragedSprings::energy(const Network& network, const NodalVectors& x) co
       sum += 0.5 * u.dot(K * u);
     });
   else
-    for_each_form(*this, network, [&](const Hexahedron& cell, const CellForm& form) {
-      const Deformed s(*this, form, corners_of(cell, x), Derivative::none);
-      sum += form.volume * s.strain.value + 0.5 * s.v.cwiseProduct(s.w).sum();
+    for_each_shape(network, [&](const Hexahedron& cell, const CellShape& shape) {
+      const Deformed s(*this, shape, corners_of(cell, x), Derivative::none);
+      sum += shape.volume * s.strain.value + 0.5 * s.v.cwiseProduct(s.w).sum();
     });
   return sum;
 }
@@ -275,10 +308,11 @@ void AveragedSprings::add_forces(const Network& network, const NodalVectors& x, 
       for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
     });
   else
-    for_each_form(*this, network, [&](const Hexahedron& cell, const CellForm& form) {
-      const Deformed s(*this, form, corners_of(cell, x), Derivative::first);
-      const Corners gradient =
-          (form.volume * s.strain.stress + s.q * s.w.transpose()) * form.gradient + s.F * s.w * patterns().transpose();
+    for_each_shape(network, [&](const Hexahedron& cell, const CellShape& shape) {
+      const Deformed s(*this, shape, corners_of(cell, x), Derivative::first);
+      const Eigen::Matrix3d stress = shape.volume * s.strain.stress + s.q * s.w.transpose();
+      const InPatterns of_patterns = s.F * s.w;
+      const Corners gradient = stress * shape.gradient + of_patterns * patterns().transpose();
       for (int n = 0; n < 8; ++n) f.row(cell[n]) -= gradient.col(n).transpose();
     });
 }
@@ -291,9 +325,14 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
   if (shift > 0)
     for_each_stiffness(*this, network, add);
   else
-    for_each_form(*this, network, [&](const Hexahedron& cell, const CellForm& form) {
-      add(cell, tangent_of(form, Deformed(*this, form, corners_of(cell, x), Derivative::second)));
-    });
+    for_each_cell(
+        network,
+        [&](const FilledPart& part) {
+          return std::pair(cell_form(*this, network.cell_edge, part), CellShape(network.cell_edge, part));
+        },
+        [&](const Hexahedron& cell, const auto& of) {
+          add(cell, tangent_of(of.first, Deformed(*this, of.second, corners_of(cell, x), Derivative::second)));
+        });
 }
 
 CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x) {

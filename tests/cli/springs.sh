@@ -47,6 +47,25 @@ for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { insi
     fi
   done
 done
+# A body that is no block: cut cells, of the models that take them; whole cubes on demand.
+cp "$source/comparisons/experiments/calibration/icosahedron.stl" .
+body=(icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 300 --to springs)
+export_to "${body[@]}" --out cut.json
+grep -q '"model": "hybmss_avg"' cut.json || fail "a body alone gets another model than the recommended one"
+grep -q '"version": 2' cut.json && grep -q '"fraction": ' cut.json && grep -q '"anchors": ' cut.json || fail "a body has no cut cells"
+export_to "${body[@]}" --out cut.npz
+export_to "${body[@]}" --model hybmss_bt --out cut_bt.json
+export_to "${body[@]}" --model hybmss_bt --whole-cubes --out whole.json
+grep -q '"version": 1' whole.json && ! grep -q '"fraction": ' whole.json || fail "--whole-cubes gives cut cells"
+export_to "${body[@]}" --out cut.vtu
+grep -q 'Name="fraction"' cut.vtu || fail "cut.vtu"
+grep -q '"density_kg_m3": 900.0' cut.json || fail "the density is another"
+if [ -n "$numpy" ]; then
+  for file in cut.json cut.npz cut_bt.json whole.json; do
+    off=$("$numpy" springs.py $file | awk '{ print $3 }')
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of $file by docs/springs_file.md: off by '$off'"
+  done
+fi
 models=$(ls -- *.json | wc -l)
 [ "$models" -ge 15 ] || fail "only $models models"
 [ -n "$numpy" ] || echo "without numpy: forces in Python are not checked"
@@ -75,9 +94,6 @@ grep -q 'Name="stiffness_N_m"' lines.vtu && grep -q 'NumberOfPoints="45"' lines.
 export_to case.toml --to springs --model A1 --nu 0.4 --cells 8 4 4 --out a1.json
 grep -q '"face_to_cube": 1.0' a1.json || fail "the model by its label has not its options"
 grep -q '"poisson_ratio": 0.4' a1.json || fail "the Poisson's ratio is another"
-cp "$source/comparisons/experiments/calibration/icosahedron.stl" .
-export_to icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 300 --model hybmss_bt --to springs --out body.json
-grep -q '"density_kg_m3": 900.0' body.json || fail "the density is another"
 
 # As a model of a case: the same rows as the built-in model that it was exported from.
 cat >template.toml <<'END'
@@ -115,6 +131,51 @@ for model in hybmss hybmss_bt emsm emsm_random msm_centred; do same_rows templat
 sed -e 's/^geo = .*/geo = "icosahedron.stl"/; s/^size_m = .*/voxels = 300\ncut = false/; /^cells = /d; s/x_min/low/; s/x_max/high/' \
   -e 's/^\[material\]/[[patch]]\nname = "low"\nbeyond = { point_m = [0, 0, -0.5], normal = [0, 0, -1] }\n[[patch]]\nname = "high"\nbeyond = { point_m = [0, 0, 0.5], normal = [0, 0, 1] }\n&/' template.toml >voxels.toml
 for model in hybmss_bt emsm_random emsm_centred; do same_rows voxels.toml $model; done
+sed '/^cut = false/d' voxels.toml >cut.toml
+same_rows cut.toml hybmss_avg
+grep -q '"version": 2' hybmss_avg.json || fail "a case of a body has no cut cells"
+
+# Statics by the file alone, in another program: the body hangs from its anchors as compare says.
+if [ -n "$numpy" ]; then
+  sed -e 's/MODEL/hybmss_avg/; s/, { file = [^}]*}//; s/^on = "high"/gravity_m_s2 = [1, 2, -9.81]/; /^force_N/d; s/^measures = .*/measures = ["probe"]/; s/^voxels = .*/voxels = 100/' cut.toml >hang.toml
+  printf '[[probe]]\nname = "%s"\nat_m = %s\n' a '[0.31, 0.2, 0.4]' b '[-0.2, 0.1, 0.05]' >>hang.toml
+  export_to hang.toml --to springs --out hang.json
+  "$program" compare hang.toml --out hang --quiet >log 2>&1  # there is nothing to compare with
+  "$numpy" - <<'END' || fail "the equilibrium by the file is another than compare's"
+import csv, sys
+import numpy as np
+sys.argv = ["", "hang.json"]
+from springs import load, averaged
+s = load("hang.json")
+X, cells, a = s["nodes"]["position_m"], s["cells"]["nodes"], s["anchors"]["low"]
+n, h = X.size, 1e-5 * s["cells"]["edge_m"]
+unknowns = lambda nodes: (3 * nodes[:, :, None] + np.arange(3)).reshape(len(nodes), -1)
+apart = dict(s["cells"], nodes=np.arange(cells.size).reshape(cells.shape))  # cells without common nodes, all moved at once
+K = np.zeros((n, n))
+for d in range(24):
+    f = {}
+    for sign in (1, -1):
+        x = X[cells]
+        x[:, d // 3, d % 3] += sign * h
+        f[sign] = np.zeros((cells.size, 3))
+        averaged(s["laws"]["averaged_springs"], apart, x.reshape(-1, 3), f[sign])
+    np.add.at(K, (unknowns(cells), unknowns(cells)[:, d, None]), -(f[1] - f[-1]).reshape(-1, 24) / (2 * h))
+for nodes, w, k in zip(a["nodes"], a["weights"], a["stiffness_N_m"]):
+    for axis in range(3): K[np.ix_(3 * nodes + axis, 3 * nodes + axis)] += k * np.outer(w, w)
+u = np.linalg.solve(K, (s["nodes"]["weight_kg"][:, None] * (1, 2, -9.81)).ravel()).reshape(-1, 3)
+rows = {row["measure"]: float(row["value"]) for row in csv.DictReader(open("hang/results.csv"))}
+checked = 0
+for name, at in ("a", (0.31, 0.2, 0.4)), ("b", (-0.2, 0.1, 0.05)):
+    xi = (np.array(at) - X[cells[:, 0]]) / s["cells"]["edge_m"]
+    c = np.flatnonzero(((xi >= 0) & (xi <= 1)).all(axis=1))[0]
+    corner = np.array([[0,0,0], [1,0,0], [1,1,0], [0,1,0], [0,0,1], [1,0,1], [1,1,1], [0,1,1]])
+    ours = np.where(corner, xi[c], 1 - xi[c]).prod(axis=1) @ u[cells[c]]
+    theirs = np.array([rows[f"displacement.{name}.{axis}"] for axis in "xyz"])
+    assert abs(ours - theirs).max() < 1e-6 * abs(theirs).max(), (ours, theirs)
+    checked += 1
+assert checked == 2
+END
+fi
 
 # Without a material it runs in any.
 sed 's/MODEL/hybmss/g; s/poisson_ratio = 0.4/poisson_ratio = [0.3, 0.4]/' template.toml >own.toml
@@ -161,8 +222,27 @@ sed -i 's/none.json/hybmss.json/; s/0\.2, 0\.1, 0\.1/20, 10, 10/' own.toml
 [ $? -eq 2 ] && grep -q 'the network reaches from .* the body from' log || fail "a body outside the network: $(cat log)"
 "$program" export case.toml --to springs --out springs.txt >log 2>&1
 [ $? -eq 2 ] && grep -q 'allowed: a name that ends in .json, .npz or .vtu' log || fail "another ending: $(cat log)"
-"$program" export icosahedron.stl --to springs >log 2>&1
-[ $? -eq 2 ] && grep -q 'a body alone needs -E and --nu' log || fail "a body without a material: $(cat log)"
+# bad PATTERN ARGUMENTS...: status 2, a line (of the command line's own checks: and where help is), no file
+bad() {
+  local pattern=$1
+  shift
+  rm -f bad.json
+  "$program" export "$@" --to springs --out bad.json >log 2>errors
+  local status=$?
+  [ $status -eq 2 ] && [ "$(wc -l <errors)" -le 2 ] && grep -qE -- "$pattern" errors && [ ! -e bad.json ] || fail "export $*: status $status: $(head -c 600 errors)"
+}
+bad 'a body alone needs -E and --nu' icosahedron.stl
+bad 'poisson_ratio.*0\.5' icosahedron.stl -E 5e3 --nu 0.5
+bad "unknown model 'hybmss_av' .*did you mean 'hybmss_avg'" icosahedron.stl -E 5e3 --nu 0.45 --model hybmss_av
+bad '--voxels.*4000000' icosahedron.stl -E 5e3 --nu 0.45 --voxels 100000000
+sed '2,8d' icosahedron.stl >open.stl  # without its first facet
+bad 'open.stl' open.stl -E 5e3 --nu 0.45
+bad 'none.stl' none.stl -E 5e3 --nu 0.45
+mkdir taken.json
+for out in taken.json none/body.json; do
+  "$program" export icosahedron.stl -E 5e3 --nu 0.45 --to springs --out $out >log 2>errors
+  [ $? -eq 2 ] && [ "$(wc -l <errors)" -eq 1 ] && grep -q -- "--out: cannot write $out.*allowed" errors && [ ! -e $out.part ] || fail "an unwritable file: $(cat errors)"
+done
 
 # LAMMPS: its forces are ours, at a state that it has moved to.
 "$program" export case.toml --to lammps --model emsm --out springs.data >log 2>&1

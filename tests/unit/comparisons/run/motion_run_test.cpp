@@ -74,6 +74,54 @@ TEST(MotionRun, AtRestIsTheEquilibrium) {
   }
 }
 
+/// A ball of cut cells that sinks on its support: at rest it is where the equilibrium of anchored cells is, but for the
+/// nodes at the patch that are held instead.
+TEST(MotionRun, BodiesMoveInCutCells) {
+  const Part part = run_of(parse_experiment(R"(kinematics = "hencky"
+[body]
+geo = "sphere.geo"
+size_m = [0.2, 0.2, 0.2]
+voxels = 200
+[[patch]]
+name = "low"
+beyond = { point_m = [0.1, 0.1, 0.06], normal = [0.2, 0, -1] }
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+density_kg_m3 = 1000
+[[load]]
+on = "low"
+displacement_m = [0, 0, 0]
+[[load]]
+gravity_m_s2 = [0, 0, -9.81]
+[[probe]]
+name = "top"
+at_m = [0.1, 0.1, 0.19]
+[compare]
+models = ["hybmss_avg", "hybmss"]
+measures = ["volume_change", "reaction", "probe"]
+[reference]
+elements = []
+[dynamics]
+duration_s = 3
+damping_1_s = 15
+)",
+                                            "ball.toml"));
+  const auto value = [&](const std::string& model, const std::string& measure) {
+    for (const Row& row : part.rows)
+      if (row.model == model && row.measure == measure) return row.value;
+    ADD_FAILURE() << "no row " << model << " " << measure;
+    return 0.0;
+  };
+  const std::string moved = "hybmss_avg in motion";
+  const double weight = 4.0 / 3 * 3.14159265 * 1e-3 * 1000 * 9.81;
+  EXPECT_NEAR(value(moved, "force.low.z"), value("hybmss_avg", "force.low.z"), 1e-4 * weight);
+  for (const char* measure : {"displacement.top.z", "volume_change"}) {
+    EXPECT_NEAR(value(moved, measure), value("hybmss_avg", measure), 0.05 * std::abs(value("hybmss_avg", measure)));
+    EXPECT_GT(std::abs(value("hybmss in motion", measure) / value(moved, measure) - 1), 0.002) << "whole cubes";
+  }
+}
+
 /// Largest error of the energy of an undamped motion from `from` to `to` [s], in steps of `step` [s].
 double energy_error(const std::string& step, double from, double to) {
   const Part part = run_of(

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msm/dynamics/dynamics.h"
+#include "support/solids.h"
 #include "support/zoo.h"
 
 namespace springproof {
@@ -24,6 +25,7 @@ MassSpringModel small_model(const std::string& name, double nu, Dispersion form 
 }
 
 /// Largest |eigenvalue| of M^-1/2 K M^-1/2, or of its dispersive part, by power iteration: below it, not above.
+/// Nodes without a mass are held.
 double spectral_radius(const MassSpringModel& model, bool dispersion_alone = false) {
   MassSpringModel part = model;
   if (dispersion_alone)
@@ -31,7 +33,7 @@ double spectral_radius(const MassSpringModel& model, bool dispersion_alone = fal
   const Tangent K = tangent(part, model.network.X);
   const Eigen::VectorXd mass = masses(model.network, density);
   Eigen::VectorXd scale(3 * model.network.nodes()), y;
-  for (Eigen::Index i = 0; i < scale.size(); ++i) scale[i] = 1 / std::sqrt(mass[i / 3]);
+  for (Eigen::Index i = 0; i < scale.size(); ++i) scale[i] = mass[i / 3] > 0 ? 1 / std::sqrt(mass[i / 3]) : 0;
   const NodalVectors start = test::noise(model.network.nodes(), 1);
   Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(start.data(), start.size()).normalized();
   for (int i = 0; i < 1000; ++i) {
@@ -52,6 +54,30 @@ TEST(SafeTimeStep, IsSafeOnEveryNetworkAndNotWastefulOnAny) {
       EXPECT_LE(used, 1 + 1e-9) << row.name << " nu = " << nu;
       EXPECT_GE(used, 0.4) << row.name << " nu = " << nu;
     }
+}
+
+/// Slivers have little mass and stiffness, and share nodes with whole cells.
+TEST(SafeTimeStep, IsSafeOnCutBodiesAndNotWasteful) {
+  for (const ModelRow& row : model_table()) {
+    if (!has_cut_cells(row)) continue;
+    for (double nu : {-0.5, 0.0, 0.25, 0.45, 0.49})
+      for (unsigned seed : {1u, 2u}) {
+        if (row.extension == Extension::none && nu != 0.25) continue;
+        const double edge = 0.3;
+        const Mesh body = test::mapped(test::ball_of_tetrahedra(6), test::random_placement(seed, edge));
+        const CutBody cut = cut_body(test::grid_about(body, edge), body);
+        for (const bool held : {false, true}) {  // by the points of its surface, which have no mass
+          const std::vector<std::string> patches =
+              held ? std::vector<std::string>{"surface"} : std::vector<std::string>{};
+          const MassSpringModel model =
+              build_cut(test::model(row.name), cut, patches, Mesh{}, {1e4, nu, density}).model;
+          const double used = safe_time_step(model, density) * std::sqrt(spectral_radius(model)) / 2;
+          EXPECT_LE(used, 1 + 1e-9) << row.name << " nu = " << nu << ", place " << seed << (held ? ", held" : "");
+          EXPECT_GE(used, held ? 0.3 : 0.5)
+              << row.name << " nu = " << nu << ", place " << seed << (held ? ", held" : "");
+        }
+      }
+  }
 }
 
 TEST(SafeTimeStep, HoldsForEveryFormOfDispersionAndItsWeights) {

@@ -1,0 +1,76 @@
+#include "msm/exchange/read_cut_cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace springproof {
+namespace {
+
+constexpr double at_rest = 1e-6;  // of an edge
+
+std::vector<Anchor> read_anchors(const JsonPlace& place, const Network& network) {
+  place.require_known({"position_m", "nodes", "weights", "stiffness_N_m"});
+  const std::vector<double> stiffness = place.at("stiffness_N_m").numbers(1, 0, nullptr, 0);
+  const std::size_t count = stiffness.size();
+  const std::vector<int> nodes = place.at("nodes").integers(8, network.nodes() - 1, count, "constants");
+  const std::vector<double> weights = place.at("weights").numbers(8, count, "constants"),
+                            position = place.at("position_m").numbers(3, count, "constants");
+  std::vector<Anchor> anchors(count);
+  for (std::size_t a = 0; a < count; ++a) {
+    std::copy_n(&nodes[8 * a], 8, anchors[a].corners.begin());
+    std::copy_n(&weights[8 * a], 8, anchors[a].weights.begin());
+    anchors[a].node = -1;
+    anchors[a].stiffness = stiffness[a];
+    const Vec3 off = anchored_point(anchors[a], network.X) - Eigen::Map<const Vec3>(&position[3 * a]);
+    if (!(off.cwiseAbs().maxCoeff() <= at_rest * network.cell_edge))
+      place.at("position_m")
+          .refuse(fmt::format("anchor {} is {:.3g} m from the mean of its nodes", a, off.norm()),
+                  "the mean of the nodes by the weights, where it is at rest");
+  }
+  return anchors;
+}
+
+PatchShares read_load(const JsonPlace& place, int nodes_of_network) {
+  place.require_known({"nodes", "area_m2", "normal_m2"});
+  const std::vector<int> nodes = place.at("nodes").integers(1, nodes_of_network - 1);
+  const std::vector<double> area = place.at("area_m2").numbers(1, nodes.size(), "nodes"),
+                            normal = place.at("normal_m2").numbers(3, nodes.size(), "nodes");
+  PatchShares shares{Eigen::VectorXd::Zero(nodes_of_network), NodalVectors::Zero(nodes_of_network, 3)};
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    shares.area[nodes[n]] += area[n];
+    shares.normal.row(nodes[n]) += Eigen::Map<const Eigen::RowVector3d>(&normal[3 * n]);
+  }
+  return shares;
+}
+
+}  // namespace
+
+void read_filled(const JsonPlace& cells, Network& network) {
+  const auto fraction = cells.find("fraction");
+  if (!fraction) return;
+  constexpr double least = 1e-6;  // of a cube, so that masses and stiffnesses keep their digits
+  const std::size_t count = network.cells.size();
+  const std::vector<double> alpha = fraction->numbers(1, count, "cells", least, 1),
+                            mean = cells.at("mean").numbers(3, count, "cells", -0.5, 0.5),
+                            mixed = cells.at("mixed").numbers(3, count, "cells", -0.25, 0.25),
+                            variance = cells.at("variance").numbers(3, count, "cells", 0, 0.25);
+  for (std::size_t c = 0; c < count; ++c)
+    network.filled.push_back({alpha[c], Eigen::Map<const Vec3>(&mean[3 * c]), Eigen::Map<const Vec3>(&mixed[3 * c]),
+                              Eigen::Map<const Vec3>(&variance[3 * c])});
+}
+
+void read_supports_and_loads(const JsonPlace& document, SpringsFile& file) {
+  const Network& network = file.model.network;
+  if (const auto anchors = document.find("anchors"))
+    for (const std::string& name : anchors->keys()) file.anchors[name] = read_anchors(anchors->at(name), network);
+  if (const auto loads = document.find("loads"))
+    for (const std::string& name : loads->keys()) file.loads[name] = read_load(loads->at(name), network.nodes());
+  if (const auto weight = document.at("nodes").find("weight_kg")) {
+    const std::vector<double> kg = weight->numbers(1, static_cast<std::size_t>(network.nodes()), "nodes");
+    file.volumes = Eigen::Map<const Eigen::VectorXd>(kg.data(), static_cast<Eigen::Index>(kg.size())) / file.density;
+  }
+}
+
+}  // namespace springproof

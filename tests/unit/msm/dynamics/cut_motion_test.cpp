@@ -1,0 +1,95 @@
+// Motion of bodies of cut cells.
+#include <gtest/gtest.h>
+
+#include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/time_step.h"
+#include "msm/models.h"
+#include "support/solids.h"
+#include "support/zoo.h"
+
+namespace springproof {
+namespace {
+
+const IsotropicMaterial material{1e4, 0.4, 1100};
+
+/// A round bar of two cells, lying anyhow.
+MassSpringModel bar() {
+  const double edge = 0.5;
+  const Mesh body = test::mapped(test::cylinder(3, 8, 12), test::random_placement(2, edge));
+  const CutBody cut = cut_body(test::grid_about(body, edge), body);
+  return build_cut(test::model("hybmss_avg"), cut, {}, Mesh{}, material).model;
+}
+
+LoadPath no_loads(const Network& network) {
+  return [&](double) {
+    return BoundaryConditions{std::vector<char>(network.X.size(), 0), std::vector<int>(network.X.size(), -1),
+                              NodalVectors::Zero(network.nodes(), 3), NodalVectors::Zero(network.nodes(), 3)};
+  };
+}
+
+/// A bent and turned bar is let go: it swings, and goes nowhere.
+TEST(CutMotion, KeepsMomentaAndEnergy) {
+  const MassSpringModel model = bar();
+  const Network& network = model.network;
+  const Eigen::VectorXd mass = masses(network, material.density);
+  for (const Integrator integrator : {Integrator::explicit_euler, Integrator::energy_momentum}) {
+    const bool implicit = integrator == Integrator::energy_momentum;
+    DynamicsOptions options;
+    options.integrator = integrator;
+    options.start = network.X;
+    for (auto x : options.start.rowwise()) x[1] += 0.1 * x[0] * x[0] + 0.05 * x[2] * x[2] + 0.1 * x[2];
+    const double start = energy(model, options.start), dt = safe_time_step(model, material.density);
+    options.time_step = implicit ? 4 * dt : 0.5 * dt;
+    options.duration = 200 * dt;
+    double energy_off = 0, momentum = 0, spin = 0, moving = 0, turning = 0;
+    options.after_step = [&](double, const NodalVectors& x, NodalVectors v, const BoundaryConditions&) {
+      if (!implicit) {  // the velocity of a step is half a step behind
+        const NodalVectors f = forces(model, x);
+        for (Eigen::Index n = 0; n < v.rows(); ++n) v.row(n) += *options.time_step / 2 / mass[n] * f.row(n);
+      }
+      double kinetic = 0, speeds = 0, spins = 0;
+      Vec3 p = Vec3::Zero(), L = Vec3::Zero();
+      for (Eigen::Index n = 0; n < v.rows(); ++n) {
+        const Vec3 at = x.row(n).transpose(), mv = mass[n] * v.row(n).transpose();
+        kinetic += mv.dot(v.row(n).transpose()) / 2;
+        p += mv;
+        L += at.cross(mv);
+        speeds += mv.norm();
+        spins += at.cross(mv).norm();
+      }
+      energy_off = std::max(energy_off, std::abs(kinetic + energy(model, x) - start));
+      momentum = std::max(momentum, p.norm());
+      spin = std::max(spin, L.norm());
+      moving = std::max(moving, speeds);
+      turning = std::max(turning, spins);
+    };
+    const DynamicsResult result = run_dynamics(model, material.density, no_loads(network), options);
+    ASSERT_TRUE(result.state.ok) << result.state.message;
+    EXPECT_LT(momentum, 1e-9 * moving);
+    EXPECT_LT(energy_off, (implicit ? 1e-6 : 0.02) * start);
+    EXPECT_LT(spin, (implicit ? 1e-7 : 1e-10) * turning);
+    EXPECT_GT(moving * moving, 0.01 * start * mass.sum());
+  }
+}
+
+/// The safe step is one: just below it a motion stays bounded.
+TEST(CutMotion, IsStableAtTheSafeStep) {
+  const MassSpringModel model = bar();
+  DynamicsOptions options;
+  options.start = model.network.X + test::noise(model.network.nodes(), 1e-4);
+  options.time_step = safe_time_step(model, material.density);
+  options.duration = 3000 * *options.time_step;
+  const double start = energy(model, options.start);
+  double largest = 0;
+  options.stride = 100;
+  options.after_step = [&](double, const NodalVectors& x, const NodalVectors&, const BoundaryConditions&) {
+    largest = std::max(largest, energy(model, x));
+  };
+  EXPECT_TRUE(run_dynamics(model, material.density, no_loads(model.network), options).state.ok);
+  EXPECT_LT(largest, 10 * start);
+  options.time_step = 1.001 * *options.time_step;
+  EXPECT_THROW(run_dynamics(model, material.density, no_loads(model.network), options), InputError);
+}
+
+}  // namespace
+}  // namespace springproof
