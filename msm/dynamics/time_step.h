@@ -12,7 +12,8 @@ namespace springproof {
 ///  - momentum dispersion: additional springs k (R_i + R_j), with R_n of MomentumDispersion::stiffness_bound();
 ///  - volume and hourglass corrections of a lattice of equal cells: with the springs, the stiffest single cell (Irons
 ///    and Treharne);
-///  - averaged springs, in whole or cut cells: the stiffest cell alone, or the norms of the blocks, whichever is less; with the anchors
+///  - averaged springs, in whole or cut cells: the stiffest cell alone, or the norms of the blocks, whichever is less;
+///  with the anchors
 ///    of a cell, whose nodes are taken as held;
 ///  - any other law: the norms of the 3x3 blocks of its stiffness.
 /// A non-conservative form of dispersion can have complex frequencies, whose flutter only damping prevents, no time
