@@ -11,6 +11,8 @@ foreach(program springproof springproof-mesh springproof-fem springproof-bench s
   endif()
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/experiments ${CMAKE_SOURCE_DIR}/meshes/geo DESTINATION share/springproof)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/advise DESTINATION share/springproof
+        FILES_MATCHING PATTERN "*.csv" PATTERN "*.toml")
 
 set(described ${CMAKE_CURRENT_BINARY_DIR}/described)
 file(MAKE_DIRECTORY ${described})
