@@ -40,13 +40,13 @@ MeasuredFile parse_measurements(const std::string& text, const std::filesystem::
       out.header += line.substr(1) + "\n";
     } else if (!has_heading) {
       if (line != heading)
-        throw InputError({file.string(), number, 0}, fmt::format("the heading is '{}' (allowed: '{}')", line, heading));
+        throw InputError({file.string(), number, 1}, fmt::format("the heading is '{}' (allowed: '{}')", line, heading));
       has_heading = true;
     } else if (!line.empty()) {
       try {
         out.rows.push_back(measurement_of(line));
       } catch (const std::exception& e) {
-        throw InputError({file.string(), number, 0},
+        throw InputError({file.string(), number, 1},
                          fmt::format("'{}': {} (allowed: text or numbers under '{}')", line, e.what(), heading));
       }
     }

@@ -65,6 +65,6 @@ refused "is a folder" golec_2019
 sed 's/x_min/x_top/' "$work/bar.toml" >"$work/mistaken.toml"
 refused "mistaken.toml:.*x_top" "$work/mistaken.toml"
 echo "not a file of measurements" >"$work/other.csv"
-refused "other.csv:1: the heading" --measure "$work/other.csv"
+refused "other.csv:1:1: the heading" --measure "$work/other.csv"
 grep -q "not a file" "$work/other.csv" || fail "a foreign file was overwritten"
 exit $((failures > 0))
