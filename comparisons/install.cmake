@@ -12,6 +12,8 @@ foreach(program springproof springproof-mesh springproof-fem springproof-bench s
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/experiments ${CMAKE_SOURCE_DIR}/comparisons/bench/engines ${CMAKE_SOURCE_DIR}/meshes/geo
         DESTINATION share/springproof PATTERN *.cpp EXCLUDE)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/advise DESTINATION share/springproof
+        FILES_MATCHING PATTERN "*.csv" PATTERN "*.toml")
 
 set(described ${CMAKE_CURRENT_BINARY_DIR}/described)
 file(MAKE_DIRECTORY ${described})

@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "comparisons/commands/advise_command.h"
 #include "comparisons/commands/calculix_command.h"
 #include "comparisons/commands/describe.h"
 #include "comparisons/commands/diff_command.h"
@@ -150,12 +151,17 @@ int main(int argc, char** argv) try {
   bench_command->set_help_flag();
   bench_command->prefix_command();  // its options are parsed by the program that it starts
 
+  AdviseCommand advice;
+  CLI::App* advise_command = app.add_subcommand(
+      "advise", "Which models and resolutions reach an error within a budget, predicted from measurements");
+  advice.add_options(*advise_command);
+
   std::string form;
   CLI::App* describe_command =
       app.add_subcommand("describe", "The command line as a man page, or as completion for bash")->group("");
   describe_command->add_option("FORM", form)->required()->check(CLI::IsMember({"man", "bash"}));
 
-  for (CLI::App* command : {compare_command, export_command, cross_check_command, frequencies_command})
+  for (CLI::App* command : {advise_command, compare_command, export_command, cross_check_command, frequencies_command})
     command->add_flag_callback(
         "--no-scripts", [] { setenv("SPRINGPROOF_NO_SCRIPTS", "1", 1); },
         "refuse .geo scripts other than the built-in ones: a script can run any command");
@@ -173,6 +179,7 @@ int main(int argc, char** argv) try {
   if (*export_command) return export_case.run();
   if (*frequencies_command) return frequencies.run();
   if (*pictures_command) return pictures.run();
+  if (*advise_command) return advice.run();
   if (*diff_command) return diff.run();
   if (*reproduce_command) return reproduction.run();
   if (*cross_check_command) return second_opinion.run();

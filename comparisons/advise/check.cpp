@@ -1,0 +1,119 @@
+#include "comparisons/advise/check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "comparisons/advise/measure.h"
+#include "comparisons/advise/table_prediction.h"
+#include "comparisons/run/find_cases.h"
+
+namespace springproof {
+namespace {
+
+constexpr double allowed_factor = 1.5;
+
+bool both_below(const Measurement& truth, const Prediction& p) {
+  return truth.error <= truth.uncertainty && p.error <= truth.uncertainty;
+}
+
+bool within(double truth, double predicted, double factor) {
+  return truth > 0 && predicted > 0 && std::abs(std::log(predicted / truth)) <= std::log(factor);
+}
+
+const PilotModel* find_model(const Pilot& pilot, const std::string& label) {
+  const auto at =
+      std::find_if(pilot.models.begin(), pilot.models.end(), [&](const PilotModel& m) { return m.label == label; });
+  return at == pilot.models.end() ? nullptr : &*at;
+}
+
+/// The rows of a case at a Poisson's ratio, and the rows of the model table that they are of.
+struct HeldOut {
+  std::vector<Measurement> rows;
+  std::vector<std::string> models;
+};
+
+HeldOut held_out_of(const std::vector<Measurement>& all, const std::string& name, double poisson_ratio) {
+  HeldOut out;
+  for (const Measurement& m : all) {
+    if (m.load != name || !same_poisson_ratio(m.poisson_ratio, poisson_ratio)) continue;
+    out.rows.push_back(m);
+    const std::string row = m.model.substr(0, m.model.find(' '));
+    if (std::find(out.models.begin(), out.models.end(), row) == out.models.end()) out.models.push_back(row);
+  }
+  return out;
+}
+
+Judged judge(const Measurement& truth, const PilotModel& model, const Pilot& pilot,
+             const std::vector<Measurement>& measured) {
+  const double cells = std::pow(truth.cells_across, 3);
+  Judged out{truth, predict(pilot, model, cells), {}};
+  if (truth.body != "block") return out;
+  const Classified kind = classify(pilot);
+  const double across = std::cbrt(cells / pilot.volume) * kind.thickness;
+  if (const auto p =
+          predict(measured, {kind.load, "block", kind.slenderness, 0}, truth.model, truth.poisson_ratio, across))
+    out.from_table.push_back(*p);
+  return out;
+}
+
+}  // namespace
+
+bool hit(const Measurement& truth, const Prediction& p) {
+  return both_below(truth, p) || within(truth.error, p.error, allowed_factor);
+}
+
+bool inside(const Measurement& truth, const Prediction& p) {
+  return both_below(truth, p) || within(truth.error, p.error, p.factor);
+}
+
+HitRate hit_rate(const std::vector<Judged>& judged) {
+  HitRate out;
+  for (const Judged& j : judged) {
+    const bool good = hit(j.truth, j.from_pilot);
+    ++out.all;
+    out.hits += good;
+    out.inside += inside(j.truth, j.from_pilot);
+    out.beyond += j.from_pilot.beyond;
+    out.beyond_hits += j.from_pilot.beyond && good;
+    for (const Prediction& p : j.from_table) {
+      ++out.table;
+      out.table_hits += hit(j.truth, p);
+      out.table_inside += inside(j.truth, p);
+    }
+  }
+  return out;
+}
+
+Classified classify(const Pilot& pilot) {
+  const double thickness = pilot.size.minCoeff();
+  double across = std::numeric_limits<double>::infinity();
+  for (int d = 0; d < 3; ++d)
+    if (d != pilot.shares.axis) across = std::min(across, pilot.size[d]);
+  return {pilot.shares.largest(), pilot.size[pilot.shares.axis] / across, thickness};
+}
+
+std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out,
+                                      const std::vector<Measurement>& measured, const std::string& name,
+                                      const PilotSize& size) {
+  std::vector<Judged> out;
+  for (const Experiment& e : held_out_cases()) {
+    if (case_name(e.file).find(name) == std::string::npos) continue;
+    for (const IsotropicMaterial& material : e.materials) {
+      const HeldOut of = held_out_of(held_out, case_name(e.file), material.poisson_ratio);
+      if (of.rows.empty()) continue;
+      const Pilot pilot = solve_pilot(e, material, of.models, size);
+      for (const Measurement& m : of.rows) {
+        const bool whole = e.body.is_voxels() && !e.body.cut;
+        const PilotModel* model = whole ? find_model(pilot, m.model + " cut=false") : nullptr;
+        if (!model) model = find_model(pilot, m.model);
+        if (model) out.push_back(judge(m, *model, pilot, measured));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace springproof

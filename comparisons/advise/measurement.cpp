@@ -1,0 +1,77 @@
+#include "comparisons/advise/measurement.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "problem/system/child.h"
+#include "problem/system/files.h"
+#include "problem/system/input_error.h"
+
+namespace springproof {
+namespace {
+
+constexpr const char* heading = "load,body,slenderness,strain,nu,model,cells_across,error,uncertainty";
+
+Measurement measurement_of(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream in(line);
+  for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
+  if (fields.size() != 9) throw std::invalid_argument(fmt::format("has {} fields", fields.size()));
+  const auto number = [&](std::size_t i) {
+    std::size_t read = 0;
+    const double x = std::stod(fields[i], &read);
+    if (read != fields[i].size()) throw std::invalid_argument(fields[i] + " is no number");
+    return x;
+  };
+  return {fields[0], fields[1], number(2), number(3), number(4), fields[5], number(6), number(7), number(8)};
+}
+
+}  // namespace
+
+MeasuredFile parse_measurements(const std::string& text, const std::filesystem::path& file) {
+  MeasuredFile out;
+  std::istringstream in(text);
+  int number = 0;
+  bool has_heading = false;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.starts_with('#')) {
+      out.header += line.substr(1) + "\n";
+    } else if (!has_heading) {
+      if (line != heading)
+        throw InputError({file.string(), number, 1}, fmt::format("the heading is '{}' (allowed: '{}')", line, heading));
+      has_heading = true;
+    } else if (!line.empty()) {
+      try {
+        out.rows.push_back(measurement_of(line));
+      } catch (const std::exception& e) {
+        throw InputError({file.string(), number, 1},
+                         fmt::format("'{}': {} (allowed: text or numbers under '{}')", line, e.what(), heading));
+      }
+    }
+  }
+  if (!has_heading)
+    throw InputError(fmt::format("{}: holds no measurements (allowed: a file written by springproof advise --measure)",
+                                 file.string()));
+  return out;
+}
+
+MeasuredFile read_measurements(const std::filesystem::path& file) {
+  return parse_measurements(text_of_file(file), file);
+}
+
+void write_measurements(const std::filesystem::path& file, const MeasuredFile& measured) {
+  std::string text;
+  std::istringstream header(measured.header);
+  for (std::string line; std::getline(header, line);) text += "#" + line + "\n";
+  text += fmt::format("{}\n", heading);
+  for (const Measurement& m : measured.rows)
+    text += fmt::format("{},{},{:g},{:g},{:g},{},{:.6g},{:.4e},{:.2e}\n", m.load, m.body, m.slenderness, m.strain,
+                        m.poisson_ratio, m.model, m.cells_across, m.error, m.uncertainty);
+  write_file(file, text);
+}
+
+std::filesystem::path advise_folder() { return data_folder("advise", SPRINGPROOF_ADVISE_DIR); }
+
+}  // namespace springproof

@@ -1,0 +1,335 @@
+#include "comparisons/advise/pilot.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "comparisons/judge/deformation.h"
+#include "comparisons/judge/measures.h"
+#include "comparisons/judge/reference_value.h"
+#include "comparisons/run/prepare.h"
+#include "meshes/locate/locate.h"
+#include "meshes/volume.h"
+#include "msm/embedding/rigid_motions.h"
+#include "msm/models.h"
+#include "msm/statics/equilibrium.h"
+#include "problem/system/progress.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof {
+namespace {
+
+constexpr const char* reference_model = "hybmss_avg";
+constexpr double slowest = 0.5, fastest = 2;       // orders at which errors may fall
+constexpr double large_displacement_share = 0.15;  // of the cells, where each is solved by Newton's method
+constexpr double voxel_share = 0.6;                // of the cells of a cut body, whose solver takes more iterations
+constexpr double most_pilot_cells = 5e5;           // of any lattice of a pilot
+
+/// A model solved on a lattice.
+struct LatticeSolve {
+  Equilibrium state;
+  NodalVectors field;  ///< at the lattice's nodes [m]
+  double seconds = 0;
+};
+
+LatticeSolve solve_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                      const IsotropicMaterial& material) {
+  const Kinematics kinematics = prepared.experiment.model_kinematics();
+  const double start = cpu_seconds();
+  const auto [model, embedding] = build_on(prepared, lattice, parameters, material);
+  const LoadPath path = [&, &m = model, &e = embedding](double factor) {
+    return transfer(prepared.loads, *lattice.mesh, e, m.network, material.density, kinematics, factor);
+  };
+  LatticeSolve out;
+  out.state = kinematics == Kinematics::linear ? solve_linear(model, path(1), {LinearSolver::automatic, 1e-8, 2000})
+                                               : solve_finite(model, path);
+  out.seconds = cpu_seconds() - start;
+  if (out.state.ok) out.field = embedding.weights * out.state.displacement;
+  return out;
+}
+
+/// The displacement of a solve at other points.
+NodalVectors at_points(const Lattice& lattice, bool cut, const LatticeSolve& solve, const NodalVectors& points) {
+  if (cut) return displacement_at(*lattice.cut, solve.state.displacement, points);
+  const Locator locator(*lattice.mesh);
+  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Location at = locator(points.row(i).transpose());
+    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * solve.field.row(lattice.mesh->hexahedra[at.cell][n]);
+  }
+  return out;
+}
+
+double cells_of(const Lattice& lattice) { return static_cast<double>(lattice.mesh->hexahedra.size()); }
+
+/// The resolutions of a pilot: those of every model, then the three of the reference, as multiples of the coarsest
+/// lattice of a block or as numbers of cubes.
+struct Resolutions {
+  std::vector<int> every, reference;
+};
+
+/// About in the ratio of 2 of edges, where there is room for it.
+std::vector<int> three_multiples(int top) {
+  if (top >= 8) top -= top % 4;
+  if (top % 4 == 0) return {top / 4, top / 2, top};
+  return {std::max(1, static_cast<int>(std::lround(top / 2.25))), std::max(2, static_cast<int>(std::lround(top / 1.5))),
+          top};
+}
+
+Resolutions multiples_of(const Cells& base, const PilotSize& size) {
+  const double one = double(base[0]) * base[1] * base[2];
+  Resolutions out;
+  for (const int m : {2, 3, 4, 6, 8, 12, 16, 24})  // one cell between two supports has no free node
+    if (m <= 3 || one * m * m * m <= size.cells) out.every.push_back(m);
+  const int top = std::max({6, 2 * out.every.back(), static_cast<int>(std::cbrt(size.reference_cells / one))});
+  out.reference = three_multiples(top);
+  return out;
+}
+
+Resolutions voxel_counts_of(const PilotSize& size) {
+  const double fine = size.cells, most = voxel_share * size.reference_cells;
+  return {{static_cast<int>(fine / 6), static_cast<int>(fine / 2.5), static_cast<int>(fine)},
+          {static_cast<int>(most / 12), static_cast<int>(most / 3.5), static_cast<int>(most)}};
+}
+
+ModelChoice choice_of(const std::string& name, std::optional<bool> cut) {
+  ModelChoice choice{name, {}, name, {}};
+  if (cut) choice.options["cut"] = *cut;
+  if (cut && !*cut) choice.label += " cut=false";
+  return choice;
+}
+
+/// The case as the pilot solves it: its models, its lattices, no measures and no finite elements.
+Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std::vector<std::string>& models,
+                      const Resolutions& at, const Cells& base) {
+  e.materials = {material};
+  e.measures.clear();
+  e.expectations.clear();
+  e.published.clear();
+  e.probes.clear();
+  e.section.reset();
+  e.line.reset();
+  e.dynamics.reset();
+  e.elements.clear();
+  e.reference.elements.clear();
+  e.models.clear();
+  const bool voxels = e.body.is_voxels();
+  const auto add = [&](const std::string& name) {
+    const ModelRow row = resolve(choice_of(name, {})).row;
+    const bool finite = e.model_kinematics() == Kinematics::finite;
+    if (finite && !holds_at_large_displacement(row)) return;
+    const bool cuts = voxels && has_cut_cells(row) && (!finite || row.extension == Extension::averaging);
+    if (cuts) e.models.push_back(choice_of(name, true));
+    e.models.push_back(choice_of(name, cuts ? std::optional(false) : std::nullopt));
+  };
+  add(reference_model);
+  for (const std::string& name : models)
+    if (name != reference_model) add(name);
+  std::vector<int> all = at.every;
+  all.insert(all.end(), at.reference.begin(), at.reference.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  e.body.cells.clear();
+  e.body.voxel_edges.clear();
+  e.body.voxel_counts.clear();
+  for (const int n : all)
+    if (voxels)
+      e.body.voxel_counts.push_back(n);
+    else
+      e.body.cells.push_back({n * base[0], n * base[1], n * base[2]});
+  return e;
+}
+
+/// The extrapolated displacement of the reference at the nodes of a lattice.
+ReferenceField reference_at(const std::vector<const Lattice*>& lattices, const std::vector<LatticeSolve>& solves,
+                            bool cut, const Mesh& mesh) {
+  std::vector<NodalVectors> fields;
+  for (std::size_t i = 0; i < 3; ++i) fields.push_back(at_points(*lattices[i], cut, solves[i], mesh.nodes));
+  const auto ratio = [&](std::size_t i) { return std::cbrt(cells_of(*lattices[i + 1]) / cells_of(*lattices[i])); };
+  return extrapolate(fields, nodal_volumes(mesh), {ratio(0), ratio(1)});
+}
+
+double product(const NodalVectors& a, const NodalVectors& b, const Eigen::VectorXd& weights) {
+  return weights.dot(a.cwiseProduct(b).rowwise().sum());
+}
+
+/// The order at which the last two of three steps along an error fall, edges h; between `slowest` and `fastest`.
+double order_of_errors(double coarse, double fine, double ratio) {
+  if (!(coarse > 0) || !(fine > 0)) return fastest;
+  return std::clamp(std::log(coarse / fine) / std::log(ratio), slowest, fastest);
+}
+
+/// By how much too stiff a body is whose displacements are short by an error; an error beyond it stays as it is.
+double stiffness_excess(double error) { return error < 0.9 ? error / (1 - error) : 10 * error; }
+
+/// Models that are the material have its solution as their limit; springs of another Poisson's ratio have their own.
+void extrapolate_model(const PilotModel& model, bool own_limit, const std::vector<NodalVectors>& fields,
+                       const NodalVectors& truth, const Eigen::VectorXd& weights, SquaredLine& line, double& order) {
+  const std::size_t n = model.cells.size();
+  const double size = product(truth, truth, weights);
+  const NodalVectors off = fields.back() - truth;
+  const double ratio = n > 1 ? std::cbrt(model.cells[n - 1] / model.cells[n - 2]) : 2;
+  if (n < 2 || !own_limit) {
+    order = n > 1 ? order_of_errors(stiffness_excess(model.errors[n - 2]), stiffness_excess(model.errors[n - 1]), ratio)
+                  : 1;
+    line = {0, 0, product(off, off, weights) / size};
+    return;
+  }
+  const NodalVectors step = fields[n - 1] - fields[n - 2];
+  order =
+      n > 2 ? order_of_errors(std::sqrt(product(fields[n - 2] - fields[n - 3], fields[n - 2] - fields[n - 3], weights)),
+                              std::sqrt(product(step, step, weights)), ratio)
+            : 1;
+  const NodalVectors b = -step / (std::pow(ratio, order) - 1), a = off - b;
+  line = {product(a, a, weights) / size, product(a, b, weights) / size, product(b, b, weights) / size};
+}
+
+/// A pilot while it is being solved.
+struct PilotRun {
+  const PreparedCase& prepared;
+  const IsotropicMaterial& material;
+  std::vector<const Lattice*> every, reference;
+  std::vector<LatticeSolve> reference_solves;
+  std::vector<ReferenceField> truths;  ///< at the nodes of each of `every`
+};
+
+PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
+  const ModelParameters& p = run.prepared.models[number];
+  PilotModel out;
+  out.label = run.prepared.experiment.models[number].label;
+  out.cut = p.cut.value_or(false);
+  std::vector<NodalVectors> fields;
+  const Lattice& last = *run.every.back();
+  for (std::size_t i = 0; i < run.every.size(); ++i) {
+    const Lattice& lattice = *run.every[i];
+    progress::phase(fmt::format("{} on {} cells", out.label, cells_of(lattice)));
+    const LatticeSolve s = solve_on(run.prepared, lattice, p, run.material);
+    if (!s.state.ok) {
+      out.failure = s.state.message;
+      continue;
+    }
+    out.cells.push_back(cells_of(lattice));
+    out.errors.push_back(displacement_error(s.field, run.truths[i].displacement, nodal_volumes(*lattice.mesh)));
+    fields.push_back(at_points(lattice, out.cut, s, last.mesh->nodes));
+  }
+  if (out.cells.empty()) return out;
+  const auto own = own_poisson_ratio(p.row);
+  extrapolate_model(out, own && !same_poisson_ratio(*own, run.material.poisson_ratio), fields,
+                    run.truths.back().displacement, nodal_volumes(*last.mesh), out.beyond, out.order);
+  return out;
+} catch (const InputError&) {
+  throw;
+} catch (const std::exception& e) {  // no network with this material's moduli, or of this few cells
+  PilotModel none;
+  none.label = run.prepared.experiment.models[number].label;
+  none.failure = e.what();
+  return none;
+}
+
+void check_loads(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *prepared.lattices.front().mesh;
+  std::vector<std::string> patches;
+  for (const Patch& p : mesh.patches) patches.push_back(p.name);
+  check_patches(e, patches);
+  require_supported(transfer(prepared.loads, mesh, 1000, e.model_kinematics()), mesh.nodes);
+}
+
+Cells coarsest(const Body& body) {
+  if (body.is_voxels()) return {0, 0, 0};
+  const Cells& c = body.cells.front();
+  const int common = std::gcd(std::gcd(c[0], c[1]), c[2]);
+  const Cells base = {c[0] / common, c[1] / common, c[2] / common};
+  if (const double finest = 216.0 * base[0] * base[1] * base[2]; finest > most_pilot_cells)
+    throw InputError(body.where,
+                     fmt::format("cells: {} x {} x {} have no coarser lattice than {} x {} x {}, and advice needs six "
+                                 "times as many along each edge (allowed: up to {:.0g} cells then)",
+                                 c[0], c[1], c[2], base[0], base[1], base[2], most_pilot_cells));
+  return base;
+}
+
+}  // namespace
+
+Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& material,
+                  const std::vector<std::string>& models, const PilotSize& asked) {
+  PilotSize size = asked;
+  if (experiment.model_kinematics() == Kinematics::finite) {
+    size.cells *= large_displacement_share;
+    size.reference_cells *= large_displacement_share;
+  }
+  Pilot out;
+  out.material = material;
+  out.experiment_is_linear = experiment.model_kinematics() == Kinematics::linear;
+  out.base = coarsest(experiment.body);
+  const Resolutions at = experiment.body.is_voxels() ? voxel_counts_of(size) : multiples_of(out.base, size);
+  const Experiment e = pilot_case(experiment, material, models, at, out.base);
+  const PreparedCase prepared = prepare_lattices(e);
+  check_loads(prepared);
+  PilotRun run{prepared, material, {}, {}, {}, {}};
+  const auto lattice_at = [&](int n) {
+    const auto& counts = e.body.voxel_counts;
+    const std::size_t i = e.body.is_voxels()
+                              ? std::find(counts.begin(), counts.end(), n) - counts.begin()
+                              : std::find_if(e.body.cells.begin(), e.body.cells.end(), [&](const Cells& c) {
+                                  return c[0] == n * out.base[0];
+                                }) - e.body.cells.begin();
+    return &prepared.lattices[i];
+  };
+  for (const int n : at.every) run.every.push_back(lattice_at(n));
+  for (const int n : at.reference) run.reference.push_back(lattice_at(n));
+  const bool cut = prepared.models.front().cut.value_or(false);
+  for (const Lattice* lattice : run.reference) {
+    progress::phase(fmt::format("reference on {} cells", cells_of(*lattice)));
+    run.reference_solves.push_back(solve_on(prepared, *lattice, prepared.models.front(), material));
+    if (const Equilibrium& s = run.reference_solves.back().state; !s.ok)
+      throw std::runtime_error(fmt::format("{}: {} has no equilibrium on {} cells: {}", experiment.file.string(),
+                                           reference_model, cells_of(*lattice), s.message));
+  }
+  out.reference_cells = cells_of(*run.reference.back());
+  out.reference_seconds = run.reference_solves.back().seconds;
+  out.reference = fmt::format("{} on {:g}, {:g} and {:g} cells, extrapolated", reference_model,
+                              cells_of(*run.reference[0]), cells_of(*run.reference[1]), out.reference_cells);
+  for (const Lattice* lattice : run.every)
+    run.truths.push_back(reference_at(run.reference, run.reference_solves, cut, *lattice->mesh));
+  const Mesh& mesh = *run.every.back()->mesh;
+  const NodalVectors& u = run.truths.back().displacement;
+  out.uncertainty = run.truths.back().uncertainty;
+  out.shares = load_shares(mesh, u, material);
+  const DeformationSize deformation = deformation_size(mesh, u, e.model_kinematics());
+  out.strain = deformation.principal_strain;
+  out.rotation_deg = deformation.rotation * 180 / std::numbers::pi;
+  out.size = prepared.size;
+  out.volume = volume(mesh, mesh.nodes);
+  for (std::size_t m = 0; m < prepared.models.size(); ++m) out.models.push_back(pilot_model(run, m));
+  return out;
+}
+
+Prediction predict(const Pilot& pilot, const PilotModel& model, double cells) {
+  const auto& n = model.cells;
+  const auto& e = model.errors;
+  Prediction out;
+  if (n.empty()) return {1, 10, true};
+  constexpr double off = 1e-3;  // of a number of cells, which a cut body does not have exactly
+  if (cells > n.back() * (1 + off)) {
+    const double t = std::pow(n.back() / cells, model.order / 3);
+    const double excess = stiffness_excess(std::sqrt(model.beyond.bb)) * t;
+    out.error = model.beyond.aa > 0 ? std::sqrt(std::max(0.0, model.beyond.at(t))) : excess / (1 + excess);
+    out.beyond = true;
+  } else {
+    std::size_t i = 1;
+    while (i + 1 < n.size() && n[i] < cells) ++i;
+    if (n.size() == 1) return {e[0], 2, true};
+    const double part = std::log(cells / n[i - 1]) / std::log(n[i] / n[i - 1]);
+    out.error = std::exp((1 - part) * std::log(std::max(e[i - 1], 1e-12)) + part * std::log(std::max(e[i], 1e-12)));
+    out.beyond = part < -off;
+  }
+  const double far = cells > n.back() ? std::cbrt(cells / n.back()) : 1;
+  out.factor = (1.05 + 0.7 * pilot.uncertainty / std::max(out.error, 1e-12)) * std::sqrt(far);
+  return out;
+}
+
+}  // namespace springproof

@@ -1,0 +1,67 @@
+// A case solved on coarse lattices by its models: errors that finer lattices will have.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "comparisons/advise/load_shares.h"
+#include "comparisons/run/prepared_case.h"
+
+namespace springproof {
+
+/// What is predicted of a displacement error.
+struct Prediction {
+  double error = 0;     ///< as a part of the displacement
+  double factor = 1;    ///< nine of ten true errors lie between error / factor and error * factor
+  bool beyond = false;  ///< beyond what was solved or measured
+};
+
+/// The square of a norm along the line a + t b of fields.
+struct SquaredLine {
+  double aa = 0, ab = 0, bb = 0;
+  double at(double t) const { return aa + 2 * t * ab + t * t * bb; }
+};
+
+/// One model of a case on coarse lattices.
+struct PilotModel {
+  std::string label;
+  bool cut = false;            ///< in cut cells
+  std::string failure;         ///< why there are no errors
+  std::vector<double> cells;   ///< of the lattices, ascending
+  std::vector<double> errors;  ///< on them, against the pilot's reference
+  /// On finer lattices what the model is off from its limit falls with the edge to the power `order`.  The limit is the
+  /// reference, and what falls is the excess of stiffness e / (1 - e); or, for springs of another Poisson's ratio, one
+  /// of their own, a at t = 0.
+  SquaredLine beyond;
+  double order = 1;
+};
+
+struct PilotSize {
+  double cells = 1500;             ///< of the finest lattice on which every model is solved
+  double reference_cells = 30000;  ///< of the finest lattice of the reference
+};
+
+/// A case at one material.
+struct Pilot {
+  IsotropicMaterial material;
+  std::vector<PilotModel> models;
+  double uncertainty = 0;  ///< of the reference: averaged springs on three lattices, extrapolated
+  std::string reference;   ///< "hybmss_avg on 7, 14 and 28 cells across, extrapolated"
+  LoadShares shares;
+  double strain = 0, rotation_deg = 0;                ///< size of the deformation (comparisons/judge/deformation.h)
+  bool experiment_is_linear = true;                   ///< small displacements
+  double reference_cells = 0, reference_seconds = 0;  ///< of the finest solve, CPU time with set-up
+  Vec3 size = Vec3::Zero();                           ///< of the body or its bounding box [m]
+  double volume = 0;                                  ///< of the lattices' cells [m^3]
+  Cells base = {0, 0, 0};  ///< blocks: the coarsest cubic lattice, whose multiples are the others; else 0
+};
+
+/// Solves the case at one of its materials.  `models` are labels of the table's rows.
+/// @throws InputError for a case that cannot be used.
+Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& material,
+                  const std::vector<std::string>& models, const PilotSize& size = {});
+
+/// The error of a model on a lattice of so many cells: solved, interpolated, or extrapolated.
+Prediction predict(const Pilot& pilot, const PilotModel& model, double cells);
+
+}  // namespace springproof

@@ -1,0 +1,189 @@
+#include "comparisons/commands/advise_command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "comparisons/advise/check.h"
+#include "comparisons/advise/measure.h"
+#include "comparisons/run/find_cases.h"
+#include "comparisons/run/status.h"
+#include "msm/parameters/model_table.h"
+
+namespace springproof {
+namespace {
+
+const std::vector<std::string> usual_models = {"hybmss_avg", "hybmss_bt", "hybmss", "emsm", "msm_18", "emsm_patch"};
+
+/// "0.3", "0.3:0.49" (both ends and the middle) or "0.3,0.45".
+std::vector<double> numbers_of(const std::string& text) {
+  std::vector<double> out;
+  const bool range = text.find(':') != std::string::npos;
+  std::string part;
+  std::istringstream in(text);
+  while (std::getline(in, part, range ? ':' : ',')) {
+    std::size_t read = 0;
+    double nu = 2;
+    try {
+      nu = std::stod(part, &read);
+    } catch (const std::exception&) {
+    }
+    if (read != part.size() || !(nu > -1 && nu < 0.5))
+      throw InputError(
+          fmt::format("--nu: '{}' (allowed: numbers from above -1 to below 0.5, as 0.3, 0.3:0.49 or "
+                      "0.3,0.45)",
+                      text));
+    out.push_back(nu);
+  }
+  if (out.empty() || (range && (out.size() != 2 || out[0] > out[1])))
+    throw InputError(fmt::format("--nu: '{}' (allowed: a range is FIRST:LAST, the first the smaller)", text));
+  if (range) out.insert(out.begin() + 1, (out[0] + out[1]) / 2);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// The smallest and the largest: the case's own, or those of --nu.
+std::vector<IsotropicMaterial> ends_of(const Experiment& e, const std::string& wanted) {
+  std::vector<IsotropicMaterial> all = e.materials;
+  if (!wanted.empty()) {
+    const IsotropicMaterial first = all.front();
+    all.clear();
+    for (const double nu : numbers_of(wanted)) all.push_back({first.youngs_modulus, nu, first.density});
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
+  if (all.size() > 2) all = {all.front(), all.back()};
+  return all;
+}
+
+void check_models(const std::vector<std::string>& models) {
+  for (const std::string& name : models) resolve({name, {}, name, {}});
+}
+
+}  // namespace
+
+void AdviseCommand::add_options(CLI::App& command) {
+  command.add_option("CASE", case_,
+                     "case file (*.toml) or built-in name (springproof list); without: a block, see --load");
+  command.add_option("--error", wish_.error, "displacement error that is wanted, as a part of the displacement")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  command.add_option("--budget-ms-per-step", wish_.ms_per_step, "milliseconds of one core per explicit step")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--budget-seconds", wish_.seconds, "CPU seconds of a static solve")->check(CLI::PositiveNumber);
+  command.add_option("--budget-memory", wish_.MiB, "MiB of a static solve")->check(CLI::PositiveNumber);
+  command.add_option("--cells-across", wish_.cells_across, "predict for about so many cells across the thinnest part")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--models", wish_.models, "only these rows of the model table (default: seven of them)")
+      ->delimiter(',');
+  command.add_option(
+      "--nu", poisson_ratios_,
+      "Poisson's ratio, a range FIRST:LAST or a list; the worst counts (default: 0.3, or the case's ends)");
+  command.add_option("-E,--youngs-modulus", youngs_modulus_, "Young's modulus [Pa], for the time step; without a case")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--density", density_, "density [kg/m^3]; without a case")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--load", loading_.load, "without a case: what is done to the body")
+      ->check(CLI::IsMember({"bending", "axial", "shear", "torsion"}))
+      ->capture_default_str();
+  command.add_option("--body", loading_.body, "without a case: a block, or a round bar in a lattice")
+      ->check(CLI::IsMember({"block", "round"}))
+      ->capture_default_str();
+  command
+      .add_option("--slenderness", slenderness_, "without a case: length over thickness (default: bending 6, else 1)")
+      ->check(CLI::Range(0.1, 100.0));
+  command.add_option("--strain", loading_.strain, "without a case: largest strain; 0: small")
+      ->check(CLI::Range(0.0, 0.6))
+      ->capture_default_str();
+  command.add_option("--thickness", thickness_, "without a case: of the body [m], for the time step")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_flag("--json", json_, "print JSON");
+  command.add_option("--measure", measure_, "measure anew what is predicted from, into this file (resumes)");
+  command.add_option("--measure-held-out", measure_held_out_,
+                     "measure anew the cases of --check, into this file (resumes)");
+  command
+      .add_option("--check", check_name_, "predictions against held-out cases (of those whose names contain this; all)")
+      ->expected(0, 1)
+      ->each([this](const std::string&) {});
+  command
+      .add_option(
+          "--pilot-cells", pilot_cells_,
+          "of a case: cells of the finest lattice on which every model is solved; its reference takes 20 times as many")
+      ->check(CLI::Range(50.0, 50000.0))
+      ->capture_default_str();
+  command.callback([this, &command] { check_ = command.count("--check") > 0; });
+  command.footer(
+      "Exit status: 0 a model reaches the error within the budget (--check: nine of ten predictions are within a "
+      "factor "
+      "of 1.5), 1 none does, 2 the input is unusable.");
+}
+
+Forecast AdviseCommand::of_case() const {
+  const std::vector<std::filesystem::path> found = find_cases({case_});
+  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
+  const Experiment e = read_experiment(found.front());
+  const std::vector<Measurement> measured = read_measurements(advise_folder() / "measured.csv").rows;
+  std::vector<Pilot> pilots;
+  Status status(json_);
+  for (const IsotropicMaterial& material : ends_of(e, poisson_ratios_)) {
+    const Status::Working working(status, fmt::format("{}, nu = {:g}", e.name, material.poisson_ratio));
+    pilots.push_back(solve_pilot(e, material, wish_.models.empty() ? usual_models : wish_.models,
+                                 {pilot_cells_, 20 * pilot_cells_}));
+  }
+  return forecast_from(measured, pilots);
+}
+
+Forecast AdviseCommand::of_table() const {
+  const std::vector<Measurement> measured = read_measurements(advise_folder() / "measured.csv").rows;
+  Loading loading = loading_;
+  loading.slenderness = slenderness_.value_or(loading.load == "bending" ? 6 : 1);
+  std::vector<IsotropicMaterial> materials;
+  for (const double nu : numbers_of(poisson_ratios_.empty() ? "0.3" : poisson_ratios_))
+    materials.push_back({youngs_modulus_, nu, density_});
+  std::vector<std::string> models = wish_.models.empty() ? usual_models : wish_.models;
+  if (loading.body == "round")
+    for (std::size_t i = 0, n = models.size(); i < n; ++i) models.push_back(models[i] + " cut=false");
+  return forecast_from(measured, loading, thickness_, materials, models);
+}
+
+int AdviseCommand::check() const {
+  const std::vector<Judged> judged = judge_predictions(read_measurements(advise_folder() / "held_out.csv").rows,
+                                                       read_measurements(advise_folder() / "measured.csv").rows,
+                                                       check_name_, {pilot_cells_, 20 * pilot_cells_});
+  if (judged.empty()) throw InputError(fmt::format("--check: no held-out case is called '{}'", check_name_));
+  fmt::print("{:<24}{:>7} {:<12}{:>10}{:>10}{:>10}{:>8}{:>10}\n", "case", "nu", "model", "cells", "error", "predicted",
+             "ratio", "table");
+  for (const Judged& j : judged)
+    fmt::print("{:<24}{:>7g} {:<12}{:>10.0f}{:>10.3g}{:>10.3g}{:>8.2f}{:>10}  {}{}\n", j.truth.load,
+               j.truth.poisson_ratio, j.truth.model, std::pow(j.truth.cells_across, 3), j.truth.error,
+               j.from_pilot.error, j.from_pilot.error / j.truth.error,
+               j.from_table.empty() ? "" : fmt::format("{:.3g}", j.from_table[0].error),
+               hit(j.truth, j.from_pilot) ? "" : "MISS ", j.from_pilot.beyond ? "extrapolated" : "");
+  const HitRate r = hit_rate(judged);
+  const auto share = [](int part, int all) {
+    return fmt::format("{} of {} ({:.1f} %)", part, all, 100.0 * part / std::max(1, all));
+  };
+  fmt::print("within a factor of 1.5: {}; of those extrapolated {}\n", share(r.hits, r.all),
+             share(r.beyond_hits, r.beyond));
+  fmt::print("within the stated range: {}\n", share(r.inside, r.all));
+  fmt::print("from the table alone: {}; within the stated range {}\n", share(r.table_hits, r.table),
+             share(r.table_inside, r.table));
+  return 10 * r.hits >= 9 * r.all ? 0 : 1;
+}
+
+int AdviseCommand::run() const {
+  if (!measure_held_out_.empty()) return measure(measure_held_out_, true);
+  if (!measure_.empty()) return measure(measure_, false);
+  if (check_) return check();
+  check_models(wish_.models);
+  const Advice advice = advise(case_.empty() ? of_table() : of_case(), wish_);
+  fmt::print("{}", json_ ? json_of(advice).dump(2) + "\n" : text_of(advice));
+  return !advice.choices.empty() && advice.choices.front().accurate && advice.choices.front().affordable ? 0 : 1;
+}
+
+}  // namespace springproof
