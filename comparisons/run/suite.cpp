@@ -370,6 +370,8 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
                tasks.size(), options.out.string());
     return 130;
   }
+  if (!options.live_page.empty())
+    fs::copy_file(options.live_page, options.out / "live.html", fs::copy_options::overwrite_existing);
   return write_results(collect(prepared, tasks), options.out) ? 0 : 1;
 }
 

@@ -13,6 +13,7 @@ struct SuiteOptions {
   bool resume = false;                 ///< take finished parts from `out`
   bool vtu = false;                    ///< write a VTU per run
   bool quiet = false;                  ///< show no progress
+  std::filesystem::path live_page;     ///< copied beside the report, which links it; empty: none
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
   int finer = 1;                       ///< reference grids with so many times the cells along each direction
 };

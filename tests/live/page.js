@@ -38,6 +38,8 @@ const run = seconds => `(() => {
     done += duration;
   }
   panels.forEach(paint);
+  state.top = 0.2;
+  panels.forEach(paint);
   write();
 })()`;
 const finite = 'panels.every(p => simulation.positions(p.number).every(Number.isFinite))';
@@ -48,6 +50,8 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
   try {
     check('the page starts', await page.until('typeof panels !== "undefined" && panels.length === 3 && state.measured.ms', 60),
           await page.value('hint.textContent'));
+    // From here on the page draws when it is told: Chromium draws in software, which would take most of the test's time.
+    await page.value('pause(true)');
 
     // Frame time: of the springs alone, since Chromium draws in software here; the best of several, since machines are shared.
     const ms = await page.value(`(() => {
@@ -69,7 +73,8 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
     await page.value(run(0.5));
     const pulled = await page.value(largestMove);
     check('a drag pulls all bodies', pulled > 0.002, `${(1000 * pulled).toFixed(1)} mm`);
-    await page.picture(`${pictures}/drag.png`);
+    await page.value('viewer.render()');
+    await page.picture(`${pictures}/live-drag.png`);
     for (const far of [[600, -500], [-600, 400], [500, 500]]) {
       await page.mouse('mouseMoved', Math.max(1, x + far[0]), Math.max(1, y + far[1]), 1);
       await page.value(run(0.2));
@@ -100,11 +105,10 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
       const off = await page.value('panels.map(p => ({settled: p.settled, off: p.off}))');
       const words = off.map(o => (100 * o.off).toFixed(1) + ' %').join(', ');
       check(`${name}: at rest beside finite elements`, off.every(o => o.settled), words);
-      check(`${name}: the recommended model is nearest`, off[2].off < off[0].off && off[2].off < (name === 'block' ? 0.05 : 0.2), words);
+      check(`${name}: the recommended model is nearest`, off[2].off < off[0].off && off[2].off < (name === 'rabbit' ? 0.2 : 0.05), words);
       const volumes = await page.value("[...panels.map(p => simulation.number(p.number, 'volumeChange')), state.fem.answer.volume_change]");
       check(`${name}: its volume is that of finite elements to half a point`, Math.abs(volumes[2] - volumes[3]) < 0.005,
             volumes.map(v => (100 * v).toFixed(2) + ' %').join(', '));
-      await page.picture(`${pictures}/${name}.png`);
     }
 
     await page.value(drop('box.stl', stl(false)));
@@ -114,13 +118,13 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
     check('a bad STL is refused in words', await page.until("/broken.stl cannot be used: .*three facets meet/.test(hint.textContent)", 20), await page.value('hint.textContent'));
     check('the body before is still there', await page.value("state.body.title === 'box.stl' && simulation.facets.length === 36"));
 
-    await page.value("bodyChoice.box.value = pulls.bodies.at(-1).name; showBody(pulls.bodies.at(-1)); state.nu = 0.4; compareWithFem()");
+    await page.value("bodyChoice.box.value = pulls.bodies[0].name; showBody(pulls.bodies[0]); state.nu = 0.4; compareWithFem()");
     await page.value(run(6));
     for (const [width, height] of [[1400, 1250], [500, 1250]])
       for (const dark of [false, true]) {
         await page.look(width, height, dark);
-        await page.sleep(600);
-        await page.picture(`${pictures}/${width}-${dark ? 'dark' : 'light'}.png`);
+        await page.value('new Promise(requestAnimationFrame).then(() => viewer.render())');
+        await page.picture(`${pictures}/live-${width}-${dark ? 'dark' : 'light'}.png`);
         const wide = await page.value('document.documentElement.scrollWidth');
         check(`fits ${width} pixels`, wide <= width, `${wide}`);
       }

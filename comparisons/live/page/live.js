@@ -36,6 +36,7 @@ const densitySlider = slider('density', {min: 200, max: 4000, step: 50, value: 1
 const dampingSlider = slider('damping', {min: 0, max: 30, step: 0.5, value: state.damping}, v => `${v} /s`, v => { state.damping = v; });
 const cellsSlider = slider('cubes, about', {min: 300, max: 6000, step: 100, value: state.cells}, v => String(v), v => { state.cells = v; state.rebuild = true; });
 const compareButton = el('button', {class: 'main', onclick: () => compareWithFem()}, 'Compare with finite elements');
+const pauseButton = el('button', {onclick: () => pause(!state.paused)}, 'Pause');
 const resetButton = el('button', {onclick: () => reset()}, 'Reset');
 
 const bar = colorBar();
@@ -120,6 +121,7 @@ function findFem() {
   if (state.fem) state.fem.answer = storedAt(state.nu) || null;
   if (state.fem && state.fem.answer && !state.fem.answer.u) state.fem.answer.u = shortsOf(state.fem.answer.displacement);
   placeGhosts();
+  if (state.fem) tellFem();
 }
 
 function compareWithFem() {
@@ -132,8 +134,14 @@ function compareWithFem() {
   state.loadTime = 0;
   findFem();
   say(`${state.body.pull.text}, at ν = ${nuText(state.nu)}`);
-  hint.textContent = `${state.body.pull.text}. Grey ghost: finite elements at ν = ${nuText(state.nu)}.  Stored: ν = ` +
-    state.body.fem.map(f => nuText(f.nu)).join(', ') + '.';
+  tellFem();
+}
+
+function tellFem() {
+  const {answer} = state.fem, ratios = state.body.fem.map(f => nuText(f.nu)).join(', ');
+  hint.textContent = `${state.body.pull.text}. ` + (answer
+    ? `Grey ghost: finite elements at ν = ${nuText(answer.nu)}, certain to ${percent(100 * answer.uncertainty)}.`
+    : `No finite elements are stored at ν = ${nuText(state.nu)}, only at ${ratios}.`);
 }
 
 /// Displacements do not depend on E: the force is in proportion to it.
@@ -371,8 +379,15 @@ function keyPoint() {
 
 let last = null, sinceText = 1e9;
 
+function pause(paused) {
+  state.paused = paused;
+  pauseButton.textContent = paused ? 'Go on' : 'Pause';
+  last = null;
+}
+
 function frame(now) {
   requestAnimationFrame(frame);
+  if (state.paused) return;
   const wanted = last === null ? 1 / 60 : Math.min(0.05, (now - last) / 1000);
   last = now;
   if (state.rebuild) {
@@ -447,7 +462,7 @@ springproofLive({wasmBinary: new Uint8Array(bytesOf(document.getElementById('lib
   document.getElementById('stage').append(viewer.node);
   document.getElementById('bar').append(bar.node);
   document.getElementById('choices').append(bodyChoice.node, fileInput, nuSlider.node, el('datalist', {id: 'stored'}), eSlider.node, densitySlider.node,
-    dampingSlider.node, cellsSlider.node, el('div', {class: 'buttons'}, compareButton, resetButton));
+    dampingSlider.node, cellsSlider.node, el('div', {class: 'buttons'}, compareButton, resetButton, pauseButton));
   bodyChoice.value = 'rabbit';
   showBody(pulls.bodies.find(b => b.name === 'rabbit') || pulls.bodies[0]);
   viewer.visible = true;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Writes comparisons/live/pulls.json: the pulls that the live page repeats, and what finite elements say of them.
+Bodies that FOLDER lacks stay as they are.
 
   springproof compare comparisons/live/pulls --out FOLDER && comparisons/live/pulls/pulls.py FOLDER
 
@@ -14,9 +15,11 @@ import sys
 
 here = pathlib.Path(__file__).resolve().parent
 folder = pathlib.Path(sys.argv[1])
+part_of_block = lambda c: 1 if c[2] < 1e-6 else 2 if c[2] > 0.1 - 1e-6 else 0
 titles = {
-    "block": ("block", "The block’s top is pulled up and aside", lambda c: 1 if c[2] < 1e-6 else 2 if c[2] > 0.1 - 1e-6 else 0),
     "rabbit": ("rabbit", "The rabbit is pulled by its nose", lambda c: 1 if c[2] < 1e-6 else 2 if c[0] > 0.172 else 0),
+    "block_gently": ("block, pulled gently", "The block’s top is pulled up and aside, gently", part_of_block),
+    "block": ("block, pulled hard", "The block’s top is pulled up and aside, hard", part_of_block),
 }
 
 
@@ -53,6 +56,7 @@ def body(name, case, result, pictures):
     # 16 bits of the largest coordinate; what lies in the planes z = 0 and z = height stays there
     points = shorts(rest)
     middle = lambda f: [sum(rest[3 * n + d] for n in f) / 3 for d in range(3)]
+    uncertainty = {row["poisson_ratio"]: row["reference_uncertainty"] for row in result["rows"] if row["measure"] == "displacement_error"}
     volume = {row["poisson_ratio"]: row["reference"] for row in result["rows"] if row["measure"] == "volume_change"}
     force = json.loads(re.search(r"force_N = (\[.*?\])", case["text"]).group(1))
     return {
@@ -61,7 +65,8 @@ def body(name, case, result, pictures):
         "youngs_modulus": case["materials"][0]["youngs_modulus"],
         "pull": {"text": text, "force": force},
         "surface": {"points": points, "facets": packed([n for f in facets for n in f], "H"), "parts": packed([part_of(middle(f)) for f in facets], "B")},
-        "fem": [{"nu": p["poisson_ratio"], "volume_change": volume[p["poisson_ratio"]], "displacement": p["displacement"]} for p in fem],
+        "fem": [{"nu": p["poisson_ratio"], "volume_change": volume[p["poisson_ratio"]], "uncertainty": uncertainty[p["poisson_ratio"]],
+                 "displacement": p["displacement"]} for p in fem],
     }
 
 
@@ -76,5 +81,6 @@ for result in results["cases"]:
 out = here.parent / "pulls.json"
 old = json.loads(out.read_text())["bodies"] if out.exists() else []
 done = {b["name"] for b in bodies}
-out.write_text(json.dumps({"bodies": [b for b in old if b["name"] not in done] + bodies}, ensure_ascii=False, separators=(",", ":")) + "\n")
+bodies = sorted([b for b in old if b["name"] not in done] + bodies, key=lambda b: list(titles).index(b["name"]))
+out.write_text(json.dumps({"bodies": bodies}, ensure_ascii=False, separators=(",", ":")) + "\n")
 print(out.stat().st_size, "bytes:", ", ".join(f"{b['name']} at {len(b['fem'])} ratios, {len(base64.b64decode(b['surface']['parts']))} facets" for b in bodies))
