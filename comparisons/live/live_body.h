@@ -98,8 +98,8 @@ class LiveModel {
   Vec3 target_ = Vec3::Zero(), force_ = Vec3::Zero(), pulling_ = Vec3::Zero();
   NodalVectors x_, v_;
   std::vector<float> points_, dilatation_;
-  double volume_change_ = 0, least_volume_ = 1, least_stretch_ = 1, kinetic_energy_ = 0, unbalanced_ = 0,
-         frequency_ = 0;
+  double volume_change_ = 0, least_volume_ = 1, least_stretch_ = 1, largest_area_ = 1, kinetic_energy_ = 0,
+         unbalanced_ = 0, frequency_ = 0;
   int rescues_ = 0;
 };
 

@@ -166,11 +166,12 @@ void LiveModel::kick(double duration) {
   }
 }
 
-/// Share of the safe step at rest that is safe for the most squeezed cell: Hencky's modulus along a stretch s is that
-/// at rest times (1 - ln s) / s^2.
+/// Share of the safe step at rest that is safe for the most squeezed cell, Hencky's modulus along a stretch s being
+/// that at rest times (1 - ln s) / s^2; and for the widest: the volume correction pushes with the area of a cell's
+/// face.
 double LiveModel::shrink() const {
   const double s = std::clamp(least_stretch_, 1e-3, 1.0);
-  return std::clamp(s / std::sqrt(1 - std::log(s)), stiffest_step, 1.0);
+  return std::clamp(std::min(s / std::sqrt(1 - std::log(s)), 1 / largest_area_), stiffest_step, 1.0);
 }
 
 double LiveModel::time_step() const { return safety * safe_step_ * shrink() * std::sqrt(caution_); }
@@ -219,12 +220,19 @@ bool LiveModel::measure() {
   Eigen::VectorXd dilatation = Eigen::VectorXd::Zero(network.nodes()), count = dilatation;
   double sum = 0;
   least_volume_ = least_stretch_ = 1e9;
+  largest_area_ = 1;
+  const bool corrected = std::any_of(model_.laws.begin(), model_.laws.end(),
+                                     [](const ForceLaw& l) { return std::holds_alternative<VolumeCorrection>(l); });
   for (const Hexahedron& cell : network.cells) {
     const Eigen::Matrix3d A = edges_of(cell, x_);
     const double J = A.determinant() / rest;
     sum += J - 1;
     least_volume_ = std::min(least_volume_, J);
-    least_stretch_ = std::min({least_stretch_, J, A.colwise().norm().minCoeff() / (4 * network.cell_edge)});
+    const Eigen::Vector3d stretch = A.colwise().norm().transpose() / (4 * network.cell_edge);
+    least_stretch_ = std::min({least_stretch_, J, stretch.minCoeff()});
+    if (corrected)
+      largest_area_ =
+          std::max({largest_area_, stretch[0] * stretch[1], stretch[1] * stretch[2], stretch[2] * stretch[0]});
     for (const int n : cell) dilatation[n] += J - 1, count[n] += 1;
   }
   volume_change_ = sum / double(network.cells.size());

@@ -74,7 +74,7 @@ async function readStl(file) {
     bodyChoice.value = before.name;
     hint.textContent = `${file.name} cannot be used: ${error.message}`;
     say(hint.textContent);
-    if (before.bytes) build(() => simulation.setStl(before.bytes, state.cells));
+    if (before.bytes) build(() => simulation.setStl(before.bytes, state.cells), false);
     else build(() => simulation.setBody(stored(before), state.cells), false);
   }
   setStored();
