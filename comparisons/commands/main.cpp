@@ -44,6 +44,17 @@ int list() {
   return 0;
 }
 
+/// The built live page.
+std::filesystem::path live_page() {
+  const std::filesystem::path page = data_folder("live", SPRINGPROOF_LIVE_DIR) / "live.html";
+  if (!std::filesystem::exists(page))
+    throw InputError(
+        fmt::format("--live: the live page is not built, {} is not there (in the sources: "
+                    "comparisons/live/build.sh, which needs Debian's packages emscripten and node-acorn)",
+                    page.string()));
+  return page;
+}
+
 int run_bench(const std::vector<std::string>& arguments) {
   const std::filesystem::path program = find_program("springproof-bench", "SPRINGPROOF_BENCH_PROGRAM");
   if (program.empty())
@@ -94,6 +105,9 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(1, 16));
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
   compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
+  compare_command->add_flag_callback(
+      "--live", [&] { options.live_page = live_page(); },
+      "also copy the page in which the bodies can be pulled (live.html) beside the report, with a link");
   compare_command->add_flag("--vtu,!--no-vtu", options.vtu, "also write a VTU file of every run, for ParaView");
   compare_command->add_flag("--vtu-single", options.vtu_single, "VTU files in single precision, half the size")
       ->needs("--vtu");

@@ -127,8 +127,10 @@ std::string headline_html(const Json& results) {
 
 void write_report(const std::filesystem::path& file, const Json& results, const Json& pictures) {
   using namespace report_assets;
+  const bool live = std::filesystem::exists(file.parent_path() / "live.html");
   write_file(file, filled(template_html, {{"style_css", std::string(style_css)},
                                           {"headline", headline_html(results)},
+                                          {"live_link", live ? "<a href=\"live.html\">Pull the bodies</a>" : ""},
                                           {"results", script_json(packed(results))},
                                           {"pictures", script_json(pictures)},
                                           {"chart_js", std::string(chart_js)},

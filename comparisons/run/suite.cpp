@@ -386,6 +386,8 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
                tasks.size(), options.out.string());
     return 130;
   }
+  if (!options.live_page.empty())
+    fs::copy_file(options.live_page, options.out / "live.html", fs::copy_options::overwrite_existing);
   const std::vector<CaseResult> results = collect(prepared, tasks);
   if (options.vtu)
     for (const CaseResult& r : results) write_series(r, options.out / "vtu" / key_of(r.experiment.file));

@@ -3,7 +3,9 @@
 // program (tests/cli/kernels.sh).
 #pragma once
 
+#ifndef __wasm__
 #include <experimental/simd>
+#endif
 
 // Each instruction set has its own copy of a kernel, in this namespace.
 #ifndef SPRINGPROOF_KERNEL_NAMESPACE
@@ -12,7 +14,13 @@
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 
+#ifdef __wasm__
+namespace stdx {
+#include "msm/kernels/simd_of_clang.h"
+}
+#else
 namespace stdx = std::experimental;
+#endif
 
 template <class Real>
 using Lanes = stdx::native_simd<Real>;  ///< 2, 4, 8 doubles; 4, 8, 16 floats

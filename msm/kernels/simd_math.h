@@ -1,8 +1,6 @@
 // Vector functions that std::experimental::simd lacks.  For kernels only.
 #pragma once
 
-#include <immintrin.h>
-
 #include "msm/kernels/simd.h"
 
 /// Forces inlining: the compiler considers the larger of a kernel's small functions too large for it.
@@ -22,6 +20,16 @@ template <class Real>
 using RealVector = typename Builtin<Real, lanes<Real>>::type;
 
 /// (last of `before`, all but the last of `v`).
+#ifdef __wasm__
+SPRINGPROOF_INLINE Lanes<double> shift_in(const Lanes<double>& before, const Lanes<double>& v) {
+  return Lanes<double>(
+      __builtin_shufflevector(static_cast<RealVector<double>>(before), static_cast<RealVector<double>>(v), 1, 2));
+}
+SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes<float>& v) {
+  return Lanes<float>(
+      __builtin_shufflevector(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), 3, 4, 5, 6));
+}
+#else
 SPRINGPROOF_INLINE Lanes<double> shift_in(const Lanes<double>& before, const Lanes<double>& v) {
   typename Builtin<long long, lanes<double>>::type order;
   for (int i = 0; i < lanes<double>; ++i) order[i] = lanes<double> - 1 + i;
@@ -34,6 +42,7 @@ SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes
   return Lanes<float>(
       __builtin_shuffle(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), order));
 }
+#endif
 
 /// J^(-1/3) from an approximation y, by one step of fourth order.
 template <class Real>
