@@ -65,7 +65,8 @@ build() {
   step build "building" cmake --build build/release --target "$@"
 }
 
-[ "${1:-}" != test ] || packages+=(clang-format-14)  # of the test cli.format
+# Of the tests cli.format, python.* and cli.springs.
+[ "${1:-}" != test ] || packages+=(clang-format-14 pybind11-dev python3-dev python3-numpy python3-pytest python3-pip python3-setuptools)
 install_missing
 if [ "${1:-}" = test ]; then
   shift
