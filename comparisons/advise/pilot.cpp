@@ -40,7 +40,7 @@ LatticeSolve solve_on(const PreparedCase& prepared, const Lattice& lattice, cons
                       const IsotropicMaterial& material) {
   const Kinematics kinematics = prepared.experiment.model_kinematics();
   const double start = cpu_seconds();
-  const auto [model, embedding] = build_on(prepared, lattice, parameters, material);
+  const auto [model, embedding] = build_on(prepared, lattice, parameters, material, false);
   const LoadPath path = [&, &m = model, &e = embedding](double factor) {
     return transfer(prepared.loads, *lattice.mesh, e, m.network, material.density, kinematics, factor);
   };
