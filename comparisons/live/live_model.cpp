@@ -16,6 +16,7 @@ constexpr double safety = 0.9;         // share of the safe step at rest
 constexpr int steps_per_kick = 2;      // the grip's force is renewed so often
 constexpr double grip_reach = 1.6;     // cubes
 constexpr double stiffest_step = 0.1;  // share of the step below which a squeezed cell is not followed
+constexpr double stiffest_grip = 0.25;  // of its (frequency * step)^2, which is unstable from 4 on without the body
 constexpr double most_caution = 1.0 / 64;
 
 ModelParameters parameters_of(const std::string& name) {
@@ -157,7 +158,10 @@ void LiveModel::kick(double duration) {
     motion_->read(n, n + 1, state[i].data());
     mean += grip_.weights[i] * (model_.network.X.row(n).transpose() + Eigen::Map<const Vec3>(state[i].data()));
   }
-  pulling_ = caution_ * grip_stiffness_ * (target_ - grip_.offset - mean);
+  double inertia = 0;  // of the mean: sum w^2 / m; a stiffer grip than this would not be stable at this step
+  for (std::size_t i = 0; i < count; ++i) inertia += grip_.weights[i] * grip_.weights[i] / mass_[grip_.nodes[i]];
+  const double stiffness = std::min(grip_stiffness_, stiffest_grip / (duration * duration * inertia));
+  pulling_ = caution_ * stiffness * (target_ - grip_.offset - mean);
   if (const double size = pulling_.norm(); size > caution_ * grip_limit_) pulling_ *= caution_ * grip_limit_ / size;
   for (std::size_t i = 0; i < count; ++i) {
     const int n = grip_.nodes[i];

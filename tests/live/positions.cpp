@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
   for (int p = 0; p < 3; ++p) require(live_model(p, names[p], 0.3, 1e4, 1000, digits));
   live_load(2, 0, 5);
   live_grab(7);
-  live_pull_to(0.13, 0.12, 0.14);
+  live_pull_to(0.11, 0.105, 0.115);
   for (int p = 0; p < 3; ++p) {
     const double step = live_number(p, live_time_step) / 2;
     int steps = live_advance(p, 50 * step, 3);

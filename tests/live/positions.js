@@ -19,7 +19,7 @@ require(path.resolve(folder, 'live.js'))({wasmBinary: fs.readFileSync(path.join(
   for (const p of [0, 1, 2]) require0(wasm._live_model(p, names[p], 0.3, 1e4, 1000, +digits));
   wasm._live_load(2, 0, 5);
   wasm._live_grab(7);
-  wasm._live_pull_to(0.13, 0.12, 0.14);
+  wasm._live_pull_to(0.11, 0.105, 0.115);
   for (const p of [0, 1, 2]) {
     const step = wasm._live_number(p, 0) / 2;
     let steps = wasm._live_advance(p, 50 * step, 3);

@@ -182,6 +182,7 @@ function makePanels() {
     const label = el('div', {class: 'panel-label'}, swatch(name), choice, words, volume, fem, chip);
     return {number, shape, surface, ghost, rope, own, label, volume, fem, chip, words, ...litScene(own)};
   });
+  panels.forEach(paint);
   viewer.show(panels);
   viewer.forgetDirection();
   viewer.aim(box.expandByScalar(0.12 * size.length()), [rest, ...state.body.fem.slice(0, 1).map(f => {
