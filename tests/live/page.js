@@ -83,6 +83,7 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
     }
     check('violent pulls stay finite', await page.value(finite), `${await page.value("[0, 1, 2].map(p => simulation.number(p, 'rescues')).join(' ')")} states taken back`);
     await page.mouse('mouseReleased', x, y);
+    check('a drag selects no text', await page.value('String(getSelection())') === '');
     check('the pointer lets go', await page.value('state.grip === null'));
 
     for (const nu of [-0.5, 0.499]) {

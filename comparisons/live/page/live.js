@@ -12,7 +12,7 @@ const rampTime = 0.5;          // s of simulated time over which a stored pull g
 const stress = E => E >= 1e6 ? `${number(E / 1e6, 3)} MPa` : E >= 1e3 ? `${number(E / 1e3, 3)} kPa` : `${number(E, 3)} Pa`;
 const percentText = (x, digits) => (x > 0 ? '+' : '') + minus((100 * x).toFixed(digits)) + ' %';
 
-let simulation, viewer, panels = [];
+let simulation, viewer, panels = [], view = null;
 
 // ---- controls
 
@@ -185,10 +185,11 @@ function makePanels() {
   panels.forEach(paint);
   viewer.show(panels);
   viewer.forgetDirection();
-  viewer.aim(box.expandByScalar(0.12 * size.length()), [rest, ...state.body.fem.slice(0, 1).map(f => {
+  view = [box.expandByScalar(0.12 * size.length()), [rest, ...state.body.fem.slice(0, 1).map(f => {
     const u = shortsOf(f.displacement);
     return simulation.rest.map((x, i) => x + u[i]);
-  })]);
+  })]];
+  viewer.aim(...view);
   placeGhosts();
 }
 
@@ -320,6 +321,7 @@ function letGo() {
 }
 
 function listen(node) {
+  window.addEventListener('resize', () => viewer.aim(...view));   // the bodies fit panels of any shape
   node.addEventListener('pointerdown', event => {
     const found = event.button === 0 ? viewer.hit(event) : null;
     viewer.controls.enabled = !(found && found.point !== null);
