@@ -58,7 +58,7 @@ const Row* row_of(const Part& part, const std::string& model, const std::string&
 TEST(FractureRun, GivesEveryRowCurveAndFile) {
   const PreparedCase prepared = prepared_block("\"msm_18\", \"msm_centred\", \"msm_random\"");
   const fs::path folder = fs::temp_directory_path() / ("springproof-fracture-" + std::to_string(getpid()));
-  const Part part = run_part(prepared, 0, folder);
+  const Part part = run_part(prepared, 0, {folder});
   ASSERT_EQ(part.runs.size(), 6u);
   for (const auto& run : part.runs) EXPECT_TRUE(run.ok) << run.message;
   ASSERT_EQ(part.cracks.size(), 3u);

@@ -44,7 +44,7 @@ elements = []
                           "cube.toml");
 }
 
-Part run_of(const Experiment& e, const std::filesystem::path& vtu = {}) { return run_part(prepare(e), 0, vtu); }
+Part run_of(const Experiment& e, const std::filesystem::path& vtu = {}) { return run_part(prepare(e), 0, {vtu, false}); }
 
 const HistoryRecord& history(const Part& part) {
   EXPECT_EQ(part.histories.size(), 1u);
