@@ -44,7 +44,9 @@ elements = []
                           "cube.toml");
 }
 
-Part run_of(const Experiment& e, const std::filesystem::path& vtu = {}) { return run_part(prepare(e), 0, {vtu, false}); }
+Part run_of(const Experiment& e, const std::filesystem::path& vtu = {}) {
+  return run_part(prepare(e), 0, {vtu, false});
+}
 
 const HistoryRecord& history(const Part& part) {
   EXPECT_EQ(part.histories.size(), 1u);
