@@ -73,10 +73,17 @@ function arrow(at, direction, length, color, arrives) {
   });
 }
 
+/// A place just outside of a box, from its middle along a direction.
+function below(box, direction) {
+  const unit = direction.clone().normalize(), half = box.getSize(new THREE.Vector3()).divideScalar(2);
+  const reach = Math.min(...['x', 'y', 'z'].map(axis => half[axis] / Math.max(Math.abs(unit[axis]), 1e-9)));
+  return box.getCenter(new THREE.Vector3()).addScaledVector(unit, 1.15 * reach);
+}
+
 /// Objects that show one load or support.
 function markObjects(mark, mesh, box) {
   const size = box.getSize(new THREE.Vector3()), length = Math.max(size.x, size.y, size.z);
-  const vector = new THREE.Vector3(...mark.vector), middle = box.getCenter(new THREE.Vector3());
+  const vector = new THREE.Vector3(...mark.vector);
   const pieces = mark.on ? patchFacets(mesh, mesh.patches[mark.on] || []) : [];
   /// Outside of the body, whichever way they point.
   const arrows = (most, scale, color, directionOf) => spreadOut(pieces, most).flatMap(piece =>
@@ -90,7 +97,7 @@ function markObjects(mark, mesh, box) {
     case 'force': return pieces.length === 0 ? [] : [skinOf(pieces, mesh, length, loadColour), ...arrows(4, 0.2, loadColour, () => vector)];
     case 'pressure': return pieces.length === 0 ? [] : [skinOf(pieces, mesh, length, loadColour),
       ...arrows(14, 0.12, loadColour, ({normal}) => normal.clone().multiplyScalar(-Math.sign(mark.vector[0]) || -1))];
-    case 'gravity': return vector.length() > 0 ? arrow(middle.clone().addScaledVector(vector.clone().normalize(), 0.55 * length), vector, 0.25 * length, loadColour, false) : [];
+    case 'gravity': return vector.length() > 0 ? arrow(below(box, vector), vector, 0.2 * length, loadColour, false) : [];
     case 'point': return vector.length() > 0 ? arrow(new THREE.Vector3(...mark.at), vector, 0.2 * length, loadColour, true) : [];
     default: return [];
   }
