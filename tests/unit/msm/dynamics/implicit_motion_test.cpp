@@ -308,7 +308,7 @@ TEST(ImplicitMotion, SlowRampEndsInTheStaticState) {
   for (Integrator i : {Integrator::energy_momentum, Integrator::bdf2, Integrator::implicit_euler}) {
     DynamicsOptions options;
     options.integrator = i;
-    options.duration = 10;
+    options.duration = 12;
     options.ramp = 3;
     options.damping = 8;
     const DynamicsResult result = run_dynamics(beam.model, density, path, options);

@@ -159,7 +159,7 @@ TEST(LatticeMotion, StepsAreThoseOfThePlainLoops) {
       const double dt = 0.8 * safe_time_step(model, density), damping = 5;
       const BoundaryConditions bc = conditions_of(model.network);
       const State rest = {X, NodalVectors::Zero(X.rows(), 3), {}, 0};
-      const int steps = body.mesh.hexahedra.size() > 500 ? 20 : 60;
+      const int steps = body.mesh.hexahedra.size() > 500 ? 20 : 120;
       const double scale = bc.external.norm();
       const State plain = plain_steps(model, rest, bc, steps, dt, damping);
       // Three threads wait for each other on two cores; ThreadsDoNotChangeTheMotionAndRepeatIt has them.
