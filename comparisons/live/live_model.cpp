@@ -12,10 +12,10 @@
 namespace springproof {
 namespace {
 
-constexpr double safety = 0.9;         // share of the safe step at rest
-constexpr int steps_per_kick = 2;      // the grip's force is renewed so often
-constexpr double grip_reach = 1.6;     // cubes
-constexpr double stiffest_step = 0.1;  // share of the step below which a squeezed cell is not followed
+constexpr double safety = 0.9;          // share of the safe step at rest
+constexpr int steps_per_kick = 2;       // the grip's force is renewed so often
+constexpr double grip_reach = 1.6;      // cubes
+constexpr double stiffest_step = 0.1;   // share of the step below which a squeezed cell is not followed
 constexpr double stiffest_grip = 0.25;  // of its (frequency * step)^2, which is unstable from 4 on without the body
 constexpr double most_caution = 1.0 / 64;
 
