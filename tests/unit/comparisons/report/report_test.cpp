@@ -186,8 +186,8 @@ TEST_F(ReportInBrowser, ShowsTheCase) {
   const std::string dom = open({sample_case()}, "#case-golec_2019-compress");
   expect_no_complaint(dom);
   const std::string body = dom.substr(dom.find("<main>"), dom.find("</main>") - dom.find("<main>"));
-  EXPECT_EQ(count(body, "<canvas"), 4u) << "three figures and the deformed shapes";
-  EXPECT_EQ(count(body, "class=\"panel\""), 3u) << "undeformed, FEM and hybmss";
+  EXPECT_EQ(count(body, "<canvas"), 5u) << "three figures, the deformed shapes, the picture of the case";
+  EXPECT_EQ(count(body, "class=\"panel\""), 6u) << "undeformed, FEM and hybmss; problem, FEM and hybmss";
   EXPECT_NE(body.find("<td class=\"number tint2\">2.0 %<small>ν = 0.4</small>"), std::string::npos) << "table of cases";
   EXPECT_NE(body.find("z_max: moved by -0.05 m in z"), std::string::npos) << "problem";
   EXPECT_NE(body.find("<td class=\"number\">2.60</td>"), std::string::npos) << "observed order of the reference";
