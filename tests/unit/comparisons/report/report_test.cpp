@@ -273,7 +273,7 @@ TEST_F(ReportInBrowser, SetsReactionsBesideDisplacementsWhereASupportMoves) {
   EXPECT_NE(part.find("<small>reactions</small></td><td>0.25</td><td>–</td>"), std::string::npos)
       << "20 % and 40 %: none to 10 %";
   const std::string table = dom.substr(dom.find("<section id=\"cases\">"),
-                                       dom.find("<section id=\"poisson\">") - dom.find("<section id=\"cases\">"));
+                                       dom.find("<section id=\"shapes\"") - dom.find("<section id=\"cases\">"));
   EXPECT_NE(table.find("<small>reactions 40 %</small>"), std::string::npos);
 }
 
@@ -582,7 +582,7 @@ TEST_F(ReportInBrowser, ShowsTheVerificationOfTheReference) {
   const std::string page = dom.substr(end);
   EXPECT_NE(page.find("≥ 2.9"), std::string::npos);
   const std::string cases = dom.substr(dom.find("<section id=\"cases\">"),
-                                       dom.find("<section id=\"poisson\">") - dom.find("<section id=\"cases\">"));
+                                       dom.find("<section id=\"shapes\"") - dom.find("<section id=\"cases\">"));
   EXPECT_EQ(cases.find("case-verification-plate"), std::string::npos)
       << "a case without models is no row of the models' table";
 }
@@ -591,7 +591,7 @@ TEST_F(ReportInBrowser, VerificationAloneIsAReport) {
   const std::string dom = open({verification_case()}, "#case-verification-plate");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("Orders of convergence"), std::string::npos);
-  EXPECT_EQ(count(dom, "class=\"panel\""), 2u) << "the body at rest and deformed";
+  EXPECT_EQ(count(dom, "class=\"panel\""), 4u) << "the body at rest and deformed, among the shapes and on its page";
   for (const char* section : {"cases", "poisson", "convergence"})
     EXPECT_NE(dom.find(std::string("<section id=\"") + section + "\" hidden"), std::string::npos)
         << section << " has nothing to say";
