@@ -51,23 +51,42 @@ class Motion {
  public:
   virtual ~Motion() = default;
   /// Sets supports and loads of the following steps; fixed unknowns are moved at the end of the first of them.
+  /// @param conditions supports and loads
   virtual void set_conditions(const BoundaryConditions& conditions) = 0;
-  virtual void move_supports() = 0;                                          ///< immediately
-  virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;  ///< [m], [m/s]
-  virtual ForceNorms advance(long steps) = 0;   ///< returns the norms at the beginning of the last step
-  virtual NodalVectors positions() const = 0;   ///< [m]
-  virtual NodalVectors velocities() const = 0;  ///< [m/s]
+  /// Moves the supports to their places immediately.
+  virtual void move_supports() = 0;
+  /// Sets the state.
+  /// @param x positions [m], n x 3
+  /// @param v velocities [m/s], n x 3
+  virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;
+  /// Makes steps.
+  /// @param steps how many
+  /// @return the norms of forces at the beginning of the last step
+  virtual ForceNorms advance(long steps) = 0;
+  /// @return positions [m], n x 3
+  virtual NodalVectors positions() const = 0;
+  /// @return velocities [m/s], n x 3
+  virtual NodalVectors velocities() const = 0;
+  /// @return the integrator and kernel in words
   virtual std::string description() const = 0;
-  virtual std::string failure() const { return ""; }  ///< why the last advance() has no result
+  /// @return why the last advance() has no result; empty: it has one
+  virtual std::string failure() const { return ""; }
 };
 
-/// The time step [s] of a motion: options.time_step, or the default.
+/// The time step of a motion: DynamicsOptions::time_step, or the default.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @param options integrator and step
+/// @return the step [s]
 /// @throws InputError as run_dynamics().
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options);
 
 /// At rest at X, in the fastest way that there is for the model: kernels (LatticeMotion, ListMotion), else plain loops.
-/// Keeps a reference to the model.  Of the options: integrator, damping, precision, threads, lagged.
-/// `time_step` [s]: of checked_time_step().
+/// @param model a model, to which a reference is kept
+/// @param density [kg/m^3]
+/// @param time_step [s], of checked_time_step()
+/// @param options of which integrator, damping, precision, threads and lagged are read
+/// @return the motion, at rest
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double time_step,
                                     const DynamicsOptions& options);
 

@@ -49,10 +49,13 @@ struct SpringsFile {
   Eigen::VectorXd volumes;                   ///< of cut cells: Embedding::volumes; empty: those of the masses
   EmbeddedSurface surface;                   ///< no vertices: none
   SpringsOrigin origin;                      ///< where it comes from
-  std::map<std::string, double> derived;  ///< what follows from the rest, as "safe_time_step_s".  Not read back.
+  std::map<std::string, double> derived;     ///< what follows from the rest, as "safe_time_step_s".  Not read back.
 };
 
-/// The point that an anchor of a springs file is held in at rest [m]: the mean of its corners.
+/// The point that an anchor of a springs file is held in at rest: the mean of its corners.
+/// @param anchor an anchor of the file
+/// @param X rest positions [m], n x 3
+/// @return the point [m]
 Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X);
 
 /// Reads a springs file (JSON).  Checked: the schema, that every number is finite and in range, every index a node,

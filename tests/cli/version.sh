@@ -21,7 +21,7 @@ while read -r title; do
 done <<<"$titles"
 
 # As find_package, find_library and pkg_check_modules of the build files call them; what is none of the program, or has no number.
-no_library=' Threads GTest PkgConfig MPI MPI_C Python pybind11 '
+no_library=' Threads GTest PkgConfig MPI MPI_C Python pybind11 BULLET '
 libraries=$(find "$source" -path "$source/build" -prune -o \( -name CMakeLists.txt -o -name '*.cmake' \) -print0 |
   xargs -0 sed -nE -e 's/.*find_package\(([A-Za-z0-9._+]+).*/\1/p' -e 's/.*find_library\([A-Z_]+ ([a-z0-9]+) .*/\1/p' \
                    -e 's/.*pkg_check_modules\(([A-Z_]+) .*/\1/p' | sort -u)

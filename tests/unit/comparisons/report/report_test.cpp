@@ -370,7 +370,7 @@ TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
   const std::string dom = open_with(tools + R"js(
     // Frames come when the machine has time for them, timers when the browser's own clock says so: look until all are drawn.
     const look = left => {
-      const canvases = [...document.querySelectorAll('section:not([hidden]) canvas')];
+      const canvases = [...document.querySelectorAll('section canvas')].filter(canvas => !canvas.closest('[hidden]'));
       if (left > 0 && canvases.some(canvas => coloursOf(canvas) <= 20)) return setTimeout(look, 100, left - 1);
       for (const canvas of canvases) say(canvas.closest('section').id + (coloursOf(canvas) > 20 ? ' drawn' : ' blank'));
     };
