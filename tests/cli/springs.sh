@@ -202,7 +202,7 @@ refused() {
   [ $status -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log && [ ! -e refused ] || fail "$2: status $status: $(head -c 600 log)"
 }
 refused 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
-refused 'own.toml:16:.*hybmss.json: /version: is 2 \(allowed' 's/"version":  1/"version": 2/'
+refused 'own.toml:16:.*hybmss.json: /version: is 3 \(allowed' 's/"version":  1/"version": 3/'
 refused 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
 refused 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
 refused 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'
