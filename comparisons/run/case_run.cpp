@@ -52,6 +52,9 @@ struct PartRun {
   const Experiment& experiment() const { return prepared.experiment; }
   const Mesh& mesh(std::size_t lattice) const { return *prepared.lattices[lattice].mesh; }
   RunKey key(const std::string& model, const Cells& cells) const { return {model, material.poisson_ratio, cells}; }
+  VtuNotes notes(const RunKey& key) const {
+    return vtu_notes(experiment().name, key, material.youngs_modulus, vtu.single);
+  }
   RunKey key(const std::string& model, std::size_t lattice) const {
     return key(model, prepared.lattices[lattice].cells);
   }
@@ -228,14 +231,6 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
   add_distances(run, blank, of_samples, of_sample(doubt, values_of(reference->scalars, 1)));
 }
 
-/// What a file of a run says of itself.
-VtuNotes vtu_notes(const PartRun& run, const RunKey& key) {
-  return {
-      {{"case", run.experiment().name}, {"model", key.model}, {"cells", fmt::format("{}", fmt::join(key.cells, "x"))}},
-      {{"poisson_ratio", key.poisson_ratio}, {"youngs_modulus_Pa", run.material.youngs_modulus}},
-      run.vtu.single};
-}
-
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
   const auto& reference = run.reference[lattice];
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
@@ -249,7 +244,7 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu.folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  write_vtu(run.vtu.folder / (vtu_stem(key) + ".vtu"), field, extra, vtu_notes(run, key));
+  write_vtu(run.vtu.folder / (vtu_stem(key) + ".vtu"), field, extra, run.notes(key));
   write_file(run.vtu.folder / (vtu_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
 }
 
@@ -263,7 +258,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
     field.displacement = std::move(displacement);
     if (!run.vtu.folder.empty()) {
       series.emplace_back(time, fmt::format("{}_{:04}.vtu", vtu_stem(key), series.size() + 1));
-      VtuNotes notes = vtu_notes(run, key);
+      VtuNotes notes = run.notes(key);
       notes.numbers.emplace_back("time_s", time);
       write_vtu(run.vtu.folder / series.back().second, field, {}, notes);
     }
@@ -386,10 +381,6 @@ void add_fem(PartRun& run, std::size_t lattice) {
 }
 
 }  // namespace
-
-std::string vtu_stem(const RunKey& key) {
-  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
-}
 
 Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu) {
   PartRun run{prepared, prepared.experiment.materials[material], vtu, {}, {}, {}, {}, {}};

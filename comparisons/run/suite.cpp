@@ -285,22 +285,6 @@ std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const
   return results;
 }
 
-/// A series over Poisson's ratio of each model and resolution of a case, of the files that were written.
-void write_series(const CaseResult& result, const fs::path& folder) {
-  std::map<std::string, std::map<double, std::string>> series;
-  std::vector<RunKey> keys(result.runs.begin(), result.runs.end());
-  for (const IsotropicMaterial& m : result.experiment.materials)
-    for (const Cells& cells : result.cells) keys.push_back({"fem", m.poisson_ratio, cells});
-  for (const RunKey& key : keys) {
-    const std::string file = vtu_stem(key) + ".vtu";
-    if (fs::exists(folder / file))
-      series[fmt::format("{}_{}", file_name(key.model), fmt::join(key.cells, "x"))][key.poisson_ratio] = file;
-  }
-  for (const auto& [name, files] : series) {
-    if (files.size() > 1) write_pvd(folder / (name + ".pvd"), {files.begin(), files.end()});
-  }
-}
-
 nlohmann::json host() {
   utsname u{};
   uname(&u);

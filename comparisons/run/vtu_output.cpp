@@ -1,0 +1,38 @@
+#include "comparisons/run/vtu_output.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <vector>
+
+#include "meshes/field.h"
+#include "problem/system/file_name.h"
+
+namespace springproof {
+
+std::string vtu_stem(const RunKey& key) {
+  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
+}
+
+VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double youngs_modulus, bool single) {
+  return {{{"case", case_name}, {"model", key.model}, {"cells", cells_text(key.cells)}},
+          {{"poisson_ratio", key.poisson_ratio}, {"youngs_modulus_Pa", youngs_modulus}},
+          single};
+}
+
+void write_series(const CaseResult& result, const std::filesystem::path& folder) {
+  std::map<std::string, std::map<double, std::string>> series;
+  std::vector<RunKey> keys(result.runs.begin(), result.runs.end());
+  for (const IsotropicMaterial& m : result.experiment.materials)
+    for (const Cells& cells : result.cells) keys.push_back({"fem", m.poisson_ratio, cells});
+  for (const RunKey& key : keys) {
+    const std::string file = vtu_stem(key) + ".vtu";
+    if (std::filesystem::exists(folder / file))
+      series[fmt::format("{}_{}", file_name(key.model), fmt::join(key.cells, "x"))][key.poisson_ratio] = file;
+  }
+  for (const auto& [name, files] : series)
+    if (files.size() > 1) write_pvd(folder / (name + ".pvd"), {files.begin(), files.end()});
+}
+
+}  // namespace springproof

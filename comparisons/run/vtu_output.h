@@ -1,0 +1,28 @@
+// The files for ParaView of a comparison: their names, what they say of themselves, and their series.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "comparisons/report/results.h"
+#include "meshes/vtu.h"
+
+namespace springproof {
+
+/// Where VTU files go, and how.
+struct VtuOutput {
+  std::filesystem::path folder;  ///< empty: none
+  bool single = false;           ///< in single precision
+};
+
+/// Name of the VTU file of a run, without its ending.
+std::string vtu_stem(const RunKey& key);
+
+/// What the file of a run says of itself; `case_name` without its folder, Young's modulus in Pa.
+VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double youngs_modulus, bool single);
+
+/// Writes a series over Poisson's ratio of each model and resolution of a case, of the VTU files that lie in `folder`.
+/// @throws std::runtime_error if a file cannot be written.
+void write_series(const CaseResult& result, const std::filesystem::path& folder);
+
+}  // namespace springproof
