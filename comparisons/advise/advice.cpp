@@ -12,8 +12,6 @@
 namespace springproof {
 namespace {
 
-constexpr const char* usual_model = "hybmss_avg";
-
 std::string row_of(const std::string& label) { return label.substr(0, label.find(' ')); }
 
 /// Costs of models on this machine, each measured when it is first asked for.
@@ -21,7 +19,7 @@ class Costs {
  public:
   explicit Costs(const Forecast& forecast) : forecast_(forecast) {
     if (forecast.solved_cells > 0)
-      scale_ = forecast.solved_seconds / speed_of(usual_model).solve_seconds(forecast.solved_cells);
+      scale_ = forecast.solved_seconds / speed_of(pilot_reference_model).solve_seconds(forecast.solved_cells);
   }
 
   Choice of(const std::string& label, const Resolution& r, const Prediction& p, const Wish& wish) {

@@ -23,7 +23,6 @@
 namespace springproof {
 namespace {
 
-constexpr const char* reference_model = "hybmss_avg";
 constexpr double slowest = 0.5, fastest = 2;       // orders at which errors may fall
 constexpr double large_displacement_share = 0.15;  // of the cells, where each is solved by Newton's method
 constexpr double voxel_share = 0.6;                // of the cells of a cut body, whose solver takes more iterations
@@ -126,9 +125,9 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
     if (cuts) e.models.push_back(choice_of(name, true));
     e.models.push_back(choice_of(name, cuts ? std::optional(false) : std::nullopt));
   };
-  add(reference_model);
+  add(pilot_reference_model);
   for (const std::string& name : models)
-    if (name != reference_model) add(name);
+    if (name != pilot_reference_model) add(name);
   std::vector<int> all = at.every;
   all.insert(all.end(), at.reference.begin(), at.reference.end());
   std::sort(all.begin(), all.end());
@@ -287,11 +286,11 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
     run.reference_solves.push_back(solve_on(prepared, *lattice, prepared.models.front(), material));
     if (const Equilibrium& s = run.reference_solves.back().state; !s.ok)
       throw std::runtime_error(fmt::format("{}: {} has no equilibrium on {} cells: {}", experiment.file.string(),
-                                           reference_model, cells_of(*lattice), s.message));
+                                           pilot_reference_model, cells_of(*lattice), s.message));
   }
   out.reference_cells = cells_of(*run.reference.back());
   out.reference_seconds = run.reference_solves.back().seconds;
-  out.reference = fmt::format("{} on {:g}, {:g} and {:g} cells, extrapolated", reference_model,
+  out.reference = fmt::format("{} on {:g}, {:g} and {:g} cells, extrapolated", pilot_reference_model,
                               cells_of(*run.reference[0]), cells_of(*run.reference[1]), out.reference_cells);
   for (const Lattice* lattice : run.every)
     run.truths.push_back(reference_at(run.reference, run.reference_solves, cut, *lattice->mesh));

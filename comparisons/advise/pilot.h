@@ -9,6 +9,10 @@
 
 namespace springproof {
 
+/// The model whose solves, extrapolated, stand for the truth of a case; their time scales what the machine is measured
+/// at.
+inline constexpr const char* pilot_reference_model = "hybmss_avg";
+
 /// What is predicted of a displacement error.
 struct Prediction {
   double error = 0;     ///< as a part of the displacement
