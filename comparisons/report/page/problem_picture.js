@@ -3,17 +3,16 @@
 
 const supportColour = 0x5b6b82, loadColour = 0xd55e00, moveColour = 0x7a3fb0;
 
-/// Area-weighted middle and outward normal of the facets of a mesh whose corners are all on a patch; pieces: the middle
-/// and normal of each.
-function patchFacets(mesh, nodes) {
-  const quads = quadsOf(mesh.quads), rest = floatsOf(mesh.rest), on = new Set(nodes), pieces = [];
+/// Corners, outward normal and middle of each facet of a body {quads, rest} whose corners are all on a patch.
+function patchFacets({quads, rest}, nodes) {
+  const on = new Set(nodes), pieces = [];
   const corner = n => new THREE.Vector3().fromArray(rest, 3 * n);
   for (let i = 0; i < quads.length; i += 4) {
     const facet = [...new Set(quads.slice(i, i + 4))];
     if (facet.length < 3 || !facet.every(n => on.has(n))) continue;
     const points = facet.map(corner), last = points[points.length - 1];
     const normal = points[1].clone().sub(points[0]).cross(last.clone().sub(points[0]));
-    pieces.push({nodes: facet, normal: normal.clone().normalize(), area: normal.length(),
+    pieces.push({nodes: facet, normal: normal.normalize(),
                  middle: points.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(points.length)});
   }
   return pieces;
@@ -36,8 +35,8 @@ function linesOf(points, color) {
 }
 
 /// A patch as a coloured skin just outside of the body.
-function skinOf(pieces, mesh, size, color) {
-  const rest = floatsOf(mesh.rest), positions = [];
+function skinOf(pieces, {rest}, size, color) {
+  const positions = [];
   const point = (n, normal) => new THREE.Vector3().fromArray(rest, 3 * n).addScaledVector(normal, 0.002 * size);
   for (const {nodes, normal} of pieces)
     for (let i = 1; i + 1 < nodes.length; ++i)
@@ -81,21 +80,21 @@ function below(box, direction) {
 }
 
 /// Objects that show one load or support.
-function markObjects(mark, mesh, box) {
+function markObjects(mark, body, box) {
   const size = box.getSize(new THREE.Vector3()), length = Math.max(size.x, size.y, size.z);
   const vector = new THREE.Vector3(...mark.vector);
-  const pieces = mark.on ? patchFacets(mesh, mesh.patches[mark.on] || []) : [];
+  const pieces = mark.on ? patchFacets(body, body.patches[mark.on] || []) : [];
   /// Outside of the body, whichever way they point.
   const arrows = (most, scale, color, directionOf) => spreadOut(pieces, most).flatMap(piece =>
     arrow(piece.middle, directionOf(piece), scale * length, color, directionOf(piece).dot(piece.normal) < 0));
   switch (mark.kind) {
-    case 'held': return pieces.length === 0 ? [] : [skinOf(pieces, mesh, length, supportColour), hatching(pieces, length)];
-    case 'moved': return pieces.length === 0 ? [] : [skinOf(pieces, mesh, length, moveColour),
+    case 'held': return pieces.length === 0 ? [] : [skinOf(pieces, body, length, supportColour), hatching(pieces, length)];
+    case 'moved': return pieces.length === 0 ? [] : [skinOf(pieces, body, length, moveColour),
       ...vector.length() > 0 ? arrows(3, 0.2, moveColour, () => vector) : []];
-    case 'turned': return pieces.length === 0 ? [] : [skinOf(pieces, mesh, length, moveColour),
+    case 'turned': return pieces.length === 0 ? [] : [skinOf(pieces, body, length, moveColour),
       ...arrows(8, 0.12, moveColour, ({middle: at}) => vector.clone().cross(at.clone().sub(new THREE.Vector3(...mark.at))))];
-    case 'force': return pieces.length === 0 ? [] : [skinOf(pieces, mesh, length, loadColour), ...arrows(4, 0.2, loadColour, () => vector)];
-    case 'pressure': return pieces.length === 0 ? [] : [skinOf(pieces, mesh, length, loadColour),
+    case 'force': return pieces.length === 0 ? [] : [skinOf(pieces, body, length, loadColour), ...arrows(4, 0.2, loadColour, () => vector)];
+    case 'pressure': return pieces.length === 0 ? [] : [skinOf(pieces, body, length, loadColour),
       ...arrows(14, 0.12, loadColour, ({normal}) => normal.clone().multiplyScalar(-Math.sign(mark.vector[0]) || -1))];
     case 'gravity': return vector.length() > 0 ? arrow(below(box, vector), vector, 0.2 * length, loadColour, false) : [];
     case 'point': return vector.length() > 0 ? arrow(new THREE.Vector3(...mark.at), vector, 0.2 * length, loadColour, true) : [];
@@ -131,14 +130,15 @@ function cornersOf(object) {
   return [...min.toArray(), ...max.toArray()];
 }
 
-/// What the case is and what came of it, in one row of bodies; null without pictures.  `stop` frees the canvas.
+/// What the case is and what came of it, in one row of bodies: {node, redraw}; null without pictures.
 function problemPicture(result) {
   const file = picturesOf(result);
   if (file.pictures.length === 0) return null;
   const {nu, cells, pictures} = pairOf(result), viewer = new Viewer(), bar = colorBar(), colouring = colourings.difference;
   const panels = makePanels(file, pictures, true), amplification = fittingAmplification(result, panels), marks = file.marks || [];
   const top = paintPanels(panels, colouring, amplification), mesh = file.meshes[pictures[0].mesh], box = boundsOf(panels[0].shape.rest);
-  const drawn = marks.flatMap(mark => markObjects(mark, mesh, box));
+  const body = {quads: quadsOf(mesh.quads), rest: floatsOf(mesh.rest), patches: mesh.patches};
+  const drawn = marks.flatMap(mark => markObjects(mark, body, box));
   if (drawn.length > 0) panels[0].scene.add(...drawn);
   panels[0].own.push(...drawn);
   panels[0].label.append(el('span', {class: 'model'}, 'The problem'), el('small', {}, distinct(marks.map(mark => mark.kind).filter(kind => markWords[kind])).map(kind =>
