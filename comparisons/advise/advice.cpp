@@ -27,8 +27,8 @@ class Costs {
     const Speed& speed = speed_of(label);
     c.seconds = (row_of(label).starts_with("fem_") ? 1 : scale_) * speed.solve_seconds(r.cells);
     c.MiB = speed.MiB_per_cell * r.cells;
-    const bool still = is_cut(label);  // cut cells do not move in time
-    if (speed.step_per_cell > 0 && !still) {
+    // Steps are measured in the kernels of whole cubes, which cut cells do not have.
+    if (speed.step_per_cell > 0 && !is_cut(label)) {
       c.ms_per_step = 1e3 * speed.step_per_cell * r.cells;
       c.safe_step = speed.safe_step * r.edge;
     }
@@ -40,9 +40,7 @@ class Costs {
 
   /// Of a body of voxels: in cut cells.
   bool is_cut(const std::string& label) const {
-    const bool voxels =
-        std::find(forecast_.models.begin(), forecast_.models.end(), label + " cut=false") != forecast_.models.end();
-    return voxels;
+    return std::find(forecast_.models.begin(), forecast_.models.end(), label + " cut=false") != forecast_.models.end();
   }
 
  private:

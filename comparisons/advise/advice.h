@@ -48,7 +48,7 @@ struct Choice {
   std::string model;
   Resolution resolution;
   Prediction prediction;
-  std::optional<double> ms_per_step;  ///< empty: does not move in time
+  std::optional<double> ms_per_step;  ///< empty: not known, or elements, which make no explicit steps
   double safe_step = 0;               ///< [s]
   double seconds = 0, MiB = 0;        ///< of a static solve
   bool accurate = false, affordable = false;

@@ -121,9 +121,9 @@ Forecast forecast_from(const std::vector<Measurement>& measured, const std::vect
     if (m.cells.empty()) out.notes.push_back(fmt::format("{} has no result: {}", m.label, m.failure));
   if (voxels)
     out.notes.push_back(
-        "models without a suffix are in cut cells where they can (at rest only); 'cut=false' in whole cubes, which "
-        "also "
-        "move in time");
+        "models without a suffix are in cut cells where they can, 'cut=false' in whole cubes; times of a step are "
+        "known "
+        "of whole cubes only");
   return out;
 }
 

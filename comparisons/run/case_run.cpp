@@ -24,7 +24,6 @@
 #include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/child.h"
-#include "problem/system/file_name.h"
 #include "problem/system/files.h"
 #include "problem/system/progress.h"
 
