@@ -1,10 +1,6 @@
 #include "fem_reference/assembled_operator.h"
 
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_dgp.h>
-#include <deal.II/fe/fe_dgq.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
@@ -18,17 +14,6 @@
 
 namespace springproof::fem::assembled {
 namespace {
-
-std::unique_ptr<dealii::FiniteElement<3>> scalar_element(bool tetrahedra, int degree) {
-  if (tetrahedra) return std::make_unique<dealii::FE_SimplexP<3>>(degree);
-  return std::make_unique<dealii::FE_Q<3>>(degree);
-}
-
-std::unique_ptr<dealii::FiniteElement<3>> pressure_element(bool tetrahedra, int degree) {
-  if (tetrahedra) return std::make_unique<dealii::FE_SimplexP<3>>(1);
-  if (degree == 2) return std::make_unique<dealii::FE_DGP<3>>(1);
-  return std::make_unique<dealii::FE_DGQ<3>>(0);
-}
 
 struct DofSets {
   explicit DofSets(const dealii::DoFHandler<3>& dof_handler) : owned(dof_handler.locally_owned_dofs()) {
@@ -68,7 +53,7 @@ struct AssembledOperator::Spaces {
         comm(system.body.triangulation.get_communicator()),
         u(displacement),
         p(system.body.triangulation),
-        scalar(scalar_element(system.body.has_tetrahedra(), u.get_fe().degree)),
+        scalar(scalar_element(system.body, int(u.get_fe().degree))),
         quadrature(cell_quadrature(system.body, u.get_fe().degree + 1)),
         values(*system.body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values),
         u_dofs(u),
@@ -80,14 +65,11 @@ struct AssembledOperator::Spaces {
       place.push_back(3 * int(node) + int(component));
     }
     if (law.form != Form::mixed || &u != &system.dof_handler) return;
-    const auto fe = pressure_element(system.body.has_tetrahedra(), system.degree);
+    const auto fe = pressure_element(system.body, system.degree);
     p.distribute_dofs(*fe);
     p_dofs.emplace(p);
     p_indices.resize(fe->n_dofs_per_cell());
-    shape.pressures.resize(quadrature.size(), fe->n_dofs_per_cell());
-    for (unsigned int q = 0; q < quadrature.size(); ++q)
-      for (unsigned int f = 0; f < fe->n_dofs_per_cell(); ++f)
-        shape.pressures(q, f) = fe->shape_value(f, quadrature.point(q));
+    shape.pressures = values_at(*fe, quadrature);
   }
 
   bool mixed() const { return p_dofs.has_value(); }

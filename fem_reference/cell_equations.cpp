@@ -177,6 +177,54 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
   return r;
 }
 
+void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& u, const Eigen::MatrixXd& rate,
+                   double viscosity, double per_rate, CellVector& residual, CellTangent* tangent) {
+  const int n = shape.nodes(), points = shape.points();
+  std::vector<Matrix3d> F(points), inverse(points);
+  Eigen::VectorXd dilatation(points);  // its rate
+  for (int q = 0; q < points; ++q) {
+    const auto dN = shape.gradients.middleRows<3>(3 * q);
+    F[q] = Matrix3d::Identity();
+    if (law.law) F[q] += u.transpose() * dN.transpose();
+    inverse[q] = F[q].inverse();
+    const Matrix3d F_rate = rate.transpose() * dN.transpose();
+    dilatation[q] = (F_rate * inverse[q]).trace();
+    const Matrix3d product = F[q].transpose() * F_rate;
+    residual.u +=
+        viscosity * law.mu * shape.weights[q] * dN.transpose() * (F[q] * (product + product.transpose())).transpose();
+  }
+  const auto weights = shape.weights.asDiagonal();
+  const double scale = 1 + viscosity * per_rate;
+  if (law.form == Form::mixed) {
+    residual.p = (residual.p + viscosity * shape.pressures.transpose() * (weights * dilatation)) / scale;
+  } else {
+    if (law.form == Form::mean_dilatation) dilatation.setConstant(dilatation.dot(shape.weights) / shape.weights.sum());
+    for (int q = 0; q < points; ++q)
+      residual.u += viscosity * law.lambda * dilatation[q] * shape.weights[q] *
+                    shape.gradients.middleRows<3>(3 * q).transpose() * inverse[q];
+  }
+  if (!tangent) return;
+
+  Eigen::MatrixXd B(6 * points, 3 * n), DB(6 * points, 3 * n), traces(points, 3 * n);
+  const Vector6 shear = law.mu * (Vector6() << 2, 2, 2, 1, 1, 1).finished();
+  for (int q = 0; q < points; ++q) {
+    const auto dN = shape.gradients.middleRows<3>(3 * q);
+    const auto b = strain_matrix(F[q], dN);
+    B.middleRows<6>(6 * q) = b;
+    DB.middleRows<6>(6 * q) = shape.weights[q] * shear.asDiagonal() * b;
+    const Eigen::MatrixXd turned = inverse[q].transpose() * dN;
+    traces.row(q) = Eigen::Map<const Eigen::VectorXd>(turned.data(), 3 * n).transpose();
+  }
+  tangent->uu += viscosity * per_rate * (B.transpose() * DB);
+  if (law.form == Form::mixed) {
+    tangent->pp /= scale;
+    return;
+  }
+  if (law.form == Form::mean_dilatation)
+    traces = (Eigen::VectorXd::Ones(points) * (shape.weights.transpose() * traces / shape.weights.sum())).eval();
+  tangent->uu += viscosity * per_rate * law.lambda * (traces.transpose() * (weights * traces));
+}
+
 CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd* u) {
   const int n = shape.nodes(), points = shape.points();
   // One column per point: the gradients of all shape functions, weighted so that X X^T integrates their products.

@@ -43,6 +43,14 @@ struct CellLaw {
 CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellVector& x, double& smallest,
                          CellTangent* tangent);
 
+/// Kelvin-Voigt viscosity: adds to the residual `viscosity` [s] times the stress 2 mu E' (second Piola-Kirchhoff, E'
+/// the rate of Green-Lagrange strain) and lambda tr(F' F^-1) F^-T (first).  In the mixed form the pressure resists the
+/// rate too: the dilatation residual becomes that of g + viscosity tr(F' F^-1), divided by 1 + viscosity * per_rate.
+/// `rate`: velocities [m/s], nodes x 3.  `tangent`, if not null: its derivative to displacements on which the rate
+/// depends by the factor `per_rate` [1/s] is added, for F as it is.
+void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& u, const Eigen::MatrixXd& rate,
+                   double viscosity, double per_rate, CellVector& residual, CellTangent* tangent);
+
 /// The small-strain stiffness with gradients in the configuration deformed by u (nullptr: undeformed), integrated over
 /// the rest volume: the matrix of the multigrid.  The mixed form omits the lambda term.
 CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd* u);

@@ -22,13 +22,16 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PointForce, at, force)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldBodyForce, field)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PatchReaction, patch, force, torque)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunTimes, set_up, solve)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Course, ramp, pulse, frequency)
 
 namespace fem {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements, steps, vtu)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Motion, duration, damping, course, released, velocity, spin, viscosity)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions,
                                    volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,
-                                   iterations, residual, seconds, times, memory_MiB, frequencies, shapes, rigid_motions)
+                                   iterations, residual, seconds, times, memory_MiB, frequencies, shapes, rigid_motions,
+                                   time, path, kinetic_energy)
 
 nlohmann::json to_json(const Request& r) {
   nlohmann::json meshes = nlohmann::json::array();
@@ -45,7 +48,9 @@ nlohmann::json to_json(const Request& r) {
           {"tolerance", r.tolerance},
           {"meshes", meshes},
           {"cost", r.cost},
-          {"modes", r.modes}};
+          {"vtu_single", r.vtu_single},
+          {"modes", r.modes},
+          {"motion", r.motion}};
 }
 
 Request request_from_json(const nlohmann::json& j) {
@@ -62,7 +67,9 @@ Request request_from_json(const nlohmann::json& j) {
   j.at("tolerance").get_to(r.tolerance);
   for (const auto& mesh : j.at("meshes")) r.meshes.push_back(std::make_shared<Mesh>(mesh_from_json(mesh)));
   j.at("cost").get_to(r.cost);
+  j.at("vtu_single").get_to(r.vtu_single);
   j.at("modes").get_to(r.modes);
+  j.at("motion").get_to(r.motion);
   return r;
 }
 

@@ -67,11 +67,19 @@ Solution solve_one(const Request& request, const Discretisation& grid, Method me
   problem.tolerance = request.tolerance;
   problem.own_memory = request.cost;
   problem.modes = request.modes;
+  problem.motion = request.motion;
+  problem.steps = grid.steps;
+  problem.vtu = grid.vtu;
+  problem.vtu_notes = {
+      {{"case", request.name}, {"element", grid.element}, {"law", request.law}},
+      {{"poisson_ratio", request.material.poisson_ratio}, {"youngs_modulus_Pa", request.material.youngs_modulus}},
+      request.vtu_single};
   Solution solution = solve_grid(problem);
   solution.grid = grid;
   if (!request.cost || !solution.ok) return solution;
   problem.points.resize(0, 3);
   problem.stress_points.resize(0, 3);
+  problem.vtu.clear();
   solution.times = least_times(solution.times, [&] { return solve_grid(problem).times; });
   return solution;
 }

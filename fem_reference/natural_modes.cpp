@@ -1,8 +1,5 @@
 #include "fem_reference/natural_modes.h"
 
-#include <deal.II/fe/fe_dgp.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
@@ -16,6 +13,7 @@
 #include "fem_reference/boundary_conditions.h"
 #include "fem_reference/cell_equations.h"
 #include "fem_reference/multigrid.h"
+#include "fem_reference/petsc.h"
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
 #include "problem/system/input_error.h"
@@ -28,13 +26,6 @@ constexpr int modes_beyond = 6;            // computed beside those wanted: a ga
 constexpr double eigen_tolerance = 1e-10;  // relative residual
 constexpr double rigid_below = 1e-7;       // of the largest eigenvalue computed: a rigid motion
 constexpr double least_gap = 1e-4;         // relative, between eigenvalues: none lies in it by accident
-
-void succeed(PetscErrorCode code) {
-  if (code == 0) return;
-  const char* text = nullptr;
-  PetscErrorMessage(code, &text, nullptr);
-  throw std::runtime_error(fmt::format("SLEPc: {}", text ? text : "unknown error"));
-}
 
 /// Stiffness and consistent mass of the free degrees of freedom.
 struct Pencil {
@@ -80,19 +71,14 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
   pencil.K = std::make_unique<SparseMatrix>(all, all, pattern, comm);
   pencil.M = std::make_unique<SparseMatrix>(all, all, pattern, comm);
 
-  std::unique_ptr<dealii::FiniteElement<3>> scalar = std::make_unique<dealii::FE_Q<3>>(problem.degree);
-  if (body.has_tetrahedra()) scalar = std::make_unique<dealii::FE_SimplexP<3>>(problem.degree);
+  const auto scalar = scalar_element(body, problem.degree);
   const dealii::Quadrature<3> quadrature = cell_quadrature(body, body.has_tetrahedra() ? 4 : problem.degree + 1);
   dealii::FEValues<3> values(*body.mapping, *scalar, quadrature,
                              dealii::update_values | dealii::update_gradients | dealii::update_JxW_values);
   const int nodes = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
   CellShape shape{Eigen::MatrixXd(3 * points, nodes), Eigen::VectorXd(points), Eigen::MatrixXd()};
   if (form == Form::mixed) {
-    const dealii::FE_DGP<3> pressure(problem.degree - 1);
-    shape.pressures.resize(points, pressure.n_dofs_per_cell());
-    for (int q = 0; q < points; ++q)
-      for (unsigned int f = 0; f < pressure.n_dofs_per_cell(); ++f)
-        shape.pressures(q, f) = pressure.shape_value(f, quadrature.point(q));
+    shape.pressures = values_at(*pressure_element(body, problem.degree), quadrature);
   }
   const CellLaw law{std::nullopt, form, shear_modulus(problem.material), lame_lambda(problem.material)};
   std::vector<PetscInt> rows(dofs.size());
@@ -129,22 +115,10 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
 
 /// Number of eigenvalues below sigma: that of negative pivots of K - sigma M (Sylvester).
 PetscInt eigenvalues_below(double sigma, const Pencil& pencil) {
-  Mat shifted = nullptr, factors = nullptr;
-  IS rows = nullptr, columns = nullptr;
-  MatFactorInfo info;
-  PetscInt negative = 0;
+  Mat shifted = nullptr;
   succeed(MatDuplicate(pencil.K->petsc(), MAT_COPY_VALUES, &shifted));
   succeed(MatAXPY(shifted, -sigma, pencil.M->petsc(), SAME_NONZERO_PATTERN));
-  succeed(MatSetOption(shifted, MAT_SYMMETRIC, PETSC_TRUE));
-  succeed(MatGetFactor(shifted, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors));
-  succeed(MatFactorInfoInitialize(&info));
-  succeed(MatGetOrdering(shifted, MATORDERINGEXTERNAL, &rows, &columns));
-  succeed(MatCholeskyFactorSymbolic(factors, shifted, rows, &info));
-  succeed(MatCholeskyFactorNumeric(factors, shifted, &info));
-  succeed(MatGetInertia(factors, &negative, nullptr, nullptr));
-  succeed(ISDestroy(&rows));
-  succeed(ISDestroy(&columns));
-  succeed(MatDestroy(&factors));
+  const PetscInt negative = SymmetricFactors(shifted).negative_pivots();
   succeed(MatDestroy(&shifted));
   return negative;
 }

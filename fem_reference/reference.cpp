@@ -46,6 +46,13 @@ bool answers(const std::vector<Solution>& solutions, const Request& request) {
         return false;
       continue;
     }
+    if (request.motion) {
+      if (s.time.empty() || s.path.size() != s.time.size() || s.kinetic_energy.size() != s.time.size() ||
+          std::any_of(s.path.begin(), s.path.end(),
+                      [&](const NodalVectors& u) { return u.rows() != request.points.rows(); }))
+        return false;
+      continue;
+    }
     const auto same_patch = [](const PatchReaction& a, const PatchReaction& b) { return a.patch == b.patch; };
     if (s.displacement.rows() != request.points.rows() || s.stress.rows() != request.stress_points.rows() ||
         !std::equal(s.reactions.begin(), s.reactions.end(), first->reactions.begin(), first->reactions.end(),

@@ -6,10 +6,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "meshes/field.h"
+#include "problem/course.h"
 #include "problem/loads.h"
 #include "problem/material.h"
 #include "problem/system/input_error.h"
@@ -24,10 +26,24 @@ struct Discretisation {
   double grading = 1.0;  ///< exponent that grades the cells of a block towards its faces (fem::graded); 1 = uniform
   int mesh = -1;         ///< index into Request::meshes, used instead of the .geo; -1: none
   int refinements = 0;   ///< of that mesh's hexahedra: each is cut into 8 this many times
+  int steps = 0;         ///< in which Request::motion is made on this grid
+  std::string vtu = {};  ///< file for ParaView: the solution and its stress on the elements' own mesh; empty: none
 };
 
 /// xx yy zz xy yz xz [Pa], one row per point.
 using Stresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
+/// Motion in time under the loads.
+struct Motion {
+  double duration = 0;    ///< [s]
+  double damping = 0;     ///< mass-proportional, force -damping rho v per volume [1/s]
+  Course course = {};     ///< of the loads and moved supports
+  bool released = false;  ///< it starts from equilibrium under the loads, which are removed instead; supports stay
+  Vec3 velocity = Vec3::Zero();  ///< at the start, of the body as a whole [m/s]
+  Vec3 spin = Vec3::Zero();      ///< and about its centre of mass [rad/s]
+  double viscosity = 0;          ///< time of retardation of a Kelvin-Voigt solid: to the stress of a strain E it adds
+                                 ///< `viscosity` times Hooke's stress of dE/dt [s]
+};
 
 struct Request {
   std::string name;            ///< of the case, in messages
@@ -43,7 +59,9 @@ struct Request {
   double tolerance = 1e-9;                               ///< relative residual of the linear solves
   std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the .geo
   bool cost = false;                                     ///< measure times and memory for comparison (RunTimes)
+  bool vtu_single = false;                               ///< Discretisation::vtu in single precision
   int modes = 0;  ///< compute so many natural modes instead of a displacement: supports at rest, no other loads
+  std::optional<Motion> motion = {};  ///< integrate in time instead of an equilibrium
 };
 
 /// The result on one grid.
@@ -68,6 +86,9 @@ struct Solution {
   std::vector<double> frequencies;       ///< of Request::modes and some more, ascending, without rigid motions [Hz]
   std::vector<NodalVectors> shapes;      ///< of these modes, at Request::points [kg^-1/2]
   int rigid_motions = 0;                 ///< that the supports leave
+  std::vector<double> time;              ///< of Request::motion: 0 and the end of every step [s]
+  std::vector<NodalVectors> path;        ///< displacements at Request::points at these times [m]
+  std::vector<double> kinetic_energy;    ///< at these times [J]
   double memory_MiB = 0;  ///< peak resident set so far, of the largest process; for an experiment with `cost` the
                           ///< growth due to this grid
 };

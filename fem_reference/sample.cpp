@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "fem_reference/processes.h"
@@ -228,34 +229,6 @@ Eigen::Matrix3d cauchy_stress(Law law, const Matrix3& F, double mu, double p) {
   return deformation * second * deformation.transpose() / determinant(F);
 }
 
-// Superconvergent stress points (Barlow 1976): the points of the Gauss rule with `degree` points per direction, and the
-// weights that extrapolate their stresses to `unit`.
-struct StressPoints {
-  std::vector<dealii::Point<3>> points;
-  std::vector<double> weights;
-};
-
-StressPoints stress_points(bool tetrahedron, unsigned int degree, const dealii::Point<3>& unit) {
-  StressPoints s;
-  if (!tetrahedron) {
-    s.points = dealii::QGauss<3>(degree).get_points();
-    const dealii::FE_DGQArbitraryNodes<3> interpolation{dealii::QGauss<1>(degree)};
-    for (unsigned int i = 0; i < s.points.size(); ++i) s.weights.push_back(interpolation.shape_value(i, unit));
-    return s;
-  }
-  if (degree == 1) return {{dealii::Point<3>(0.25, 0.25, 0.25)}, {1.0}};
-  // Four points, each nearer to one corner.
-  const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
-  const std::array<double, 4> barycentric = {1 - unit[0] - unit[1] - unit[2], unit[0], unit[1], unit[2]};
-  for (int corner = 0; corner < 4; ++corner) {
-    dealii::Point<3> point(far, far, far);
-    if (corner > 0) point[corner - 1] = near;
-    s.points.push_back(point);
-    s.weights.push_back((barycentric[corner] - far) / (near - far));
-  }
-  return s;
-}
-
 Matrix3 deformation_gradient(const dealii::Tensor<2, 3>& h) {
   Matrix3 F;
   for (int i = 0; i < 3; ++i)
@@ -263,29 +236,85 @@ Matrix3 deformation_gradient(const dealii::Tensor<2, 3>& h) {
   return F;
 }
 
-Eigen::Matrix3d stress_in_cell(const Location& place, const ElasticSystem& system, std::optional<Law> law,
-                               const ElasticAnswer& answer, const DofVector& displacement) {
-  const auto [points, weights] = stress_points(system.body.has_tetrahedra(), system.degree, place.unit);
-  dealii::FEValues<3> values(*system.body.mapping, system.dof_handler.get_fe(), dealii::Quadrature<3>(points),
-                             dealii::update_gradients);
-  const dealii::DoFHandler<3>::active_cell_iterator cell(&system.body.triangulation, place.cell->level(),
-                                                         place.cell->index(), &system.dof_handler);
-  values.reinit(cell);
-  std::vector<dealii::Tensor<2, 3>> gradients(points.size());
-  values[dealii::FEValuesExtractors::Vector(0)].get_function_gradients(displacement, gradients);
-  Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Location here{place.cell, points[k]};
-    if (law) {
-      const Matrix3 F = deformation_gradient(gradients[k]);
-      const double p = pressure_at(system, law, answer.pressure, here, dilatation(*law, F));
-      stress += weights[k] * cauchy_stress(*law, F, system.mu, p);
-    } else {
-      const double p = pressure_at(system, law, answer.pressure, here, dealii::trace(gradients[k]));
-      stress += weights[k] * linear_stress(gradients[k], system.mu, p);
+// Stresses at the superconvergent points of a cell (Barlow 1976), those of the Gauss rule with `degree` points per
+// direction, and their extrapolation.
+class CellStress {
+ public:
+  CellStress(const ElasticSystem& system, std::optional<Law> law, const ElasticAnswer& answer,
+             const DofVector& displacement)
+      : system_(system),
+        law_(law),
+        answer_(answer),
+        displacement_(displacement),
+        tetrahedra_(system.body.has_tetrahedra()),
+        interpolation_(dealii::QGauss<1>(system.degree)),
+        points_(tetrahedra_ ? tetrahedron_points(system.degree) : dealii::QGauss<3>(system.degree).get_points()),
+        values_(*system.body.mapping, system.dof_handler.get_fe(), dealii::Quadrature<3>(points_),
+                dealii::update_gradients),
+        gradients_(points_.size()),
+        stresses_(points_.size()) {}
+
+  // What extrapolates the stresses at the points to `unit`.
+  std::vector<double> weights(const dealii::Point<3>& unit) const {
+    std::vector<double> w(points_.size(), 1.0);
+    if (!tetrahedra_) {
+      for (unsigned int i = 0; i < w.size(); ++i) w[i] = interpolation_.shape_value(i, unit);
+    } else if (w.size() == 4) {
+      const std::array<double, 4> barycentric = {1 - unit[0] - unit[1] - unit[2], unit[0], unit[1], unit[2]};
+      for (int corner = 0; corner < 4; ++corner) w[corner] = (barycentric[corner] - far) / (near - far);
     }
+    return w;
   }
-  return stress;
+
+  const std::vector<Eigen::Matrix3d>& at_points(const dealii::Triangulation<3>::active_cell_iterator& cell) {
+    values_.reinit(dealii::DoFHandler<3>::active_cell_iterator(&system_.body.triangulation, cell->level(),
+                                                               cell->index(), &system_.dof_handler));
+    values_[dealii::FEValuesExtractors::Vector(0)].get_function_gradients(displacement_, gradients_);
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const Location here{cell, points_[k]};
+      if (law_) {
+        const Matrix3 F = deformation_gradient(gradients_[k]);
+        const double p = pressure_at(system_, law_, answer_.pressure, here, dilatation(*law_, F));
+        stresses_[k] = cauchy_stress(*law_, F, system_.mu, p);
+      } else {
+        const double p = pressure_at(system_, law_, answer_.pressure, here, dealii::trace(gradients_[k]));
+        stresses_[k] = linear_stress(gradients_[k], system_.mu, p);
+      }
+    }
+    return stresses_;
+  }
+
+ private:
+  // Of four points, each nearer to one corner: their barycentric coordinates.
+  inline static const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
+
+  static std::vector<dealii::Point<3>> tetrahedron_points(int degree) {
+    if (degree == 1) return {{0.25, 0.25, 0.25}};
+    return {{far, far, far}, {near, far, far}, {far, near, far}, {far, far, near}};
+  }
+
+  const ElasticSystem& system_;
+  std::optional<Law> law_;
+  const ElasticAnswer& answer_;
+  const DofVector& displacement_;
+  bool tetrahedra_;
+  dealii::FE_DGQArbitraryNodes<3> interpolation_;
+  std::vector<dealii::Point<3>> points_;
+  dealii::FEValues<3> values_;
+  std::vector<dealii::Tensor<2, 3>> gradients_;
+  std::vector<Eigen::Matrix3d> stresses_;
+};
+
+Eigen::Matrix3d weighted(const std::vector<double>& weights, const std::vector<Eigen::Matrix3d>& stresses) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * stresses[k];
+  return sum;
+}
+
+Eigen::Matrix<double, 1, 6> components(const Eigen::Matrix3d& s) {
+  Eigen::Matrix<double, 1, 6> out;
+  out << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
+  return out;
 }
 
 }  // namespace
@@ -296,18 +325,59 @@ Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std:
   const std::vector<Location> places = locate(system.body, points);
   const dealii::GridTools::Cache<3> cache(system.body.triangulation, *system.body.mapping);
   Eigen::VectorXd cells_at = Eigen::VectorXd::Zero(points.rows());
+  CellStress stress(system, law, answer, displacement);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (!places[k].is_here()) continue;
     const std::vector<Location> cells = cells_around(cache, places[k], points.row(k));
     cells_at[k] = double(cells.size());
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const Location& place : cells) sum += stress_in_cell(place, system, law, answer, displacement);
-    stresses.row(k) << sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(1, 2), sum(0, 2);
+    for (const Location& place : cells) sum += weighted(stress.weights(place.unit), stress.at_points(place.cell));
+    stresses.row(k) = components(sum);
   }
   sum_over_processes(cells_at, system.dof_handler.get_communicator());
   sum_over_processes(stresses, system.dof_handler.get_communicator());
   stresses.array().colwise() /= cells_at.array();
   return stresses;
+}
+
+NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, const ElasticAnswer& answer,
+                           const DofVector& displacement) {
+  if (process_count() > 1) throw InputError("a file of the finite elements' own mesh is written by one process");
+  const auto& fe = system.dof_handler.get_fe();
+  const std::vector<dealii::Point<3>> units = fe.base_element(0).get_unit_support_points();
+  CellStress stress(system, law, answer, displacement);
+  std::vector<std::vector<double>> weights;
+  for (const auto& unit : units) weights.push_back(stress.weights(unit));
+
+  std::map<dealii::types::global_dof_index, int> number;  // of a node, by its first degree of freedom
+  NodalSolution out;
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
+  const auto nodes = static_cast<Eigen::Index>(system.dof_handler.n_dofs() / 3);
+  out.X.resize(nodes, 3);
+  out.displacement.resize(nodes, 3);
+  out.stress = Stresses::Zero(nodes, 6);
+  Eigen::VectorXd cells_at = Eigen::VectorXd::Zero(nodes);
+  for (const auto& cell : system.dof_handler.active_cell_iterators()) {
+    cell->get_dof_indices(dofs);
+    const std::vector<Eigen::Matrix3d>& in_cell = stress.at_points(cell);
+    std::vector<int>& own = out.cells.emplace_back();
+    for (unsigned int a = 0; a < units.size(); ++a) {
+      const auto [at, is_new] =
+          number.try_emplace(dofs[fe.component_to_system_index(0, a)], static_cast<int>(number.size()));
+      const int n = at->second;
+      own.push_back(n);
+      out.stress.row(n) += components(weighted(weights[a], in_cell));
+      cells_at[n] += 1;
+      if (!is_new) continue;
+      const dealii::Point<3> X = system.body.mapping->transform_unit_to_real_cell(cell, units[a]);
+      for (int c = 0; c < 3; ++c) {
+        out.X(n, c) = X[c];
+        out.displacement(n, c) = displacement[dofs[fe.component_to_system_index(c, a)]];
+      }
+    }
+  }
+  out.stress.array().colwise() /= cells_at.array();
+  return out;
 }
 
 VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof_handler,

@@ -36,6 +36,17 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
 Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std::optional<Law> law,
                    const ElasticAnswer& answer, const DofVector& displacement);
 
+/// A solution at the nodes of its own elements.
+struct NodalSolution {
+  NodalVectors X, displacement;         ///< rest positions and displacements [m], n x 3
+  Stresses stress;                      ///< as stress_at() gives them [Pa], n x 6
+  std::vector<std::vector<int>> cells;  ///< nodes of each cell, in the order of the element's shape functions
+};
+
+/// @throws InputError on several processes.
+NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, const ElasticAnswer& answer,
+                           const DofVector& displacement);
+
 struct VolumeMeasure {
   double change = 0;              ///< integral of det(I + grad u) - 1, divided by V
   double change_first_order = 0;  ///< integral of div u, divided by V

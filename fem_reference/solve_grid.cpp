@@ -10,9 +10,11 @@
 #include "fem_reference/boundary_conditions.h"
 #include "fem_reference/coarsest_level.h"
 #include "fem_reference/elastic_system.h"
+#include "fem_reference/motion.h"
 #include "fem_reference/natural_modes.h"
 #include "fem_reference/processes.h"
 #include "fem_reference/sample.h"
+#include "fem_reference/solution_file.h"
 #include "fem_reference/triangulate.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
@@ -189,6 +191,8 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
   solution.reactions = reactions(dof_handler, body, problem.loads, discrete.held, imbalance, linear ? nullptr : &u);
   solution.displacement = displacement_at(places, dof_handler, u);
   solution.stress = stress_at(problem.stress_points, discrete.system, law_named(problem.law), answer, u);
+  if (!problem.vtu.empty() && solution.ok)
+    write_solution(problem.vtu, at_own_nodes(discrete.system, law_named(problem.law), answer, u), problem.vtu_notes);
   const VolumeMeasure volume = measure_volume(body, dof_handler, u);
   solution.volume_change = volume.change;
   solution.volume_change_first_order = volume.change_first_order;
@@ -216,6 +220,8 @@ Solution solve_grid(const GridProblem& problem) {
   solution.degrees_of_freedom = dof_handler.n_dofs();
   if (problem.modes > 0)
     solve_modes(problem, *body, dof_handler, solution);
+  else if (problem.motion)
+    solve_motion(problem, *body, dof_handler, solution);
   else
     solve_into(solution, problem, *body, dof_handler, start, memory);
   const MPI_Comm comm = body->triangulation.get_communicator();

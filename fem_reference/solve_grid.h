@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fem_reference/reference.h"
+#include "meshes/vtu.h"
 
 namespace springproof::fem {
 
@@ -28,9 +29,13 @@ struct GridProblem {
   NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress
   double tolerance = 1e-9;                          ///< relative residual
   Method method = Method::automatic;
-  bool wide_vectors = true;  ///< use wide SIMD vectors, where the processor has them
-  int modes = 0;             ///< natural modes to compute instead of a displacement (fem_reference/natural_modes.h)
-  bool own_memory = false;   ///< Solution::memory_MiB is the growth due to this grid
+  bool wide_vectors = true;      ///< use wide SIMD vectors, where the processor has them
+  int modes = 0;                 ///< natural modes to compute instead of a displacement (fem_reference/natural_modes.h)
+  std::optional<Motion> motion;  ///< integrated in `steps` steps instead of an equilibrium (fem_reference/motion.h)
+  int steps = 0;
+  std::string vtu;          ///< file for ParaView of a converged solution (solution_file.h); empty: none
+  VtuNotes vtu_notes;       ///< what it says of itself
+  bool own_memory = false;  ///< Solution::memory_MiB is the growth due to this grid
 };
 
 /// The caller sets Solution::grid.  A solver that fails gives ok = false.

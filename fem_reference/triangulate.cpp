@@ -3,6 +3,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>
+#include <deal.II/fe/fe_dgp.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/mapping_fe.h>
@@ -143,9 +144,25 @@ std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements, const st
   return body;
 }
 
+std::unique_ptr<dealii::FiniteElement<3>> scalar_element(const Body3& body, int degree) {
+  if (body.has_tetrahedra()) return std::make_unique<dealii::FE_SimplexP<3>>(degree);
+  return std::make_unique<dealii::FE_Q<3>>(degree);
+}
+
 std::unique_ptr<dealii::FESystem<3>> displacement_element(const Body3& body, int degree) {
-  if (body.has_tetrahedra()) return std::make_unique<dealii::FESystem<3>>(dealii::FE_SimplexP<3>(degree), 3);
-  return std::make_unique<dealii::FESystem<3>>(dealii::FE_Q<3>(degree), 3);
+  return std::make_unique<dealii::FESystem<3>>(*scalar_element(body, degree), 3);
+}
+
+std::unique_ptr<dealii::FiniteElement<3>> pressure_element(const Body3& body, int degree) {
+  if (body.has_tetrahedra()) return std::make_unique<dealii::FE_SimplexP<3>>(1);
+  return std::make_unique<dealii::FE_DGP<3>>(degree - 1);
+}
+
+Eigen::MatrixXd values_at(const dealii::FiniteElement<3>& fe, const dealii::Quadrature<3>& quadrature) {
+  Eigen::MatrixXd values(quadrature.size(), fe.n_dofs_per_cell());
+  for (unsigned int q = 0; q < quadrature.size(); ++q)
+    for (unsigned int f = 0; f < fe.n_dofs_per_cell(); ++f) values(q, f) = fe.shape_value(f, quadrature.point(q));
+  return values;
 }
 
 dealii::Quadrature<3> cell_quadrature(const Body3& body, unsigned int n) {

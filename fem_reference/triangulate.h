@@ -34,8 +34,17 @@ struct Body3 {
 /// @throws InputError if the mesh has inverted cells, no cells, or both kinds.
 std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements, const std::function<Vec3(const Vec3&)>& place);
 
-/// Three components of Lagrange elements of degree 1 or 2.
+/// Lagrange elements of degree 1 or 2.
+std::unique_ptr<dealii::FiniteElement<3>> scalar_element(const Body3& body, int degree);
+
+/// Three components of them.
 std::unique_ptr<dealii::FESystem<3>> displacement_element(const Body3& body, int degree);
+
+/// The pressures of the mixed form beside displacements of this degree (element.h).
+std::unique_ptr<dealii::FiniteElement<3>> pressure_element(const Body3& body, int degree);
+
+/// Shape functions at the points of a rule, one row per point.
+Eigen::MatrixXd values_at(const dealii::FiniteElement<3>& fe, const dealii::Quadrature<3>& quadrature);
 
 /// Exact for polynomials of degree 2 n - 1 (hexahedra: in each coordinate); n up to 4.
 dealii::Quadrature<3> cell_quadrature(const Body3& body, unsigned int n);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -38,6 +40,12 @@ std::vector<std::string> names_of_set_ups() {
   return names;
 }
 
+/// Whether `part` occurs in `name`, in capitals or not.
+bool has_part(const std::string& name, const std::string& part) {
+  const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  return std::search(name.begin(), name.end(), part.begin(), part.end(), same) != name.end();
+}
+
 std::string size_of(const Cells& c) { return fmt::format("{}x{}x{}", c[0], c[1], c[2]); }
 
 /// Mean speed at the end, as a share of the mean displacement's that the motion would still make.
@@ -53,7 +61,7 @@ class EngineBench {
   EngineBench(const BenchOptions& options, Findings& findings, EngineFindings& out)
       : options_(options), findings_(findings), out_(out) {
     for (const EngineSetUp& s : engine_set_ups())
-      if (s.name.find(options.engine) != std::string::npos) wanted_.push_back(s);
+      if (has_part(s.name, options.engine)) wanted_.push_back(s);
     if (wanted_.empty())
       throw InputError(fmt::format("--engine: no set-up has '{}' in its name (allowed: a part of {})", options.engine,
                                    fmt::join(names_of_set_ups(), "; ")));

@@ -50,8 +50,9 @@ std::string Lammps::version() {
 
 Lammps::Lammps(const Network& network) : nodes_(network.nodes()), springs_(long(network.springs.size())) {
   const Eigen::VectorXd mass = few_masses(network);
-  set_up_ = lammps_input(network, mass, "data", 0.25 * safe_time_step({network, {Springs{}}}, density));
-  write_file(folder_.path / "data", lammps_data(network, moved(network), mass));
+  const MassSpringModel model{network, {Springs{}}};
+  set_up_ = lammps_input(model, mass, "data", 0.25 * safe_time_step(model, density));
+  write_file(folder_.path / "data", lammps_data(model, moved(network), mass));
 }
 
 double Lammps::seconds_of(const std::string& commands) const {

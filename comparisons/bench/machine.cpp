@@ -142,8 +142,8 @@ nlohmann::json to_json(const Machine& machine) {
     arithmetic.push_back({{"instruction_set", a.instruction_set},
                           {"gflops_fp64", a.gflops64},
                           {"gflops_fp32", a.gflops32},
-                          {"root_and_division_ns_fp64", a.root64},
-                          {"root_and_division_ns_fp32", a.root32}});
+                          {"inverse_root_ns_fp64", a.root64},
+                          {"inverse_root_ns_fp32", a.root32}});
   return {{"processor", machine.processor}, {"cores", machine.cores}, {"memory", memory}, {"arithmetic", arithmetic}};
 }
 

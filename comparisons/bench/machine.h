@@ -19,7 +19,7 @@ struct MemoryLevel {
 struct Arithmetic {
   std::string instruction_set;        ///< "portable", "avx2", "avx512"
   double gflops64 = 0, gflops32 = 0;  ///< multiply-adds, two each
-  double root64 = 0, root32 = 0;      ///< a square root and a division of one number [ns]
+  double root64 = 0, root32 = 0;      ///< the inverse root of one number, as the kernels take it [ns]
 };
 
 struct Machine {

@@ -16,7 +16,7 @@ namespace springproof::bench {
 /// Minimum work of one step, counted as docs/performance.md describes.
 struct Work {
   double flops = 0;     ///< additions, multiplications, roots and divisions, each one
-  double roots = 0;     ///< of them pairs of a root and a division
+  double roots = 0;     ///< of them inverse roots: pairs of a root and a division
   double streamed = 0;  ///< bytes read and written, each array once per sweep
   double kept = 0;      ///< bytes of all arrays
 };

@@ -22,7 +22,7 @@ inline Target at_most(double limit) { return {Sense::at_most, limit}; }
 struct Usage {
   double bytes_per_node = 0;    ///< that the motion keeps, lists of springs included
   double bandwidth_share = 0;   ///< of the level of the memory that holds them
-  double arithmetic_share = 0;  ///< of the limit of multiply-adds or of roots and divisions, whichever is nearer
+  double arithmetic_share = 0;  ///< of the limit of multiply-adds or of inverse roots, whichever is nearer
 };
 
 struct BenchRow {

@@ -28,7 +28,7 @@ std::string machine_text(const Machine& machine) {
     if (l.bytes > 0) out += fmt::format(", {} {}", l.name, bytes_text(l.bytes));
   out += "\n";
   if (machine.arithmetic.empty()) return out;
-  out += "\nLimits of one core       FMA FP64   FMA FP32   root + division FP64   FP32\n";
+  out += "\nLimits of one core       FMA FP64   FMA FP32      inverse root FP64   FP32\n";
   for (const Arithmetic& a : machine.arithmetic)
     out += fmt::format("  {:<20} {:>5.1f} GF/s {:>5.1f} GF/s   {:>12.3f} ns {:>11.3f} ns\n", a.instruction_set,
                        a.gflops64, a.gflops32, a.root64, a.root32);

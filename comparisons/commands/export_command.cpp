@@ -217,16 +217,15 @@ int export_lammps(const ExportRequest& request) {
   if (!suits_lammps(springs.model)) {
     std::vector<std::string> able;
     for (const ModelRow& row : model_table())
-      if (row.extension == Extension::none && !row.bending_correction) able.push_back(row.name);
+      if (of_springs_alone(row) || row.extension == Extension::angular_springs) able.push_back(row.name);
     throw InputError(fmt::format("--model: {} has forces that LAMMPS does not compute (allowed: {})",
                                  springs.origin.model, fmt::join(able, ", ")));
   }
-  const Network& network = springs.model.network;
-  const Eigen::VectorXd mass = masses(network, springs.density);
-  write_file(data, lammps_data(network, network.X, mass));
-  write_file(input,
-             lammps_input(network, mass, data.filename().string(), 0.95 * springs.derived.at("safe_time_step_s")) +
-                 groups_of(springs) + "run 0\n");
+  const MassSpringModel& model = springs.model;
+  const Eigen::VectorXd mass = masses(model.network, springs.density);
+  write_file(data, lammps_data(model, model.network.X, mass));
+  write_file(input, lammps_input(model, mass, data.filename().string(), 0.95 * springs.derived.at("safe_time_step_s")) +
+                        groups_of(springs) + "run 0\n");
   report(data, springs);
   return 0;
 }

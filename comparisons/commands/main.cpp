@@ -16,6 +16,7 @@
 #include "comparisons/commands/homogenise_command.h"
 #include "comparisons/commands/material_command.h"
 #include "comparisons/commands/pictures_command.h"
+#include "comparisons/commands/report_command.h"
 #include "comparisons/commands/reproduce_command.h"
 #include "comparisons/commands/versions.h"
 #include "comparisons/reproduce/figures.h"
@@ -92,7 +93,7 @@ int main(int argc, char** argv) try {
   compare_command
       ->add_option("CASE", names, "case files (*.toml), folders of them, or built-in names (springproof list)")
       ->required();
-  compare_command->add_option("--out", options.out, "folder for the results")->capture_default_str();
+  CLI::Option* out = compare_command->add_option("--out", options.out, "folder for the results")->capture_default_str();
   compare_command->add_option("--jobs", options.jobs, "parts to run at once (0: one per core)")
       ->check(CLI::NonNegativeNumber);
   compare_command
@@ -105,15 +106,27 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(1, 16));
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
   compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
-  compare_command->add_flag_callback(
+  CLI::Option* live = compare_command->add_flag_callback(
       "--live", [&] { options.live_page = live_page(); },
       "also copy the page in which the bodies can be pulled (live.html) beside the report, with a link");
+  compare_command
+      ->add_option_function<std::string>(
+          "--shard", [&](const std::string& text) { options.shard = parse_shard(text); },
+          "only the K-th of N shares of the parts, K/N, into a folder that all shards share; then: springproof report")
+      ->needs(out)
+      ->excludes(live);
   compare_command->add_flag("--vtu,!--no-vtu", options.vtu, "also write a VTU file of every run, for ParaView");
   compare_command->add_flag("--vtu-single", options.vtu_single, "VTU files in single precision, half the size")
       ->needs("--vtu");
   compare_command->footer(
       "Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, "
-      "or nothing was compared, 2 the input is unusable, 130 interrupted.");
+      "or nothing was compared, 2 the input is unusable, 130 interrupted; with --shard 0 its parts are there.");
+
+  ReportCommand sweep_report;
+  CLI::App* report_command = app.add_subcommand(
+      "report",
+      "The results of a comparison whose parts were computed by shards: compare --shard, on several machines");
+  sweep_report.add_options(*report_command, live_page);
 
   CLI::App* list_command = app.add_subcommand("list", "Built-in cases, models and measures");
 
@@ -186,6 +199,7 @@ int main(int argc, char** argv) try {
     return app.exit(e) == 0 ? 0 : 2;
   }
   if (*compare_command) return compare(find_cases(names), options);
+  if (*report_command) return sweep_report.run();
   if (*list_command) return list();
   if (*describe_command) return describe(app, form);
   if (*bench_command) return run_bench(bench_command->remaining());

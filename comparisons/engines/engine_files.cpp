@@ -8,7 +8,6 @@
 #include "comparisons/engines/engine_constants.h"
 #include "comparisons/engines/five_tetrahedra.h"
 #include "meshes/locate/outer_facets.h"
-#include "msm/exchange/lammps.h"
 #include "msm/exchange/springs_document.h"
 #include "msm/parameters/model_table.h"
 
@@ -29,11 +28,10 @@ void require_cubes(const SpringsFile& springs, const char* engine) {
 }
 
 void require_springs_alone(const SpringsFile& springs) {
-  if (!suits_lammps(springs.model)) {
+  if (!of_springs_alone(springs.model)) {
     std::vector<std::string> able;
     for (const ModelRow& row : model_table())
-      if (row.topology == Topology::cells && row.extension == Extension::none && !row.bending_correction)
-        able.push_back(row.name);
+      if (row.topology == Topology::cells && of_springs_alone(row)) able.push_back(row.name);
     throw InputError(
         fmt::format("--model: {} has more than springs, and Jolt has no term for the volume of a cube: its "
                     "volume constraints are of single tetrahedra, which lock (allowed: {})",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace springproof {
 namespace {
@@ -51,12 +52,27 @@ std::optional<Swings> swings_of(const std::vector<double>& t, const std::vector<
   }
   swings.count = static_cast<int>(crossings.size()) - 1;
   swings.period = (crossings.back().time - crossings.front().time) / swings.count;
+  double decrement = 0, weight = 0;  // least squares of the logarithms of the amplitudes
   for (int s = 0; s < swings.count; ++s) {
     const auto [least, most] = std::minmax_element(u.begin() + static_cast<long>(crossings[s].after),
                                                    u.begin() + static_cast<long>(crossings[s + 1].after) + 1);
     swings.amplitude += (*most - *least) / 2 / swings.count;
+    const double from_middle = s - (swings.count - 1) / 2.0;
+    decrement -= from_middle * std::log(*most - *least);
+    weight += from_middle * from_middle;
   }
+  if (weight > 0) swings.damping_ratio = decrement / weight / std::hypot(2 * std::numbers::pi, decrement / weight);
   return swings;
+}
+
+std::optional<double> arrival_of(const std::vector<double>& t, const std::vector<double>& u) {
+  const auto departure = [&](std::size_t i) { return std::abs(u[i] - u[0]); };
+  double largest = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) largest = std::max(largest, departure(i));
+  for (std::size_t i = 1; i < u.size(); ++i)
+    if (const double level = largest / 10; largest > 0 && departure(i) >= level)
+      return t[i - 1] + (t[i] - t[i - 1]) * (level - departure(i - 1)) / (departure(i) - departure(i - 1));
+  return {};
 }
 
 }  // namespace springproof

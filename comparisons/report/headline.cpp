@@ -35,7 +35,7 @@ struct ModelErrors {
   ByNu displacement, volume, reaction;
   ByNu springs;                        // displacement: the springs' own part of it, on bodies of voxels
   ByNu rank;                           // errors by which the closest model is found
-  std::set<std::string> cases;         // in which a displacement was compared
+  std::set<std::string> cases;         // in which a displacement or a reaction was compared
   std::optional<double> own_nu;        // the only Poisson's ratio that the model is valid for, if any
   bool parts = false, wholes = false;  // ranked by the springs' own part somewhere, by the whole error somewhere
 };
@@ -197,34 +197,28 @@ std::string where_text(const Candidate& c) {
                      cases == 1 ? "" : "s", c.large_deformation ? " of large deformation" : "");
 }
 
+/// The one error that ranks the best model, in words.
 std::string closest_text(const Candidate& best) {
   const ModelErrors& e = *best.errors;
-  std::string within = fmt::format("its displacements stay within {} % of finite elements",
-                                   percent(largest(ranked(e, e.displacement)).second.error));
-  if (const ByNu springs = ranked(e, e.springs); e.wholes && e.parts)
-    within =
-        fmt::format("its largest error, of bodies of voxels the springs' own part, is {} %", percent(best.error()));
-  else if (!springs.empty())
-    within = fmt::format(
-        "its springs stay within {} % of finite elements on the same cubes ({} % of the reference with coarse cells "
-        "and staircase)",
-        percent(largest(springs).second.error), percent(largest(ranked(e, e.displacement)).second.error));
-  if (const ByNu reaction = ranked(e, e.reaction); !reaction.empty())
-    within += fmt::format(", the reactions of moved supports within {} %", percent(largest(reaction).second.error));
-  return fmt::format("Of the spring models {} comes closest: {} {}{}.", best.name, within, where_text(best),
-                     auxetic_clause(e));
+  std::string of = "finite elements";
+  if (e.parts)
+    of += !e.wholes ? fmt::format(" on the same cubes ({} % of the reference with coarse cells and staircase)",
+                                  percent(largest(ranked(e, e.displacement)).second.error))
+                    : " (on bodies of voxels: of those on the same cubes)";
+  return fmt::format("Of the spring models {} comes closest: its displacements {}stay within {} % of {} {}{}.",
+                     best.name, e.reaction.empty() ? "" : "and the reactions of moved supports ", percent(best.error()),
+                     of, where_text(best), auxetic_clause(e));
 }
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
   std::vector<std::string> names;
   for (const Candidate& c : tied) names.push_back(fmt::format("{} ({} %)", c.name, percent(c.error())));
-  const bool parts = tied.front().errors->parts;
+  const ModelErrors& e = *tied.front().errors;
   return fmt::format(
-      "Of the spring models {} come closest and cannot be told apart: their largest errors{} differ by no more than "
-      "the {} % that the "
-      "reference is uncertain by, {}.",
-      listed(names), parts ? ", of bodies of voxels the springs' own part," : "", percent(uncertainty),
-      where_text(tied.front()));
+      "Of the spring models {} come closest and cannot be told apart: their largest errors{}{} differ by no more than "
+      "the {} % that the reference is uncertain by, {}.",
+      listed(names), e.reaction.empty() ? "" : " of displacement and reactions",
+      e.parts ? ", of bodies of voxels the springs' own part," : "", percent(uncertainty), where_text(tied.front()));
 }
 
 /// States that every model was run only at Poisson's ratios other than the one it is valid for; or nothing.
@@ -254,11 +248,44 @@ std::string answer(const std::map<ModelKey, ModelErrors>& models, std::vector<st
   return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
 }
 
+/// "emsm" of "emsm in motion".
+std::string without_motion(const std::string& label) {
+  constexpr std::string_view ending = " in motion";
+  return label.ends_with(ending) ? label.substr(0, label.size() - ending.size()) : label;
+}
+
+/// Which of the models that were compared most widely comes closest to finite elements in time, by the probes'
+/// difference over the whole motion; or nothing.
+std::string answer_in_time(const std::map<std::string, ByNu>& models) {
+  std::size_t widest = 0;
+  for (const auto& [model, errors] : models) widest = std::max(widest, errors.size());
+  std::vector<std::pair<std::string, Worst>> all;
+  for (const auto& [model, errors] : models)
+    if (errors.size() == widest) all.emplace_back(model, largest(errors).second);
+  if (all.empty()) return "";
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
+  const Worst& least = all.front().second;
+  std::vector<std::string> names;
+  double uncertainty = least.uncertainty;
+  for (const auto& [model, worst] : all) {
+    const double doubt = std::max(worst.uncertainty, least.uncertainty);
+    if (worst.error - least.error > doubt) continue;
+    names.push_back(fmt::format("{} ({} %)", model, percent(worst.error)));
+    uncertainty = std::max(uncertainty, doubt);
+  }
+  return fmt::format("In time {}{}, by the probes' difference over the whole motion {}; these are uncertain by {} %.",
+                     listed(names),
+                     names.size() == 1 ? " comes closest to finite elements"
+                                       : " come closest to finite elements and cannot be told apart",
+                     range_text(models.at(all.front().first)), percent(uncertainty));
+}
+
 // ---- collecting
 
 class Collector {
  public:
-  void add_case(const Json& result) {
+  void add_case(const Json& result, std::size_t case_number) {
     const Json& experiment = object_of(result, "experiment");
     case_name_ = string_of(experiment, "name");
     large_ = string_of(experiment, "kinematics") != "linear";
@@ -273,7 +300,7 @@ class Collector {
     append(headline_.verification, verification_lines(result));
     append(headline_.deformations, {deformation_line(result)});
     append(headline_.motions, motion_lines(result));
-    append(headline_.warnings, {deformation_warning(result)});
+    if (const auto warning = deformation_warning(result, case_number)) headline_.warnings.push_back(*warning);
     if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
     for (const Json& model : list_of(experiment, "models"))
       models_for(string_of(model, "label"), number_of(model, "own_poisson_ratio"));
@@ -288,6 +315,8 @@ class Collector {
     for (const auto& [key, errors] : sorted)
       headline_.models.push_back({key.name, fem_.contains(key.name), key.large_deformation, sentence(errors)});
     headline_.answer = answer(sorted, headline_.closest);
+    if (const std::string in_time = answer_in_time(in_time_); !in_time.empty())
+      headline_.answer += (headline_.answer.empty() ? "" : " ") + in_time;
     return headline_;
   }
 
@@ -340,6 +369,9 @@ class Collector {
   void add_row(const Json& row, const std::map<std::tuple<std::string, double, std::string>, double>& own_parts) {
     const std::string measure = string_of(row, "measure"), model = string_of(row, "model");
     const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
+    if (nu && error && measure == "motion_error")
+      in_time_[without_motion(model)][*nu].take(*error, number_of(row, "reference_uncertainty").value_or(0),
+                                                case_name_);
     const bool displacement = measure == "displacement_error", reaction = measure == "reaction_error";
     if (!nu || !error || !(displacement || reaction || measure == "volume_change")) return;
     if (motions_.contains(model)) return;
@@ -348,7 +380,7 @@ class Collector {
     ByNu& kind = displacement ? errors.displacement : reaction ? errors.reaction : errors.volume;
     kind[*nu].take(std::abs(*error), uncertainty, case_name_);
     if (!displacement && !reaction) return;
-    if (displacement) errors.cases.insert(case_name_);
+    errors.cases.insert(case_name_);
     const auto part = own_parts.find({model, *nu, measure});
     const bool has_part = part != own_parts.end();
     (has_part ? errors.parts : errors.wholes) = true;
@@ -374,6 +406,7 @@ class Collector {
   std::map<std::pair<bool, std::string>, ModelErrors> models_;
   std::set<std::string> fem_, external_;  ///< elements; displacements of other programs
   std::set<std::string> motions_;         ///< models of the case that are in motion: shown, not judged
+  std::map<std::string, ByNu> in_time_;   ///< differences of models from finite elements in time
   std::vector<std::string> order_;
 };
 
@@ -381,9 +414,10 @@ class Collector {
 
 Headline headline(const Json& results) {
   Collector collector;
-  for (const Json& result : list_of(results, "cases")) collector.add_case(result);
+  const Json& cases = list_of(results, "cases");
+  for (std::size_t i = 0; i < cases.size(); ++i) collector.add_case(cases[i], i);
   Headline h = collector.take();
-  h.doubt = doubt_sentence(list_of(results, "cases"));
+  h.doubt = doubt_of_reference(cases);
   return h;
 }
 

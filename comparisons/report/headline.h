@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,16 +16,23 @@ struct ModelVerdict {
   std::string sentence;            ///< "displacement within 0.8 % of FEM for ν from −0.5 to 0.4 ..."
 };
 
+/// What to know of a case before its errors are believed.
+struct Warning {
+  std::size_t case_number = 0;  ///< among the results' cases
+  std::string brief;            ///< "ear: rotations of 31° are too large for linear theory (up to 5°)"
+  std::string advice;           ///< "divide the load by at least 6.2, or set ..."; empty: none
+};
+
 struct Headline {
-  std::string doubt;   ///< where the reference does not converge or is uncertain by more than 5 %; empty: nowhere.
-                       ///< Printed first
   std::string answer;  ///< which spring model comes closest in the linear cases, or, where there are none, in those of
-                       ///< large deformation; empty: none was compared
+                       ///< large deformation; then which in time; empty: none was compared
+  std::optional<Warning> doubt;      ///< that the reference does not converge or is uncertain by more than 5 %, of the
+                                     ///< worst such case; follows the answer
   std::vector<std::string> closest;  ///< that model, or those that cannot be told apart
   std::vector<ModelVerdict> models;  ///< springs first, then finite elements; linear cases before large deformation
   std::vector<std::string> deformations;  ///< per case the reference's largest principal strain and rotation at each nu
   std::vector<std::string> motions;       ///< period and amplitude, drift of energy and momentum; one line each
-  std::vector<std::string> warnings;      ///< linear cases to which linear theory does not apply, with what to do
+  std::vector<Warning> warnings;          ///< linear cases to which linear theory does not apply
   std::vector<std::string> verification;  ///< of cases without models: value, target, error, verdict; one line each
   int held = 0, failed = 0, reference_too_coarse = 0, no_reference = 0, no_result = 0;  ///< expectations
   std::vector<std::string> failed_checks;  ///< one line each, with expected and computed value

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "comparisons/report/headline_words.h"
+#include "comparisons/report/results.h"
 
 namespace springproof {
 namespace {
@@ -39,19 +40,20 @@ bool any_of(const Json& list, Holds holds) {
 // ---- the reference
 
 struct Doubt {
+  std::size_t case_number = 0;
   std::string where, of;
   double uncertainty = 0;
   bool diverges = false;
 };
 
-void add_doubts(const Json& result, std::vector<Doubt>& doubts) {
+void add_doubts(const Json& result, std::size_t case_number, std::vector<Doubt>& doubts) {
   if (!has_models(result)) return;
   const auto add = [&](const Json& item, const char* of, double uncertainty, bool diverges) {
     if (!(uncertainty > (diverges ? harmless_uncertainty : doubtful_uncertainty))) return;
     const std::string where = at_nu(name_of(result), number_of(item, "poisson_ratio"));
     const auto known = std::find_if(doubts.begin(), doubts.end(), [&](const Doubt& d) { return d.where == where; });
     Doubt& doubt = known == doubts.end() ? doubts.emplace_back() : *known;
-    if (uncertainty >= doubt.uncertainty) doubt = {where, of, uncertainty, diverges || doubt.diverges};
+    if (uncertainty >= doubt.uncertainty) doubt = {case_number, where, of, uncertainty, diverges || doubt.diverges};
     doubt.diverges = doubt.diverges || diverges;
   };
   const std::string element = reference_element_of(result);
@@ -60,8 +62,10 @@ void add_doubts(const Json& result, std::vector<Doubt>& doubts) {
       add(record, "displacement", number_of(record, "uncertainty").value_or(0),
           string_of(record, "note").find("not converg") != std::string::npos);
   for (const Json& row : list_of(result, "rows"))
-    if (string_of(row, "measure") == "reaction_error")
-      add(row, "reactions of moved supports", number_of(row, "reference_uncertainty").value_or(0), false);
+    for (const auto& [measure, of] :
+         {std::pair("reaction_error", "reactions of moved supports"), {"motion_error", "motion in time"}})
+      if (string_of(row, "measure") == measure)
+        add(row, of, number_of(row, "reference_uncertainty").value_or(0), false);
 }
 
 std::string reason_of_missing_reference(const Json& result, const Json& nu) {
@@ -73,6 +77,11 @@ std::string reason_of_missing_reference(const Json& result, const Json& nu) {
 }
 
 void add_missing_references(const Json& result, std::vector<std::string>& lines) {
+  for (const Json& run : list_of(result, "runs"))
+    if (string_of(run, "model") == fem_in_motion && !run.value("ok", false))
+      lines.push_back(fmt::format("{}: there is no reference in time: {}",
+                                  at_nu(name_of(result), number_of(run, "poisson_ratio").value_or(0)),
+                                  string_of(run, "message")));
   const std::string element = reference_element_of(result);
   if (element.empty()) return;
   for (const Json& nu : list_of(object_of(result, "experiment"), "poisson_ratios")) {
@@ -133,18 +142,20 @@ std::string verification_line(const std::string& name, const Json& item, std::op
 
 }  // namespace
 
-std::string doubt_sentence(const Json& cases) {
+std::optional<Warning> doubt_of_reference(const Json& cases) {
   std::vector<Doubt> doubts;
-  for (const Json& result : cases) add_doubts(result, doubts);
-  if (doubts.empty()) return "";
+  for (std::size_t i = 0; i < cases.size(); ++i) add_doubts(cases[i], i, doubts);
+  if (doubts.empty()) return {};
   const auto worst = std::max_element(doubts.begin(), doubts.end(),
                                       [](const Doubt& a, const Doubt& b) { return a.uncertainty < b.uncertainty; });
   const bool diverges = std::any_of(doubts.begin(), doubts.end(), [](const Doubt& d) { return d.diverges; });
   const std::string more = doubts.size() > 1 ? fmt::format(" and {} more", doubts.size() - 1) : "";
-  return fmt::format("The reference {} ({}{}): its {} {} uncertain by {}{} %.",
-                     diverges ? "does not converge" : "is not sharp", worst->where, more, worst->of,
-                     worst->of.ends_with("s") ? "are" : "is", more.empty() ? "" : "up to ",
-                     percent(worst->uncertainty));
+  return Warning{
+      worst->case_number,
+      fmt::format("The reference {} ({}{}): its {} {} uncertain by {}{} %.",
+                  diverges ? "does not converge" : "is not sharp", worst->where, more, worst->of,
+                  worst->of.ends_with("s") ? "are" : "is", more.empty() ? "" : "up to ", percent(worst->uncertainty)),
+      ""};
 }
 
 std::string deformation_line(const Json& result) {
@@ -166,30 +177,49 @@ std::vector<std::string> motion_lines(const Json& result) {
     if (const auto period = number_of(measured, "period"))
       line += fmt::format("; {} swings with a period of {:.5g} s and an amplitude of {:.4g} m", string_of(h, "probe"),
                           *period, number_of(measured, "amplitude").value_or(0));
+    if (const auto error = number_of(measured, "motion_error"))
+      line += fmt::format("; in time {} % from FEM", percent(*error));
+    if (const auto uncertainty = number_of(measured, "uncertainty"))
+      line += fmt::format("; uncertain by {} % in time", percent(*uncertainty));
     if (const auto drift = number_of(measured, "energy_drift"))
       line += fmt::format("; energy within {:.1e} of the largest kinetic energy", *drift);
+    if (const auto arrival = number_of(measured, "arrival"))
+      line += fmt::format("; {} moves after {:.4g} s", string_of(h, "probe"), *arrival);
+    if (const auto ratio = number_of(measured, "damping_ratio"))
+      line += fmt::format("; damped by {} % of critical", percent(*ratio));
     if (const auto drift = number_of(measured, "momentum_drift"))
       line += fmt::format("; momentum within {:.1e}", *drift);
+    if (const auto drift = number_of(measured, "angular_momentum_drift"))
+      line += fmt::format("; angular momentum within {:.1e}", *drift);
     lines.push_back(line);
   }
   return lines;
 }
 
-std::string deformation_warning(const Json& result) {
-  if (!has_models(result) || !is_linear(result)) return "";
+std::optional<Warning> deformation_warning(const Json& result, std::size_t case_number) {
+  if (!has_models(result) || !is_linear(result)) return {};
   double strain = 0, rotation = 0;
   for (const Json& d : list_of(result, "deformations")) {
     strain = std::max(strain, number_of(d, "principal_strain").value_or(0));
     rotation = std::max(rotation, number_of(d, "rotation_deg").value_or(0));
   }
   const double factor = std::max(strain / largest_linear_strain, rotation / largest_linear_rotation_deg);
-  if (factor <= 1) return "";
+  if (factor <= 1) return {};
   const double step = std::pow(10, std::floor(std::log10(factor)) - 1);
-  return fmt::format(
-      "{}: principal strains of {} % and rotations of {:.2g}° are too large for linear theory (5 %, 5°); divide the "
-      "load by at least {:.6g}, or set "
-      "kinematics = \"hencky\" (or another finite-strain law)",
-      name_of(result), percent(strain), rotation, std::ceil(factor / step - 1e-9) * step);
+  std::vector<std::string> sizes, limits;
+  const auto compare = [&](double size, double limit, const std::string& text, const std::string& limit_text) {
+    if (size <= limit) return;
+    sizes.push_back(text);
+    limits.push_back(limit_text);
+  };
+  compare(strain, largest_linear_strain, fmt::format("principal strains of {} %", percent(strain)), "5 %");
+  compare(rotation, largest_linear_rotation_deg, fmt::format("rotations of {:.2g}°", rotation), "5°");
+  return Warning{
+      case_number,
+      fmt::format("{}: {} are too large for linear theory (up to {})", name_of(result), listed(sizes), listed(limits)),
+      fmt::format("divide the load by at least {:.6g}, or set kinematics = \"hencky\" (or another "
+                  "finite-strain law)",
+                  std::ceil(factor / step - 1e-9) * step)};
 }
 
 std::vector<std::string> failures_of(const Json& result) {

@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "comparisons/report/assets.h"
 #include "comparisons/report/headline.h"
@@ -27,23 +30,52 @@ Json measures_json() {
   return all;
 }
 
-/// The results with each case's rows as one table {"columns", "values"}: half the size; and the titles and meanings of
-/// the measures.
-Json packed(Json results) {
+/// Numbers with seven digits, which is more than the page shows; but for Poisson's ratio, by which pictures are found.
+void shorten(Json& json) {
+  if (json.is_number_float()) json = std::strtod(fmt::format("{:.7g}", json.get<double>()).c_str(), nullptr);
+  if (json.is_array())
+    for (Json& item : json) shorten(item);
+  if (json.is_object())
+    for (auto& [key, item] : json.items())
+      if (!key.starts_with("poisson_ratio")) shorten(item);
+}
+
+/// A case's rows as {"columns", "named", "words", "values"}, a third of the size: in the named columns values are
+/// indices into `words`.
+Json table_of(const Json& rows) {
   static const std::vector<std::string> columns = {
       "kinematics", "model",     "poisson_ratio",         "cells", "measure", "value",
       "unit",       "reference", "reference_uncertainty", "error", "samples", "spread"};
+  static const std::set<std::string> named = {"kinematics", "model", "cells", "measure", "unit"};
+  Json values = Json::array(), words = Json::array();
+  std::map<std::string, std::size_t> numbers;
+  for (const Json& row : rows) {
+    Json line = Json::array();
+    for (const std::string& column : columns) {
+      const Json& item = row.at(column);
+      if (!named.contains(column)) {
+        line.push_back(item);
+        continue;
+      }
+      const auto [at, is_new] = numbers.try_emplace(item.dump(), words.size());
+      if (is_new) words.push_back(item);
+      line.push_back(at->second);
+    }
+    values.push_back(std::move(line));
+  }
+  return {{"columns", columns}, {"named", named}, {"words", std::move(words)}, {"values", std::move(values)}};
+}
+
+/// The results as the page reads them: short, with the titles and meanings of the measures, and in a case that has a
+/// warning that.
+Json packed(Json results, const std::vector<Warning>& warnings) {
   results["measures"] = measures_json();
   if (!results.contains("cases")) return results;
   for (Json& result : results.at("cases")) {
-    Json values = Json::array();
-    for (const Json& row : result.at("rows")) {
-      Json line = Json::array();
-      for (const std::string& column : columns) line.push_back(row.at(column));
-      values.push_back(std::move(line));
-    }
-    result["rows"] = {{"columns", columns}, {"values", std::move(values)}};
+    shorten(result);
+    result["rows"] = table_of(result["rows"]);
   }
+  for (const Warning& w : warnings) results["cases"][w.case_number]["warning"] = w.brief + "; " + w.advice;
   return results;
 }
 
@@ -84,14 +116,33 @@ std::string words_html(const Headline& head) {
   return out;
 }
 
+/// With percent signs that stay with their numbers.
+std::string unbroken(std::string text) {
+  for (std::size_t at = 0; (at = text.find(" %", at)) != std::string::npos;) text.replace(at, 1, "\u00a0");
+  return text;
+}
+
+/// A link to the page of a case, whose address first.js fills in.
+std::string case_link_html(const Warning& warning) {
+  return fmt::format("<a class=\"amber\" data-case=\"{}\">{}</a>", warning.case_number,
+                     xml_escaped(unbroken(warning.brief)));
+}
+
 std::string answer_html(const Headline& head) {
-  std::string out;
-  const std::string doubt =
-      head.doubt.empty() ? "" : fmt::format("<span class=\"amber\">{}</span> ", xml_escaped(head.doubt));
-  if (const std::string first = doubt + xml_escaped(head.answer); !first.empty())
-    out += fmt::format("<p class=\"answer\">{}</p>\n", first);
-  for (const std::string& line : head.warnings) out += fmt::format("<p class=\"amber\">{}</p>\n", xml_escaped(line));
-  return out;
+  const std::string doubt = head.doubt ? case_link_html(*head.doubt) : "";
+  if (head.answer.empty() && doubt.empty()) return "";
+  return fmt::format("<p class=\"answer\">{} {}</p>\n", xml_escaped(unbroken(head.answer)), doubt);
+}
+
+/// Up to three at sight, more of them folded.
+std::string warnings_html(const std::vector<Warning>& warnings) {
+  std::string items;
+  for (const Warning& warning : warnings) items += "<li>" + case_link_html(warning) + "</li>\n";
+  if (items.empty()) return "";
+  const std::string list = "<ul class=\"warnings\">\n" + items + "</ul>\n";
+  if (warnings.size() <= 3) return list;
+  return fmt::format("<details class=\"words\"><summary>Beyond linear theory: {} cases</summary>\n{}</details>\n",
+                     warnings.size(), list);
 }
 
 std::string count_html(const char* verdict, int count, const char* words) {
@@ -113,14 +164,14 @@ std::string failures_html(const Headline& head) {
          folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()), head.failed_runs);
 }
 
-/// The first screen: the answer with its facts, two bodies and the plot of dots (filled in by first.js), then failures
-/// and the sentences.
-std::string headline_html(const Json& results) {
-  const Headline head = headline(results);
-  return "<div class=\"first\">\n<div>\n" + answer_html(head) + "<dl id=\"first-facts\"></dl>\n" + counts_html(head) +
-         fmt::format("</div>\n<div id=\"first-bodies\" data-closest=\"{}\"></div>\n</div>\n",
+/// The first screen: the answer, two bodies, facts and warnings, the plot of dots (filled in by first.js), then
+/// failures and the sentences.
+std::string headline_html(const Headline& head) {
+  return "<div class=\"first\">\n" + answer_html(head) +
+         fmt::format("<div id=\"first-bodies\" data-closest=\"{}\"></div>\n",
                      xml_escaped(fmt::format("{}", fmt::join(head.closest, "\n")))) +
-         "<div id=\"first-plot\"></div>\n" + failures_html(head) + words_html(head);
+         "<div>\n<dl id=\"first-facts\"></dl>\n" + counts_html(head) + warnings_html(head.warnings) +
+         "</div>\n</div>\n<div id=\"first-plot\"></div>\n" + failures_html(head) + words_html(head);
 }
 
 }  // namespace
@@ -128,10 +179,11 @@ std::string headline_html(const Json& results) {
 void write_report(const std::filesystem::path& file, const Json& results, const Json& pictures) {
   using namespace report_assets;
   const bool live = std::filesystem::exists(file.parent_path() / "live.html");
+  const Headline head = headline(results);
   write_file(file, filled(template_html, {{"style_css", std::string(style_css)},
-                                          {"headline", headline_html(results)},
+                                          {"headline", headline_html(head)},
                                           {"live_link", live ? "<a href=\"live.html\">Pull the bodies</a>" : ""},
-                                          {"results", script_json(packed(results))},
+                                          {"results", script_json(packed(results, head.warnings))},
                                           {"pictures", script_json(pictures)},
                                           {"chart_js", std::string(chart_js)},
                                           {"three_js", std::string(three_js)},

@@ -136,6 +136,9 @@ struct LineRecord : RunKey {
   LineTensors exact_strain, exact_stress;  ///< Kelvin's
 };
 
+/// Label of finite elements in time.
+inline constexpr const char* fem_in_motion = "fem in motion";
+
 /// What is recorded of a motion at one time after the other; of several networks, of the first.
 struct HistoryRecord : RunKey {
   std::string integrator;          ///< in words
@@ -144,7 +147,9 @@ struct HistoryRecord : RunKey {
   std::vector<std::string> names;  ///< of the quantities: "kinetic_energy", "force.z_max.z", "displacement.tip.z", ...
   std::vector<std::string> units;
   std::vector<std::vector<double>> values;  ///< of each quantity, one per time
-  /// What was measured: "period" [s] and "amplitude" [m] of `probe`, "energy_drift" and "momentum_drift" [1].
+  /// What was measured: "period" [s], "amplitude" [m] and, of a pulse, "arrival" [s], of a damped motion
+  /// "damping_ratio" of `probe`; "energy_drift", "momentum_drift", "angular_momentum_drift" [1]; "motion_error" of a
+  /// model, "uncertainty" of finite elements [1].
   std::map<std::string, double> measured;
   std::string probe;  ///< "displacement.tip.z"
 };

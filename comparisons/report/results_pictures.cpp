@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <type_traits>
 
 #include "comparisons/report/results.h"
 #include "problem/system/encoding.h"
@@ -20,8 +22,6 @@ void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
-constexpr long not_finite = -32768;
-
 std::string base64_floats(const std::vector<float>& values) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(4 * values.size());
@@ -34,17 +34,20 @@ std::string base64_floats(const std::vector<float>& values) {
   return base64(bytes.data(), bytes.size());
 }
 
-/// 16-bit multiples of `scale`; exact to 1/65000 of the largest value, which is enough for display.
-Json shorts_json(const std::vector<float>& values) {
+/// Multiples of `scale` as Integers, the smallest of which is no number: 16 bits for places, exact to 1/65000 of the
+/// largest value; 8 bits for colours.
+template <class Integer>
+Json multiples_json(const std::vector<float>& values) {
+  using Limits = std::numeric_limits<Integer>;
   double largest = 0;
   for (float value : values)
     if (std::isfinite(value)) largest = std::max<double>(largest, std::abs(value));
-  const double scale = largest > 0 ? largest / 32767 : 1;
+  const double scale = largest > 0 ? largest / Limits::max() : 1;
   std::vector<std::uint8_t> bytes;
-  bytes.reserve(2 * values.size());
+  bytes.reserve(sizeof(Integer) * values.size());
   for (float value : values) {
-    const long steps = std::isfinite(value) ? std::lround(value / scale) : not_finite;
-    append_little_endian(static_cast<std::uint16_t>(steps), bytes);
+    const long steps = std::isfinite(value) ? std::lround(value / scale) : Limits::min();
+    append_little_endian(static_cast<std::make_unsigned_t<Integer>>(steps), bytes);
   }
   return {{"scale", scale}, {"base64", base64(bytes.data(), bytes.size())}};
 }
@@ -108,13 +111,13 @@ Json pictures_to_json(const CaseResult& result) {
                         {"cells", p.cells},
                         {"surface", p.surface},
                         {"mesh", mesh},
-                        {"displacement", shorts_json(p.displacement)},
-                        {"difference", shorts_json(p.difference)},
-                        {"volume_change", shorts_json(p.volume_change)}});
+                        {"displacement", multiples_json<std::int16_t>(p.displacement)},
+                        {"difference", multiples_json<std::int8_t>(p.difference)},
+                        {"volume_change", multiples_json<std::int8_t>(p.volume_change)}});
     if (p.frames.empty()) continue;
     std::vector<float> frames;  // one after the other, with one scale
     for (const std::vector<float>& frame : p.frames) frames.insert(frames.end(), frame.begin(), frame.end());
-    pictures.back()["frames"] = {{"time", p.frame_times}, {"displacement", shorts_json(frames)}};
+    pictures.back()["frames"] = {{"time", p.frame_times}, {"displacement", multiples_json<std::int16_t>(frames)}};
   }
   Json cracks = Json::array();
   for (const CrackRecord& c : result.cracks)

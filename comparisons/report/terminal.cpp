@@ -31,14 +31,17 @@ std::string marked(const char* mark, const std::vector<std::string>& lines) {
 }  // namespace
 
 std::string terminal_text(const Headline& h) {
-  const std::string first = h.doubt + (h.doubt.empty() || h.answer.empty() ? "" : " ") + h.answer;
+  const std::string doubt = h.doubt ? h.doubt->brief : "";
+  const std::string first = h.answer + (doubt.empty() || h.answer.empty() ? "" : " ") + doubt;
   std::string out = first.empty() ? "" : "\n" + first + "\n";
   out += model_lines(h, false, linear_title) + model_lines(h, true, large_title);
   out += group("Verification of the reference: value, target, error", h.verification);
   out +=
       group("Largest principal strain and rotation of the reference (99 % of the volume stay below)", h.deformations);
   out += group("Motion in time", h.motions);
-  const std::string marks = marked("warning", h.warnings) + marked("no result", h.failed_runs) +
+  std::vector<std::string> warnings;
+  for (const Warning& w : h.warnings) warnings.push_back(w.brief + "; " + w.advice);
+  const std::string marks = marked("warning", warnings) + marked("no result", h.failed_runs) +
                             marked("FAILED", h.failed_checks) + marked("FAILED", h.failures);
   return out + (marks.empty() ? "" : "\n" + marks) + "\n" + expectations_sentence(h) + "\n";
 }

@@ -15,6 +15,7 @@
 #include "comparisons/run/external_points.h"
 #include "comparisons/run/fracture_run.h"
 #include "comparisons/run/model_run.h"
+#include "comparisons/run/motion_reference.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_body.h"
 #include "comparisons/run/voxel_reference.h"
@@ -47,6 +48,7 @@ struct PartRun {
   std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: no reference
   std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
   std::vector<CutState> cut_states;
+  std::optional<MotionReference> in_time;  ///< finite elements in time, where there are
 
   const Experiment& experiment() const { return prepared.experiment; }
   const Mesh& mesh(std::size_t lattice) const { return *prepared.lattices[lattice].mesh; }
@@ -77,7 +79,7 @@ Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model
 /// Runs the finite elements.
 void run_fem(PartRun& run) {
   const auto solve = run.experiment().body.is_voxels() ? solve_body_grids : solve_grids;
-  run.grids = solve(run.prepared, run.material);
+  run.grids = solve(run.prepared, run.material, run.vtu);
   if (run.grids.elements.empty())
     run.part.runs.push_back(
         {run.key("fem_" + run.experiment().reference.elements.front(), run.prepared.reference_cells), "fem",
@@ -251,6 +253,12 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
 void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Field field, MotionRecord motion) {
   const RunKey key = run.key(model, lattice);
   static_cast<RunKey&>(motion.history) = key;
+  if (run.in_time) {
+    motion.history.measured["motion_error"] = history_error(motion.history, run.in_time->history);
+    motion.history.probe = run.in_time->history.probe;  // the same component
+    for (const char* name : {"period", "amplitude", "arrival", "damping_ratio"}) motion.history.measured.erase(name);
+    motion.history.measured.merge(measured_in_time(*run.experiment().dynamics, motion.history));
+  }
   run.part.histories.push_back(std::move(motion.history));
   std::vector<std::pair<double, std::string>> series;
   for (auto& [time, displacement] : motion.frames) {
@@ -301,6 +309,50 @@ void add_splits_of_cut_cells(PartRun& run, std::size_t lattice, std::size_t numb
   for (std::size_t s = 0; s < of_cubes.size(); ++s) without_staircase(of_cubes[s], run.part.splits[first + s]);
 }
 
+/// Finite elements in time.
+void run_motion_reference(PartRun& run) {
+  run.in_time = solve_motion(run.prepared, run.material);
+  MotionReference& r = *run.in_time;
+  const RunKey key = run.key(fem_in_motion, r.run.cells);
+  static_cast<RunKey&>(r.run) = static_cast<RunKey&>(r.history) = key;
+  r.run.kind = "fem";
+  run.part.runs.push_back(r.run);
+  if (r.run.ok)
+    run.part.histories.push_back(r.history);
+  else
+    run.in_time.reset();
+}
+
+/// What is measured in time of one model, and its distance from the reference.
+void add_motion_rows(PartRun& run, const Row& blank, const HistoryRecord& history) {
+  const auto add = [&](Row row, const std::string& measure, double value) {
+    if (!wanted(measure, run.experiment().measures)) return;
+    row.measure = measure;
+    row.unit = unit_of(measure);
+    row.value = value;
+    run.part.rows.push_back(row);
+  };
+  for (const char* name : {"period", "amplitude", "arrival", "damping_ratio", "energy_drift", "momentum_drift",
+                           "angular_momentum_drift"}) {
+    const auto measured = history.measured.find(name);
+    if (measured == history.measured.end()) continue;
+    Row row = blank;
+    if (run.in_time && run.in_time->measured.contains(name)) {
+      const ReferenceValue& r = run.in_time->measured.at(name);
+      row.reference = r.value;
+      row.reference_uncertainty = r.uncertainty;
+      row.error = measured->second - r.value;
+    }
+    add(row, fmt::format("motion.{}", name), measured->second);
+  }
+  if (!run.in_time) return;
+  Row row = blank;
+  row.reference = 0.0;
+  row.reference_uncertainty = run.in_time->uncertainty;
+  row.error = history.measured.at("motion_error");
+  add(row, "motion_error", *row.error);
+}
+
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
@@ -318,7 +370,11 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     if (fields.empty()) {
       save(run, lattice, label, sample.field);
       if (sample.line) static_cast<RunKey&>(run.part.lines.emplace_back(*sample.line)) = run.key(label, lattice);
-      if (e.models[number].in_motion) add_motion(run, lattice, label, sample.field, sample.motion);
+      if (e.models[number].in_motion) {
+        add_motion(run, lattice, label, sample.field, sample.motion);
+        add_motion_rows(run, {run.key(label, lattice), e.name, kind, "", 0, "", {}, {}, {}, 1, {}},
+                        run.part.histories.back());
+      }
     }
     fields.push_back(sample.field.displacement);
     scalars.push_back(sample.scalars);
@@ -382,9 +438,10 @@ void add_fem(PartRun& run, std::size_t lattice) {
 }  // namespace
 
 Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu) {
-  PartRun run{prepared, prepared.experiment.materials[material], vtu, {}, {}, {}, {}, {}};
+  PartRun run{prepared, prepared.experiment.materials[material], vtu, {}, {}, {}, {}, {}, {}};
   if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);
   if (!prepared.experiment.reference.elements.empty()) run_fem(run);
+  if (prepared.experiment.reference.in_time) run_motion_reference(run);
   record_elements(run);
   build_reference(run);
   measure_deformation(run);

@@ -21,13 +21,6 @@ constexpr double mode_elements = 1728;
 constexpr int modes_beside = 6;         // computed beside those compared, as partners and for whole multiplets
 constexpr double eigenvalue_order = 4;  // of frequencies with quadratic elements in smooth solutions
 
-Cells mode_cells(const Vec3& size) {
-  const double edge = std::cbrt(size.prod() / mode_elements);
-  Cells cells;
-  for (int d = 0; d < 3; ++d) cells[d] = 4 * std::max(1, static_cast<int>(std::lround(size[d] / edge / 4)));
-  return cells;
-}
-
 /// Three grids, coarse to fine.
 fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) {
   const Experiment& e = prepared.experiment;
@@ -44,10 +37,9 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   request.points.resize(prepared.nodes(), 3);
   for (const Lattice& lattice : prepared.lattices)
     request.points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
-  const Cells fine = mode_cells(e.body.size);
+  const Cells fine = divisible_cells(e.body.size, mode_elements);
   for (const int divisor : {4, 2, 1})
-    request.grids.push_back(
-        {{fine[0] / divisor, fine[1] / divisor, fine[2] / divisor}, "q2", e.loads.empty() ? 1.0 : e.reference.grading});
+    request.grids.push_back({divided(fine, divisor), "q2", e.loads.empty() ? 1.0 : e.reference.grading});
   return request;
 }
 

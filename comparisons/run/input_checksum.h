@@ -3,11 +3,12 @@
 
 #include <string>
 
-#include "comparisons/run/prepared_case.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof {
 
 /// Of the case file, the files of its body and the springs files of its models.
-std::string input_checksum(const PreparedCase& prepared);
+/// @throws InputError if there is no such body.
+std::string input_checksum(const Experiment& experiment);
 
 }  // namespace springproof

@@ -31,6 +31,7 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
   if (motion.integrator == "explicit") return Integrator::explicit_euler;
   if (motion.integrator == "implicit_euler") return Integrator::implicit_euler;
   if (motion.integrator == "bdf2") return Integrator::bdf2;
+  if (motion.viscosity > 0) return Integrator::explicit_euler;  // "auto"; others are refused by the reader
   const std::string why = EnergyMomentum::lacks(model);
   if (motion.integrator == "auto") {
     const double wanted = motion.time_step.value_or(motion.duration / std::max(motion.frames, 1));
@@ -46,7 +47,8 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
 }
 
 Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material) {
-  const double bound = safe_time_step(model, material.density);
+  const double bound = viscous_time_step(model, material.density, Viscosity::of(model, material, motion.viscosity),
+                                         safe_time_step(model, material.density));
   const Integrator integrator = integrator_of(motion, model, bound);
   const bool implicit = integrator != Integrator::explicit_euler, chosen = motion.integrator == "auto";
   double size =
@@ -73,13 +75,15 @@ Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const I
 class Recorder {
  public:
   Recorder(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
-           const IsotropicMaterial& material, const Steps& steps, double damping, MotionRecord& record)
+           const IsotropicMaterial& material, const Steps& steps, double damping, const Viscosity& viscosity,
+           MotionRecord& record)
       : prepared_(prepared),
         lattice_(lattice),
         built_(built),
         mass_(masses(built.model.network, material.density)),
         behind_(steps.integrator == Integrator::explicit_euler ? steps.size / 2 : 0),
         damping_(damping),
+        viscosity_(viscosity),
         cut_(lattice.cut && !built.model.network.filled.empty()),
         record_(record) {}
 
@@ -87,7 +91,7 @@ class Recorder {
                   const BoundaryConditions& conditions) {
     const NodalVectors v = at_positions(x, of_step, conditions);
     record_.history.time.push_back(time);
-    const Field field = field_at(x, conditions);
+    const Field field = field_at(x, v, conditions);
     next_ = 0;
     add("kinetic_energy", "J", 0.5 * (v.rowwise().squaredNorm().array() * mass_.array()).sum());
     if (conservative(built_.model)) add("elastic_energy", "J", energy(built_.model, x));
@@ -114,17 +118,26 @@ class Recorder {
   /// The velocity at the time of the positions: that of explicit steps is half a step behind.
   NodalVectors at_positions(const NodalVectors& x, NodalVectors v, const BoundaryConditions& conditions) const {
     if (behind_ == 0) return v;
-    const NodalVectors f = forces(built_.model, x) + conditions.external;
+    const NodalVectors f = forces(built_.model, x) + viscous_forces(x, v) + conditions.external;
     for (Eigen::Index i = 0; i < v.size(); ++i)
       if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] / mass_[i / 3] - damping_ * v.data()[i]);
     return v;
   }
 
-  Field field_at(const NodalVectors& x, const BoundaryConditions& conditions) const {
+  NodalVectors viscous_forces(const NodalVectors& x, const NodalVectors& v) const {
+    NodalVectors f = NodalVectors::Zero(x.rows(), 3);
+    if (viscosity_.time > 0) viscosity_.add_forces(built_.model.network, x, v, f);
+    return f;
+  }
+
+  Field field_at(const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& conditions) const {
     const MassSpringModel& model = built_.model;
     Equilibrium state;
     state.displacement = x - model.network.X;
     state.support = support_forces(model, x, conditions);
+    const NodalVectors viscous = viscous_forces(x, v);
+    for (Eigen::Index i = 0; i < viscous.size(); ++i)
+      if (conditions.fixed[i]) state.support.data()[i] -= viscous.data()[i];
     const Experiment& e = prepared_.experiment;
     Field field = to_field(state, lattice_.mesh, built_.embedding, model.network, prepared_.loads, conditions,
                            e.model_kinematics());
@@ -152,7 +165,8 @@ class Recorder {
   Eigen::VectorXd mass_;
   double behind_;   ///< the velocities of a step [s]
   double damping_;  ///< [1/s]
-  bool cut_;        ///< the network is of cut cells of the lattice
+  Viscosity viscosity_;
+  bool cut_;  ///< the network is of cut cells of the lattice
   MotionRecord& record_;
   std::size_t next_ = 0;  ///< quantity
 };
@@ -163,14 +177,60 @@ void check_motion(const MotionChoice& motion, const MassSpringModel& model, cons
   steps_of(motion, model, material);
 }
 
-namespace {
+namespace {}  // namespace
 
 const std::vector<double>* series(const HistoryRecord& h, const std::string& name) {
   const auto at = std::find(h.names.begin(), h.names.end(), name);
   return at == h.names.end() ? nullptr : &h.values[at - h.names.begin()];
 }
 
-/// The component of the probe's displacement that varies most.
+namespace {
+
+/// Period and amplitude of the first probe, and what is conserved: the energy of undamped motions after the loads have
+/// their final size, the momentum along axes in which nothing is held or loaded.
+void measure(const Experiment& e, const MotionChoice& motion, double mass, double body_size,
+             const BoundaryConditions& last, HistoryRecord& h) {
+  std::size_t first = 0;
+  const double settled = motion.course.settled();  // the loads of a sample are those of the step before it
+  while (first < h.time.size() && settled > 0 && h.time[first] < settled + h.time_step) ++first;
+  if (!e.probes.empty() && h.time.size() > 1) {
+    h.probe = liveliest(h, e.probes.front().name);
+    h.measured = measured_in_time(motion, h);
+  }
+  const std::vector<double>*kinetic = series(h, "kinetic_energy"), *elastic = series(h, "elastic_energy"),
+        *load = series(h, "load_potential");
+  if (motion.damping == 0 && motion.viscosity == 0 && elastic && first < h.time.size()) {
+    const auto total = [&](std::size_t i) { return (*kinetic)[i] + (*elastic)[i] + (*load)[i]; };
+    double drift = 0, largest = 0;
+    for (std::size_t i = first; i < h.time.size(); ++i) {
+      drift = std::max(drift, std::abs(total(i) - total(first)));
+      largest = std::max(largest, (*kinetic)[i]);
+    }
+    if (largest > 0) h.measured["energy_drift"] = drift / largest;
+  }
+  const double scale = std::sqrt(2 * mass * *std::max_element(kinetic->begin(), kinetic->end()));
+  const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });
+  if (flies && last.external.isZero(0) && motion.damping == 0) {
+    double drift = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<double>& spin = *series(h, fmt::format("angular_momentum.{}", "xyz"[axis]));
+      for (const double value : spin) drift = std::max(drift, std::abs(value - spin.front()));
+    }
+    if (scale > 0) h.measured["angular_momentum_drift"] = drift / (scale * body_size / 2);
+  }
+  double drift = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& p = *series(h, fmt::format("linear_momentum.{}", "xyz"[axis]));
+    bool free = last.external.col(axis).isZero(0);
+    for (std::size_t i = axis; i < last.fixed.size(); i += 3) free = free && !last.fixed[i];
+    if (free && motion.damping == 0 && first < h.time.size())
+      for (std::size_t i = first; i < h.time.size(); ++i) drift = std::max(drift, std::abs(p[i] - p[first]));
+  }
+  if (drift >= 0 && scale > 0) h.measured["momentum_drift"] = drift / scale;
+}
+
+}  // namespace
+
 std::string liveliest(const HistoryRecord& h, const std::string& probe) {
   std::string best;
   double most = -1;
@@ -185,42 +245,31 @@ std::string liveliest(const HistoryRecord& h, const std::string& probe) {
   return best;
 }
 
-/// Period and amplitude of the first probe, and what is conserved: the energy of undamped motions after the loads have
-/// their final size, the momentum along axes in which nothing is held or loaded.
-void measure(const Experiment& e, const MotionChoice& motion, const BoundaryConditions& last, HistoryRecord& h) {
-  std::size_t first = 0;
-  while (first < h.time.size() && h.time[first] < motion.ramp) ++first;
-  if (!e.probes.empty() && h.time.size() > 1) {
-    h.probe = liveliest(h, e.probes.front().name);
-    const std::vector<double>& u = *series(h, h.probe);
-    const std::vector<double> time(h.time.begin() + static_cast<long>(first), h.time.end()),
-        value(u.begin() + static_cast<long>(first), u.end());
-    if (const auto swings = swings_of(time, value)) {
-      h.measured["period"] = swings->period;
-      h.measured["amplitude"] = swings->amplitude;
-    }
+std::map<std::string, double> measured_in_time(const MotionChoice& motion, const HistoryRecord& h) {
+  const std::vector<double>& u = *series(h, h.probe);
+  const double settled = motion.course.settled();
+  const auto first =
+      std::isfinite(settled) ? std::lower_bound(h.time.begin(), h.time.end(), settled) - h.time.begin() : 0;
+  std::map<std::string, double> out;
+  if (const auto swings = swings_of({h.time.begin() + first, h.time.end()}, {u.begin() + first, u.end()})) {
+    out["period"] = swings->period;
+    out["amplitude"] = swings->amplitude;
+    if (swings->count > 1 && (motion.damping > 0 || motion.viscosity > 0)) out["damping_ratio"] = swings->damping_ratio;
   }
-  const std::vector<double>*kinetic = series(h, "kinetic_energy"), *elastic = series(h, "elastic_energy"),
-        *load = series(h, "load_potential");
-  if (motion.damping == 0 && elastic && first < h.time.size()) {
-    const auto total = [&](std::size_t i) { return (*kinetic)[i] + (*elastic)[i] + (*load)[i]; };
-    double drift = 0, largest = 0;
-    for (std::size_t i = first; i < h.time.size(); ++i) {
-      drift = std::max(drift, std::abs(total(i) - total(first)));
-      largest = std::max(largest, (*kinetic)[i]);
-    }
-    if (largest > 0) h.measured["energy_drift"] = drift / largest;
-  }
-  double drift = -1, scale = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<double>& p = *series(h, fmt::format("linear_momentum.{}", "xyz"[axis]));
-    for (const double value : p) scale = std::max(scale, std::abs(value));
-    bool free = last.external.col(axis).isZero(0);
-    for (std::size_t i = axis; i < last.fixed.size(); i += 3) free = free && !last.fixed[i];
-    if (free && motion.damping == 0 && first < h.time.size())
-      for (std::size_t i = first; i < h.time.size(); ++i) drift = std::max(drift, std::abs(p[i] - p[first]));
-  }
-  if (drift >= 0 && scale > 0) h.measured["momentum_drift"] = drift / scale;
+  if (motion.course.pulse > 0)
+    if (const auto arrival = arrival_of(h.time, u)) out["arrival"] = *arrival;
+  return out;
+}
+
+namespace {
+
+/// That of the whole body, about its centre of mass.
+NodalVectors rigid_velocity(const MotionChoice& motion, const Network& network, const Eigen::VectorXd& mass) {
+  const Vec3 centre = network.X.transpose() * mass / mass.sum();
+  NodalVectors v(network.X.rows(), 3);
+  for (Eigen::Index n = 0; n < v.rows(); ++n)
+    v.row(n) = (motion.velocity + motion.spin.cross(Vec3(network.X.row(n).transpose()) - centre)).transpose();
+  return v;
 }
 
 }  // namespace
@@ -230,18 +279,20 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   const MotionChoice& motion = *prepared.experiment.dynamics;
   const Steps steps = steps_of(motion, built.model, material);
   record.history.time_step = steps.size;
-  Recorder recorder(prepared, lattice, built, material, steps, motion.damping, record);
   DynamicsOptions options;
+  options.viscosity = Viscosity::of(built.model, material, motion.viscosity);
+  Recorder recorder(prepared, lattice, built, material, steps, motion.damping, options.viscosity, record);
   options.integrator = steps.integrator;
   options.time_step = steps.size;
   options.damping = motion.damping;
-  options.ramp = motion.ramp;
+  options.course = motion.course;
   options.duration = motion.duration;
   options.stride = steps.stride;
   options.after_step = [&](double time, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& bc) {
     recorder(time, x, v, bc);
     progress::detail(fmt::format("{:.3g} of {:.3g} s", time, motion.duration));
   };
+  options.velocity = rigid_velocity(motion, built.model.network, masses(built.model.network, material.density));
   LoadPath in_time = path;
   if (motion.released) {
     const Equilibrium start = solve_finite(built.model, path);
@@ -255,7 +306,8 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   }
   Equilibrium state = run_dynamics(built.model, material.density, in_time, options).state;
   record.history.integrator = name_of(steps.integrator);
-  measure(prepared.experiment, motion, in_time(1.0), record.history);
+  measure(prepared.experiment, motion, masses(built.model.network, material.density).sum(), prepared.size.norm(),
+          in_time(1.0), record.history);
   return state;
 }
 

@@ -1,13 +1,8 @@
 #include "comparisons/run/part_file.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "comparisons/run/checksum.h"
-#include "problem/system/child.h"
-#include "problem/system/files.h"
 #include "problem/system/json.h"
 
 namespace springproof {
@@ -33,43 +28,20 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CrackRecord, model, poisson_ratio, cells, shr
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
                                    cracks)
 
-namespace {
-
-// File format: this line with the checksum of the rest appended, then the rest as CBOR.
-constexpr std::string_view heading = "springproof part 1 ";
-
-[[noreturn]] void damaged(const std::filesystem::path& file) {
-  throw DamagedPart(fmt::format("{} is damaged", file.string()));
-}
-
-/// The body after the heading, if the heading's checksum matches it.
-std::string_view checked(const std::filesystem::path& file, std::string_view bytes) {
-  const std::size_t end = bytes.find('\n');
-  if (end == std::string_view::npos || !bytes.starts_with(heading)) damaged(file);
-  const std::string_view body = bytes.substr(end + 1);
-  if (bytes.substr(heading.size(), end - heading.size()) != checksum(body)) damaged(file);
-  return body;
-}
-
-}  // namespace
+// File format: this heading (comparisons/run/checked_file.h), then the stamp and the part.
+static constexpr std::string_view heading = "springproof part 1 ";
 
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part) {
-  std::string body;
-  nlohmann::json::to_cbor({{"stamp", stamp}, {"part", part}}, body);
-  write_file(file, fmt::format("{}{}\n", heading, checksum(body)) + body);
+  write_checked(file, heading, {{"stamp", stamp}, {"part", part}});
 }
 
-std::optional<Part> load_part(const std::filesystem::path& file, const std::string& stamp) {
+std::optional<Part> load_part(const std::filesystem::path& file, const std::string& stamp) try {
   if (!std::filesystem::exists(file)) return {};
-  const std::string bytes = text_of_file(file);
-  const std::string_view body = checked(file, bytes);
-  try {
-    const nlohmann::json document = nlohmann::json::from_cbor(body);
-    if (document.at("stamp") != stamp) return {};
-    return document.at("part").get<Part>();
-  } catch (const nlohmann::json::exception&) {
-    damaged(file);
-  }
+  const nlohmann::json document = read_checked(file, heading);
+  if (document.at("stamp") != stamp) return {};
+  return document.at("part").get<Part>();
+} catch (const nlohmann::json::exception&) {
+  refuse_damaged(file);
 }
 
 }  // namespace springproof

@@ -3,24 +3,18 @@
 
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "comparisons/report/results.h"
+#include "comparisons/run/checked_file.h"
 
 namespace springproof {
 
 /// `stamp` identifies the inputs of the part; a part is only loaded with the same stamp.
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part);
 
-/// Thrown if a part's file is damaged.
-class DamagedPart : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 /// Nothing if there is no such file or its stamp differs.
-/// @throws DamagedPart
+/// @throws DamagedFile
 std::optional<Part> load_part(const std::filesystem::path& file, const std::string& stamp);
 
 }  // namespace springproof

@@ -11,6 +11,7 @@
 #include "comparisons/run/external.h"
 #include "comparisons/run/fracture_run.h"
 #include "comparisons/run/motion_run.h"
+#include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
 #include "meshes/mesher/mesher.h"
@@ -30,17 +31,6 @@ constexpr double finite_reference_elements = 1000;
 
 // Largest number of cells of a lattice whose matrices fit into a workstation's memory.
 constexpr double largest_lattice = 4e6;
-
-/// Near-cubic elements, counts divisible by four so that the grid can be halved twice.
-Cells reference_cells(const Experiment& e) {
-  if (e.reference.cells[0] > 0) return e.reference.cells;
-  const double elements =
-      e.model_kinematics() == Kinematics::linear ? linear_reference_elements : finite_reference_elements;
-  const double edge = std::cbrt(e.body.size.prod() / elements);
-  Cells cells;
-  for (int d = 0; d < 3; ++d) cells[d] = 4 * std::max(1, static_cast<int>(std::lround(e.body.size[d] / edge / 4)));
-  return cells;
-}
 
 /// @throws InputError at the model's location in the case, if its options yield no network.
 EmbeddedModel build_chosen(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
@@ -93,6 +83,9 @@ void check_own_models(const PreparedCase& prepared) {
       }
 }
 
+/// False for a case of motions alone that start from rest: bodies may fly.
+bool needs_supports(const Experiment& e) { return !e.dynamics || e.dynamics->equilibrium || e.dynamics->released; }
+
 /// Builds the model and applies the loads, to find errors in either.
 void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number) try {
   const Experiment& experiment = prepared.experiment;
@@ -106,7 +99,7 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   if (parameters.row.topology == Topology::cells && !*parameters.cut) return;
   const BoundaryConditions bc =
       transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
-  if (!parameters.hold_rigid_motions) require_supported(bc, model.network.X);
+  if (!parameters.hold_rigid_motions && needs_supports(experiment)) require_supported(bc, model.network.X);
 } catch (const InputError&) {
   throw;
 } catch (const std::runtime_error&) {
@@ -155,8 +148,14 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   check_patches(e, patches);
   check_mean_displacements(e, patches);
   prepared.sharing = patches_sharing_supports(prepared.loads, mesh, e.model_kinematics());
-  if (std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
-    require_supported(transfer(lattice_loads(prepared), mesh, 1000, e.model_kinematics()), mesh.nodes);
+  if ((needs_supports(e) || !e.reference.elements.empty()) &&
+      std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
+    try {
+      require_supported(transfer(lattice_loads(prepared), mesh, 1000, e.model_kinematics()), mesh.nodes);
+    } catch (const InputError& error) {
+      if (needs_supports(e)) throw;
+      throw InputError(fmt::format("{}, or leave out the equilibrium: elements = [] in [reference]", error.what()));
+    }
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
     if (const Topology t = prepared.models[m].row.topology;
         t == Topology::cells || t == Topology::file || &lattice == &prepared.lattices.front())
@@ -181,6 +180,13 @@ PreparedCase naming(const Experiment& experiment, const Prepare& prepare_it) try
 }
 
 }  // namespace
+
+Cells reference_cells(const Experiment& e) {
+  if (e.reference.cells[0] > 0) return e.reference.cells;
+  const double elements =
+      e.model_kinematics() == Kinematics::linear ? linear_reference_elements : finite_reference_elements;
+  return divisible_cells(e.body.size, elements);
+}
 
 PreparedCase prepare_lattices(const Experiment& experiment) {
   return naming(experiment, [&] {

@@ -13,4 +13,8 @@ PreparedCase prepare(const Experiment& experiment);
 /// @throws InputError for errors in the body and the models.
 PreparedCase prepare_lattices(const Experiment& experiment);
 
+/// Of a block the finest of the three reference grids: near-cubic elements, counts divisible by four so that the grid
+/// can be halved twice, where the case leaves them to the program.
+Cells reference_cells(const Experiment& experiment);
+
 }  // namespace springproof

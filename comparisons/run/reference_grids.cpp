@@ -26,17 +26,11 @@ NodalVectors sample_points(const PreparedCase& prepared) {
   return points;
 }
 
-/// A direction of one cell (plane strain) is not divided.
-Cells divided(const Cells& cells, int divisor) {
-  Cells coarse;
-  for (int d = 0; d < 3; ++d) coarse[d] = std::max(1, cells[d] / divisor);
-  return coarse;
-}
-
-/// An element's three grids, coarse to fine.
-void add_reference_grids(const PreparedCase& prepared, const std::string& element, double grading,
+/// An element's three grids, coarse to fine; the finest with a file for ParaView.
+void add_reference_grids(const PreparedCase& prepared, const std::string& element, double grading, const VtuOutput& vtu,
                          fem::Request& request) {
   for (int divisor : {4, 2, 1}) request.grids.push_back({divided(prepared.reference_cells, divisor), element, grading});
+  request.grids.back().vtu = reference_file(vtu, element, request.material.poisson_ratio);
 }
 
 /// Solutions without a result, for a request on which the program fails.
@@ -77,7 +71,8 @@ std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
 }
 
 /// Elements that fail on graded grids, whose thin cells are inverted first, are solved on three uniform ones.
-void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<ElementGrids>& elements) {
+void fall_back(const PreparedCase& prepared, fem::Request request, const VtuOutput& vtu,
+               std::vector<ElementGrids>& elements) {
   if (prepared.experiment.reference.grading == 1) return;
   for (ElementGrids& e : elements) {
     const auto failed = std::find_if(e.grids.begin(), e.grids.end(), [](const fem::Solution& s) { return !s.ok; });
@@ -85,7 +80,7 @@ void fall_back(const PreparedCase& prepared, fem::Request request, std::vector<E
     const std::string why = fmt::format("the graded grid of {} cells has no result ({})",
                                         cells_text(failed->grid.cells, " x "), failed->message);
     request.grids.clear();
-    add_reference_grids(prepared, e.element, 1, request);
+    add_reference_grids(prepared, e.element, 1, vtu, request);
     try {
       e.grids = fem::solve(request);
     } catch (const std::runtime_error& error) {
@@ -147,6 +142,19 @@ std::optional<double> target(const Experiment& experiment, const ReferenceRecord
 
 }  // namespace
 
+Cells divided(const Cells& cells, int divisor) {
+  Cells coarse;
+  for (int d = 0; d < 3; ++d) coarse[d] = std::max(1, cells[d] / divisor);
+  return coarse;
+}
+
+Cells divisible_cells(const Vec3& size, double elements) {
+  const double edge = std::cbrt(size.prod() / elements);
+  Cells cells;
+  for (int d = 0; d < 3; ++d) cells[d] = 4 * std::max(1, static_cast<int>(std::lround(size[d] / edge / 4)));
+  return cells;
+}
+
 std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
   const auto count = static_cast<Eigen::Index>(probes.size());
@@ -163,14 +171,15 @@ std::string with_note(const ElementGrids& e, const std::string& note) {
   return e.note.empty() || note.empty() ? e.note + note : note + "; " + e.note;
 }
 
-ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material) {
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu) {
   const Experiment& experiment = prepared.experiment;
   const bool stresses = wanted("stress", experiment.measures);
   fem::Request request = fem::request_of(experiment, material);
   request.points = sample_points(prepared);
   if (stresses) request.stress_points = probe_points(experiment);
+  request.vtu_single = vtu.single;
   for (const std::string& element : experiment.reference.elements)
-    add_reference_grids(prepared, element, experiment.reference.grading, request);
+    add_reference_grids(prepared, element, experiment.reference.grading, vtu, request);
   const std::size_t references = request.grids.size();
   std::vector<std::size_t> lattices;
   if (!experiment.models.empty())
@@ -188,7 +197,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
       out.elements.push_back({element, {at, at + 3}});
       at += 3;
     }
-    fall_back(prepared, request, out.elements);
+    fall_back(prepared, request, vtu, out.elements);
     out.peers.resize(prepared.lattices.size());
     for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;

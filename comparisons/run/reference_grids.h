@@ -7,6 +7,7 @@
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/report/results.h"
 #include "comparisons/run/sampling.h"
+#include "comparisons/run/vtu_output.h"
 #include "fem_reference/reference.h"
 
 namespace springproof {
@@ -36,8 +37,14 @@ struct ReferenceGrids {
 /// Solves on the grids of a block (for a body of voxels: solve_body_grids).  Displacements are requested at the nodes
 /// of every lattice and at the measured points, stresses at the probes if the case measures them. An element without a
 /// result on some graded grid is solved on uniform ones; an element on which the program fails does not affect the
-/// others.
-ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material);
+/// others.  The finest grid of each element of [reference] leaves a file in `vtu`.
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu = {});
+
+/// A coarser grid; a direction of one cell (plane strain) is not divided.
+Cells divided(const Cells& cells, int divisor);
+
+/// Nearly cubic cells of a block, about `elements` of them, that can be divided by two and four.
+Cells divisible_cells(const Vec3& size, double elements);
 
 Field sampled_field(const Lattice& lattice, const fem::Solution& s);
 

@@ -79,7 +79,7 @@ SpringsFile springs_of(const PreparedCase& prepared) {
   file.origin = {"springproof " SPRINGPROOF_VERSION, choice.name, choice.options,
                  prepared.experiment.text.empty() ? prepared.geo.filename().string()
                                                   : prepared.experiment.file.filename().string(),
-                 input_checksum(prepared)};
+                 input_checksum(prepared.experiment)};
   file.derived = derived_of(file, parameters);
   return file;
 }

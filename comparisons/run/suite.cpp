@@ -1,9 +1,6 @@
 #include "comparisons/run/suite.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -12,30 +9,23 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <functional>
-#include <iostream>
 #include <mutex>
-#include <nlohmann/json.hpp>
-#include <numeric>
 #include <thread>
 
-#include "comparisons/judge/calibration.h"
-#include "comparisons/judge/judge.h"
-#include "comparisons/report/crack_picture.h"
-#include "comparisons/report/headline.h"
-#include "comparisons/report/report.h"
 #include "comparisons/run/case_run.h"
+#include "comparisons/run/chosen_cases.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/folder_lock.h"
 #include "comparisons/run/input_checksum.h"
 #include "comparisons/run/part_file.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/status.h"
+#include "comparisons/run/suite_results.h"
+#include "comparisons/run/sweep.h"
 #include "comparisons/run/time_left.h"
 #include "fem_reference/reference.h"
 #include "problem/system/child.h"
 #include "problem/system/file_name.h"
-#include "problem/system/files.h"
 #include "problem/system/shortened.h"
 
 namespace springproof {
@@ -48,13 +38,6 @@ std::atomic<bool> interrupted = false;
 void on_interrupt(int) {
   interrupted = true;
   fem::interrupt();
-}
-
-/// The case's name as a file name.
-std::string key_of(const fs::path& file) {
-  std::string key = case_name(file);
-  std::replace(key.begin(), key.end(), '/', '-');
-  return file_name(key);
 }
 
 /// One part of one case: the unit of work.
@@ -82,70 +65,69 @@ void require_writable(const fs::path& folder) {
   fs::remove(trial, error);
 }
 
-std::vector<Task> make_tasks(const std::vector<PreparedCase>& prepared, const SuiteOptions& options) {
-  std::vector<Task> tasks;
-  const std::string fem = fem::version();
-  for (const PreparedCase& p : prepared) {
-    const std::string sum = input_checksum(p);
-    for (std::size_t m = 0; m < p.experiment.materials.size(); ++m) {
-      const std::string key = key_of(p.experiment.file);
-      const std::string nu = fmt::format("nu{}", p.experiment.materials[m].poisson_ratio);
-      const std::string stamp = fmt::format("{} | {} | {} | {}{} | {} | {}", SPRINGPROOF_VERSION, fem, nu, options.vtu,
-                                            options.vtu_single ? " single" : "", options.finer, sum);
-      tasks.push_back({&p,
-                       m,
-                       options.out / "parts" / (key + "-" + nu + ".cbor"),
-                       {options.vtu ? options.out / "vtu" / key : fs::path(), options.vtu_single},
-                       stamp,
-                       fmt::format("{}  {}", case_name(p.experiment.file), nu),
-                       {}});
+std::vector<Experiment> read_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
+  std::vector<Experiment> all;
+  for (const fs::path& file : cases)
+    all.push_back(finer(options.finer, only(options.poisson_ratios, read_experiment(file))));
+  return all;
+}
+
+/// The parts of the cases, shared out if that is wanted.
+Sweep planned(const std::vector<Experiment>& cases, const SuiteOptions& options) {
+  Sweep sweep{SPRINGPROOF_VERSION, fem::version(), options.shard.value_or(Shard{}).count,
+              options.finer,       options.vtu,    {}};
+  std::vector<double> seconds;
+  for (const Experiment& e : cases) {
+    PlannedCase planned{fs::absolute(e.file).string(), e.text, case_name(e.file), key_of(e.file), {}};
+    const std::string sum = input_checksum(e);
+    for (const IsotropicMaterial& material : e.materials) {
+      const std::string nu = fmt::format("nu{}", material.poisson_ratio);
+      planned.parts.push_back({material.poisson_ratio, fmt::format("{}-{}.cbor", planned.key, nu),
+                               fmt::format("{} | {} | {} | {}{} | {} | {}", sweep.version, sweep.libraries, nu,
+                                           options.vtu, options.vtu_single ? " single" : "", options.finer, sum)});
+      seconds.push_back(unmeshed_seconds(e, material));
     }
+    sweep.cases.push_back(std::move(planned));
   }
-  return tasks;
+  const std::vector<int> shards = shards_of(seconds, sweep.shards);
+  auto shard = shards.begin();
+  for (PlannedCase& c : sweep.cases)
+    for (PlannedPart& p : c.parts) p.shard = *shard++;
+  return sweep;
 }
 
-/// Restricts a case to the requested Poisson's ratios, and to the expectations at these or at every one.
-/// @throws InputError if it has none of them.
-Experiment only(const std::vector<double>& wanted, Experiment e) {
-  if (wanted.empty()) return e;
-  const auto left_out = [&](double nu) {
-    return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return same_poisson_ratio(w, nu); });
-  };
-  std::string has;
-  for (const IsotropicMaterial& m : e.materials) has += fmt::format("{}{}", has.empty() ? "" : ", ", m.poisson_ratio);
-  std::erase_if(e.materials, [&](const IsotropicMaterial& m) { return left_out(m.poisson_ratio); });
-  std::erase_if(e.expectations, [&](const Expectation& x) { return x.poisson_ratio && left_out(*x.poisson_ratio); });
-  std::erase_if(e.published, [&](const PublishedValue& v) { return left_out(v.poisson_ratio); });
-  if (e.materials.empty())
-    throw InputError(fmt::format("{}: poisson_ratio: none of those wanted (allowed: {})", e.file.string(), has));
-  return e;
-}
-
-/// Multiplies the cells of the reference's grids along each direction, except in directions of one cell.
-/// @throws InputError if the case leaves the choice of its reference grids to the program.
-Experiment finer(int times, Experiment e) {
-  if (times == 1) return e;
-  if (e.reference.cells[0] == 0 && e.reference.edge == 0)
-    throw InputError(fmt::format(
-        "--finer: {} leaves its reference grids to the program; give it [reference] cells or edge_m", e.file.string()));
-  for (int& n : e.reference.cells)
-    if (n > 1) n *= times;
-  e.reference.edge /= times;
-  return e;
-}
-
-/// The cases prepared before an interrupt, which also ends the mesher.
-std::vector<PreparedCase> prepare_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {
+/// The cases prepared before an interrupt, which also ends the mesher and is said.
+std::vector<PreparedCase> prepare_all(const std::vector<Experiment>& cases, bool quiet) {
   std::vector<PreparedCase> prepared;
-  Status status(options.quiet);
-  for (const fs::path& file : cases) try {
-      const Status::Working working(status, case_name(file));
-      if (!interrupted)
-        prepared.push_back(prepare(finer(options.finer, only(options.poisson_ratios, read_experiment(file)))));
+  Status status(quiet);
+  for (const Experiment& e : cases) try {
+      const Status::Working working(status, case_name(e.file));
+      if (!interrupted) prepared.push_back(prepare(e));
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
     }
+  if (interrupted) fmt::print(stderr, "interrupted before any part was run\n");
   return prepared;
+}
+
+/// Of the parts of the prepared cases those of one shard, or all.
+std::vector<Task> tasks_of(const Sweep& sweep, const std::vector<PreparedCase>& prepared, const SuiteOptions& options) {
+  std::vector<Task> tasks;
+  for (const PreparedCase& p : prepared) {
+    const PlannedCase& planned = case_of_key(sweep, key_of(p.experiment.file));
+    for (std::size_t m = 0; m < p.experiment.materials.size(); ++m)
+      for (const PlannedPart& part : planned.parts)
+        if (same_poisson_ratio(part.poisson_ratio, p.experiment.materials[m].poisson_ratio) &&
+            (!options.shard || part.shard == options.shard->number))
+          tasks.push_back({&p,
+                           m,
+                           options.out / "parts" / part.file,
+                           {options.vtu ? options.out / "vtu" / planned.key : fs::path(), options.vtu_single},
+                           part.stamp,
+                           title_of(planned, part),
+                           {}});
+  }
+  return tasks;
 }
 
 std::vector<double> expected(const std::vector<Task>& tasks) {
@@ -153,14 +135,6 @@ std::vector<double> expected(const std::vector<Task>& tasks) {
   for (const Task& t : tasks)
     seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
   return seconds;
-}
-
-/// The order in which tasks are started: none of the long ones is left for the end, when other processors idle.
-std::vector<std::size_t> longest_first(const std::vector<double>& seconds) {
-  std::vector<std::size_t> order(seconds.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
-  return order;
 }
 
 /// Shows the running parts and prints those finished, with the time left; thread-safe.
@@ -209,7 +183,7 @@ class Progress {
 /// The part saved by an earlier run, unless its stamp differs or its file is damaged.
 std::optional<Part> kept_part(const Task& task) try {
   return load_part(task.file, task.stamp);
-} catch (const DamagedPart& e) {
+} catch (const DamagedFile& e) {
   fmt::print(stderr, "note: {}; this part is computed anew\n", e.what());
   return {};
 }
@@ -230,7 +204,7 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
         const auto start = std::chrono::steady_clock::now();
         const Status::Working working = progress.working(i);
         std::optional<Part> kept;
-        if (options.resume) kept = kept_part(task);
+        if (options.resume || options.shard) kept = kept_part(task);
         task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu);
         if (interrupted) return;  // its FEM program may have been stopped by the same signal
         if (!kept) save_part(task.file, task.stamp, task.part);
@@ -249,88 +223,6 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
   if (failure && !interrupted) std::rethrow_exception(failure);
 }
 
-template <class T>
-void append(const std::vector<T>& from, std::vector<T>& to) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
-void append(const Part& from, Part& to) {
-  append(from.runs, to.runs);
-  append(from.rows, to.rows);
-  append(from.references, to.references);
-  append(from.pictures, to.pictures);
-  append(from.lines, to.lines);
-  append(from.histories, to.histories);
-  append(from.splits, to.splits);
-  append(from.deformations, to.deformations);
-  append(from.cracks, to.cracks);
-}
-
-std::vector<CaseResult> collect(const std::vector<PreparedCase>& prepared, const std::vector<Task>& tasks) {
-  std::vector<CaseResult> results;
-  for (const PreparedCase& p : prepared) {
-    CaseResult result;
-    result.experiment = p.experiment;
-    result.size = p.size;
-    for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
-    result.notes = p.notes;
-    for (std::size_t m = 0; m < p.models.size(); ++m)
-      if (const auto own = own_poisson_ratio(p.models[m].row))
-        result.own_poisson_ratios[p.experiment.models[m].label] = *own;
-    for (const Task& task : tasks)
-      if (task.prepared == &p) append(task.part, result);
-    judge(result);
-    results.push_back(std::move(result));
-  }
-  return results;
-}
-
-nlohmann::json host() {
-  utsname u{};
-  uname(&u);
-  std::string processor, line;
-  for (std::ifstream in("/proc/cpuinfo"); std::getline(in, line);)
-    if (line.starts_with("model name")) {
-      processor = line.substr(line.find(':') + 2);
-      break;
-    }
-  return {{"system", fmt::format("{} {}", u.sysname, u.machine)},
-          {"processor", processor},
-          {"cores", std::thread::hardware_concurrency()}};
-}
-
-std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
-  std::vector<KnownQuantity> all;
-  for (const CaseResult& r : results) append(known_quantities(r), all);
-  return all;
-}
-
-nlohmann::json document(const std::vector<CaseResult>& results, const std::vector<KnownQuantity>& known) {
-  nlohmann::json cases = nlohmann::json::array();
-  for (const CaseResult& r : results) cases.push_back(to_json(r));
-  const std::string fem = fem::version();
-  return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", fem}}},
-          {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
-          {"host", host()},
-          {"cases", cases},
-          {"calibration", calibration_json(known)}};
-}
-
-/// Writes everything; true if every expectation holds and every case was compared.
-bool write_results(const std::vector<CaseResult>& results, const fs::path& out) {
-  const std::vector<KnownQuantity> known = known_quantities(results);
-  const nlohmann::json doc = document(results, known);
-  nlohmann::json pictures = nlohmann::json::array();
-  for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
-  write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
-  write_file(out / "results.csv", to_csv(results));
-  write_crack_pictures(results, out);
-  write_report(out / "report.html", doc, pictures);
-  const Headline h = headline(doc);
-  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known), (out / "report.html").string());
-  return success(h);
-}
-
 /// @throws InputError if two cases would write the same files, or one could write none.
 void check_names(const std::vector<fs::path>& cases) {
   for (const fs::path& file : cases)
@@ -344,6 +236,61 @@ void check_names(const std::vector<fs::path>& cases) {
                                      cases[j].string(), cases[i].string()));
 }
 
+/// Runs the tasks; false if interrupted, which is said.
+bool completed(std::vector<Task>& tasks, const SuiteOptions& options) {
+  if (!fem::available()) fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
+  run_tasks(tasks, options);
+  if (!interrupted) return true;
+  const auto done = std::count_if(tasks.begin(), tasks.end(), [](const Task& t) { return t.done; });
+  fmt::print(stderr, "interrupted; {} of {} parts are kept in {}: the same command {}goes on from there\n", done,
+             tasks.size(), options.out.string(), options.shard ? "" : "with --resume ");
+  return false;
+}
+
+int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
+  const auto [number, count] = *options.shard;
+  const std::string out = options.out.string();
+  std::vector<Experiment> cases = read_all(files, options);
+  require_writable(options.out);
+  const FolderLock lock(options.out, FolderLock::beside_shards);
+  const Sweep sweep = common_plan(options.out, planned(cases, options));
+  const ByteLock once(sweep_file(options.out), number,
+                      fmt::format("--shard: {}/{} is at work in {} already (wait for its end)", number, count, out));
+  std::erase_if(cases, [&, shard = number](const Experiment& e) {
+    const std::vector<PlannedPart>& parts = case_of_key(sweep, key_of(e.file)).parts;
+    return std::none_of(parts.begin(), parts.end(), [&](const PlannedPart& p) { return p.shard == shard; });
+  });
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
+  if (interrupted) return 130;
+  for (const PreparedCase& p : prepared) save_meshed(options.out, key_of(p.experiment.file), case_of(p));
+  std::vector<Task> tasks = tasks_of(sweep, prepared, options);
+  if (!completed(tasks, options)) return 130;
+  fmt::print("shard {}/{}: its {} part{} in {}; once every shard has ended: springproof report {}\n", number, count,
+             tasks.size(), tasks.size() == 1 ? " is" : "s are", out, out);
+  return 0;
+}
+
+int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
+  const std::vector<Experiment> cases = read_all(files, options);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
+  if (interrupted) return 130;
+  require_writable(options.out);
+  const FolderLock lock(options.out);
+  const ByteLock no_shards(
+      sweep_file(options.out), ByteLock::all,
+      fmt::format("--out: {} is in use by shards (wait for their end, or name another folder)", options.out.string()));
+  const Sweep plan = planned(cases, options);
+  std::vector<Task> tasks = tasks_of(plan, prepared, options);
+  if (!completed(tasks, options)) return 130;
+  std::vector<CaseResult> results;
+  for (const PreparedCase& p : prepared) {
+    results.push_back(case_of(p));
+    for (const Task& task : tasks)
+      if (task.prepared == &p) append(task.part, results.back());
+  }
+  return write_results(std::move(results), plan.libraries, {options.out, options.vtu, options.live_page}) ? 0 : 1;
+}
+
 }  // namespace
 
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
@@ -353,29 +300,7 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   if (options.jobs > most_jobs)
     throw InputError(fmt::format("--jobs: is {} (allowed: 0 to {})", options.jobs, most_jobs));
   check_names(cases);
-  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
-  if (interrupted) {
-    fmt::print(stderr, "interrupted before any part was run\n");
-    return 130;
-  }
-  require_writable(options.out);
-  const FolderLock lock(options.out);
-  std::vector<Task> tasks = make_tasks(prepared, options);
-  if (!fem::available()) fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
-  run_tasks(tasks, options);
-  if (interrupted) {
-    const auto done = std::count_if(tasks.begin(), tasks.end(), [](const Task& t) { return t.done; });
-    fmt::print(stderr,
-               "interrupted; {} of {} parts are kept in {}: the same command with --resume goes on from there\n", done,
-               tasks.size(), options.out.string());
-    return 130;
-  }
-  if (!options.live_page.empty())
-    fs::copy_file(options.live_page, options.out / "live.html", fs::copy_options::overwrite_existing);
-  const std::vector<CaseResult> results = collect(prepared, tasks);
-  if (options.vtu)
-    for (const CaseResult& r : results) write_series(r, options.out / "vtu" / key_of(r.experiment.file));
-  return write_results(results, options.out) ? 0 : 1;
+  return options.shard ? run_shard(cases, options) : run_all(cases, options);
 }
 
 }  // namespace springproof

@@ -1,8 +1,12 @@
 #include "comparisons/run/time_left.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "comparisons/run/prepare.h"
+#include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_reference.h"
+#include "problem/case_file/external.h"
 
 namespace springproof {
 namespace {
@@ -13,6 +17,10 @@ constexpr double breaking = 1e-4;                            // of a sample that
 constexpr double with_pressures = 4, pressures_above = 0.4;  // factor above this Poisson's ratio
 constexpr double start_up = 0.3;                             // of the programs
 constexpr double large_strain = 25;  // number of linear systems in all load steps and Newton steps
+
+// Bodies of voxels before they are meshed.
+constexpr double nodes_per_cube = 1.3, cubes_of_a_file = 2000, share_of_the_box = 0.5;
+constexpr double nodes_of_tetrahedra = 6000;  // of the three meshes that the program chooses
 
 double unknowns(const Cells& cells, int degree) {
   double nodes = 1;
@@ -32,15 +40,17 @@ double seconds_of(const std::string& element, double unknowns) {
 
 int degree_of(const std::string& element) { return element[1] - '0'; }
 
-double block_seconds(const PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
+double grid_seconds(const Experiment& e, const Cells& finest) {
   double total = 0;
   for (const std::string& element : e.reference.elements)
-    for (const int divisor : {4, 2, 1}) {
-      Cells cells = prepared.reference_cells;
-      for (int& n : cells) n = std::max(1, n / divisor);
-      total += seconds_of(element, unknowns(cells, degree_of(element)));
-    }
+    for (const int divisor : {4, 2, 1})
+      total += seconds_of(element, unknowns(divided(finest, divisor), degree_of(element)));
+  return total;
+}
+
+double block_seconds(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  double total = grid_seconds(e, prepared.reference_cells);
   if (e.models.empty()) return total;
   for (const Lattice& lattice : prepared.lattices)
     for (const std::string& element : e.elements)
@@ -68,6 +78,27 @@ double voxel_seconds(const PreparedCase& prepared) {
   return total;
 }
 
+/// Of a lattice that is not meshed yet.
+double unknowns(const Body& body, std::size_t lattice, int degree) {
+  if (!body.is_voxels()) return unknowns(body.cells[lattice], degree);
+  double cubes = cubes_of_a_file;
+  if (!body.voxel_counts.empty())
+    cubes = body.voxel_counts[lattice];
+  else if (body.is_script())
+    cubes = share_of_the_box * body.size.prod() / std::pow(body.voxel_edges[lattice], 3);
+  return 3 * nodes_per_cube * cubes * (degree == 1 ? 1 : 8);
+}
+
+/// Springs on a lattice with so many unknowns.
+double spring_seconds(const Experiment& e, int seeds, double unknowns) {
+  return (e.fracture ? breaking * e.fracture->seeds : springs * seeds) * unknowns;
+}
+
+double at_material(const Experiment& e, const IsotropicMaterial& material, double seconds) {
+  const double incompressible = material.poisson_ratio > pressures_above ? with_pressures : 1;
+  return start_up + seconds * incompressible * (e.model_kinematics() == Kinematics::finite ? large_strain : 1);
+}
+
 }  // namespace
 
 double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& material) {
@@ -76,9 +107,31 @@ double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& m
   for (const Lattice& lattice : prepared.lattices)
     if (small_enough(e, *lattice.mesh))
       for (const ModelParameters& model : prepared.models)
-        total += (e.fracture ? breaking * e.fracture->seeds : springs * model.seeds) * unknowns(*lattice.mesh, 1);
-  const double incompressible = material.poisson_ratio > pressures_above ? with_pressures : 1;
-  return start_up + total * incompressible * (e.model_kinematics() == Kinematics::finite ? large_strain : 1);
+        total += spring_seconds(e, model.seeds, unknowns(*lattice.mesh, 1));
+  return at_material(e, material, total);
+}
+
+double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) {
+  const bool voxels = e.body.is_voxels();
+  const auto allowed = [&](double unknowns) { return e.max_unknowns == 0 || unknowns <= e.max_unknowns; };
+  double total = voxels ? 0 : grid_seconds(e, reference_cells(e));
+  if (voxels)
+    for (const std::string& element : e.reference.elements)
+      total += with_matrices * 3 * nodes_of_tetrahedra * (degree_of(element) == 1 ? 1 : 7);
+  for (std::size_t i = 0; i < e.body.resolutions(); ++i) {
+    const double nodal = unknowns(e.body, i, 1);
+    if (!e.models.empty() && !(voxels && e.reference.elements.empty())) {
+      for (const std::string& element : e.elements)
+        if (const double n = unknowns(e.body, i, degree_of(element)); allowed(n))
+          total += voxels ? with_matrices * n : seconds_of(element, n);
+      if (voxels && !e.cost && nodal <= 3 * nodes_per_cube * most_refined_cubes)
+        total += with_matrices * 9 * unknowns(e.body, i, 2);
+    }
+    if (allowed(nodal))
+      for (const ModelChoice& model : e.models)
+        total += spring_seconds(e, is_external(model) ? 1 : resolve(model).seeds, nodal);
+  }
+  return at_material(e, material, total);
 }
 
 TimeLeft::TimeLeft(std::vector<double> expected, int jobs) : jobs_(std::max(1, jobs)) {

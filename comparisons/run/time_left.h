@@ -12,6 +12,11 @@ namespace springproof {
 /// Rough estimate of a part's time on one core [s], from the unknowns of its finite elements and springs.
 double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& material);
 
+/// The same before the body is meshed, so that only the part's own machine has to mesh it; of a body of voxels rougher
+/// still.
+/// @throws InputError for models that there are not.
+double unmeshed_seconds(const Experiment& experiment, const IsotropicMaterial& material);
+
 /// Parts of a run, by number; times are seconds since it began.  Safe from several threads.
 class TimeLeft {
  public:

@@ -51,7 +51,7 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
   request.tetrahedra = finest_tetrahedra;
-  if (!e.reference.elements.empty()) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
+  if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
   MeshedBody body = mesh_body(request);
   prepared.notes = body.notes;
   hint = scale_hint(body.mesh, e.body);

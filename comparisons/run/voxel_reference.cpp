@@ -28,7 +28,8 @@ std::vector<fem::Discretisation> grids_on(const Meshes& meshes, const std::vecto
 }
 
 std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const IsotropicMaterial& material,
-                                            const std::vector<fem::Discretisation>& grids, const Meshes& meshes) {
+                                            const std::vector<fem::Discretisation>& grids, const Meshes& meshes,
+                                            bool vtu_single = false) {
   if (grids.empty()) return {};
   const Experiment& e = prepared.experiment;
   const NodalVectors measured = measured_points(prepared);
@@ -39,6 +40,7 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   request.points = stacked(prepared.body_points, measured);
   if (stresses) request.stress_points = probe_points(e);
   request.meshes = meshes;
+  request.vtu_single = vtu_single;
   std::vector<fem::Solution> solutions = fem::solve(request);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
@@ -107,11 +109,15 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
 
 }  // namespace
 
-ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material) try {
+ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                const VtuOutput& vtu) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
-  std::vector<fem::Solution> solutions =
-      solve_tetrahedra(prepared, material, grids_on(prepared.tetrahedra, e.reference.elements), prepared.tetrahedra);
+  std::vector<fem::Discretisation> grids = grids_on(prepared.tetrahedra, e.reference.elements);
+  for (fem::Discretisation& grid : grids)
+    if (grid.mesh + 1 == static_cast<int>(prepared.tetrahedra.size()))
+      grid.vtu = reference_file(vtu, grid.element, material.poisson_ratio);
+  std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids, prepared.tetrahedra, vtu.single);
   for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {

@@ -15,6 +15,15 @@ std::string vtu_stem(const RunKey& key) {
   return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
 }
 
+static std::string reference_name(const std::string& element, double poisson_ratio) {
+  return fmt::format("reference_{}_nu{}.vtu", element, poisson_ratio);
+}
+
+std::string reference_file(const VtuOutput& vtu, const std::string& element, double poisson_ratio) {
+  if (vtu.folder.empty()) return "";
+  return std::filesystem::absolute(vtu.folder / reference_name(element, poisson_ratio)).string();
+}
+
 VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double youngs_modulus, bool single) {
   return {{{"case", case_name}, {"model", key.model}, {"cells", cells_text(key.cells)}},
           {{"poisson_ratio", key.poisson_ratio}, {"youngs_modulus_Pa", youngs_modulus}},
@@ -31,6 +40,10 @@ void write_series(const CaseResult& result, const std::filesystem::path& folder)
     if (std::filesystem::exists(folder / file))
       series[fmt::format("{}_{}", file_name(key.model), fmt::join(key.cells, "x"))][key.poisson_ratio] = file;
   }
+  for (const std::string& element : result.experiment.reference.elements)
+    for (const IsotropicMaterial& m : result.experiment.materials)
+      if (const std::string file = reference_name(element, m.poisson_ratio); std::filesystem::exists(folder / file))
+        series["reference_" + element][m.poisson_ratio] = file;
   for (const auto& [name, files] : series)
     if (files.size() > 1) write_pvd(folder / (name + ".pvd"), {files.begin(), files.end()});
 }

@@ -18,6 +18,9 @@ struct VtuOutput {
 /// Name of the VTU file of a run, without its ending.
 std::string vtu_stem(const RunKey& key);
 
+/// The file of the reference on its own mesh (an element of [reference], its finest grid); empty: none is wanted.
+std::string reference_file(const VtuOutput& vtu, const std::string& element, double poisson_ratio);
+
 /// What the file of a run says of itself; `case_name` without its folder, Young's modulus in Pa.
 VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double youngs_modulus, bool single);
 

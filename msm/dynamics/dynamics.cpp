@@ -18,7 +18,8 @@ constexpr double implicit_ratio = 10;  // default step of implicit methods to th
 }  // namespace
 
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
-  const double bound = safe_time_step(model, density, options.lagged);
+  const double bound =
+      viscous_time_step(model, density, options.viscosity, safe_time_step(model, density, options.lagged));
   const bool implicit = options.integrator != Integrator::explicit_euler;
   const double dt = options.time_step.value_or((implicit ? implicit_ratio : 0.95) * bound);
   if (!(dt > 0) || (dt > bound && !implicit))
@@ -30,6 +31,10 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
     if (const std::string why = EnergyMomentum::lacks(model); !why.empty())
       throw InputError("integrator: energy_momentum does not suit this model: " + why);
   if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
+  if (implicit && options.viscosity.time != 0) throw InputError("integrator: viscosity needs the explicit one");
+  if (const std::string why = options.viscosity.time > 0 ? Viscosity::lacks(model) : ""; !why.empty())
+    throw InputError("viscosity does not suit this model: " + why);
+  if (!(options.viscosity.time >= 0)) throw InputError("viscosity: its time must be >= 0");
   if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
   const double least = options.lagged ? lagged_damping(model, density, dt) : 0;
   if (least > 0 && !(options.damping > least))
@@ -44,15 +49,17 @@ namespace {
 /// Time integration of any model by the plain force loops.
 class PlainMotion : public Motion {
  public:
-  PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step, double damping,
-              bool lagged)
+  PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step,
+              const DynamicsOptions& options)
       : model_(model),
-        dispersion_(lagged ? dispersion_of(model) : nullptr),
+        dispersion_(options.lagged ? dispersion_of(model) : nullptr),
         inverse_mass_(inverse_mass),
         dt_(time_step),
-        damping_(damping),
+        damping_(options.damping),
+        viscosity_(options.viscosity),
         x_(model.network.X),
-        v_(NodalVectors::Zero(x_.rows(), 3)) {}
+        v_(NodalVectors::Zero(x_.rows(), 3)),
+        of_supports_(v_) {}
 
   void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
 
@@ -78,7 +85,8 @@ class PlainMotion : public Motion {
 
  private:
   ForceNorms step() {
-    const NodalVectors f = forces_at_x();
+    NodalVectors f = forces_at_x();
+    if (viscosity_.time > 0) viscosity_.add_forces(model_.network, x_, v_ + of_supports_, f);
     double unbalanced = 0, support = 0;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
       const double force = f.data()[i] + conditions_.external.data()[i];
@@ -88,6 +96,10 @@ class PlainMotion : public Motion {
       speed = (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
       x_.data()[i] += dt_ * speed;
     }
+    if (viscosity_.time > 0)
+      for (Eigen::Index i = 0; i < x_.size(); ++i)
+        if (conditions_.fixed[i])
+          of_supports_.data()[i] = (model_.network.X.data()[i] + conditions_.prescribed.data()[i] - x_.data()[i]) / dt_;
     move_supports();
     return {std::sqrt(unbalanced), std::sqrt(support)};
   }
@@ -109,7 +121,9 @@ class PlainMotion : public Motion {
   const MomentumDispersion* dispersion_;  ///< nullptr: dispersion is not lagged
   Eigen::VectorXd inverse_mass_, J_;
   double dt_, damping_;
+  Viscosity viscosity_;
   NodalVectors x_, v_;
+  NodalVectors of_supports_;  ///< velocities of moved unknowns [m/s], zero on free ones
   BoundaryConditions conditions_;
 };
 
@@ -181,11 +195,12 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
   if (options.integrator != Integrator::explicit_euler)
     return std::make_unique<MotionInLargeSteps>(
         model, density, ImplicitOptions{.integrator = options.integrator, .time_step = dt, .damping = options.damping});
-  if (!options.lagged && LatticeMotion::suits(model))
+  const bool viscous = options.viscosity.time > 0;
+  if (!viscous && !options.lagged && LatticeMotion::suits(model))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
-  if (!ListForces<double>::covers(model))
-    return std::make_unique<PlainMotion>(model, inverse_mass, dt, options.damping, options.lagged);
+  if (viscous || !ListForces<double>::covers(model))
+    return std::make_unique<PlainMotion>(model, inverse_mass, dt, options);
   const ListMotionOptions of_list{
       .time_step = dt, .damping = options.damping, .lagged = options.lagged, .threads = options.threads};
   if (options.precision == Precision::float32)
@@ -216,6 +231,31 @@ double lagged_damping(const MassSpringModel& model, double density, double time_
   return time_step * dispersion_frequency_squared(model, density);
 }
 
+namespace {
+
+/// The velocity that goes with positions x: of explicit steps half a step before, v - dt a / 2.
+NodalVectors velocity_before(const MassSpringModel& model, double density, const NodalVectors& x,
+                             const BoundaryConditions& bc, double dt, const DynamicsOptions& options) {
+  NodalVectors v = options.velocity;
+  if (v.size() == 0) return NodalVectors::Zero(x.rows(), 3);
+  const Eigen::VectorXd mass = masses(model.network, density);
+  NodalVectors there = x;  // where supports are from the start
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (bc.fixed[i]) there.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i];
+  NodalVectors f = forces(model, there) + bc.external;
+  if (options.viscosity.time > 0) options.viscosity.add_forces(model.network, there, v, f);
+  const bool explicit_steps = options.integrator == Integrator::explicit_euler;
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    if (bc.fixed[i])
+      v.data()[i] = 0;
+    else if (explicit_steps)
+      v.data()[i] -= dt / 2 * (f.data()[i] / mass[i / 3] - options.damping * v.data()[i]);
+  }
+  return v;
+}
+
+}  // namespace
+
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options) {
   const double start = cpu_seconds();
@@ -223,10 +263,13 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   const double dt = result.time_step = checked_time_step(model, density, options);
   const NodalVectors& X = model.network.X;
   const std::unique_ptr<Motion> motion = make_motion(model, density, dt, options);
-  bool ramping = options.ramp > 0;
-  BoundaryConditions bc = load_path(ramping ? 0.0 : 1.0);
+  bool changing = options.course.settled() > 0;
+  BoundaryConditions bc = load_path(options.course.factor(0));
   motion->set_conditions(bc);
-  if (options.start.size() > 0) motion->set_state(options.start, NodalVectors::Zero(X.rows(), 3));
+  if (options.start.size() > 0 || options.velocity.size() > 0) {
+    const NodalVectors x = options.start.size() > 0 ? options.start : X;
+    motion->set_state(x, velocity_before(model, density, x, bc, dt, options));
+  }
   motion->move_supports();
   // The explicit method takes loads and supports of the beginning of a step, implicit ones those of its end.
   const long ahead = options.integrator == Integrator::explicit_euler ? 0 : 1;
@@ -235,14 +278,14 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   bool at_rest = false;
   while (result.steps < last && !at_rest) {
     result.time = result.steps * dt;
-    if (ramping) {
-      const double factor = std::min(1.0, (result.steps + ahead) * dt / options.ramp);
-      bc = load_path(factor);
+    if (changing) {
+      const double time = static_cast<double>(result.steps + ahead) * dt;
+      bc = load_path(options.course.factor(time));
       motion->set_conditions(bc);
-      ramping = factor < 1;
+      changing = time < options.course.settled();
     }
     const long to_stop = options.after_step ? options.stride - result.steps % options.stride : steps_between_looks;
-    const long steps = ramping ? 1 : std::min({steps_between_looks, to_stop, last - result.steps});
+    const long steps = changing ? 1 : std::min({steps_between_looks, to_stop, last - result.steps});
     const ForceNorms norms = motion->advance(steps);
     if (const std::string why = motion->failure(); !why.empty()) {
       state.message =
@@ -259,7 +302,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       return result;
     }
     at_rest =
-        !ramping && options.rest_tolerance > 0 && state.residual < options.rest_tolerance &&
+        !changing && options.rest_tolerance > 0 && state.residual < options.rest_tolerance &&
         motion->velocities().norm() * options.damping * dt < options.rest_tolerance * (motion->positions() - X).norm();
   }
   const NodalVectors x = motion->positions(), v = motion->velocities();

@@ -8,7 +8,9 @@
 
 #include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/viscosity.h"
 #include "msm/statics/equilibrium.h"
+#include "problem/course.h"
 
 namespace springproof {
 
@@ -21,10 +23,13 @@ const char* name_of(Integrator integrator);
 struct DynamicsOptions {
   Integrator integrator = Integrator::explicit_euler;  ///< explicit, or one that takes large steps
   std::optional<double> time_step;                     ///< [s]; empty: 0.95 of safe_time_step(), implicit: 10 of it
-  NodalVectors start;                                  ///< positions at t = 0, at rest [m]; empty: X
-  double damping = 0;  ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
-                       ///< some, or it flutters
-  double ramp = 0;     ///< the load grows linearly over this time [s]; 0 = at once
+  NodalVectors start;                                  ///< positions at t = 0 [m]; empty: X
+  NodalVectors velocity;  ///< at t = 0 [m/s], for which the first explicit step is of second order too; empty: that
+                          ///< step starts from rest, as published
+  double damping = 0;   ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
+                        ///< some, or it flutters
+  Viscosity viscosity;  ///< for explicit steps, by the plain loops
+  Course course;        ///< of the loads and supports
   double duration = 10;       ///< [s]
   double rest_tolerance = 0;  ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
   Precision precision = Precision::float64;  ///< of the kernels; the plain loops use float64
@@ -85,7 +90,7 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
 /// @param model a model, to which a reference is kept
 /// @param density [kg/m^3]
 /// @param time_step [s], of checked_time_step()
-/// @param options of which integrator, damping, precision, threads and lagged are read
+/// @param options of which integrator, damping, viscosity, precision, threads and lagged are read
 /// @return the motion, at rest
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double time_step,
                                     const DynamicsOptions& options);
@@ -103,14 +108,15 @@ double lagged_damping(const MassSpringModel& model, double density, double time_
 
 /// Integrates v += dt (f/m - damping v), x += dt v (the damping implicit) with prescribed unknowns on their path, or by
 /// an implicit method (ImplicitMotion).
-/// Models that have a kernel (LatticeMotion, ListMotion) use it.  Rest is checked every few steps.
+/// Models that have a kernel (LatticeMotion, ListMotion) use it, but for viscosity.  Rest is checked every few steps.
 /// @param model a model
 /// @param density [kg/m^3]
-/// @param load_path conditions at a fraction of the loads, which grows to 1 within DynamicsOptions::ramp
+/// @param load_path conditions at a fraction of the loads, which DynamicsOptions::course gives in time
 /// @param options integrator, step, duration, what is called after steps
 /// @return the last state
-/// @throws InputError if the explicit time step exceeds safe_time_step(), if the integrator does not suit the model, if
-///   the damping is negative, or, lagged, not above lagged_damping(); the bound is in the message.
+/// @throws InputError if the explicit time step exceeds safe_time_step() or viscous_time_step(), if the integrator or
+///   viscosity does not suit the model, if the damping is negative, or, lagged, not above lagged_damping(); the bound
+///   is in the message.
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options);
 

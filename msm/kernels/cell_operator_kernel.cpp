@@ -24,7 +24,9 @@ inline void add(const Lanes<Real>& v, Real* p) {
 template <class Real>
 inline Lanes<Real> fill_at(const Real* fill, int i, int n) {
   if (i + lanes<Real> <= n) return fill ? load<Real>(fill + i) : Lanes<Real>(Real(1));
-  return Lanes<Real>([&](auto lane) { return i + int(lane) < n ? (fill ? fill[i + int(lane)] : Real(1)) : Real(0); });
+  Real values[lanes<Real>] = {};
+  for (int lane = 0; i + lane < n; ++lane) values[lane] = fill ? fill[i + lane] : Real(1);
+  return load<Real>(values);
 }
 
 /// The four rows of points of a row of cells, one component.

@@ -4,16 +4,25 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "msm/kernels/compiled_with.h"
+
 namespace springproof {
 namespace {
+
+#ifdef SPRINGPROOF_X86_KERNELS
+bool runs_here(const CompiledWith& kernels) {
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"),
+             avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+  return (avx2 || !kernels.avx2) && (avx512 || !kernels.avx512);
+}
+#endif
 
 std::vector<InstructionSet> find_usable() {
   std::vector<InstructionSet> sets = {InstructionSet::portable};
 #ifdef SPRINGPROOF_X86_KERNELS
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) sets.push_back(InstructionSet::avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512bw"))
-    sets.push_back(InstructionSet::avx512);
+  if (runs_here(avx2::compiled_with)) sets.push_back(InstructionSet::avx2);
+  if (runs_here(avx512::compiled_with)) sets.push_back(InstructionSet::avx512);
 #endif
   return sets;
 }

@@ -8,9 +8,9 @@ namespace {
 template <int axes, class Real>
 SPRINGPROOF_INLINE Lanes<Real> elongation(const Lanes<Real>& x, const Lanes<Real>& y, const Lanes<Real>& z,
                                           Real* inverse_length) {
-  const Lanes<Real> length = stdx::sqrt(x * x + y * y + z * z);
-  store<Real>(Real(1) / length, inverse_length);
-  return length - Real(root_of(axes));
+  const Lanes<Real> square = x * x + y * y + z * z, inverse = inverse_root(square);
+  store<Real>(inverse, inverse_length);
+  return square * inverse - Real(root_of(axes));
 }
 
 template <class Real>

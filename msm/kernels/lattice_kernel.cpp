@@ -1,4 +1,5 @@
 // One time step of a lattice: forces row by row, each row moved as soon as its forces are complete.
+#include "msm/kernels/compiled_with.h"
 #include "msm/kernels/lattice_averaged.h"
 #include "msm/kernels/lattice_hourglass.h"
 #include "msm/kernels/lattice_rows.h"
@@ -24,7 +25,7 @@ struct Undispersed {};
 template <int axes, class Real>
 SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>& x, const Lanes<Real>& y,
                                                   const Lanes<Real>& z, const Undispersed&, int, int, long, long) {
-  return k - k * (Real(root_of(axes)) / stdx::sqrt(x * x + y * y + z * z));
+  return k - k * (Real(root_of(axes)) * inverse_root<Real>(x * x + y * y + z * z));
 }
 template <int axes, class Real>
 SPRINGPROOF_INLINE Lanes<Real> tension_per_length(const Lanes<Real>& k, const Lanes<Real>&, const Lanes<Real>&,
@@ -292,6 +293,14 @@ void get(LatticeKernels<Real>& k) {
 }
 
 }  // namespace
+
+#if defined(__AVX512F__)
+extern const CompiledWith compiled_with = {true, true};
+#elif defined(__AVX2__)
+extern const CompiledWith compiled_with = {true, false};
+#else
+extern const CompiledWith compiled_with = {false, false};
+#endif
 
 void get_lattice_kernels(LatticeKernels<float>& k) { get(k); }
 void get_lattice_kernels(LatticeKernels<double>& k) { get(k); }

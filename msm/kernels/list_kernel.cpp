@@ -1,8 +1,8 @@
 // Springs in blocks of four from one node.  Four differences of padded vectors give four squared lengths by shuffles,
-// square roots are computed in full registers, and each tension multiplies its own difference again: no transposes, and
+// their roots are computed in full registers, and each tension multiplies its own difference again: no transposes, and
 // whole nodes are loaded and stored, so that two lanes may share a node.
 #include "msm/kernels/list_kernels.h"
-#include "msm/kernels/simd.h"
+#include "msm/kernels/simd_math.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
@@ -18,7 +18,7 @@ struct FourOf {
 template <class Real>
 using Four = typename FourOf<Real>::type;  // at an aligned address
 
-// Number of blocks whose square roots fill a register.
+// Number of blocks whose roots fill a register.
 template <class Real>
 constexpr int group = Lanes<Real>::size() < 4 ? 1 : static_cast<int>(Lanes<Real>::size()) / 4;
 template <class Real>
@@ -45,12 +45,11 @@ inline Wide<Real> wide(const Real* p) {
 }
 
 template <class Real>
-inline Wide<Real> square_root(Wide<Real> a) {
-  Real lanes[4 * group<Real>];
-  reinterpret_cast<Wide<Real>&>(lanes) = a;
-  for (int l = 0; l < 4 * group<Real>; l += static_cast<int>(Lanes<Real>::size()))
-    store<Real>(stdx::sqrt(load<Real>(lanes + l)), lanes + l);
-  return reinterpret_cast<Wide<Real>&>(lanes);
+inline Wide<Real> inverse_roots(Wide<Real> squares) {
+  Real values[4 * group<Real>];
+  reinterpret_cast<Wide<Real>&>(values) = squares;
+  for (int l = 0; l < 4 * group<Real>; l += lanes<Real>) store<Real>(inverse_root(load<Real>(values + l)), values + l);
+  return reinterpret_cast<Wide<Real>&>(values);
 }
 
 /// Horizontal sums of the four vectors.
@@ -145,8 +144,7 @@ template <class Real>
 void spring_forces(const ListPattern& p, const ListSprings<Real>& springs, const Padded<Real>* x, Padded<Real>* f) {
   for (long b = 0; b < p.blocks; b += group<Real>) {
     const Group<Real> at(p, b, x);
-    const Wide<Real> square = at.squared_lengths();  // square root and quotient are independent
-    const Wide<Real> s = wide(springs.k + 4 * b) - wide(springs.kL + 4 * b) / square * square_root<Real>(square);
+    const Wide<Real> s = wide(springs.k + 4 * b) - wide(springs.kL + 4 * b) * inverse_roots<Real>(at.squared_lengths());
     scatter<Real>(at.i, at.j, at.d, s, f);
   }
 }
@@ -156,9 +154,9 @@ void inflow(const ListPattern& p, const ListSprings<Real>& springs, const ListDi
             const Padded<Real>* x, Real* J, Real* inverse_length) {
   for (long b = 0; b < p.blocks; b += group<Real>) {
     const Group<Real> at(p, b, x);
-    const Wide<Real> square = at.squared_lengths(), length = square_root<Real>(square);
-    const Wide<Real> e = length - wide(springs.L + 4 * b);
-    *reinterpret_cast<Wide<Real>*>(inverse_length + 4 * b) = length / square;
+    const Wide<Real> square = at.squared_lengths(), inverse = inverse_roots<Real>(square);
+    const Wide<Real> e = square * inverse - wide(springs.L + 4 * b);
+    *reinterpret_cast<Wide<Real>*>(inverse_length + 4 * b) = inverse;
     add_inflow<Real>(at.i, at.j, wide(dispersion.a_i + 4 * b) * e, wide(dispersion.a_j + 4 * b) * e, J);
   }
 }

@@ -3,7 +3,10 @@
 // program (tests/cli/kernels.sh).
 #pragma once
 
-#ifndef __wasm__
+#ifdef __wasm__
+#define SPRINGPROOF_VECTOR_BYTES 16
+#endif
+#ifndef SPRINGPROOF_VECTOR_BYTES
 #include <experimental/simd>
 #endif
 
@@ -14,9 +17,15 @@
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 
-#ifdef __wasm__
+/// The compiler's own vector of n values.
+template <class Value, int n>
+struct Builtin {
+  typedef Value type __attribute__((vector_size(n * sizeof(Value))));
+};
+
+#ifdef SPRINGPROOF_VECTOR_BYTES
 namespace stdx {
-#include "msm/kernels/simd_of_clang.h"
+#include "msm/kernels/simd_of_vectors.h"
 }
 #else
 namespace stdx = std::experimental;

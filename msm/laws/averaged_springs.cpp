@@ -317,6 +317,31 @@ void AveragedSprings::add_forces(const Network& network, const NodalVectors& x, 
     });
 }
 
+void AveragedSprings::add_viscous_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
+                                         double time, NodalVectors& f) const {
+  if (shift > 0)
+    return for_each_stiffness(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
+      const Corners rate = corners_of(cell, v);
+      const CellVector force = time * K * Eigen::Map<const CellVector>(rate.data());
+      for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
+    });
+  for_each_shape(network, [&](const Hexahedron& cell, const CellShape& shape) {
+    const Corners at = corners_of(cell, x), rate = corners_of(cell, v);
+    const Eigen::Matrix3d F = at * shape.gradient.transpose(), F_rate = rate * shape.gradient.transpose();
+    const Eigen::Matrix3d twice = F.transpose() * F_rate + F_rate.transpose() * F;  // 2 E'
+    const Eigen::Matrix3d inverse = F.inverse();
+    const Eigen::Matrix3d P =
+        shear_modulus * F * twice + lame_lambda * (F_rate * inverse).trace() * inverse.transpose();
+    const InPatterns q = at * patterns();
+    const InPatterns w =
+        hourglass_forces(*this, shape.edge, shape.part, F_rate.transpose() * q + F.transpose() * (rate * patterns()));
+    const Eigen::Matrix3d stress = time * (shape.volume * P + q * w.transpose());
+    const InPatterns of_patterns = time * F * w;
+    const Corners force = stress * shape.gradient + of_patterns * patterns().transpose();
+    for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.col(n).transpose();
+  });
+}
+
 void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   const auto add = [&](const Hexahedron& cell, const CellMatrix& cell_K) {
     for (int m = 0; m < 8; ++m)

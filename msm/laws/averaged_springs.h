@@ -65,6 +65,12 @@ struct AveragedSprings {
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 
+  /// f += the forces [N] of dashpots whose matrix at rest is `time` [s] times the stiffness: stress 2 G E' (second
+  /// Piola-Kirchhoff, E' the rate of Green-Lagrange strain of F) and lambda tr(F' F^-1) F^-T (first), and hourglass
+  /// forces of the rate of F^T q.  No rigid motion is resisted, and both momenta are kept.  v: velocities [m/s], n x 3.
+  void add_viscous_forces(const Network& network, const NodalVectors& x, const NodalVectors& v, double time,
+                          NodalVectors& f) const;
+
   /// Stiffness of a cell of edge l at rest [N/m]; unknown 3 * corner + axis.
   Eigen::Matrix<double, 24, 24> cell_matrix(double edge, const FilledPart& part) const;
 };

@@ -1,5 +1,7 @@
 #include "msm/laws/laws.h"
 
+#include <algorithm>
+
 namespace springproof {
 
 double energy(const MassSpringModel& model, const NodalVectors& x) {
@@ -39,6 +41,11 @@ const AveragedSprings* averaged_springs_of(const MassSpringModel& model) {
   for (const ForceLaw& law : model.laws)
     if (const auto* averaged = std::get_if<AveragedSprings>(&law)) return averaged;
   return nullptr;
+}
+
+bool of_springs_alone(const MassSpringModel& model) {
+  return std::all_of(model.laws.begin(), model.laws.end(),
+                     [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });
 }
 
 bool conservative(const MassSpringModel& model) {

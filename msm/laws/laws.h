@@ -67,6 +67,11 @@ const MomentumDispersion* dispersion_of(const MassSpringModel& model);
 /// @return them, or nullptr if the model has none
 const AveragedSprings* averaged_springs_of(const MassSpringModel& model);
 
+/// Whether springs between nodes are all that the model has.
+/// @param model a model
+/// @return true: its forces are those of Springs
+bool of_springs_alone(const MassSpringModel& model);
+
 /// Whether the forces derive from an energy, so that the tangent is symmetric.
 /// @param model a model
 /// @return false for dispersion as published or weighted by shares

@@ -11,7 +11,7 @@
 namespace springproof {
 namespace {
 
-constexpr double strain = 1e-3;
+constexpr double test_strain = 1e-3;
 const std::optional<double> free_component;
 
 Equilibrium solved(const MassSpringModel& model, const BoundaryConditions& bc) {
@@ -42,14 +42,14 @@ MeasuredModuli measure_block(const ModelParameters& parameters, const IsotropicM
   const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, free_component, free_component}},
                                    PrescribedDisplacement{"y_min", {free_component, 0.0, free_component}},
                                    PrescribedDisplacement{"z_min", {free_component, free_component, 0.0}},
-                                   PrescribedDisplacement{"z_max", {free_component, free_component, strain}}};
+                                   PrescribedDisplacement{"z_max", {free_component, free_component, test_strain}}};
   const Equilibrium state =
       solved(model, transfer(loads, mesh, embedding, model.network, material.density, Kinematics::linear));
   double force = 0, lateral = 0;
   for (int node : embedding.held.at("z_max")) force += state.support(node, 2);
   const std::vector<int> side = nodes_of(patch(mesh, "x_max"));
   for (int node : side) lateral += state.displacement(node, 0) / static_cast<double>(side.size());
-  return {force / strain, -lateral / strain, affine_shear(model, 1)};
+  return {force / test_strain, -lateral / test_strain, affine_shear(model, 1)};
 }
 
 /// Rows of triangles between plates that slip, pulled along y.
@@ -63,14 +63,15 @@ MeasuredModuli measure_sheet(const ModelParameters& parameters, const IsotropicM
     bc.fixed[3 * n + 2] = 1;
     if (X(n, 1) > 1e-9 && X(n, 1) < top - 1e-9) continue;
     bc.fixed[3 * n + 1] = 1;
-    bc.prescribed(n, 1) = strain * X(n, 1);
+    bc.prescribed(n, 1) = test_strain * X(n, 1);
   }
   hold_free_motions(X, bc);
   const Equilibrium state = solved(model, bc);
   const Eigen::VectorXd x = X.col(0).array() - X.col(0).mean();
-  const double in_plane = -x.dot(state.displacement.col(0)) / x.squaredNorm() / strain, nu = in_plane / (1 + in_plane);
+  const double in_plane = -x.dot(state.displacement.col(0)) / x.squaredNorm() / test_strain,
+               nu = in_plane / (1 + in_plane);
   const double volume = model.network.volume.sum(),
-               E = twice_energy(model, state.displacement) / (volume * strain * strain);
+               E = twice_energy(model, state.displacement) / (volume * test_strain * test_strain);
   return {E * (1 - nu * nu), nu, affine_shear(model, volume)};  // plane strain: E / (1 - nu^2), nu / (1 - nu)
 }
 

@@ -179,7 +179,7 @@ FloatBlocks float_blocks(const BlockMatrix& K, const std::vector<std::vector<int
 }  // namespace
 
 void CutLevel::invert_anchored() {
-  using CellMatrix = Eigen::Matrix<float, 24, 24, Eigen::RowMajor>;
+  using SingleCellMatrix = Eigen::Matrix<float, 24, 24, Eigen::RowMajor>;
   anchored.clear();
   for (const Anchor& a : anchors) anchored.push_back(a.corners);
   std::sort(anchored.begin(), anchored.end());
@@ -198,7 +198,7 @@ void CutLevel::invert_anchored() {
       }
     for (int i = 0; i < 24; ++i)
       if (K(i, i) == 0) K(i, i) = 1e30;  // fixed
-    const CellMatrix inverse = K.inverse().cast<float>();
+    const SingleCellMatrix inverse = K.inverse().cast<float>();
     std::copy_n(inverse.data(), 576, &anchored_inverse[576 * c]);
   }
 }

@@ -62,6 +62,13 @@ const std::vector<ModelRow>& model_table();
 /// @return 1/4; empty: any (of a springs file: not known)
 std::optional<double> own_poisson_ratio(const ModelRow& row);
 
+/// Whether springs between nodes are all that the model has.
+/// @param row of the table
+/// @return true: its forces are those of springs
+inline bool of_springs_alone(const ModelRow& row) {
+  return row.extension == Extension::none && !row.bending_correction;
+}
+
 /// Whether the model is valid under finite kinematics; hourglass corrections of springs are for small displacements
 /// only.
 /// @param row of the table

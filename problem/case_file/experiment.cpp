@@ -15,22 +15,14 @@
 namespace springproof {
 namespace {
 
-constexpr Key document_schema[] = {{"cite"},
-                                   {"what"},
-                                   {"kinematics"},
-                                   {"body", "a table [body] with geo, size_m, cells"},
-                                   {"patch"},
-                                   {"material", "a table [material] with two moduli"},
-                                   {"load", "at least one [[load]]"},
-                                   {"compare"},
-                                   {"external"},
-                                   {"section"},
-                                   {"line"},
-                                   {"dynamics"},
-                                   {"fracture"},
-                                   {"probe"},
-                                   {"reference"},
-                                   {"expect"},
+constexpr Key document_schema[] = {{"cite"},       {"what"},
+                                   {"kinematics"}, {"body", "a table [body] with geo, size_m, cells"},
+                                   {"patch"},      {"material", "a table [material] with two moduli"},
+                                   {"load"},       {"compare"},
+                                   {"external"},   {"section"},
+                                   {"line"},       {"dynamics"},
+                                   {"fracture"},   {"probe"},
+                                   {"reference"},  {"expect"},
                                    {"published"}};
 
 constexpr Key body_schema[] = {
@@ -47,7 +39,7 @@ constexpr Key material_schema[] = {{"youngs_modulus_Pa"}, {"poisson_ratio"},  {"
 
 constexpr Key section_schema[] = {{"point_m", "[x, y, z]"}, {"normal", "[x, y, z]"}};
 constexpr Key probe_schema[] = {{"name", "a name"}, {"at_m", "[x, y, z], a rest position"}};
-constexpr Key reference_schema[] = {{"cells"}, {"elements"}, {"grading"}, {"edge_m"}, {"smooth"}};
+constexpr Key reference_schema[] = {{"cells"}, {"elements"}, {"grading"}, {"edge_m"}, {"smooth"}, {"in_time"}};
 
 /// A key of [material] and the modulus that it sets.
 struct ModulusKey {
@@ -198,11 +190,12 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   for (const char* key : {"cells", "grading"})
     if (const auto given = table.find(key); given && voxels)
       refuse(*given, "is for bodies of hexahedra", "edge_m, for bodies of voxels");
+  if (const auto in_time = table.find("in_time")) reference.in_time = as_flag(*in_time);
   if (const auto cells = table.find("cells")) reference.cells = as_cells(*cells);
   if (const auto elements = table.find("elements")) {
     reference.elements.clear();
-    if (const auto* array = elements->node->as_array(); array && array->empty()) return reference;
-    reference.elements = read_elements(*elements, voxels ? std::vector<std::string>{"p2", "p1"} : element_names());
+    if (const auto* array = elements->node->as_array(); !array || !array->empty())
+      reference.elements = read_elements(*elements, voxels ? std::vector<std::string>{"p2", "p1"} : element_names());
   }
   if (const auto grading = table.find("grading"))
     reference.grading = as_number(*grading, {"a number from 1 to 3", 1, 3, true, true});
@@ -233,6 +226,9 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
       experiment.loads.push_back(load);
       experiment.load_locations.push_back(location_of(value));
     }
+  if (experiment.loads.empty() && !document.find("dynamics"))
+    throw InputError({experiment.file.string(), 1, 1},
+                     "load: is missing (allowed: at least one [[load]], or none beside [dynamics])");
   require_density(document, experiment);
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "problem/body.h"
+#include "problem/course.h"
 #include "problem/fracture.h"
 #include "problem/loads.h"
 #include "problem/material.h"
@@ -45,6 +46,7 @@ struct ReferenceChoice {
       "q2"};             ///< each run on the three grids; the first is the reference; none: no reference
   double grading = 1.5;  ///< exponent that draws elements towards the faces of the block; 1 = uniform
   double edge = 0;       ///< [m] edge length of the tetrahedra for a body of voxels, finest of three meshes; 0 = chosen
+  bool in_time = false;  ///< the motion of [dynamics] is integrated by finite elements too
   bool smooth = false;   ///< the exact solution is smooth: the elements' theoretical order may be assumed
 };
 
@@ -55,19 +57,22 @@ std::vector<std::string> element_names();
 /// "energy_momentum", "implicit_euler", "bdf2"; "auto".
 std::vector<std::string> integrator_names();
 
-/// Motion in time of the models, from rest ([dynamics]).
+/// Motion in time of the models ([dynamics]).
 struct MotionChoice {
   std::string integrator = "explicit";
   bool released = false;  ///< start = "equilibrium": under the loads, which are then removed
   double duration = 0;    ///< [s]
   std::optional<double>
-      time_step;            ///< [s]; empty: 0.95 of the bound of each model, implicit: a sample's, up to 10 of it
-  double damping = 0;       ///< mass-proportional [1/s]
-  double ramp = 0;          ///< the loads grow (or fall) linearly over this time [s]; 0: at once
-  bool equilibrium = true;  ///< each model is also solved for its equilibrium
-  int samples = 200;        ///< of each history
-  int frames = 40;          ///< of the animation; 0: none
-  SourceLocation where;     ///< of time_step_s, or of the table
+      time_step;                 ///< [s]; empty: 0.95 of the bound of each model, implicit: a sample's, up to 10 of it
+  double damping = 0;            ///< mass-proportional [1/s]
+  double viscosity = 0;          ///< time of retardation of a Kelvin-Voigt solid [s]
+  Course course;                 ///< of the loads; of a released body's, how they are removed
+  Vec3 velocity = Vec3::Zero();  ///< at the start, of the body as a whole [m/s]
+  Vec3 spin = Vec3::Zero();      ///< and about its centre of mass [rad/s]
+  bool equilibrium = true;       ///< each model is also solved for its equilibrium
+  int samples = 200;             ///< of each history
+  int frames = 40;               ///< of the animation; 0: none
+  SourceLocation where;          ///< of time_step_s, or of the table
   SourceLocation integrator_where;  ///< of integrator, or of the table
 };
 

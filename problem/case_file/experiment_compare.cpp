@@ -136,6 +136,9 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
       refuse(item, "'fracture' needs a body that dries", "with a [fracture] in the file");
     if (experiment.fracture && measure != "fracture" && measure != "network")
       refuse(item, fmt::format("'{}' is not measured where a body dries", measure), "fracture, network");
+    if (measure == "motion" && !experiment.dynamics) refuse(item, "'motion' needs one", "with [dynamics] in the file");
+    if (measure == "motion_error" && !experiment.reference.in_time)
+      refuse(item, "'motion_error' needs finite elements in time", "with in_time = true in [reference]");
     if (measure == "line" && !experiment.line) refuse(item, "'line' needs one", "with a [line] in the file");
     if (measure == "moduli" && !elongation_along_x(experiment))
       refuse(item, "'moduli' needs a block stretched along x",
@@ -291,6 +294,9 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   // Displacement errors alone are not enough for a body that is moved by its supports.
   if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
     experiment.measures.emplace_back("reaction_error");
+  if (experiment.reference.in_time && !experiment.models.empty())
+    for (const char* measure : {"motion", "motion_error"})
+      if (!asks_for(experiment, measure)) experiment.measures.emplace_back(measure);
 }
 
 void read_expectations(const TomlTable& document, Experiment& experiment) {

@@ -1,6 +1,9 @@
 // The [dynamics] table.
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "problem/case_file/experiment_parts.h"
 
 namespace springproof {
@@ -11,10 +14,58 @@ constexpr Key dynamics_schema[] = {{"duration_s", "a finite number > 0"},
                                    {"start"},
                                    {"time_step_s"},
                                    {"damping_1_s"},
+                                   {"viscosity_s"},
+                                   {"loss_factor"},
+                                   {"band_Hz"},
                                    {"ramp_s"},
+                                   {"pulse_s"},
+                                   {"shake_Hz"},
+                                   {"velocity_m_s"},
+                                   {"spin_rad_s"},
                                    {"equilibrium"},
                                    {"samples"},
                                    {"frames"}};
+
+/// One course at most, and none but a ramp for a body that is released.
+void check_course(const TomlTable& table, const MotionChoice& motion) {
+  const std::vector<std::string> courses = {"ramp_s", "pulse_s", "shake_Hz"};
+  const std::string* first = nullptr;
+  for (const std::string& name : courses) {
+    const auto value = table.find(name);
+    if (!value) continue;
+    if (motion.released && name != "ramp_s")
+      refuse(*value, "does not suit start = \"equilibrium\", whose loads are removed", "ramp_s");
+    if (first)
+      refuse(*value, fmt::format("stands beside {}", *first), "one of " + fmt::format("{}", fmt::join(courses, ", ")));
+    first = &name;
+  }
+}
+
+/// Rayleigh's damping: of mass and stiffness, each given, or both such that a vibration at either end of the band loses
+/// the loss factor, in between less.  docs/motion.md.
+void read_damping(const TomlTable& table, MotionChoice& motion) {
+  const auto damping = table.find("damping_1_s"), viscosity = table.find("viscosity_s"),
+             loss_factor = table.find("loss_factor"), band = table.find("band_Hz");
+  if (damping) motion.damping = as_number(*damping, not_negative);
+  if (viscosity) motion.viscosity = as_number(*viscosity, not_negative);
+  if (!loss_factor && band) refuse(*band, "stands without loss_factor", "both, or neither");
+  if (loss_factor) {
+    for (const auto& other : {damping, viscosity})
+      if (other) refuse(*other, "stands beside loss_factor, from which it would follow", "one of the two");
+    const double eta = as_number(*loss_factor, {"a finite number >= 0, up to 1", 0, 1, true, true});
+    if (!band)
+      refuse(*loss_factor, "stands without band_Hz, the frequencies at which it holds", "band_Hz = [first, second]");
+    const std::vector<TomlValue> ends = as_list_of(2, *band, "two frequencies [Hz]");
+    const double first = 2 * std::numbers::pi * as_number(ends[0], positive_number),
+                 second = 2 * std::numbers::pi * as_number(ends[1], positive_number);
+    if (second < first) refuse(*band, "falls", "two frequencies > 0, the lower one first [Hz]");
+    motion.damping = eta * first * second / (first + second);
+    motion.viscosity = eta / (first + second);
+  }
+  if (motion.viscosity > 0 && motion.integrator != "explicit" && motion.integrator != "auto")
+    refuse(viscosity ? *viscosity : *loss_factor, fmt::format("does not suit the integrator {}", motion.integrator),
+           "integrator = \"explicit\" or \"auto\"");
+}
 
 }  // namespace
 
@@ -24,6 +75,9 @@ std::vector<std::string> integrator_names() {
 
 void read_dynamics(const TomlTable& document, Experiment& experiment) {
   const auto value = document.find("dynamics");
+  if (experiment.reference.in_time && (!value || experiment.probes.empty()))
+    refuse(document.at("reference"), "in_time integrates the motion of the case, and measures it at its probes",
+           "with [dynamics] and a [[probe]] in the file");
   if (!value) return;
   const TomlTable table(*value, dynamics_schema);
   if (experiment.model_kinematics() == Kinematics::linear)
@@ -42,12 +96,24 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
     motion.time_step = as_number(*step, {"a finite number > 0, up to duration_s", 0, motion.duration, false, true});
     motion.where = location_of(*step);
   }
-  if (const auto damping = table.find("damping_1_s")) motion.damping = as_number(*damping, not_negative);
+  read_damping(table, motion);
   if (const auto ramp = table.find("ramp_s"))
-    motion.ramp = as_number(*ramp, {"a finite number >= 0, up to duration_s", 0, motion.duration, true, true});
+    motion.course.ramp = as_number(*ramp, {"a finite number >= 0, up to duration_s", 0, motion.duration, true, true});
+  if (const auto pulse = table.find("pulse_s"))
+    motion.course.pulse = as_number(*pulse, {"a finite number > 0, up to duration_s", 0, motion.duration, false, true});
+  if (const auto frequency = table.find("shake_Hz")) motion.course.frequency = as_number(*frequency, positive_number);
+  check_course(table, motion);
+  if (const auto velocity = table.find("velocity_m_s")) motion.velocity = as_vector(*velocity);
+  if (const auto spin = table.find("spin_rad_s")) motion.spin = as_vector(*spin);
   if (const auto too = table.find("equilibrium")) motion.equilibrium = as_flag(*too);
   if (const auto samples = table.find("samples")) motion.samples = as_whole(*samples, 2, 100000);
   if (const auto frames = table.find("frames")) motion.frames = as_whole(*frames, 0, 1000);
+  if (const double samples = 8 * motion.duration * motion.course.frequency;
+      experiment.reference.in_time && motion.samples < samples)
+    refuse(
+        *value,
+        fmt::format("has {} samples, and finite elements in time take eight to a period of shake_Hz", motion.samples),
+        fmt::format("samples = {:.0f} or more", std::ceil(samples)));
   experiment.dynamics = motion;
 }
 

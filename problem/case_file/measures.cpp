@@ -74,6 +74,16 @@ std::vector<std::string> network_rows(const Experiment&) {
           "network.length_deviation"};
 }
 
+std::vector<std::string> motion_rows(const Experiment&) {
+  return {"motion.period",
+          "motion.amplitude",
+          "motion.arrival",
+          "motion.damping_ratio",
+          "motion.energy_drift",
+          "motion.momentum_drift",
+          "motion.angular_momentum_drift"};
+}
+
 std::vector<std::string> moduli_rows(const Experiment&) {
   return {"moduli.youngs_modulus",          "moduli.youngs_modulus_local",     "moduli.poisson_ratio",
           "moduli.poisson_ratio_of_fields", "moduli.poisson_ratio_as_printed", "moduli.affine_youngs_modulus"};
@@ -140,6 +150,11 @@ const std::vector<Measure>& measure_table() {
      "mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]", "", "", mean_displacement_rows},
     {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
     {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
+    {"motion", value, {{"motion.period", "s"}, {"motion.amplitude", "m"}, {"motion.arrival", "s"}, {"motion", "1"}},
+     "of a motion: period [s], amplitude [m], of a pulse arrival [s] of the first probe; of a damped one damping_ratio; energy_drift, momentum_drift, angular_momentum_drift", "", "", motion_rows},
+    {"motion_error", distance, {{"motion_error", "1"}},
+     "relative L2 difference in time of the probes' displacements to finite elements in time; [reference] in_time",
+     "difference in time", "|u − u_fem| of the probes in the L2 norm over time, divided by |u_fem|"},
     {"moduli", value, {{"moduli", "1"}, {"moduli.youngs_modulus", "Pa"}, {"moduli.youngs_modulus_local", "Pa"}, {"moduli.affine_youngs_modulus", "Pa"}},
      "E and nu of a block stretched along x, as the Kot papers measure them", "", "", moduli_rows},
     {"network", value, {{"network", "1"}, {"network.mean_length", "m"}, {"network.length_deviation", "m"}},

@@ -30,6 +30,8 @@ grep -q 'id="engines"' "$work/page/bench.html" || fail "no section in the page"
 
 "$program" bench engines --engine physx >"$work/out" 2>&1
 [ $? -eq 2 ] || fail "an unknown engine is accepted"
+SPRINGPROOF_ENGINES=$work/nothing "$program" bench engines --quick --engine mujoco >"$work/out" 2>&1
+grep -q "^MuJoCo: not measured: " "$work/out" && ! grep -q "^Jolt" "$work/out" || fail "--engine in small letters: $(cat "$work/out")"
 PATH=$work/nothing "$program" bench engines --install >"$work/out" 2>&1
 [ $? -eq 1 ] && grep -q "npm is not on PATH" "$work/out" || fail "--install without npm: $(cat "$work/out")"
 

@@ -53,6 +53,13 @@ make own '"hybmss_avg"' </dev/null
 "$program" compare own.toml --jobs 1 --quiet --vtu --out own >log 2>&1 || fail "own.toml: $(cat log)"
 csv=own/vtu/own/hybmss_avg_nu0.25_8x2x2.csv
 [ "$(wc -l <$csv)" -eq 82 ] || fail "$(ls own/vtu/own)"
+if [ -x "$(dirname "$program")/springproof-fem" ]; then  # the reference's own mesh: 16 x 4 x 4 elements of 27 nodes
+  for nu in 0.25 0.4; do
+    grep -q 'NumberOfPoints="2673" NumberOfCells="256"' own/vtu/own/reference_q2_nu$nu.vtu && grep -q 'Name="von_mises_stress"' own/vtu/own/reference_q2_nu$nu.vtu ||
+      fail "no file of the reference at nu = $nu: $(ls own/vtu/own)"
+    grep -q "reference_q2_nu$nu.vtu" own/vtu/own/reference_q2.pvd || fail "no series of the reference"
+  done
+fi
 
 # A file of our own result, in other units and axes, and one at nodes that are not the lattice's.
 awk -F, 'NR == 1 { print "id;X;Y;Z;x;y;z"; next } { printf "%d;%.17g;%.17g;%.17g;%.17g;%.17g;%.17g\n", NR, 1000 * ($1 + $4), 1000 * ($3 + $6), -1000 * ($2 + $5), 1000 * $1, 1000 * $3, -1000 * $2 }' $csv >turned.csv

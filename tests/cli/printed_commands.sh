@@ -16,8 +16,10 @@ plan() {
     "$springproof compare liver.toml "*) echo "run --poisson-ratio 0.45" ;;
     ./quickstart.sh | "./quickstart.sh test") echo "check it installs, builds and runs everything" ;;
     "ctest --test-dir build/release -"* | "cmake --build build/release --target "*) echo "check ctest would run itself" ;;
+    "$springproof compare golec_2019 --shard "* | "$springproof report "*) echo "check it takes a shared folder; cli.shard runs such" ;;
+    "sbatch "* | "parallel "*) echo "check it needs a cluster" ;;
     "$springproof compare golec_2019/"* | "$springproof compare verification" | "$springproof compare calibration" | \
-      "$springproof compare large_strain")
+      "$springproof compare large_strain" | "$springproof compare motion")
       echo "check minutes; the tests experiment.* run these cases" ;;
     "$springproof frequencies "*) echo "check it takes half a minute; cli.frequencies runs such" ;;
     "$springproof cross-check "*) echo "check it needs CalculiX; cli.cross_check runs it" ;;
@@ -119,6 +121,7 @@ check() {
   case ${words[0]} in
     build/release/springproof) ;;
     ctest | cmake) check_name "${words[@]}"; return ;;
+    sbatch | parallel) check "$(sed -E "s/.* '([^']*)'.*/\1/" <<<"$1")"; return ;;
     *) check_script "${words[@]}"; return ;;
   esac
   help=$(build/release/springproof "${words[1]}" --help) || { echo "no command ${words[1]}"; return 1; }

@@ -29,7 +29,7 @@ cells = [$2, $2, $2]
 TOML
 }
 write_case short 8
-write_case seconds 32
+write_case seconds 24
 write_case minutes 96
 
 # Not a terminal, short phases: a line per part, nothing else; --quiet: nothing.

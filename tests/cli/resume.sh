@@ -11,7 +11,7 @@ size_m = [1, 1, 1]
 cells = [4, 4, 4]
 [material]
 youngs_modulus_Pa = 1e4
-poisson_ratio = [-0.5, 0.0, 0.1, 0.2, 0.25, 0.3, 0.35, 0.4]
+poisson_ratio = [-0.5, 0.0, 0.25, 0.4]
 [[load]]
 on = "z_min"
 displacement_m = [0, 0, 0]
@@ -19,7 +19,7 @@ displacement_m = [0, 0, 0]
 on = "z_max"
 displacement_m = [0, 0, 0.01]
 [reference]
-cells = [12, 12, 12]
+cells = [8, 8, 8]
 [[expect]]
 model = "hybmss"
 measure = "displacement_error"
@@ -42,7 +42,7 @@ wait $pid
 [ $? -eq 130 ] || fail "an interrupted run should end with 130"
 [ ! -e "$work/out/report.html" ] || fail "an interrupted run should not leave a report"
 kept=$(ls "$work/out/parts" | wc -l)
-[ "$kept" -gt 0 ] && [ "$kept" -lt 8 ] || fail "$kept of 8 parts kept"
+[ "$kept" -gt 0 ] && [ "$kept" -lt 4 ] || fail "$kept of 4 parts kept"
 "$program" compare "$work/case.toml" --out "$work/out" --resume 2>"$work/log" >/dev/null || fail "resuming failed"
 [ "$(grep -c 'kept from before' "$work/log")" -eq "$kept" ] || fail "not all $kept parts were taken back"
 [ -s "$work/out/report.html" ] && [ -s "$work/out/results.csv" ] || fail "no results"
@@ -58,7 +58,7 @@ for at in 3 25 $((size / 2)) $((size - 1)); do
   printf "\\x$(printf %x $((byte ^ 1)))" | dd of="$part" bs=1 seek="$at" conv=notrunc status=none
   "$program" compare "$work/case.toml" --out "$work/out" --resume 2>"$work/log" >/dev/null || fail "resuming with a damaged part failed"
   grep -q "nu0.25.cbor is damaged; this part is computed anew" "$work/log" || fail "byte $at: the damage is not said"
-  [ "$(grep -c 'kept from before' "$work/log")" -eq 7 ] || fail "byte $at: not all other parts were taken back"
+  [ "$(grep -c 'kept from before' "$work/log")" -eq 3 ] || fail "byte $at: not all other parts were taken back"
   cmp -s "$work/resumed.csv" "$work/out/results.csv" || fail "byte $at: a damaged part gives other numbers"
 done
 
@@ -97,4 +97,4 @@ sed 's/own.geo/block.geo/' "$work/case.toml" >"$latin/case.toml"
 iconv -f UTF-8 -t UTF-8 "$latin/out/results.json" >/dev/null || fail "results.json is no UTF-8"
 iconv -f UTF-8 -t UTF-8 "$latin/out/report.html" >/dev/null || fail "report.html is no UTF-8"
 
-echo "resumed after $kept of 8 parts"
+echo "resumed after $kept of 4 parts"

@@ -241,7 +241,7 @@ TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
         ASSERT_TRUE(newton.ok) << name << " nu = " << nu << ": " << newton.message;
         DynamicsOptions options;
         options.damping = 20;
-        options.ramp = 0.3;
+        options.course.ramp = 0.3;
         options.duration = 200;
         options.rest_tolerance = 1e-9;
         const DynamicsResult run = run_dynamics(built.model, density, path_to(1), options);

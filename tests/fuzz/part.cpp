@@ -45,9 +45,9 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz::read_or_refuse<DamagedPart>([&] {
+  return fuzz::read_or_refuse<DamagedFile>([&] {
     const std::string_view bytes = fuzz::view(data, size);
-    if (bytes != with_true_checksum(bytes)) fuzz::read_or_refuse<DamagedPart>([&] { load(bytes); });
-    if (!load(with_true_checksum(bytes))) throw DamagedPart("no part, or one of another stamp");
+    if (bytes != with_true_checksum(bytes)) fuzz::read_or_refuse<DamagedFile>([&] { load(bytes); });
+    if (!load(with_true_checksum(bytes))) throw DamagedFile("no part, or one of another stamp");
   });
 }

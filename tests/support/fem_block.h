@@ -6,6 +6,7 @@
 #include <random>
 
 #include "fem_reference/solve_grid.h"
+#include "support/bodies.h"
 
 namespace springproof::test {
 
@@ -21,6 +22,23 @@ inline fem::GridProblem fem_block(const Vec3& size, const Cells& cells, int refi
   problem.material = {1e4, poisson_ratio, 1000};
   problem.tolerance = 1e-12;
   return problem;
+}
+
+/// A block with every box cut into six tetrahedra, and its patches.
+inline Mesh tetrahedra_block(const Mesh& boxes) {
+  Mesh mesh = tetrahedra_of(boxes);
+  mesh.patches = boxes.patches;
+  for (Patch& patch : mesh.patches) patch.facets.clear();
+  const Vec3 size = boxes.nodes.colwise().maxCoeff();
+  for (const auto& [a, b, c, d] : mesh.tetrahedra)
+    for (const std::array<int, 4>& f : {std::array{a, c, b, -1}, {a, b, d, -1}, {b, c, d, -1}, {a, d, c, -1}})
+      for (int axis = 0; axis < 3; ++axis)
+        for (int high = 0; high < 2; ++high) {
+          bool on = true;
+          for (int k = 0; k < 3; ++k) on &= std::abs(boxes.nodes(f[k], axis) - high * size[axis]) < 1e-12;
+          if (on) mesh.patches[2 * axis + high].facets.push_back(f);
+        }
+  return mesh;
 }
 
 /// Random points inside [0, size].

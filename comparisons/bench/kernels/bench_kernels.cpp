@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "msm/kernels/simd.h"
+#include "msm/kernels/simd_math.h"
 
 namespace springproof::bench::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
@@ -30,7 +30,7 @@ void root_rounds(long rounds, Real* sink) {
   const Lanes<Real> c = Real(2) + Real(0) * *sink;
   for (long r = 0; r < rounds; ++r)
 #pragma GCC unroll 8
-    for (int i = 0; i < roots_per_round; ++i) a[i] = c / lanes::stdx::sqrt(a[i]);
+    for (int i = 0; i < roots_per_round; ++i) a[i] = c * lanes::inverse_root(a[i]);
   for (int i = 1; i < roots_per_round; ++i) a[0] += a[i];
   *sink = a[0][0];
 }

@@ -20,7 +20,7 @@ struct BenchKernels {
   /// Rounds of fma_per_round vector multiply-adds, independent of each other.
   void (*fma64)(long rounds, double* sink);
   void (*fma32)(long rounds, float* sink);
-  /// Rounds of roots_per_round vectors c / sqrt(a), independent of each other.
+  /// Rounds of roots_per_round vectors c / sqrt(a), independent of each other, as the kernels take it.
   void (*root64)(long rounds, double* sink);
   void (*root32)(long rounds, float* sink);
   /// Sum of n numbers, n a multiple of 64, a aligned to 64 bytes.

@@ -109,9 +109,9 @@ function ceilings(xs) {
   });
   const flat = arithmetic.map((a, i) => ({label: `FMA ${a.instruction_set}, ${number(a.gflops_fp64, 3)} GF/s`, color: '#667080', width: i === arithmetic.length - 1 ? 2 : 1,
     dash: i === arithmetic.length - 1 ? [] : [2, 3], data: [[a.gflops_fp64 / memory[0].GB_per_s, a.gflops_fp64], [high, a.gflops_fp64]]}));
-  // A spring is 21 operations, of them one root and one division, whose unit is the slowest.
-  const root = arithmetic.map((a, i) => ({label: `root + division of a spring, ${a.instruction_set}`, color: '#009e73', width: i === arithmetic.length - 1 ? 2 : 1, dash: [7, 4],
-    data: [[low, 21 / a.root_and_division_ns_fp64], [high, 21 / a.root_and_division_ns_fp64]]}));
+  // A spring is 21 operations, of them one root and one division, which take the longest.
+  const root = arithmetic.map((a, i) => ({label: `inverse root of a spring, ${a.instruction_set}`, color: '#009e73', width: i === arithmetic.length - 1 ? 2 : 1, dash: [7, 4],
+    data: [[low, 21 / a.inverse_root_ns_fp64], [high, 21 / a.inverse_root_ns_fp64]]}));
   return [...slopes, ...flat, ...root];
 }
 
@@ -166,7 +166,7 @@ function rooflineSection(section) {
   const plot = figure();
   plot.node.firstChild.style.height = '560px';
   section.append(el('p', {class: 'lead'}, 'The ceilings are measured in the same run. A slope is the bandwidth of one level of the memory, a flat line the arithmetic; ' +
-    'springs need a root and a division each, whose unit is their nearest flat ceiling.'), plot.node);
+    'springs need an inverse root each, which is their nearest flat ceiling.'), plot.node);
   const draw = () => plot.draw({name: 'bench-roofline', caption: `Roofline of one core of ${results.machine.processor}`, make: () => rooflineChart(results.roofline),
     notes: ['Operations and bytes are counted by docs/performance.md: each array once per sweep, whatever level holds it. FP32 points have their own, higher ceilings, which are not drawn.']});
   draw();
@@ -211,8 +211,8 @@ function machineSection(section) {
   const right = text => el('th', {class: 'number'}, text), cell = (x, unit) => el('td', {class: 'number'}, isNumber(x) && x > 0 ? `${number(x, 3)} ${unit}` : '');
   section.append(el('p', {class: 'lead'}, `${processor}, ${cores} cores. Limits of one core, the best of many short samples.`));
   if (arithmetic.length > 0)
-    section.append(table('arithmetic', ['instruction set', right('multiply-adds, FP64'), right('FP32'), right('root + division, FP64'), right('FP32')],
-      arithmetic.map(a => tr(a.instruction_set, cell(a.gflops_fp64, 'GF/s'), cell(a.gflops_fp32, 'GF/s'), cell(a.root_and_division_ns_fp64, 'ns'), cell(a.root_and_division_ns_fp32, 'ns')))));
+    section.append(table('arithmetic', ['instruction set', right('multiply-adds, FP64'), right('FP32'), right('inverse root, FP64'), right('FP32')],
+      arithmetic.map(a => tr(a.instruction_set, cell(a.gflops_fp64, 'GF/s'), cell(a.gflops_fp32, 'GF/s'), cell(a.inverse_root_ns_fp64, 'ns'), cell(a.inverse_root_ns_fp32, 'ns')))));
   section.append(table('memory', ['memory', right('size'), right('one core'), right('all cores')],
     memory.map(m => tr(m.name, cell(m.bytes / 1024, 'KiB'), cell(m.GB_per_s, 'GB/s'), cell(m.GB_per_s_all_cores, 'GB/s')))),
     el('p', {class: 'note'}, 'Caches: read. DRAM: triad, the line that a store reads first counted (32 bytes per element). Charts: Chart.js 3.9 (MIT licence).'));

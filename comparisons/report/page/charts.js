@@ -181,7 +181,12 @@ const lineEndLabels = {
     ctx.save();
     ctx.font = '600 12px system-ui, sans-serif';
     ctx.textBaseline = 'middle';
-    for (const {text, color, y} of ends) { ctx.fillStyle = color; ctx.fillText(text, chartArea.right + 8, y); }
+    for (const {text, color, y} of ends) {
+      ctx.fillStyle = color;
+      ctx.fillRect(chartArea.right + 8, y - 4, 8, 8);
+      ctx.fillStyle = colors().ink;
+      ctx.fillText(text, chartArea.right + 21, y);
+    }
     ctx.restore();
   },
 };
@@ -191,7 +196,7 @@ function withLineEnds(options, datasets) {
   if (window.innerWidth <= 760) return [];
   const ruler = document.createElement('canvas').getContext('2d');
   ruler.font = '600 12px system-ui, sans-serif';
-  options.layout.padding.right = 16 + Math.max(40, ...datasets.filter(d => d.model).map(d => ruler.measureText(d.model).width));
+  options.layout.padding.right = 29 + Math.max(40, ...datasets.filter(d => d.model).map(d => ruler.measureText(d.model).width));
   options.plugins.legend.position = 'bottom';
   return [lineEndLabels];
 }

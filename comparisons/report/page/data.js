@@ -103,8 +103,8 @@ function percent(x) {
 
 const signed = (x, text) => (x > 0 && !text.startsWith('<') ? '+' : '') + text;
 
-const isDistance = measure => /^displacement_error(_max)?$|^reaction_error$|_distance$|^line\.\w+\.(all|[xyz]{2})$/.test(measure);
-const inPercent = (measure, unit) => unit === '1' && /^displacement|^reaction_error|^volume|^line/.test(measure) && !/[_.]order$/.test(measure);
+const isDistance = measure => /^displacement_error(_max)?$|^(reaction|motion)_error$|_distance$|^line\.\w+\.(all|[xyz]{2})$/.test(measure);
+const inPercent = (measure, unit) => unit === '1' && /^displacement|^(reaction|motion)_error|^volume|^line/.test(measure) && !/[_.]order$/.test(measure);
 
 /// The unit a set of values is shown in: percent, a fitting length unit, or the unit itself.
 function displayUnit(measure, unit, values) {
@@ -179,9 +179,10 @@ const cases = allCases.filter(result => !result.verifies);
 const verifications = allCases.filter(result => result.verifies);   // the reference alone, without models
 const models = orderModels();
 
-/// A table {columns, values} as objects.
-function unpack({columns, values}) {
-  return values.map(line => Object.fromEntries(columns.map((column, i) => [column, line[i]])));
+/// A table {columns, named, words, values} as objects; in the named columns values are indices into the words.
+function unpack({columns, named, words, values}) {
+  const isNamed = columns.map(column => named.includes(column));
+  return values.map(line => Object.fromEntries(columns.map((column, i) => [column, isNamed[i] ? words[line[i]] : line[i]])));
 }
 
 function prepareCase(data) {
@@ -195,7 +196,7 @@ function prepareCase(data) {
     verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
     checks: data.checks || [], published: data.published || [], lines: data.lines || [], histories: data.histories || [],
-    splits: data.splits || [], deformations: data.deformations || [], cracks: data.cracks || [],
+    warning: data.warning, splits: data.splits || [], deformations: data.deformations || [], cracks: data.cracks || [],
   };
   const at = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;
   result.runAt = new Map(result.runs.map(run => [at(run), run]));
@@ -322,7 +323,7 @@ function worstOf(result, rows) {
   return worst;
 }
 
-// ---- models and their colours (the first eight of Okabe & Ito's palette, told apart by marker too; then dashed)
+// ---- models and their colours (style.css), told apart by marker too; then dashed
 
 function orderModels() {
   const all = distinct(cases.flatMap(result => result.models));
@@ -333,13 +334,14 @@ function isFem(model) {
   return model.startsWith('fem') || cases.some(c => c.runs.some(run => run.model === model && run.kind === 'fem'));
 }
 
-const palette = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c6d31', '#6b5b95',
-                 '#a80038', '#3b3bd6', '#7fb800', '#00b3a6', '#ff6f91', '#5a3a1a', '#b64ee0', '#556b2f'];
+/// The present value of a colour of the style sheet.
+const cssColor = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+const palette = Array.from({length: 16}, (_, i) => cssColor(`--model-${i}`));
 const markers = ['circle', 'triangle', 'rect', 'rectRot', 'star', 'crossRot', 'rectRounded', 'cross'];
 const dashes = [[], [7, 4], [2, 3]];
 
-const femStyles = {fem_q1: {color: '#8a8f98', marker: 'rectRot'}, fem_q2: {color: '#555d69', marker: 'rect'},
-                   fem_p1: {color: '#b0b5bd', marker: 'triangle'}, fem_p2: {color: '#6d7580', marker: 'circle'}};
+const femMarkers = {fem_q1: 'rectRot', fem_q2: 'rect', fem_p1: 'triangle', fem_p2: 'circle'};
 
 /// These have the same colour in every report; the others take the following ones in their order.
 const namedModels = ['hybmss', 'emsm', 'emsm_random', 'msm_18', 'msm_random', 'hybmss_bt', 'hybmss A=1', 'hybmss_fd', 'hybmss_cf', 'hybmss_b'];
@@ -352,11 +354,17 @@ function styleIndex(model) {
   return namedModels.length + Math.max(0, others.indexOf(name));
 }
 
+/// The colour's name in the style sheet; "fem", the reference, is like trilinear elements.
+const colorName = model => isFem(model) ? '--' + (femMarkers[model] ? model : 'fem_q1') : `--model-${styleIndex(model) % palette.length}`;
+
+/// For elements of the page, which follow a change of colours, and for canvases, which are drawn anew.
+const modelPaint = model => `var(${colorName(model)})`;
+
 function modelStyle(model) {
-  if (isFem(model)) return {...(femStyles[model] || femStyles.fem_q1), dash: [6, 4]};
+  const color = cssColor(colorName(model));
+  if (isFem(model)) return {color, marker: femMarkers[model] || femMarkers.fem_q1, dash: [6, 4]};
   const index = styleIndex(model);
-  return {color: palette[index % palette.length], marker: markers[index % markers.length],
-          dash: dashes[Math.min(2, Math.floor(index / markers.length))]};
+  return {color, marker: markers[index % markers.length], dash: dashes[Math.min(2, Math.floor(index / markers.length))]};
 }
 
 /// The only Poisson's ratio that a model claims in a case, or null: it takes any.
@@ -368,5 +376,5 @@ function modelName(model) {
 }
 
 function swatch(model) {
-  return el('i', {class: 'swatch', style: {background: modelStyle(model).color}});
+  return el('i', {class: 'swatch', style: {background: modelPaint(model)}});
 }

@@ -1,9 +1,11 @@
 'use strict';
 // Figures on the page, and the same figures on white paper as PNG.
 
-const cssColor = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
 const charts = [];   // functions that draw again, for a change of colours
+
+function redraw() {
+  for (const draw of charts) draw();
+}
 
 function notice(text) {
   return el('p', {class: 'notice'}, text);

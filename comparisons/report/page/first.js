@@ -1,14 +1,15 @@
 'use strict';
 // The first screen: two bodies, a dot for every model and case, and what the closest model costs.
 
-const closestModels = () => (document.getElementById('first-bodies').dataset.closest || '').split('\n').filter(Boolean);
-const smallStrain = () => cases.filter(result => result.linear);
+const closestModels = () => (document.getElementById('first-bodies')?.dataset.closest || '').split('\n').filter(Boolean);
+/// The cases that the answer is about: the linear ones, or where there are none those of large deformation.
+const judgedCases = () => cases.some(result => result.linear) ? cases.filter(result => result.linear) : cases;
 
 // ---- two bodies
 
 /// The case, Poisson's ratio and pictures to show: a body of its own shape rather than a block, near nu = 0.4.
 function firstPictures(model) {
-  const offers = (smallStrain().length > 0 ? smallStrain() : cases).flatMap(result => {
+  const offers = judgedCases().flatMap(result => {
     const {pictures} = picturesOf(result);
     const nus = distinct(pictures.map(p => p.poisson_ratio)).filter(nu => claims(result, model, nu))
       .sort((a, b) => Math.abs(a - 0.4) - Math.abs(b - 0.4));
@@ -22,7 +23,10 @@ function firstPictures(model) {
 /// Finite elements and the closest model, the latter coloured by the difference.
 function firstBodies(model) {
   const box = document.getElementById('first-bodies'), offer = model && firstPictures(model);
-  if (!offer) return box.remove();
+  if (!offer) {
+    box.parentNode.classList.add('text');
+    return box.remove();
+  }
   const viewer = new Viewer(), bar = colorBar(), colouring = colourings.difference;
   const all = makePanels(picturesOf(offer.result), offer.pictures, true), panels = all.slice(1);
   const amplification = fittingAmplification(offer.result, all), top = paintPanels(all, colouring, amplification);
@@ -30,8 +34,7 @@ function firstBodies(model) {
     const {title, text} = panelWords(panel, colouring);
     panel.label.append(el('span', {class: 'model'}, swatch(panel.picture.model), title), el('small', {}, text));
   }
-  viewer.canvas.setAttribute('role', 'img');
-  viewer.canvas.setAttribute('aria-label', `${offer.result.name}, deformed: finite elements and ${model}`);
+  viewer.describe(`${offer.result.name}, deformed. ${panelsText(panels, colouring)}`);
   viewer.show(panels);
   aimAtPanels(viewer, panels, amplification);
   bar.show(colouring, top);
@@ -51,34 +54,51 @@ function ownPart(result, row) {
   return split && isNumber(split.model_error) ? 100 * Math.abs(split.model_error) : null;
 }
 
-/// Largest displacement error of a model in a case, among these Poisson's ratios that the model claims: `error` [%], by
-/// which models are ranked, and `whole`, which on a body of voxels includes coarse cells and staircase.
-function dotOf(result, model, nus) {
-  const rows = rowsAt(result, 'displacement_error').filter(row => row.model === model && nus.includes(row.poisson_ratio) &&
-    claims(result, model, row.poisson_ratio));
-  const dots = rows.map(row => {
+/// The errors by which models are ranked.
+const rankedMeasures = ['displacement_error', 'reaction_error'];
+const shortNames = {displacement_error: 'displacement', reaction_error: 'reactions', volume_change: 'volume change'};
+const isMoving = (result, model) => (result.experiment.models || []).some(m => m.label === model && m.in_motion);
+
+/// Errors of a model in a case at those of these Poisson's ratios that the model claims: `error` [%], by which models are
+/// ranked, and `whole`, which on a body of voxels includes coarse cells and staircase.
+function errorsOf(result, model, nus, measures = rankedMeasures) {
+  if (isMoving(result, model)) return [];
+  return measures.flatMap(measure => rowsAt(result, measure)).filter(row => row.model === model && nus.includes(row.poisson_ratio) &&
+    claims(result, model, row.poisson_ratio)).map(row => {
     const whole = scaledError(result, row), own = ownPart(result, row);
     return {result, row, whole, own, error: own ?? whole, uncertainty: scaledUncertainty(result, row)};
-  }).filter(dot => dot.whole !== null);
-  return dots.length === 0 ? null : dots.reduce((a, b) => b.error > a.error ? b : a);
+  }).filter(entry => entry.whole !== null);
 }
 
+/// The largest of some errors; none: null.
+const largestOf = errors => errors.length === 0 ? null : errors.reduce((a, b) => b.error > a.error ? b : a);
+
+/// A line of the plot: the largest error of each case, of all of them, and how many cases and Poisson's ratios it is of.
+function dotLine(shown, model, nus) {
+  const errors = shown.map(result => errorsOf(result, model, nus)), dots = errors.map(largestOf).filter(Boolean);
+  return {model, dots, worst: Math.max(...dots.map(dot => dot.error)), nus: distinct(errors.flat().map(({row}) => row.poisson_ratio)).length};
+}
+
+/// As the answer ranks them: those compared most widely first, and then by the largest error.
+const byRank = (a, b) => b.dots.length - a.dots.length || b.nus - a.nus || a.worst - b.worst;
+
 /// Whether a label is another form of a model that has a row under its plain name.
-const isVariant = model => smallStrain().some(({experiment}) => (experiment.models || []).some(m =>
+const isVariant = model => judgedCases().some(({experiment}) => (experiment.models || []).some(m =>
   m.label === model && m.name !== model && (experiment.models || []).some(other => other.label === m.name)));
 
-/// The only Poisson's ratio of a classic model, behind its name.
+/// Behind a model's name: that it is none of springs, or its only Poisson's ratio.
 function claimText(result, model) {
-  const own = ownRatio(result, model);
-  return own === null ? null : el('small', {}, ` ν = ${nuText(own)}`);
+  const own = ownRatio(result, model), text = isFem(model) ? 'finite elements' : own !== null ? `ν = ${nuText(own)}` : '';
+  return text ? el('small', {}, ' ' + text) : null;
 }
 
 function dotPlot() {
   const box = document.getElementById('first-plot');
-  const shown = smallStrain().filter(result => result.measures.includes('displacement_error'));
+  const shown = judgedCases().filter(result => rankedMeasures.some(measure => result.measures.includes(measure)));
   if (shown.length === 0) return box.remove();
   const nus = distinct(shown.flatMap(result => result.nus)).sort((a, b) => a - b);
   const ordinary = nus.filter(nu => nu >= 0), several = ordinary.length > 0 ? ordinary : nus;
+  const closest = closestModels(), reactions = shown.some(result => result.measures.includes('reaction_error'));
   const names = models.filter(model => shown.some(result => result.models.includes(model)));
   const axis = el('div', {class: 'dots'}), said = el('output', {});
   const slider = el('input', {type: 'range', min: 0, max: nus.length, value: 0, step: 1, 'aria-label': 'Poisson’s ratio', oninput: draw});
@@ -87,12 +107,9 @@ function dotPlot() {
   function draw() {
     const choice = Number(slider.value), wanted = choice === 0 ? several : [nus[choice - 1]];
     said.textContent = choice > 0 ? `at ν = ${nuText(nus[choice - 1])}`
-      : several.length === 1 ? `at ν = ${nuText(several[0])}` : `the largest for ν from ${nuText(several[0])} to ${nuText(several[several.length - 1])}`;
-    const lines = names.filter(model => variants.checked || !isVariant(model))
-      .map(model => ({model, dots: shown.map(result => dotOf(result, model, wanted)).filter(Boolean)}))
-      .filter(line => line.dots.length > 0)
-      .map(line => ({...line, worst: Math.max(...line.dots.map(dot => dot.error))}))
-      .sort((a, b) => b.dots.length - a.dots.length || a.worst - b.worst);   // those in most cases first
+      : several.length === 1 ? `at ν = ${nuText(several[0])}` : `for ν from ${nuText(several[0])} to ${nuText(several[several.length - 1])}`;
+    const lines = names.filter(model => variants.checked || !isVariant(model) || closest.includes(model))
+      .map(model => dotLine(shown, model, wanted)).filter(line => line.dots.length > 0).sort(byRank);
     const all = lines.flatMap(line => line.dots.flatMap(dot => [dot.error, dot.whole])).filter(error => error > 0);
     const low = Math.floor(Math.log10(Math.min(1, ...all))), high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(1, ...all))));
     const at = error => `${100 * Math.min(1, Math.max(0, (Math.log10(Math.max(error, 1e-12)) - low) / (high - low)))}%`;
@@ -100,14 +117,14 @@ function dotPlot() {
     const marks = () => ticks.map(tick => el('span', {class: 'tick', style: {left: at(tick)}}));
     /// The uncertainty of the reference, to both sides of the whole error: the springs' own part does not depend on it.
     const whisker = ({whole, uncertainty}, model) => !uncertainty ? null : el('span', {class: 'whisker', style: {
-      left: at(whole - uncertainty), right: `calc(100% - ${at(whole + uncertainty)})`, background: modelStyle(model).color}});
+      left: at(whole - uncertainty), right: `calc(100% - ${at(whole + uncertainty)})`, background: modelPaint(model)}});
     axis.replaceChildren(
       ...lines.flatMap(({model, dots, worst}) => [
-        el('div', {class: 'dot-name'}, modelName(model), claimText(dots[0].result, model)),
+        el('div', {class: closest.includes(model) ? 'dot-name closest' : 'dot-name'}, modelName(model), claimText(dots[0].result, model)),
         el('div', {class: 'dot-track'}, marks(), dots.map(dot => whisker(dot, model)), dots.map(({result, row, error, own, whole}) => {
-          const text = `${model}, ${result.name}: ${percent(error)} at ν = ${nuText(row.poisson_ratio)}` +
+          const text = `${model}, ${result.name}: ${percent(error)}${reactions ? ` (${shortNames[row.measure]})` : ''} at ν = ${nuText(row.poisson_ratio)}` +
             (own === null ? '' : ` by its springs, ${percent(whole)} with coarse cells and staircase`);
-          const mark = (at, kind) => el('span', {class: kind, role: 'img', title: text, 'aria-label': text, style: {left: at, color: modelStyle(model).color}},
+          const mark = (at, kind) => el('span', {class: kind, role: 'img', title: text, 'aria-label': text, style: {left: at, color: modelPaint(model)}},
                                         caseGlyphs[shown.indexOf(result) % caseGlyphs.length]);
           return [own === null ? null : mark(at(whole), 'dot pale'), mark(at(error), 'dot')];
         })),
@@ -115,36 +132,39 @@ function dotPlot() {
       el('div', {}, ''), el('div', {class: 'dot-track scale'}, ticks.map(tick => el('span', {class: 'tick-text', style: {left: at(tick)}}, `${number(tick, 1)} %`))), el('div', {}, ''));
   }
   box.append(el('div', {class: 'dot-head'},
-      el('b', {}, 'Displacement error against finite elements, '), said,
+      el('b', {}, `Largest ${reactions ? 'error of displacement and reactions' : 'displacement error'} against finite elements`), said,
       nus.length > 1 ? el('label', {class: 'choice'}, slider) : null,
       anyVariant ? el('label', {class: 'ghost'}, variants, 'variants') : null,
       el('span', {class: 'dot-legend'}, shown.map((result, i) => el('span', {}, caseGlyphs[i % caseGlyphs.length], ' ', result.name)),
          el('span', {}, el('i', {class: 'whisker-sample'}), 'uncertainty of the reference'))),
     axis,
-    shown.some(result => result.splits.length > 0) ? el('p', {class: 'note'}, 'On a body of cubes a dot is the springs’ own part of the error, the pale one the whole with coarse cells and staircase.') : '');
+    el('p', {class: 'note'}, 'Models of most cases and Poisson’s ratios come first, then by their largest error, on the right.' +
+      (shown.some(result => result.splits.length > 0) ? ' On a body of cubes a dot is the springs’ own part of the error, the pale one the whole with coarse cells and staircase.' : '')));
   draw();
 }
 
 // ---- what it holds for, and costs
 
-const listedErrors = (model, nus) => smallStrain().map(result => dotOf(result, model, nus)).filter(Boolean)
+const listedErrors = (model, nus, measure) => judgedCases().map(result => largestOf(errorsOf(result, model, nus, [measure]))).filter(Boolean)
   .map(({result, own, whole}) => `${result.name} ${percent(whole)}${own === null ? '' : ` (its springs ${percent(own)})`}`).join(', ').replace(/ %/g, '\u00a0%');
 
 /// The middle of the CPU times of a model's solutions at the finest cells.
 function middleSeconds(model) {
-  const times = smallStrain().flatMap(result => result.runs.filter(run => run.model === model && run.ok &&
+  const times = judgedCases().flatMap(result => result.runs.filter(run => run.model === model && run.ok &&
     cellsText(run.cells) === cellsText(result.cells[result.cells.length - 1])).map(run => run.seconds + (run.set_up_seconds || 0)));
   return times.sort((a, b) => a - b)[times.length >> 1];
 }
 
 function firstFacts(model) {
   const box = document.getElementById('first-facts');
-  if (!model || smallStrain().length === 0) return box.remove();
-  const nus = distinct(smallStrain().flatMap(result => result.nus)), fact = (term, text) => text ? [el('dt', {}, term), el('dd', {}, text)] : [];
-  const doubts = smallStrain().flatMap(result => rowsAt(result, 'displacement_error').map(row => scaledUncertainty(result, row))).filter(isNumber);
+  if (!model) return box.remove();
+  const nus = distinct(judgedCases().flatMap(result => result.nus)), ordinary = nus.filter(nu => nu >= 0);
+  const fact = (term, text) => text ? [el('dt', {}, term), el('dd', {}, text)] : [];
+  const doubts = judgedCases().flatMap(result => rankedMeasures.flatMap(measure => rowsAt(result, measure)).map(row => scaledUncertainty(result, row))).filter(isNumber);
   const ours = middleSeconds(model), fem = middleSeconds('fem_q1');
-  box.append(...fact('Displacement of ' + model, listedErrors(model, nus.filter(nu => nu >= 0))),
-    ...fact('The same for auxetic solids, ν < 0', listedErrors(model, nus.filter(nu => nu < 0))),
+  box.append(...fact('Displacement of ' + model, listedErrors(model, ordinary, 'displacement_error')),
+    ...fact('Reactions of moved supports', listedErrors(model, ordinary, 'reaction_error')),
+    ...fact('Displacement of auxetic solids, ν < 0', listedErrors(model, nus.filter(nu => nu < 0), 'displacement_error')),
     ...fact('Reference', doubts.length > 0 ? `uncertain by up to ${percent(Math.max(...doubts))}` : ''),
     ...fact('One solution', isNumber(ours) ? `${seconds(ours)}${isNumber(fem) ? `; trilinear finite elements on the same cells ${seconds(fem)}` : ''} (CPU, middle of all)` : ''));
 }

@@ -20,7 +20,9 @@ function motionChart(result, nu, name) {
   const datasets = records.flatMap(record => {
     const values = record.values[record.names.indexOf(name)], still = valueAtRest(result, record, name);
     const label = record.model + (several ? `, ${cellsText(record.cells)}` : '');
-    const plain = {pointRadius: 0, pointHitRadius: 6, borderWidth: 1.5, borderDash: []};
+    const count = cells => cells.reduce((product, n) => product * Math.max(n, 1), 1);
+    const fine = records.every(other => other.model !== record.model || count(other.cells) <= count(record.cells));
+    const plain = {pointRadius: 0, pointHitRadius: 6, borderWidth: fine ? 2 : 1, borderDash: fine ? [] : [2, 2]};
     const moving = Object.assign(lineDataset(record.model, label, record.time.map((x, i) => ({x, y: values[i]}))), plain);
     if (still === null) return [moving];
     const end = record.time[record.time.length - 1];
@@ -45,9 +47,36 @@ function motionDrawing(result, nu, name) {
     name: `${result.key}-motion-${name}-nu${nuDigits(Number(nu))}`,
     caption: `${result.name}: ${name.replace(/_/g, ' ')} in time, ν = ${nuText(Number(nu))}`,
     notes: [`Steps: ${steps.join('; ')}. ` +
-            'Dashed: the same model at rest under the whole load. Of several disordered networks the first is drawn.'],
+            'Dotted: fewer cells. Dashed: the same model at rest under the whole load. Of several disordered networks the first is drawn.'],
     make: () => motionChart(result, nu, name),
   };
+}
+
+/// What is measured of a motion, with its heading; errors and uncertainties are those of the rows of the same name.
+const motionMeasures = [['period', 'period [s]'], ['amplitude', 'amplitude [m]'], ['arrival', 'arrival [s]'], ['damping_ratio', 'share of critical damping'], ['motion_error', 'difference in time'],
+  ['energy_drift', 'change of energy'], ['momentum_drift', 'of momentum'], ['angular_momentum_drift', 'of angular momentum']];
+
+function motionCell(result, record, name) {
+  const value = record.measured[name];
+  if (name === 'motion_error') {
+    const {uncertainty} = record.measured;
+    return isNumber(value) ? percent(100 * value) : isNumber(uncertainty) ? `± ${percent(100 * uncertainty)}` : '–';
+  }
+  if (!isNumber(value)) return '–';
+  if (name.endsWith('_drift')) return number(value, 2);
+  const rows = result.rows.filter(r => r.measure === `motion.${name}` && r.poisson_ratio === record.poisson_ratio && isNumber(r.reference));
+  const own = rows.find(r => r.model === record.model && cellsText(r.cells) === cellsText(record.cells));
+  if (own) return `${number(value)} (${own.error < 0 ? '−' : '+'}${percent(100 * Math.abs(own.error / own.reference))})`;
+  return number(value) + (rows.length > 0 ? ` ± ${percent(100 * rows[0].reference_uncertainty / Math.abs(rows[0].reference))}` : '');
+}
+
+function motionTable(result, nu) {
+  const records = result.histories.filter(record => String(record.poisson_ratio) === nu);
+  const has = (record, name) => isNumber(record.measured[name]) || (name === 'motion_error' && isNumber(record.measured.uncertainty));
+  const shown = motionMeasures.filter(([name]) => records.some(record => has(record, name)));
+  return table('motions', ['model', 'cells', 'integrator', right('step [ms]'), ...shown.map(([, heading]) => right(heading))],
+    records.map(record => tr(modelName(record.model), cellsText(record.cells), record.integrator, el('td', {class: 'number'}, number(1000 * record.time_step, 3)),
+      shown.map(([name]) => el('td', {class: 'number'}, motionCell(result, record, name))))));
 }
 
 const historyNus = result => distinct(result.histories.map(record => record.poisson_ratio)).sort((a, b) => a - b).map(String);
@@ -57,7 +86,7 @@ const motionDrawings = result => historyNus(result).flatMap(nu => historyNames(r
 function motionSection(section) {
   const having = cases.filter(result => result.histories.length > 0);
   if (having.length === 0) return leaveOut(section);
-  const chart = figure();
+  const chart = figure(), measured = el('div');
   const caseChoice = select('Case', having.map(c => [c.id, c.name]), update);
   const nuChoice = select('ν', [], draw), quantityChoice = select('Quantity', [], draw);
   const result = () => having.find(c => c.id === caseChoice.value);
@@ -69,9 +98,10 @@ function motionSection(section) {
   }
   function draw() {
     chart.draw(motionDrawing(result(), nuChoice.value, quantityChoice.value));
+    measured.replaceChildren(motionTable(result(), nuChoice.value));
   }
-  section.append(el('p', {class: 'lead'}, 'The models integrated in time from rest; the bodies above play the same motion.'),
-    el('div', {class: 'choices'}, caseChoice.node, nuChoice.node, quantityChoice.node), chart.node);
+  section.append(el('p', {class: 'lead'}, 'The models in time, and finite elements where the case asks for them ([reference] in_time); the bodies above play the models’ motion.'),
+    el('div', {class: 'choices'}, caseChoice.node, nuChoice.node, quantityChoice.node), chart.node, measured);
   update();
   charts.push(draw);
   return {show(id) { caseChoice.value = id; update(); }, has: id => having.some(c => c.id === id), drawings: motionDrawings};

@@ -62,11 +62,11 @@ function heldText(result) {
   return result.checks.length > 0 ? `${held} of ${result.checks.length} hold` : null;
 }
 
-/// The models of most cases get a column each, the others share one.
+/// The closest model and those of most cases get a column each, the others share one.
 function splitModels() {
-  const counts = new Map(models.map(model => [model, cases.filter(c => c.models.includes(model)).length]));
-  const leading = [...models].sort((a, b) => counts.get(b) - counts.get(a)).slice(0, models.length > 6 ? 5 : 6);
-  return {leading: models.filter(m => leading.includes(m)), others: models.filter(m => !leading.includes(m))};
+  const closest = closestModels(), byCases = model => cases.filter(c => c.models.includes(model)).length;
+  const leading = [...models].sort((a, b) => closest.includes(b) - closest.includes(a) || byCases(b) - byCases(a)).slice(0, models.length > 6 ? 5 : 6);
+  return {leading, others: models.filter(m => !leading.includes(m))};
 }
 
 function otherModel(result, model) {
@@ -85,7 +85,7 @@ function caseRow(result, {leading, others}) {
        el('small', {}, seconds(result.runs.reduce((sum, run) => sum + (run.set_up_seconds || 0) + (run.seconds || 0), 0)))),
     el('td', {class: 'number'}, '± ' + worstUncertainty(result)),
     leading.map(model => worstCell(result, model)),
-    others.length > 0 ? el('td', {}, others.map(model => el('small', {}, otherModel(result, model)))) : null);
+    others.length > 0 ? el('td', {class: 'others'}, others.map(model => otherModel(result, model)).filter(Boolean).map(text => el('small', {}, text))) : null);
 }
 
 function casesSection(section) {
@@ -187,7 +187,8 @@ function deformationTable(result) {
   return [el('h5', {}, 'Largest principal strain and rotation', el('small', {}, '99 % of the volume stay below' +
       (result.linear ? '; linear theory is for a few per cent and a few degrees: marked beyond 5 % or 5°' : ''))),
     table('deformation', ['ν', right('principal strain'), right('rotation')], result.deformations.map(d => tr(nuText(d.poisson_ratio),
-      cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°'))))];
+      cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°')))),
+    result.warning ? el('p', {}, el('span', {class: 'amber'}, result.warning + '.')) : null];
 }
 
 function minorFold(measures, tables) {

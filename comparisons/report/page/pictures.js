@@ -9,6 +9,7 @@ function bytesOf(base64) {
 const floatsOf = base64 => new Float32Array(bytesOf(base64));
 /// 16-bit multiples of a scale; -32768 stands for no number.
 const shortsOf = ({scale, base64}) => Float32Array.from(new Int16Array(bytesOf(base64)), n => n === -32768 ? NaN : scale * n);
+const octetsOf = ({scale, base64}) => Float32Array.from(new Int8Array(bytesOf(base64)), n => n === -128 ? NaN : scale * n);
 const quadsOf = ({type, base64}) => type === 'uint16' ? new Uint16Array(bytesOf(base64)) : new Uint32Array(bytesOf(base64));
 
 let pictureFiles = null;
@@ -119,7 +120,7 @@ const decoded = new Map();
 function decode(file, picture) {
   if (decoded.has(picture)) return decoded.get(picture);
   const surface = surfaceOf(file.meshes[picture.mesh], picture.surface === 'smooth');
-  const scalars = packed => !packed ? [] : surface.source ? taken(shortsOf(packed), surface.source, 1) : shortsOf(packed);
+  const scalars = packed => !packed ? [] : surface.source ? taken(octetsOf(packed), surface.source, 1) : octetsOf(packed);
   const displacement = surface.restOf(shortsOf(picture.displacement).map(u => Number.isFinite(u) ? u : 0));
   const shape = {surface, rest: surface.rest, displacement, size: norms(displacement), frames: framesOf(picture, surface),
                  difference: scalars(picture.difference), volume_change: scalars(picture.volume_change)};
@@ -149,8 +150,9 @@ function ghostOf(shape) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(shape.rest, 3));
   geometry.setIndex(triangles);
-  const veil = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0xd9dee6, side: THREE.DoubleSide, depthWrite: false}));
+  const veil = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({side: THREE.DoubleSide, depthWrite: false}));
   veil.renderOrder = -1;   // the body covers it
+  veil.onBeforeRender = renderer => veil.material.color.copy(renderer.getClearColor()).lerp(new THREE.Color(0x8090a8), 0.3);
   return veil;
 }
 

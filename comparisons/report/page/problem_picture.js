@@ -102,8 +102,11 @@ function markObjects(mark, body, box) {
   }
 }
 
-/// The first model, by its displacement error at this nu and these cells.
-function closestAt(result, nu, cells) {
+/// The model that the answer names, where it has a picture, else the first by its displacement error at this nu and these
+/// cells.
+function closestAt(result, pictures, nu, cells) {
+  const named = closestModels().find(model => pictures.some(p => p.model === model));
+  if (named) return named;
   const rows = result.rows.filter(row => row.measure === 'displacement_error' && row.poisson_ratio === nu && !isFem(row.model) &&
     cellsText(row.cells) === cells && isNumber(row.error));
   return rows.length === 0 ? null : rows.reduce((a, b) => Math.abs(b.error) < Math.abs(a.error) ? b : a).model;
@@ -115,7 +118,7 @@ function pairOf(result) {
   const {nus, cells, surfaces} = choicesOf(result);
   const nu = nus.reduce((a, b) => Math.abs(b - 0.4) < Math.abs(a - 0.4) ? b : a), at = cellsText(cells(nu)[0]);
   const all = picturesAt(result, {nu: String(nu), cells: at, surface: surfaces(nu, at)[0]});
-  const best = closestAt(result, nu, at) || all.map(p => p.model).find(model => model !== 'fem');
+  const best = closestAt(result, all, nu, at) || all.map(p => p.model).find(model => model !== 'fem');
   return {nu, cells: at, pictures: all.filter(p => p.model === 'fem' || p.model === best)};
 }
 
@@ -147,8 +150,7 @@ function problemPicture(result) {
     const {title, text} = panelWords(panel, colouring);
     panel.label.append(el('span', {class: 'model'}, panel.picture.model === 'fem' ? '' : swatch(panel.picture.model), title), el('small', {}, text));
   }
-  viewer.node.setAttribute('aria-label', [`${result.name}: ${(result.experiment.loads || []).join('; ')}.`,
-    ...panels.slice(1).map(panel => { const {title, text} = panelWords(panel, colouring); return `${title}: ${text}.`; })].join(' '));
+  viewer.describe(`${result.name}: ${(result.experiment.loads || []).join('; ')}. ${panelsText(panels.slice(1), colouring)}`);
   viewer.show(panels);
   aimAtPanels(viewer, panels, amplification, drawn.flatMap(cornersOf));
   bar.show(colouring, top);

@@ -50,6 +50,7 @@ function decorateHead() {
     : cases.length > 0 && cases.every(result => result.cracks.length > 0) ? 'How does a drying body crack?' : null;
   if (title) document.querySelector('#head h1').textContent = title;
   for (const item of document.querySelectorAll('.verdicts li')) item.prepend(swatch(item.dataset.model));
+  for (const link of document.querySelectorAll('#verdict a[data-case]')) link.href = '#' + allCases[link.dataset.case].id;
 }
 
 /// Opens the case page that the address names.
@@ -59,10 +60,6 @@ function followHash() {
   target.open = true;
   target.fill();
   target.scrollIntoView();
-}
-
-function redraw() {
-  for (const draw of charts) draw();
 }
 
 /// On paper: everything open, dark ink on white.

@@ -77,6 +77,12 @@ function panelWords({picture, shape, rest}, colouring, node = null) {
   return {title, text: `${valueText(colouring, low)} to ${valueText(colouring, high)}`};
 }
 
+/// What panels show, in words.
+const panelsText = (panels, colouring) => panels.map(panel => {
+  const {title, text} = panelWords(panel, colouring);
+  return `${title}: ${text}.`;
+}).join(' ');
+
 function shapesCaption(result, {nu, cells, surface}) {
   return `${result.name}: deformed shapes, ν = ${nuText(Number(nu))}, ${/tets/.test(cells) ? cells : cells + ' cells'}` +
     (surface === 'smooth' ? ', the true surface carried along' : '');
@@ -245,6 +251,7 @@ function shapesSection(section) {
       const name = panel.rest ? title : el('span', {class: 'model'}, swatch(panel.picture.model), title);
       panel.label.replaceChildren(name, el('small', {}, text));
     }
+    viewer.describe(`${shapesCaption(result(), view())}: ${panelsText(panels, colouring())}`);
   }
   viewer.onhover = node => {
     if (node === hovered) return;
@@ -256,7 +263,7 @@ function shapesSection(section) {
     aimAtAll();
   });
   const png = pngButton(() => shapesSheet(viewer, panels, colouring(), top, shapesCaption(result(), view()),
-    shapesNotes(colouring(), amplification(), ghostBox.checked), viewer.camera ? viewer.camera.aspect : 1.25),
+    shapesNotes(colouring(), amplification(), ghostBox.checked), viewer.camera.aspect),
     () => `${result().key}-shapes-${colorChoice.value}-nu${nuDigits(Number(nuChoice.value))}`);
   section.append(
     el('p', {class: 'lead'}, 'Drag to turn all bodies together, click and use the wheel to zoom, point at a spot to read its value in every panel; ' +

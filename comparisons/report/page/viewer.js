@@ -1,14 +1,31 @@
 'use strict';
-// One WebGL canvas behind a grid of panels, one camera for all of them.
+// A canvas behind a grid of panels, one camera for all of them.
+
+/// The page's only WebGL context, of which browsers allow few: every viewer draws with it, a panel at a time, and copies
+/// the picture.  Undefined: none was needed yet; null: there is no WebGL.
+let sharedRenderer;
+
+function webGL() {
+  if (sharedRenderer !== undefined) return sharedRenderer;
+  try {
+    sharedRenderer = new THREE.WebGLRenderer({antialias: true});
+    sharedRenderer.domElement.addEventListener('webglcontextrestored', redraw);
+  } catch (error) {
+    sharedRenderer = null;
+  }
+  return sharedRenderer;
+}
 
 class Viewer {
   constructor() {
-    this.canvas = el('canvas', {'aria-hidden': 'true'});
-    this.node = el('div', {class: 'viewer', role: 'img', tabindex: 0,
-                           'aria-label': 'Deformed shapes; drag or use the arrow keys to turn all of them together'}, this.canvas);
+    this.canvas = el('canvas', {role: 'img', 'aria-label': 'Deformed bodies'});
+    this.node = el('div', {class: 'viewer', role: 'group', tabindex: 0,
+                           'aria-label': 'Drag or use the arrow keys to turn all bodies together, + and − to zoom'}, this.canvas);
     this.panels = [];
-    this.stale = true;
     this.visible = false;
+    this.camera = new THREE.PerspectiveCamera(28, 1.25, 0.01, 1000);
+    this.camera.up.set(0, 0, 1);
+    this.listen();
     new IntersectionObserver(entries => {
       this.visible = entries[entries.length - 1].isIntersecting;
       this.request();
@@ -16,12 +33,7 @@ class Viewer {
     new ResizeObserver(() => this.request()).observe(this.node);
   }
 
-  /// The context is made when the viewer is first seen.
-  start() {
-    if (this.renderer) return;
-    this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true, preserveDrawingBuffer: true});
-    this.camera = new THREE.PerspectiveCamera(28, 1, 0.01, 1000);
-    this.camera.up.set(0, 0, 1);
+  listen() {
     this.controls = new THREE.OrbitControls(this.camera, this.node);
     this.controls.enableKeys = false;
     this.controls.enableZoom = false;   // until clicked, the wheel scrolls the page
@@ -30,6 +42,14 @@ class Viewer {
     this.node.addEventListener('keydown', event => this.turnByKey(event));
     this.node.addEventListener('pointerleave', () => { this.controls.enableZoom = false; this.onhover(null); });
     this.node.addEventListener('pointermove', event => { if (event.buttons === 0) this.onhover(this.nodeAt(event)); });
+  }
+
+  /// Called with the surface node that is pointed at, or null.
+  onhover() {}
+
+  /// What the canvas shows, in words.
+  describe(text) {
+    this.canvas.setAttribute('aria-label', text);
   }
 
   /// Arrow keys turn the bodies by 10 degrees, + and - bring them nearer.
@@ -133,56 +153,53 @@ class Viewer {
     if (this.panels.length === 0 || !this.ready()) return;
     const frame = this.node.getBoundingClientRect();
     if (frame.width === 0) return;
-    const views = this.panels.map(panel => {
+    const boxes = this.panels.map(panel => {
       const {left, top, width, height} = this.viewOf(panel);
-      return {panel, box: [left - frame.left, frame.bottom - top - height, width, height]};
+      return [left - frame.left, top - frame.top, width, height];
     });
-    this.draw(views, frame.width, frame.height, Math.min(2, window.devicePixelRatio || 1), cssColor('--paper'));
+    this.draw(this.canvas, [frame.width, frame.height], this.panels, boxes, Math.min(2, window.devicePixelRatio || 1), cssColor('--paper'));
   }
 
-  /// The same panels in rows of so many on white, each of the given size with room above: the canvas, good until the next
-  /// drawing.
+  /// The same panels in rows of so many on white, each of the given size with room above.
   snapshot(panels, {columns, width, height, above}) {
-    const rows = Math.ceil(panels.length / columns);
-    const views = panels.map((panel, i) =>
-      ({panel, box: [i % columns * width, (rows - 1 - Math.floor(i / columns)) * (above + height), width, height]}));
+    const boxes = panels.map((panel, i) => [i % columns * width, Math.floor(i / columns) * (above + height) + above, width, height]);
+    const canvas = el('canvas'), rows = Math.ceil(panels.length / columns);
     if (!this.ready()) throw new Error('WebGL is not there');
-    this.draw(views, columns * width, rows * (above + height), paperScale, '#ffffff');
-    this.request();
-    return this.canvas;
+    this.draw(canvas, [columns * width, rows * (above + height)], panels, boxes, paperScale, '#ffffff');
+    return canvas;
   }
 
   /// Whether there is WebGL.
   ready() {
-    try {
-      this.start();
-      return true;
-    } catch (error) {
-      this.node.replaceChildren(notice('The shapes need WebGL, which this browser does not offer.'));
-      this.panels = [];
-      return false;
-    }
+    if (webGL()) return true;
+    this.node.replaceChildren(notice('The shapes need WebGL, which this browser does not offer.'));
+    this.panels = [];
+    return false;
   }
 
-  /// views: [{panel, box: left, bottom, width, height}], all with one camera.
-  draw(views, width, height, ratio, background) {
-    const [, , first, second] = views[0].box;
-    this.camera.aspect = first / second;
+  /// Draws panels into boxes (left, top, width, height), all of one size, of a canvas of the given size in pixels of the page.
+  draw(canvas, size, panels, boxes, ratio, background) {
+    const gl = webGL(), [, , width, height] = boxes[0].map(x => Math.round(x * ratio));
+    if (gl.getContext().isContextLost()) return;   // the picture before stays
+    this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.applyAim();
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
-    this.renderer.setClearColor(background);   // opaque: printers paint transparency black
-    this.renderer.setScissorTest(false);
-    this.renderer.clear();
-    this.renderer.setScissorTest(true);
     const lamp = this.camera.position.clone().sub(this.controls.target).normalize();   // moves with the camera
     lamp.add(new THREE.Vector3(0, 0, 0.6));
-    for (const {panel, box} of views) {
+    resize(canvas, ...size.map(x => Math.round(x * ratio)));
+    if (gl.domElement.width !== width || gl.domElement.height !== height) gl.setSize(width, height, false);
+    gl.setClearColor(background);   // opaque: printers paint transparency black
+    const ctx = canvas.getContext('2d');
+    ctx.fillStyle = background;
+    ctx.fillRect(0, 0, canvas.width, canvas.height);
+    panels.forEach((panel, i) => {
       panel.lamp.position.copy(lamp);
-      this.renderer.setViewport(...box);
-      this.renderer.setScissor(...box);
-      this.renderer.render(panel.scene, this.camera);
-    }
+      gl.render(panel.scene, this.camera);
+      ctx.drawImage(gl.domElement, Math.round(boxes[i][0] * ratio), Math.round(boxes[i][1] * ratio));
+    });
   }
+}
+
+function resize(canvas, width, height) {
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
 }

@@ -60,34 +60,13 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Assembled, testing::ValuesIn(both_ways()), [](
   return fmt::format("Q{}_{}_{:04.0f}", c.degree, c.law, 1e4 * c.poisson_ratio);
 });
 
-// Every box into six tetrahedra round its long diagonal.
-Mesh tetrahedra_of(const Mesh& boxes) {
-  Mesh mesh = boxes;
-  mesh.hexahedra.clear();
-  mesh.grid.reset();
-  for (Patch& patch : mesh.patches) patch.facets.clear();
-  constexpr int paths[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
-  for (const Hexahedron& h : boxes.hexahedra)
-    for (const auto& p : paths) mesh.tetrahedra.push_back({h[p[0]], h[p[1]], h[p[2]], h[p[3]]});
-  const Vec3 size = boxes.nodes.colwise().maxCoeff();
-  for (const auto& [a, b, c, d] : mesh.tetrahedra)
-    for (const std::array<int, 4>& f : {std::array{a, c, b, -1}, {a, b, d, -1}, {b, c, d, -1}, {a, d, c, -1}})
-      for (int axis = 0; axis < 3; ++axis)
-        for (int high = 0; high < 2; ++high) {
-          bool on = true;
-          for (int k = 0; k < 3; ++k) on &= std::abs(boxes.nodes(f[k], axis) - high * size[axis]) < 1e-12;
-          if (on) mesh.patches[2 * axis + high].facets.push_back(f);
-        }
-  return mesh;
-}
-
 TEST(Tetrahedra, ReproduceAffineFieldsAndTheirStress) {
   Eigen::Matrix3d gradient;
   gradient << 0.01, 0.02, -0.01, 0.005, -0.02, 0.03, 0.015, -0.005, 0.01;
   for (int degree : {1, 2})
     for (double nu : {-0.5, 0.3, 0.4999}) {
       fem::GridProblem problem = test::fem_block(Vec3(1, 1, 1), {3, 3, 3}, 0, degree, nu);
-      problem.coarse = tetrahedra_of(problem.coarse);
+      problem.coarse = test::tetrahedra_block(problem.coarse);
       problem.tolerance = 1e-11;
       for (const std::string& face : test::block_faces)
         problem.loads.push_back(PrescribedAffine{face, gradient, Vec3(0.1, 0, 0)});
@@ -118,7 +97,7 @@ fem::Solution compressed(const Mesh& mesh, double nu) {
 }
 
 TEST(Tetrahedra, IterationsOfTheMixedFormDoNotGrowTowardsOneHalf) {
-  const Mesh mesh = tetrahedra_of(test::fem_block(Vec3(1, 1, 1), {4, 4, 4}, 0, 2, 0.3).coarse);
+  const Mesh mesh = test::tetrahedra_block(test::fem_block(Vec3(1, 1, 1), {4, 4, 4}, 0, 2, 0.3).coarse);
   const fem::Solution s = compressed(mesh, 0.49), nearer = compressed(mesh, 0.499999);
   ASSERT_TRUE(s.ok && nearer.ok) << s.message << nearer.message;
   EXPECT_EQ(s.form, "P2-P1 mixed, MINRES, linear elements by Cholesky");
@@ -127,7 +106,7 @@ TEST(Tetrahedra, IterationsOfTheMixedFormDoNotGrowTowardsOneHalf) {
 }
 
 TEST(Tetrahedra, SliversAreSolved) {
-  Mesh mesh = tetrahedra_of(test::fem_block(Vec3(1, 1, 1), {4, 4, 4}, 0, 2, 0.3).coarse);
+  Mesh mesh = test::tetrahedra_block(test::fem_block(Vec3(1, 1, 1), {4, 4, 4}, 0, 2, 0.3).coarse);
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n)
     if ((mesh.nodes.row(n) - Eigen::RowVector3d(0.5, 0.5, 0.5)).norm() < 1e-9) mesh.nodes(n, 0) += 0.2495;
   for (double nu : {0.25, 0.49}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "problem/system/json.h"
 
@@ -76,6 +77,7 @@ TEST(FemRequest, TheRestArrives) {
   request.meshes = {std::make_shared<Mesh>(block_mesh(Vec3(1, 1, 1), {1, 1, 1}))};
   request.cost = true;
   request.modes = 7;
+  request.motion = fem::Motion{2, 0.5, {.pulse = 0.25}, true, {1, 2, 3}, {4, 5, 6}, 0.125};
   const fem::Request arrived = sent(request);
   EXPECT_EQ(to_json(arrived), to_json(request));
   EXPECT_EQ(arrived.geo, request.geo);
@@ -84,6 +86,11 @@ TEST(FemRequest, TheRestArrives) {
   EXPECT_EQ(arrived.meshes[0]->nodes, request.meshes[0]->nodes);
   EXPECT_TRUE(arrived.cost);
   EXPECT_EQ(arrived.modes, 7);
+  ASSERT_TRUE(arrived.motion);
+  const auto& [duration, damping, course, released, velocity, spin, viscosity] = *arrived.motion;
+  EXPECT_EQ(std::tuple(duration, damping, course.pulse, released, viscosity), std::tuple(2, 0.5, 0.25, true, 0.125));
+  EXPECT_EQ(velocity, Vec3(1, 2, 3));
+  EXPECT_EQ(spin, Vec3(4, 5, 6));
 }
 
 TEST(FemRequest, NumbersThatMakeNoMatrixAreRefused) {

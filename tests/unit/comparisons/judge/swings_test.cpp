@@ -40,5 +40,29 @@ TEST(Swings, TooFewSwingsOrSamplesGiveNothing) {
   EXPECT_FALSE(of(2, 200, [](double) { return 1.0; }));
 }
 
+TEST(Arrival, IsWhereATenthOfTheLargestDepartureIsReached) {
+  const std::vector<double> time = {0, 1, 2, 3, 4};
+  EXPECT_NEAR(*arrival_of(time, {5, 5, 5.2, 4, 5}), 1.5, 1e-12);
+  EXPECT_FALSE(arrival_of(time, {5, 5, 5, 5, 5}));
+}
+
+TEST(Swings, TellTheDamping) {
+  const auto damped = [](double ratio) {
+    std::vector<double> time, value;
+    for (int i = 0; i < 1000; ++i) {
+      const double t = 0.01 * i, w = 2 * pi;
+      time.push_back(t);
+      value.push_back(std::exp(-ratio * w * t) * std::cos(w * std::sqrt(1 - ratio * ratio) * t));
+    }
+    return swings_of(time, value);
+  };
+  for (const double ratio : {0.0, 0.01, 0.05, 0.1}) {
+    const auto swings = damped(ratio);
+    ASSERT_TRUE(swings) << ratio;
+    EXPECT_NEAR(swings->damping_ratio, ratio, 1e-3 + 0.02 * ratio);
+  }
+  EXPECT_FALSE(damped(0.2));  // a second swing of less than a tenth of the first deflection
+}
+
 }  // namespace
 }  // namespace springproof

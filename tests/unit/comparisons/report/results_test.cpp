@@ -145,7 +145,7 @@ TEST(ResultsJson, EveryVerdictHasItsWords) {
 TEST(PicturesJson, ArraysAreLittleEndianBase64) {
   Picture p = sample_picture("hybmss", 0.25);
   p.rest = {1.0f, -2.0f, 0.0f, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0};  // 0000803f 000000c0 00000000 0000003f
-  p.difference = {0, 32767, 1.4f, std::nanf("")};              // 0000 ff7f 0100 0080 at scale 1
+  p.difference = {0, 127, 1.4f, std::nanf("")};                // 00 7f 01 80 at scale 1
   CaseResult c;
   c.pictures = {p};
   const Json json = pictures_to_json(c);
@@ -155,7 +155,7 @@ TEST(PicturesJson, ArraysAreLittleEndianBase64) {
   EXPECT_EQ(mesh.at("quads").at("base64"), "AAABAAIAAwA=");  // 0000 0100 0200 0300
   const Json& difference = json.at("pictures").at(0).at("difference");
   EXPECT_EQ(difference.at("scale"), 1.0);
-  EXPECT_EQ(difference.at("base64"), "AAD/fwEAAIA=");
+  EXPECT_EQ(difference.at("base64"), "AH8BgA==");
 }
 
 TEST(PicturesJson, DisplacementIsScaledToItsLargestComponent) {
@@ -176,8 +176,8 @@ TEST(PicturesJson, VolumeChangeAndSurfaceAreTold) {
   c.pictures[1].volume_change.clear();
   const Json pictures = pictures_to_json(c).at("pictures");
   EXPECT_EQ(pictures.at(0).at("surface"), "smooth");
-  EXPECT_DOUBLE_EQ(pictures.at(0).at("volume_change").at("scale"), 0.5 / 32767);
-  EXPECT_EQ(pictures.at(0).at("volume_change").at("base64"), "AAABgP9/AAA=");  // 0, -32767, 32767, 0
+  EXPECT_DOUBLE_EQ(pictures.at(0).at("volume_change").at("scale"), 0.5 / 127);
+  EXPECT_EQ(pictures.at(0).at("volume_change").at("base64"), "AIF/AA==");  // 0, -127, 127, 0
   EXPECT_EQ(pictures.at(1).at("surface"), "cells");
   EXPECT_EQ(pictures.at(1).at("volume_change").at("base64"), "");
 }

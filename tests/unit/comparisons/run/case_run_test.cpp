@@ -166,14 +166,14 @@ TEST(PartFile, ComesBackWholeOrNotAtAll) {
     std::string flipped = bytes;
     flipped[at] ^= 1 << at % 8;
     write_file(file, flipped);
-    EXPECT_THROW(load_part(file, "stamp"), DamagedPart) << "byte " << at << " of " << bytes.size();
+    EXPECT_THROW(load_part(file, "stamp"), DamagedFile) << "byte " << at << " of " << bytes.size();
   }
   for (const std::size_t length : {std::size_t{0}, std::size_t{10}, bytes.size() / 2, bytes.size() - 1}) {
     write_file(file, bytes.substr(0, length));
-    EXPECT_THROW(load_part(file, "stamp"), DamagedPart) << length << " bytes left";
+    EXPECT_THROW(load_part(file, "stamp"), DamagedFile) << length << " bytes left";
   }
   write_file(file, bytes + bytes);
-  EXPECT_THROW(load_part(file, "stamp"), DamagedPart);
+  EXPECT_THROW(load_part(file, "stamp"), DamagedFile);
   std::filesystem::remove(file);
   EXPECT_FALSE(load_part(file, "stamp"));
 }

@@ -53,7 +53,7 @@ const HistoryRecord& history(const Part& part) {
   return part.histories.front();
 }
 
-const std::vector<double>& series(const HistoryRecord& h, const std::string& name) {
+const std::vector<double>& values_of(const HistoryRecord& h, const std::string& name) {
   const auto at = std::find(h.names.begin(), h.names.end(), name);
   EXPECT_NE(at, h.names.end()) << name;
   return h.values[at - h.names.begin()];
@@ -132,8 +132,8 @@ double energy_error(const std::string& step, double from, double to) {
   double most = 0;
   for (std::size_t i = 0; i < h.time.size(); ++i)
     if (h.time[i] > from && h.time[i] < to)
-      most = std::max(most, std::abs(series(h, "kinetic_energy")[i] + series(h, "elastic_energy")[i] +
-                                     series(h, "load_potential")[i]));
+      most = std::max(most, std::abs(values_of(h, "kinetic_energy")[i] + values_of(h, "elastic_energy")[i] +
+                                     values_of(h, "load_potential")[i]));
   return most;
 }
 
@@ -172,8 +172,8 @@ TEST(MotionRun, EnergyMomentumKeepsTheEnergyAndItsPeriodIsThatOfSmallSteps) {
     const Part fine = released(model, "time_step_s = 0.002\n");
     EXPECT_NEAR(h.measured.at("period") / history(fine).measured.at("period"), 1, 0.02) << model;
     EXPECT_GT(history(fine).measured.at("energy_drift"), 1e-5) << model;
-    EXPECT_GT(series(h, "displacement.corner.x").front(), 0.8 * h.measured.at("amplitude")) << model;
-    EXPECT_EQ(series(h, "load_potential").back(), 0);
+    EXPECT_GT(values_of(h, "displacement.corner.x").front(), 0.8 * h.measured.at("amplitude")) << model;
+    EXPECT_EQ(values_of(h, "load_potential").back(), 0);
   }
 }
 

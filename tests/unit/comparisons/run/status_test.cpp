@@ -1,6 +1,7 @@
 // What is said of a run under way: lines, times, what is left.
 #include "comparisons/run/status.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -137,6 +138,45 @@ TEST(ExpectedSeconds, GrowWithTheReferenceTheRatioAndTheStrain) {
   const double linear = seconds(fine);
   fine.experiment.kinematics = "hencky";
   EXPECT_GT(seconds(fine), 10 * linear);
+}
+
+std::string case_text(const std::string& body, double nu) {
+  return fmt::format(R"(
+[body]
+{}
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = {}
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[compare]
+models = ["hybmss"]
+)",
+                     body, nu);
+}
+
+TEST(ExpectedSeconds, OfABlockNeedNoMesh) {
+  for (const double nu : {0.3, 0.499}) {
+    PreparedCase prepared = block_case(16, nu);
+    const Experiment e = parse_experiment(case_text("geo = \"block.geo\"\nsize_m = [1, 1, 1]\ncells = [4, 4, 4]", nu) +
+                                              "[reference]\ncells = [16, 16, 16]",
+                                          "case.toml");
+    prepared.experiment.reference = e.reference;
+    EXPECT_NEAR(unmeshed_seconds(e, e.materials[0]), expected_seconds(prepared, e.materials[0]),
+                0.01 * expected_seconds(prepared, e.materials[0]));
+  }
+}
+
+TEST(ExpectedSeconds, OfVoxelsGrowWithTheirNumberBeforeTheyAreMeshed) {
+  const auto seconds = [](const std::string& body) {
+    const Experiment e = parse_experiment(case_text(body, 0.3), "case.toml");
+    return unmeshed_seconds(e, e.materials[0]);
+  };
+  const double few = seconds("geo = \"beam.geo\"\nsize_m = [1, 1, 1]\nvoxels = 500");
+  EXPECT_GT(seconds("geo = \"beam.geo\"\nsize_m = [1, 1, 1]\nvoxels = 5000"), 3 * few);
+  EXPECT_NEAR(seconds("geo = \"beam.geo\"\nsize_m = [1, 1, 1]\nvoxel_edge_m = 0.1"), few, 0.01 * few);
+  EXPECT_GT(seconds("geo = \"beam.stl\"\nvoxel_edge_m = 0.1"), few);
 }
 
 }  // namespace

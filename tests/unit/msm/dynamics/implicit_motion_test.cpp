@@ -309,7 +309,7 @@ TEST(ImplicitMotion, SlowRampEndsInTheStaticState) {
     DynamicsOptions options;
     options.integrator = i;
     options.duration = 12;
-    options.ramp = 3;
+    options.course.ramp = 3;
     options.damping = 8;
     const DynamicsResult result = run_dynamics(beam.model, density, path, options);
     ASSERT_TRUE(result.state.ok) << result.state.message;

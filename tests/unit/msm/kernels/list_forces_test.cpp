@@ -88,7 +88,7 @@ void plain_steps(const MassSpringModel& model, const Eigen::VectorXd& mass, cons
   v = NodalVectors::Zero(x.rows(), 3);
   Eigen::VectorXd J;
   for (int step = 0; step < steps; ++step) {
-    const BoundaryConditions bc = path(o.ramp > 0 ? std::min(1.0, step * dt / o.ramp) : 1.0);
+    const BoundaryConditions bc = path(o.course.ramp > 0 ? std::min(1.0, step * dt / o.course.ramp) : 1.0);
     if (step == 0)
       for (Eigen::Index i = 0; i < x.size(); ++i)
         if (bc.fixed[i]) x.data()[i] += bc.prescribed.data()[i];
@@ -205,7 +205,7 @@ TEST(ListMotion, IsThePlainMotion) {
     for (double ramp : {0.0, 0.8})
       for (bool lagged : {false, true}) {
         DynamicsOptions options;
-        options.ramp = ramp;
+        options.course.ramp = ramp;
         options.lagged = lagged;
         options.damping = 5;
         options.time_step = 0.2 * safe_time_step(model, 1, lagged);

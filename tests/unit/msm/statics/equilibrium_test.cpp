@@ -51,7 +51,7 @@ TEST_P(StaticsAndDynamics, AgreeAtRest) {
   ASSERT_TRUE(at_once.ok) << at_once.message;
   DynamicsOptions options;
   options.damping = s.name == "bending" ? 10 : 20;
-  options.ramp = 0.2;
+  options.course.ramp = 0.2;
   options.duration = 60;
   options.rest_tolerance = 1e-9;
   const DynamicsResult run = run_dynamics(model, s.material.density, path_of(s), options);

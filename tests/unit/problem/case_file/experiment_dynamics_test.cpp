@@ -1,6 +1,10 @@
 // The [dynamics] table.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
@@ -17,7 +21,7 @@ TEST(DynamicsTable, IsReadWithItsDefaults) {
   EXPECT_EQ(e.dynamics->duration, 2);
   EXPECT_FALSE(e.dynamics->time_step);
   EXPECT_EQ(e.dynamics->damping, 0);
-  EXPECT_EQ(e.dynamics->ramp, 0);
+  EXPECT_EQ(e.dynamics->course.ramp, 0);
 }
 
 TEST(DynamicsTable, AddsTheMotionOfEveryModel) {
@@ -33,6 +37,51 @@ TEST(DynamicsTable, AddsTheMotionOfEveryModel) {
   EXPECT_EQ(labels("equilibrium = false\n"), (std::vector<std::string>{"hybmss in motion*", "classic in motion*"}));
 }
 
+TEST(DynamicsTable, HasOneCourseOfTheLoads) {
+  const auto of = [](const std::string& lines) {
+    return parse_experiment(at_large_strain + "[dynamics]\nduration_s = 2\n" + lines, "case.toml").dynamics;
+  };
+  EXPECT_EQ(of("pulse_s = 0.1\n")->course.pulse, 0.1);
+  EXPECT_EQ(of("shake_Hz = 3\n")->course.frequency, 3);
+  EXPECT_EQ(of("spin_rad_s = [0, 0, 20]\n")->spin, Vec3(0, 0, 20));
+  EXPECT_EQ(of("velocity_m_s = [1, 0, 0]\n")->velocity, Vec3(1, 0, 0));
+  const auto message = [](const std::string& lines) {
+    return message_of(at_large_strain + "[dynamics]\nduration_s = 2\n" + lines);
+  };
+  EXPECT_NE(message("ramp_s = 1\npulse_s = 0.1\n").find("dynamics.pulse_s: stands beside ramp_s"), std::string::npos);
+  EXPECT_NE(message("start = \"equilibrium\"\nshake_Hz = 1\n").find("dynamics.shake_Hz: does not suit"),
+            std::string::npos);
+  EXPECT_NE(message("pulse_s = 3\n").find("up to duration_s"), std::string::npos);
+}
+
+TEST(DynamicsTable, AsksForFiniteElementsInTime) {
+  const std::string probe = "[[probe]]\nname = \"tip\"\nat_m = [1, 1, 1]\n", asked = "[reference]\nin_time = true\n",
+                    moving = "[dynamics]\nduration_s = 2\n";
+  const Experiment e = parse_experiment(at_large_strain + probe + asked + moving, "case.toml");
+  EXPECT_TRUE(e.reference.in_time);
+  for (const char* measure : {"motion", "motion_error"})
+    EXPECT_EQ(std::count(e.measures.begin(), e.measures.end(), measure), 1) << measure;
+  const std::string why = "in_time integrates the motion of the case, and measures it at its probes";
+  EXPECT_NE(message_of(at_large_strain + probe + asked).find(why), std::string::npos);
+  EXPECT_NE(message_of(at_large_strain + asked + moving).find(why), std::string::npos);
+  EXPECT_NE(message_of(at_large_strain + probe + asked + moving + "shake_Hz = 20\n").find("samples = 320 or more"),
+            std::string::npos);
+  const std::string compare = "[compare]\nmeasures = [\"motion_error\"]\n";
+  EXPECT_NE(message_of(at_large_strain + probe + moving + compare).find("needs finite elements in time"),
+            std::string::npos);
+}
+
+TEST(DynamicsTable, TheLossFactorHoldsAtBothEndsOfItsBand) {
+  const MotionChoice motion =
+      *parse_experiment(at_large_strain + "[dynamics]\nduration_s = 1\nloss_factor = 0.08\nband_Hz = [2, 11]\n",
+                        "here.toml")
+           .dynamics;
+  for (const double frequency : {2.0, 11.0}) {
+    const double w = 2 * std::numbers::pi * frequency;
+    EXPECT_NEAR(motion.damping / (2 * w) + motion.viscosity * w / 2, 0.04, 1e-12);
+  }
+}
+
 TEST(DynamicsTable, MistakesAreExplained) {
   const auto message = [](const std::string& lines) { return message_of(at_large_strain + "[dynamics]\n" + lines); };
   const auto says = [](const std::string& message, const std::string& part) {
@@ -44,6 +93,15 @@ TEST(DynamicsTable, MistakesAreExplained) {
   says(message("duration_s = 1\ntime_step_s = 0"), "dynamics.time_step_s: is 0");
   says(message("duration_s = 1\ntime_step_s = 2"), "dynamics.time_step_s: is 2");
   says(message("duration_s = 1\ndamping_1_s = -1"), "dynamics.damping_1_s: is -1");
+  says(message("duration_s = 1\nviscosity_s = -1"), "dynamics.viscosity_s: is -1");
+  says(message("duration_s = 1\nviscosity_s = 1\nintegrator = \"bdf2\""), "does not suit the integrator bdf2");
+  says(message("duration_s = 1\nloss_factor = 2\nband_Hz = [1, 2]"), "dynamics.loss_factor: is 2");
+  says(message("duration_s = 1\nloss_factor = 0.1"), "dynamics.loss_factor: stands without band_Hz");
+  says(message("duration_s = 1\nband_Hz = [1, 2]"), "dynamics.band_Hz: stands without loss_factor");
+  says(message("duration_s = 1\nloss_factor = 0.1\nband_Hz = [2, 1]"), "dynamics.band_Hz: falls");
+  says(message("duration_s = 1\nloss_factor = 0.1\nband_Hz = [0, 1]"), "dynamics.band_Hz");
+  says(message("duration_s = 1\nloss_factor = 0.1\nband_Hz = [1, 2]\ndamping_1_s = 1"),
+       "dynamics.damping_1_s: stands beside loss_factor");
   says(message("duration_s = 1\nramp_s = 2"),
        "dynamics.ramp_s: is 2 (allowed: a finite number >= 0, up to duration_s)");
   says(message("duration_s = 1\nsamples = 1"), "dynamics.samples: is 1 (allowed: an integer from 2 to 100000)");

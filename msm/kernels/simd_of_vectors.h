@@ -1,5 +1,6 @@
-// The part of std::experimental::simd that the kernels use, on clang's own vectors of 16 bytes: for WebAssembly, whose
-// standard library has vectors without roots.  Included by simd.h, within its namespace.
+// The part of std::experimental::simd that the kernels use, on the compiler's own vectors of SPRINGPROOF_VECTOR_BYTES:
+// for WebAssembly, whose standard library has vectors without roots, and for vectors wider than the processor's, which
+// the compiler makes of several.  Included by simd.h, within its namespace.
 
 /// Comparison of vectors, all bits of a lane or none.
 template <class Int>
@@ -10,7 +11,7 @@ struct Mask {
 template <class Real>
 class Simd {
  public:
-  typedef Real Vector __attribute__((vector_size(16)));
+  using Vector = typename Builtin<Real, SPRINGPROOF_VECTOR_BYTES / sizeof(Real)>::type;
   using Int = decltype(Vector() < Vector());
 
   Simd() = default;
@@ -24,7 +25,7 @@ class Simd {
   void copy_to(Real* p, Flag) const {
     __builtin_memcpy(p, &v_, sizeof v_);
   }
-  static constexpr unsigned long size() { return 16 / sizeof(Real); }
+  static constexpr unsigned long size() { return SPRINGPROOF_VECTOR_BYTES / sizeof(Real); }
   explicit operator Vector() const { return v_; }
 
   friend Simd operator+(Simd a, Simd b) { return Simd(a.v_ + b.v_); }
@@ -44,11 +45,16 @@ class Simd {
 
 template <class Real>
 inline Simd<Real> sqrt(Simd<Real> a) {
-  const auto v = static_cast<typename Simd<Real>::Vector>(a);
+  auto v = static_cast<typename Simd<Real>::Vector>(a);
+#ifdef __wasm__
   if constexpr (sizeof(Real) == 8)
     return Simd<Real>(__builtin_wasm_sqrt_f64x2(v));
   else
     return Simd<Real>(__builtin_wasm_sqrt_f32x4(v));
+#else
+  for (unsigned long i = 0; i < a.size(); ++i) v[i] = static_cast<Real>(__builtin_sqrt(v[i]));
+  return Simd<Real>(v);
+#endif
 }
 template <class Real>
 inline Simd<Real> abs(Simd<Real> a) {

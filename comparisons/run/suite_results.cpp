@@ -1,0 +1,117 @@
+#include "comparisons/run/suite_results.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "comparisons/judge/calibration.h"
+#include "comparisons/judge/judge.h"
+#include "comparisons/report/crack_picture.h"
+#include "comparisons/report/headline.h"
+#include "comparisons/report/report.h"
+#include "comparisons/run/find_cases.h"
+#include "comparisons/run/vtu_output.h"
+#include "problem/system/file_name.h"
+#include "problem/system/files.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+nlohmann::json host() {
+  utsname u{};
+  uname(&u);
+  std::string processor, line;
+  for (std::ifstream in("/proc/cpuinfo"); std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  return {{"system", fmt::format("{} {}", u.sysname, u.machine)},
+          {"processor", processor},
+          {"cores", std::thread::hardware_concurrency()}};
+}
+
+std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
+  std::vector<KnownQuantity> all;
+  for (const CaseResult& r : results) append(known_quantities(r), all);
+  return all;
+}
+
+nlohmann::json document(const std::vector<CaseResult>& results, const std::vector<KnownQuantity>& known,
+                        const std::string& libraries) {
+  nlohmann::json cases = nlohmann::json::array();
+  for (const CaseResult& r : results) cases.push_back(to_json(r));
+  return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", libraries}}},
+          {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
+          {"host", host()},
+          {"cases", cases},
+          {"calibration", calibration_json(known)}};
+}
+
+}  // namespace
+
+std::string key_of(const fs::path& file) {
+  std::string key = case_name(file);
+  std::replace(key.begin(), key.end(), '/', '-');
+  return file_name(key);
+}
+
+CaseResult case_of(const PreparedCase& p) {
+  CaseResult result;
+  result.experiment = p.experiment;
+  result.size = p.size;
+  for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
+  result.notes = p.notes;
+  for (std::size_t m = 0; m < p.models.size(); ++m)
+    if (const auto own = own_poisson_ratio(p.models[m].row))
+      result.own_poisson_ratios[p.experiment.models[m].label] = *own;
+  return result;
+}
+
+void append(const Part& from, Part& to) {
+  append(from.runs, to.runs);
+  append(from.rows, to.rows);
+  append(from.references, to.references);
+  append(from.pictures, to.pictures);
+  append(from.lines, to.lines);
+  append(from.histories, to.histories);
+  append(from.splits, to.splits);
+  append(from.deformations, to.deformations);
+  append(from.cracks, to.cracks);
+}
+
+bool write_results(std::vector<CaseResult> results, const std::string& libraries, const ResultsChoice& choice) {
+  const fs::path& out = choice.out;
+  if (!choice.live_page.empty())
+    fs::copy_file(choice.live_page, out / "live.html", fs::copy_options::overwrite_existing);
+  for (CaseResult& r : results) {
+    judge(r);
+    if (choice.vtu) write_series(r, out / "vtu" / key_of(r.experiment.file));
+  }
+  const std::vector<KnownQuantity> known = known_quantities(results);
+  const nlohmann::json doc = document(results, known, libraries);
+  nlohmann::json pictures = nlohmann::json::array();
+  for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
+  write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+  write_file(out / "results.csv", to_csv(results));
+  write_crack_pictures(results, out);
+  write_report(out / "report.html", doc, pictures);
+  const Headline h = headline(doc);
+  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known), (out / "report.html").string());
+  return success(h);
+}
+
+}  // namespace springproof

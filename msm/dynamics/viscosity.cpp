@@ -1,0 +1,48 @@
+#include "msm/dynamics/viscosity.h"
+
+#include <cmath>
+
+#include "msm/dynamics/time_step.h"
+
+namespace springproof {
+
+std::string Viscosity::lacks(const MassSpringModel& model) {
+  return model.network.cells.empty() && !of_springs_alone(model)
+             ? "its network has no cells, and more than springs between nodes"
+             : "";
+}
+
+Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& material, double time) {
+  Viscosity viscosity;
+  viscosity.time = time;
+  viscosity.along_springs = of_springs_alone(model);
+  if (const AveragedSprings* own = averaged_springs_of(model))
+    viscosity.cells = *own;
+  else if (!model.network.cells.empty()) {
+    viscosity.cells.shear_modulus = shear_modulus(material);
+    viscosity.cells.lame_lambda = lame_lambda(material);
+    viscosity.cells.hourglass = HourglassStiffness::of_pattern(2, material.poisson_ratio, true, true);
+  }
+  return viscosity;
+}
+
+void Viscosity::add_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
+                           NodalVectors& f) const {
+  if (!along_springs) return cells.add_viscous_forces(network, x, v, time, f);
+  for (const Spring& s : network.springs) {
+    const Eigen::RowVector3d along = (x.row(s.j) - x.row(s.i)).normalized();
+    const Eigen::RowVector3d pull = time * s.stiffness * (v.row(s.j) - v.row(s.i)).dot(along) * along;
+    f.row(s.i) += pull;
+    f.row(s.j) -= pull;
+  }
+}
+
+double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic) {
+  if (viscosity.time == 0) return elastic;
+  const MassSpringModel dashpots{model.network, {viscosity.cells}};
+  const double of_dashpots = viscosity.along_springs ? elastic : safe_time_step(dashpots, density);
+  const double frequency = 2 / elastic, rate = viscosity.time * 4 / (of_dashpots * of_dashpots);
+  return 4 / (std::sqrt(rate * rate + 4 * frequency * frequency) + rate);
+}
+
+}  // namespace springproof
