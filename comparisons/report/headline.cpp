@@ -255,8 +255,8 @@ std::string without_motion(const std::string& label) {
 }
 
 /// Which of the models that were compared most widely comes closest to finite elements in time, by the probes'
-/// difference over the whole motion; or nothing.
-std::string answer_in_time(const std::map<std::string, ByNu>& models) {
+/// difference over the whole motion; or nothing.  Where no model was named at rest, these are the `closest`.
+std::string answer_in_time(const std::map<std::string, ByNu>& models, std::vector<std::string>& closest) {
   std::size_t widest = 0;
   for (const auto& [model, errors] : models) widest = std::max(widest, errors.size());
   std::vector<std::pair<std::string, Worst>> all;
@@ -267,11 +267,13 @@ std::string answer_in_time(const std::map<std::string, ByNu>& models) {
                    [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
   const Worst& least = all.front().second;
   std::vector<std::string> names;
+  const bool alone = closest.empty();
   double uncertainty = least.uncertainty;
   for (const auto& [model, worst] : all) {
     const double doubt = std::max(worst.uncertainty, least.uncertainty);
     if (worst.error - least.error > doubt) continue;
-    names.push_back(fmt::format("{} ({} %)", model, percent(worst.error)));
+    names.push_back(fmt::format("{} ({} %)", without_motion(model), percent(worst.error)));
+    if (alone) closest.push_back(model);
     uncertainty = std::max(uncertainty, doubt);
   }
   return fmt::format("In time {}{}, by the probes' difference over the whole motion {}; these are uncertain by {} %.",
@@ -315,7 +317,7 @@ class Collector {
     for (const auto& [key, errors] : sorted)
       headline_.models.push_back({key.name, fem_.contains(key.name), key.large_deformation, sentence(errors)});
     headline_.answer = answer(sorted, headline_.closest);
-    if (const std::string in_time = answer_in_time(in_time_); !in_time.empty())
+    if (const std::string in_time = answer_in_time(in_time_, headline_.closest); !in_time.empty())
       headline_.answer += (headline_.answer.empty() ? "" : " ") + in_time;
     return headline_;
   }
@@ -370,8 +372,7 @@ class Collector {
     const std::string measure = string_of(row, "measure"), model = string_of(row, "model");
     const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
     if (nu && error && measure == "motion_error")
-      in_time_[without_motion(model)][*nu].take(*error, number_of(row, "reference_uncertainty").value_or(0),
-                                                case_name_);
+      in_time_[model][*nu].take(*error, number_of(row, "reference_uncertainty").value_or(0), case_name_);
     const bool displacement = measure == "displacement_error", reaction = measure == "reaction_error";
     if (!nu || !error || !(displacement || reaction || measure == "volume_change")) return;
     if (motions_.contains(model)) return;

@@ -198,10 +198,19 @@ void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<st
   }
 }
 
+/// What a model is compared with at rest: nothing where its motion is compared with finite elements in time, of which
+/// the last instant is no equilibrium.
+const Reference* reference_at_rest(const PartRun& run, std::size_t lattice, const std::string& model) {
+  const auto& models = run.experiment().models;
+  const auto moves = [&](const auto& m) { return m.label == model && m.in_motion; };
+  if (run.in_time && std::any_of(models.begin(), models.end(), moves)) return nullptr;
+  return run.reference[lattice] ? &*run.reference[lattice] : nullptr;
+}
+
 /// One displacement field and one set of scalars per sample.
 void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
               const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
-  const auto& reference = run.reference[lattice];
+  const auto* reference = reference_at_rest(run, lattice, model);
   const Row blank{run.key(model, lattice), run.experiment().name, kinematics, "", 0, "", {}, {}, {}, 1, {}};
   for (const std::string& measure : measures_in(scalars)) {
     if (!wanted(measure, run.experiment().measures)) continue;
@@ -233,7 +242,7 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
 }
 
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
-  const auto& reference = run.reference[lattice];
+  const auto* reference = reference_at_rest(run, lattice, model);
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
   const RunKey key = run.key(model, lattice);
   if (lattice == 0) {
@@ -282,7 +291,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
 
 void add_splits(PartRun& run, std::size_t lattice, const std::string& model, const std::vector<NodalVectors>& u,
                 const std::vector<std::map<std::string, double>>& scalars) {
-  const auto& reference = run.reference[lattice];
+  const auto* reference = reference_at_rest(run, lattice, model);
   const auto& voxels = run.voxels[lattice];
   if (!reference || !voxels) return;
   for (ErrorSplit& split : split_error(run.prepared, run.prepared.lattices[lattice], run.key(model, lattice), *voxels,
@@ -294,12 +303,12 @@ void add_splits(PartRun& run, std::size_t lattice, const std::string& model, con
 /// finite elements on the same cells; the rest is the cells' size.
 void add_splits_of_cut_cells(PartRun& run, std::size_t lattice, std::size_t number, const std::vector<NodalVectors>& u,
                              const std::vector<std::map<std::string, double>>& scalars) {
-  if (!run.reference[lattice] || !run.voxels[lattice]) return;
+  const std::string& label = run.experiment().models[number].label;
+  if (!reference_at_rest(run, lattice, label) || !run.voxels[lattice]) return;
   PreparedCase whole = run.prepared;
   whole.models[number].cut = false;
   const std::vector<ModelSample> cubes = run_samples(whole, run.prepared.lattices[lattice], number, run.material);
   if (!cubes.front().state.ok) return;
-  const std::string& label = run.experiment().models[number].label;
   const std::size_t first = run.part.splits.size();
   add_splits(run, lattice, label, {cubes.front().field.displacement}, {cubes.front().scalars});
   const std::vector<ErrorSplit> of_cubes(run.part.splits.begin() + static_cast<std::ptrdiff_t>(first),
@@ -332,8 +341,8 @@ void add_motion_rows(PartRun& run, const Row& blank, const HistoryRecord& histor
     row.value = value;
     run.part.rows.push_back(row);
   };
-  for (const char* name : {"period", "amplitude", "arrival", "damping_ratio", "energy_drift", "momentum_drift",
-                           "angular_momentum_drift"}) {
+  for (const std::string& measure : rows_of_measure("motion", run.experiment())) {
+    const std::string name = measure.substr(measure.find('.') + 1);
     const auto measured = history.measured.find(name);
     if (measured == history.measured.end()) continue;
     Row row = blank;
@@ -343,7 +352,7 @@ void add_motion_rows(PartRun& run, const Row& blank, const HistoryRecord& histor
       row.reference_uncertainty = r.uncertainty;
       row.error = measured->second - r.value;
     }
-    add(row, fmt::format("motion.{}", name), measured->second);
+    add(row, measure, measured->second);
   }
   if (!run.in_time) return;
   Row row = blank;

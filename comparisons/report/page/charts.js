@@ -74,7 +74,7 @@ function measureChoices(chosen) {
     return distinct(holders.map(c => c.scales.get(measure).unit)).length === 1 &&
       holders.some(c => c.rows.some(row => row.measure === measure && isNumber(row.error)));
   });
-  const first = ['displacement_error', 'volume_change'].filter(m => same.includes(m));
+  const first = ['displacement_error', 'motion_error', 'volume_change'].filter(m => same.includes(m));
   const idle = same.filter(m => chosen.every(c => c.minor.has(m) || !c.measures.includes(m)));
   const rest = same.filter(m => !first.includes(m) && !idle.includes(m));
   return [...first, ...rest, ...idle.filter(m => !first.includes(m))].map(m => [m, measureText(m)]);

@@ -1,7 +1,8 @@
 'use strict';
 // The first screen: two bodies, a dot for every model and case, and what the closest model costs.
 
-const closestModels = () => (document.getElementById('first-bodies')?.dataset.closest || '').split('\n').filter(Boolean);
+const namedClosest = (document.getElementById('first-bodies')?.dataset.closest || '').split('\n').filter(Boolean);
+const closestModels = () => namedClosest;
 /// The cases that the answer is about: the linear ones, or where there are none those of large deformation.
 const judgedCases = () => cases.some(result => result.linear) ? cases.filter(result => result.linear) : cases;
 
@@ -54,16 +55,15 @@ function ownPart(result, row) {
   return split && isNumber(split.model_error) ? 100 * Math.abs(split.model_error) : null;
 }
 
-/// The errors by which models are ranked.
-const rankedMeasures = ['displacement_error', 'reaction_error'];
-const shortNames = {displacement_error: 'displacement', reaction_error: 'reactions', volume_change: 'volume change'};
+/// The errors by which models are ranked: at rest, and in motion where there are finite elements in time.
+const rankedMeasures = ['displacement_error', 'reaction_error', 'motion_error'];
+const shortNames = {displacement_error: 'displacement', reaction_error: 'reactions', motion_error: 'in time', volume_change: 'volume change'};
 const isMoving = (result, model) => (result.experiment.models || []).some(m => m.label === model && m.in_motion);
 
 /// Errors of a model in a case at those of these Poisson's ratios that the model claims: `error` [%], by which models are
 /// ranked, and `whole`, which on a body of voxels includes coarse cells and staircase.
 function errorsOf(result, model, nus, measures = rankedMeasures) {
-  if (isMoving(result, model)) return [];
-  return measures.flatMap(measure => rowsAt(result, measure)).filter(row => row.model === model && nus.includes(row.poisson_ratio) &&
+  return measures.filter(measure => !isMoving(result, model) || measure === 'motion_error').flatMap(measure => rowsAt(result, measure)).filter(row => row.model === model && nus.includes(row.poisson_ratio) &&
     claims(result, model, row.poisson_ratio)).map(row => {
     const whole = scaledError(result, row), own = ownPart(result, row);
     return {result, row, whole, own, error: own ?? whole, uncertainty: scaledUncertainty(result, row)};
@@ -92,13 +92,20 @@ function claimText(result, model) {
   return text ? el('small', {}, ' ' + text) : null;
 }
 
+/// "error of displacement and reactions".
+function dottedErrors(compared) {
+  const still = compared.filter(measure => measure !== 'motion_error');
+  return [still.length > 1 ? 'error of displacement and reactions' : still.length > 0 ? 'displacement error' : '',
+          still.length < compared.length ? 'difference of motions' : ''].filter(Boolean).join(', or ');
+}
+
 function dotPlot() {
   const box = document.getElementById('first-plot');
   const shown = judgedCases().filter(result => rankedMeasures.some(measure => result.measures.includes(measure)));
   if (shown.length === 0) return box.remove();
   const nus = distinct(shown.flatMap(result => result.nus)).sort((a, b) => a - b);
   const ordinary = nus.filter(nu => nu >= 0), several = ordinary.length > 0 ? ordinary : nus;
-  const closest = closestModels(), reactions = shown.some(result => result.measures.includes('reaction_error'));
+  const closest = closestModels(), compared = rankedMeasures.filter(measure => shown.some(result => result.measures.includes(measure)));
   const names = models.filter(model => shown.some(result => result.models.includes(model)));
   const axis = el('div', {class: 'dots'}), said = el('output', {});
   const slider = el('input', {type: 'range', min: 0, max: nus.length, value: 0, step: 1, 'aria-label': 'Poisson’s ratio', oninput: draw});
@@ -122,7 +129,7 @@ function dotPlot() {
       ...lines.flatMap(({model, dots, worst}) => [
         el('div', {class: closest.includes(model) ? 'dot-name closest' : 'dot-name'}, modelName(model), claimText(dots[0].result, model)),
         el('div', {class: 'dot-track'}, marks(), dots.map(dot => whisker(dot, model)), dots.map(({result, row, error, own, whole}) => {
-          const text = `${model}, ${result.name}: ${percent(error)}${reactions ? ` (${shortNames[row.measure]})` : ''} at ν = ${nuText(row.poisson_ratio)}` +
+          const text = `${model}, ${result.name}: ${percent(error)}${compared.length > 1 ? ` (${shortNames[row.measure]})` : ''} at ν = ${nuText(row.poisson_ratio)}` +
             (own === null ? '' : ` by its springs, ${percent(whole)} with coarse cells and staircase`);
           const mark = (at, kind) => el('span', {class: kind, role: 'img', title: text, 'aria-label': text, style: {left: at, color: modelPaint(model)}},
                                         caseGlyphs[shown.indexOf(result) % caseGlyphs.length]);
@@ -132,7 +139,7 @@ function dotPlot() {
       el('div', {}, ''), el('div', {class: 'dot-track scale'}, ticks.map(tick => el('span', {class: 'tick-text', style: {left: at(tick)}}, `${number(tick, 1)} %`))), el('div', {}, ''));
   }
   box.append(el('div', {class: 'dot-head'},
-      el('b', {}, `Largest ${reactions ? 'error of displacement and reactions' : 'displacement error'} against finite elements`), said,
+      el('b', {}, `Largest ${dottedErrors(compared)} against finite elements`), said,
       nus.length > 1 ? el('label', {class: 'choice'}, slider) : null,
       anyVariant ? el('label', {class: 'ghost'}, variants, 'variants') : null,
       el('span', {class: 'dot-legend'}, shown.map((result, i) => el('span', {}, caseGlyphs[i % caseGlyphs.length], ' ', result.name)),
@@ -163,6 +170,7 @@ function firstFacts(model) {
   const doubts = judgedCases().flatMap(result => rankedMeasures.flatMap(measure => rowsAt(result, measure)).map(row => scaledUncertainty(result, row))).filter(isNumber);
   const ours = middleSeconds(model), fem = middleSeconds('fem_q1');
   box.append(...fact('Displacement of ' + model, listedErrors(model, ordinary, 'displacement_error')),
+    ...fact('Motion of ' + stillName(model), listedErrors(model, nus, 'motion_error')),
     ...fact('Reactions of moved supports', listedErrors(model, ordinary, 'reaction_error')),
     ...fact('Displacement of auxetic solids, ν < 0', listedErrors(model, nus.filter(nu => nu < 0), 'displacement_error')),
     ...fact('Reference', doubts.length > 0 ? `uncertain by up to ${percent(Math.max(...doubts))}` : ''),

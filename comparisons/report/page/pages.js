@@ -36,9 +36,14 @@ function tintLegend() {
 
 // ---- table of cases
 
+/// Differences from the reference's displacements: at rest, and of probes over the whole motion.
+const displacementRows = result => ['displacement_error', 'motion_error'].flatMap(measure => rowsAt(result, measure));
+
+/// The largest of a model.
+const worstDisplacement = (result, model) => worstOf(result, displacementRows(result).filter(row => row.model === model));
+
 function worstCell(result, model) {
-  const rows = rowsAt(result, 'displacement_error').filter(row => row.model === model);
-  const worst = worstOf(result, rows);
+  const worst = worstDisplacement(result, model);
   const failed = result.runs.filter(run => run.model === model && !run.ok).length;
   const lost = failed ? el('small', {class: 'lost'}, `${failed} without result`) : null;
   if (!worst) return el('td', {class: 'number'}, failed ? lost : '–');
@@ -53,7 +58,7 @@ function reactionNote(result, model) {
 }
 
 function worstUncertainty(result) {
-  const all = rowsAt(result, 'displacement_error').map(row => scaledUncertainty(result, row)).filter(isNumber);
+  const all = displacementRows(result).map(row => scaledUncertainty(result, row)).filter(isNumber);
   return all.length > 0 ? percent(Math.max(...all)) : '–';
 }
 
@@ -70,7 +75,7 @@ function splitModels() {
 }
 
 function otherModel(result, model) {
-  const worst = worstOf(result, rowsAt(result, 'displacement_error').filter(row => row.model === model));
+  const worst = worstDisplacement(result, model);
   const failed = result.runs.some(run => run.model === model && !run.ok);
   return worst ? `${model}: ${percent(worst.error)}` : failed ? `${model}: without result` : null;
 }
@@ -93,7 +98,7 @@ function casesSection(section) {
   const head = ['Case', 'Expectations', 'Kinematics, time', right('Reference'),
                 ...split.leading.map(model => right(modelName(model))), ...(split.others.length > 0 ? ['Other models'] : [])];
   section.append(
-    el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution, and the largest reaction error where a support is moved; ' +
+    el('p', {class: 'lead'}, 'Per model the largest displacement error over all Poisson’s ratios, at the finest resolution (of models in motion, the probes’ difference in time), and the largest reaction error where a support is moved; ' +
        'beside it the largest uncertainty of the reference, and the time of all runs.'),
     table('cases', head, cases.map(result => caseRow(result, split))), tintLegend());
 }
@@ -317,7 +322,7 @@ function runsPart(result) {
 /// How far the models are from the reference, in one sentence, with the checks beside it.
 function outcome(result) {
   const worst = models.filter(model => result.models.includes(model) && !isFem(model)).map(model => ({model, worst:
-    worstOf(result, rowsAt(result, 'displacement_error').filter(row => row.model === model && claims(result, model, row.poisson_ratio)))}))
+    worstOf(result, displacementRows(result).filter(row => row.model === model && claims(result, model, row.poisson_ratio)))}))
     .filter(entry => entry.worst).sort((a, b) => a.worst.error - b.worst.error);
   const words = worst.length === 0 ? '' : `Largest displacement errors: ${worst.slice(0, 3).map(({model, worst: {error}}) => `${model} ${percent(error)}`).join(', ')}` +
     (worst.length > 3 ? `; ${worst[worst.length - 1].model} ${percent(worst[worst.length - 1].worst.error)}` : '') +

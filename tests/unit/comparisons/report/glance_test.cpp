@@ -38,6 +38,7 @@ TEST_F(GlanceInBrowser, ThePlotRanksAsTheAnswerDoes) {
     say('lines ' + texts('.dot-name') + ' with ' + texts('.dot-worst'));
     say('closest ' + texts('.dot-name.closest'));
     say('dots ' + [...document.querySelectorAll('.dot')].map(dot => dot.title).join('; '));
+    endLoading();
   )js");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("answer Of the spring models even comes closest: its displacements and the reactions of moved "
@@ -59,10 +60,41 @@ TEST_F(GlanceInBrowser, LargeDeformationAloneIsPlottedToo) {
   const std::string dom = open_with(document({large}), pictures({}), tools + R"js(
     say('lines ' + [...document.querySelectorAll('.dot-name')].map(node => node.textContent).join('; '));
     say('facts ' + document.querySelector('#first-facts').textContent);
+    endLoading();
   )js");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("lines even; near; msm_18 ν = 0.25<"), std::string::npos) << said(dom);
   EXPECT_NE(dom.find("facts Displacement of evencompress 3.0"), std::string::npos) << said(dom);
+}
+
+TEST_F(GlanceInBrowser, MotionsAreComparedInTime) {
+  CaseResult c;
+  c.experiment = sample_experiment();
+  c.experiment.kinematics = "hencky";
+  c.experiment.models.clear();
+  c.experiment.measures = {"displacement_error", "motion_error"};
+  for (const auto& [model, error] : {std::pair("emsm", 0.12), {"hybmss", 0.04}}) {
+    const std::string label = std::string(model) + " in motion";
+    c.experiment.models.push_back({model, {}, label, {}, {}, true});
+    c.runs.push_back({{label, 0.3, {2, 2, 2}}, "msm", "finite", true, "", "explicit", 9, 0, 0.1, 81});
+    c.rows.push_back({{label, 0.3, {2, 2, 2}}, "compress", "finite", "motion_error", error, "1", 0.0, 0.01, error});
+  }
+  const std::string dom = open_with(document({c}), pictures({}), tools + R"js(
+    say('head ' + document.querySelector('.dot-head b').textContent);
+    say('dots ' + [...document.querySelectorAll('.dot')].map(dot => dot.title).join('; '));
+    say('closest ' + document.querySelector('.dot-name.closest').textContent);
+    say('facts ' + document.querySelector('#first-facts').textContent);
+    say('row ' + [...document.querySelectorAll('#cases tbody td')].slice(3).map(cell => cell.textContent).join('; '));
+    endLoading();
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("head Largest difference of motions against finite elements"), std::string::npos) << said(dom);
+  EXPECT_NE(dom.find("dots hybmss in motion, compress: 4.0 % at ν = 0.3; emsm in motion, compress: 12 % at ν = 0.3<"),
+            std::string::npos)
+      << said(dom);
+  EXPECT_NE(dom.find("closest hybmss in motion<"), std::string::npos) << said(dom);
+  EXPECT_NE(dom.find("facts Motion of hybmsscompress 4.0"), std::string::npos) << said(dom);
+  EXPECT_NE(dom.find("row ± 1.0 %; 4.0 %ν = 0.3; 12 %ν = 0.3"), std::string::npos) << said(dom);
 }
 
 // ---- warnings
@@ -97,10 +129,11 @@ TEST_F(Glance, ManyWarningsAreFolded) {
 TEST_F(GlanceInBrowser, AWarningLeadsToItsCase) {
   const std::string dom = open_with(document({sample_case(), doubtful_case("squeeze")}), pictures({}), tools + R"js(
     document.querySelector('.warnings a').click();
-    setTimeout(() => {
-      const page = document.getElementById('case-golec_2019-squeeze');
-      say((page.open ? 'open: ' : 'closed: ') + page.querySelector('.amber').textContent);
-    }, 500);
+    const page = document.getElementById('case-golec_2019-squeeze'), text = () => page.querySelector('.amber');
+    until(() => page.open && text(), () => {
+      say((page.open ? 'open: ' : 'closed: ') + text().textContent);
+      endLoading();
+    });
   )js");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("open: squeeze: principal strains of 8 % are too large for linear theory (up to 5 %); divide the "
@@ -115,8 +148,7 @@ TEST_F(GlanceInBrowser, ManyCasePagesShareOneContext) {
   std::vector<CaseResult> cases(18, sample_case());  // browsers allow 16 contexts
   for (std::size_t i = 0; i < cases.size(); ++i) cases[i].experiment.name = "case" + std::to_string(i);
   const std::string dom = open_with(document(cases), pictures(cases), tools + R"js(
-    const pages = [...document.querySelectorAll('details.case')], drawn = canvas => coloursOf(canvas) > 20;
-    const until = (holds, then, left = 300) => holds() || left === 0 ? then() : setTimeout(until, 100, holds, then, left - 1);
+    const pages = [...document.querySelectorAll('details.case')];
     const canvasOf = page => page.querySelector('.viewer canvas');
     /// Opens a page and goes there; on with the next when it is drawn.
     const visit = i => {
@@ -126,7 +158,7 @@ TEST_F(GlanceInBrowser, ManyCasePagesShareOneContext) {
       pages[i].scrollIntoView({behavior: 'instant'});
       until(() => drawn(canvasOf(pages[i])), () => visit(i + 1));
     };
-    const turn = (page, then, patience = 300) => {
+    const turn = (page, then, patience) => {
       const canvas = canvasOf(page), before = pixelsOf(canvas).join();
       page.querySelector('.viewer').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}));
       until(() => pixelsOf(canvas).join() !== before, () => then(drawn(canvas) && pixelsOf(canvas).join() !== before ? 'turned' : 'still'), patience);
@@ -142,11 +174,12 @@ TEST_F(GlanceInBrowser, ManyCasePagesShareOneContext) {
       until(() => gl.isContextLost(), () => turn(pages[0], word => {
         say(`lost: ${word}, ${drawn(canvasOf(pages[0])) ? 'still there' : 'blank'}`);
         handle.restoreContext();
-        until(() => !gl.isContextLost(), () => turn(pages[0], word => say('restored: ' + word)));
+        until(() => !gl.isContextLost(), () => turn(pages[0], word => { say('restored: ' + word); endLoading(); }));
       }, 20));
     };
-    setTimeout(visit, 500, 0);
-  )js");
+    visit(0);
+  )js",
+                                    "", one_screen);
   EXPECT_EQ(dom.find("Too many active WebGL contexts"), std::string::npos);
   EXPECT_NE(dom.find("drawn 18 of 18"), std::string::npos) << said(dom);
   EXPECT_NE(dom.find("first turned"), std::string::npos) << said(dom);
@@ -198,35 +231,35 @@ const std::string inspection = R"js(
     tell('without text ' + canvases.filter(canvas => canvas.getAttribute('role') !== 'img' || !canvas.getAttribute('aria-label') ||
       canvas.closest('[aria-hidden=true]')).map(words).join(' | '));
     tell(`canvases ${canvases.length}`);
-    look(canvases, [], 200);
+    look(canvases, []);
   }
 
   /// Goes from canvas to canvas, waiting until each is drawn.
-  function look([canvas, ...others], blank, patience) {
+  function look([canvas, ...others], blank) {
     if (!canvas) return finish(blank);
-    if (coloursOf(canvas) > 20) return look(others, blank, 200);
-    if (patience === 0) return look(others, [...blank, canvas], 200);
-    canvas.scrollIntoView({behavior: 'instant', block: 'center'});
-    setTimeout(look, 50, [canvas, ...others], blank, patience - 1);
+    const there = () => {
+      if (drawn(canvas)) return true;
+      canvas.scrollIntoView({behavior: 'instant', block: 'center'});  // again: what was opened above pushes it away
+    };
+    until(there, () => look(others, drawn(canvas) ? blank : [...blank, canvas]));
   }
 
   /// The first screen again, for the picture of it.
   function finish(blank) {
-    tell('blank ' + blank.map(words).join(' | '));
     for (const page of document.querySelectorAll('details')) page.open = false;
     scrollTo({top: 0, behavior: 'instant'});
+    tell('blank ' + blank.map(words).join(' | '));
+    endLoading();
   }
 
-  function firstScreen(patience) {
+  const first = () => document.querySelector('#first-bodies canvas');
+  until(() => first() && drawn(first()), () => {
     const answer = document.querySelector('.answer').getBoundingClientRect(), bodies = [...document.querySelectorAll('#first-bodies .panel')];
-    const canvas = document.querySelector('#first-bodies canvas');
-    if (coloursOf(canvas) <= 20 && patience > 0) return setTimeout(firstScreen, 50, patience - 1);
     tell(`answer ${answer.top >= 0 && answer.bottom <= innerHeight && answer.right <= innerWidth ? 'on' : 'off'} the first screen`);
     tell(`bodies ${bodies.filter(body => body.getBoundingClientRect().bottom <= innerHeight).length} on the first screen`);
     for (const details of document.querySelectorAll('details')) { details.open = true; if (details.fill) details.fill(); }
     setTimeout(inspect, 300);
-  }
-  setTimeout(firstScreen, 500, 200);
+  });
 )js";
 
 class Screens : public ReportInBrowser, public testing::WithParamInterface<const char*> {
@@ -239,7 +272,11 @@ class Screens : public ReportInBrowser, public testing::WithParamInterface<const
     for (const auto& [width, height] : {std::pair(1400, 900), {768, 1024}, {390, 844}})
       out << "<iframe src=\"" << file.filename().string() << "\" style=\"border: 0; flex: none; width: " << width
           << "px; height: " << height << "px\"></iframe>";
-    out << "</div><script>" << tools << "addEventListener('message', event => say(event.data));</script></body></html>";
+    out << "</div><script>" << tools << R"js(
+      let ended = 0;
+      addEventListener('message', event => { say(event.data); if (event.data.includes(': blank ') && ++ended === 3) setTimeout(endLoading, 500); });
+    )js"
+        << "</script></body></html>";
     out.close();
     const auto shots = std::filesystem::path(SPRINGPROOF_BINARY_DIR) / "screenshots";
     std::filesystem::create_directories(shots);

@@ -70,6 +70,7 @@ TEST(Headline, NamesTheModelsClosestInTime) {
       "probes' "
       "difference over the whole motion for ν from 0 to 0.3; these are uncertain by 3 %.";
   EXPECT_EQ(headline_of({c}).answer, found);
+  EXPECT_EQ(headline_of({c}).closest, (std::vector<std::string>{"hybmss_avg in motion", "emsm in motion"}));
   c.rows.push_back({{"msm_18 in motion", 0.3, {4, 4, 4}}, "bar", "finite", "motion_error", 0.01, "1", 0, 0.03, 0.01});
   EXPECT_EQ(headline_of({c}).answer, found);  // compared at one Poisson's ratio only
 }

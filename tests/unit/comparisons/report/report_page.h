@@ -79,10 +79,10 @@ class ReportInBrowser : public Report {
 
   /// The same with a script that runs after the page's own.
   std::string open_with(const nlohmann::json& results, const nlohmann::json& pictures, const std::string& script,
-                        const std::string& fragment = "") {
+                        const std::string& fragment = "", const std::string& options = whole_page) {
     write_report(file, results, pictures);
     add_script(script);
-    return visit(file, fragment);
+    return visit(file, fragment, options);
   }
 
   void add_script(const std::string& script) {
@@ -92,11 +92,11 @@ class ReportInBrowser : public Report {
   }
 
   std::string visit(const std::filesystem::path& page, const std::string& fragment = "",
-                    const std::string& options = "--window-size=1400,7500") {
+                    const std::string& options = whole_page) {
     const std::string command =
         "timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
         "--enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking "
-        "--disable-component-update --disable-sync --enable-logging=stderr --virtual-time-budget=60000 " +
+        "--disable-component-update --disable-sync --enable-logging=stderr " +
         options + " --user-data-dir='" + profile.string() + "' --dump-dom 'file://" + page.string() + fragment +
         "' 2>&1";
     std::string out;
@@ -108,6 +108,7 @@ class ReportInBrowser : public Report {
     return out;
   }
 
+  static constexpr const char *whole_page = "--window-size=1400,7500", *one_screen = "--window-size=1400,900";
   const std::filesystem::path profile = file.string() + ".profile";
 };
 
@@ -122,8 +123,15 @@ inline std::string said(const std::string& dom) {
   return dom.substr(std::min(dom.find("<p class=\"said\">"), dom.size()));
 }
 
-/// For scripts: colours of a canvas of the page, of any kind, as numbers; what a test wants to say.
+/// For scripts: the browser holds the page to be loading until endLoading() is called, and shows its document then;
+/// colours of a canvas of the page, of any kind, as numbers; what a test wants to say.
 inline const std::string tools = R"js(
+  const loading = document.body.appendChild(Object.assign(document.createElement('iframe'), {hidden: true}));
+  loading.contentDocument.open();
+  const endLoading = () => loading.contentDocument.close();
+  addEventListener('error', endLoading);
+  /// Frames come when the machine has time for them: looks ten times a second, for a minute at most.
+  const until = (holds, then, left = 600) => holds() || left === 0 ? then() : setTimeout(until, 100, holds, then, left - 1);
   const pixelsOf = canvas => {
     const copy = document.createElement('canvas');
     [copy.width, copy.height] = [canvas.width, canvas.height];
@@ -132,9 +140,7 @@ inline const std::string tools = R"js(
     return new Uint32Array(ctx.getImageData(0, 0, copy.width, copy.height).data.buffer);
   };
   const coloursOf = canvas => canvas.width * canvas.height === 0 ? 0 : new Set(pixelsOf(canvas)).size;
-  /// The page's clock does not wait for frames: unless they are asked for all the time, it runs out before one is drawn.
-  const frames = () => requestAnimationFrame(frames);
-  frames();
+  const drawn = canvas => coloursOf(canvas) > 20;
   const say = text => document.body.append(Object.assign(document.createElement('p'), {className: 'said', textContent: text}));
 )js";
 

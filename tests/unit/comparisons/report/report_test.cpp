@@ -272,13 +272,11 @@ class FiguresInBrowser : public ReportInBrowser {
 
 TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
   const std::string dom = open_with(tools + R"js(
-    // Frames come when the machine has time for them, timers when the browser's own clock says so: look until all are drawn.
-    const look = left => {
-      const canvases = [...document.querySelectorAll('section canvas')].filter(canvas => !canvas.closest('[hidden]'));
-      if (left > 0 && canvases.some(canvas => coloursOf(canvas) <= 20)) return setTimeout(look, 100, left - 1);
-      for (const canvas of canvases) say(canvas.closest('section').id + (coloursOf(canvas) > 20 ? ' drawn' : ' blank'));
-    };
-    setTimeout(look, 1000, 500);
+    const canvases = () => [...document.querySelectorAll('section canvas')].filter(canvas => !canvas.closest('[hidden]'));
+    until(() => canvases().length > 4 && canvases().every(drawn), () => {
+      for (const canvas of canvases()) say(canvas.closest('section').id + (drawn(canvas) ? ' drawn' : ' blank'));
+      endLoading();
+    });
   )js");
   expect_no_complaint(dom);
   EXPECT_EQ(count(dom, "<p class=\"said\">poisson drawn"), 2u);
@@ -294,10 +292,9 @@ TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
 
 TEST_F(FiguresInBrowser, FirstScreenShowsTwoBodiesAndADotPerModelAndCase) {
   const std::string dom = open_with(tools + R"js(
-    const look = left => {
-      const canvas = document.querySelector('#first-bodies canvas');
-      if (left > 0 && coloursOf(canvas) <= 20) return setTimeout(look, 100, left - 1);
-      say('bodies ' + (coloursOf(canvas) > 20 ? 'drawn' : 'blank') + ' in ' + document.querySelectorAll('#first-bodies .panel').length);
+    const canvas = () => document.querySelector('#first-bodies canvas');
+    until(() => canvas() && drawn(canvas()), () => {
+      say('bodies ' + (drawn(canvas()) ? 'drawn' : 'blank') + ' in ' + document.querySelectorAll('#first-bodies .panel').length);
       const dots = () => [...document.querySelectorAll('.dot:not(.pale)')].map(dot => dot.title).join('; ');
       const slider = document.querySelector('#first-plot input[type=range]');
       say('worst: ' + dots());
@@ -305,8 +302,8 @@ TEST_F(FiguresInBrowser, FirstScreenShowsTwoBodiesAndADotPerModelAndCase) {
       slider.dispatchEvent(new Event('input'));
       say('first: ' + dots());
       say('facts: ' + document.querySelector('#first-facts').textContent);
-    };
-    setTimeout(look, 1000, 500);
+      endLoading();
+    });
   )js");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("bodies drawn in 2"), std::string::npos) << said(dom);
@@ -324,19 +321,15 @@ TEST_F(FiguresInBrowser, ACasePageStartsWithTheBodyItsSupportsAndLoads) {
     page.fill();
     const picture = page.querySelector('.case-body').firstElementChild, viewer = picture.querySelector('.viewer');
     page.scrollIntoView({behavior: 'instant'});
-    const look = left => {
-      const canvas = viewer.querySelector('canvas');
-      if (left > 0 && coloursOf(canvas) <= 20) return setTimeout(look, 100, left - 1);
+    const canvas = () => viewer.querySelector('canvas');
+    until(() => canvas() && drawn(canvas()), () => {
       say('panels ' + [...viewer.querySelectorAll('.panel-label')].map(label => label.textContent).join(' | '));
       say('then ' + picture.nextElementSibling.textContent.slice(0, 120));
-      say('text ' + canvas.getAttribute('aria-label'));
-      const before = pixelsOf(canvas).join();
+      say('text ' + canvas().getAttribute('aria-label'));
+      const before = pixelsOf(canvas()).join(), turned = () => pixelsOf(canvas()).join() !== before;
       viewer.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}));
-      const turned = wait => wait > 0 && pixelsOf(canvas).join() === before ? setTimeout(turned, 100, wait - 1)
-        : say(pixelsOf(canvas).join() === before ? 'still' : 'turned');
-      setTimeout(turned, 100, 300);
-    };
-    setTimeout(look, 1000, 500);
+      until(turned, () => { say(turned() ? 'turned' : 'still'); endLoading(); });
+    });
   )js");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("panels The problemheldmoved | FEM reference"), std::string::npos) << said(dom);
@@ -353,6 +346,7 @@ TEST_F(FiguresInBrowser, OfASinglePoissonsRatioThereAreBarsInOrder) {
     const drawing = poissonDrawing([{...only, rows: only.rows.filter(row => row.poisson_ratio === 0.4)}], 'displacement_error', 'finest', true);
     const chart = drawing.make();
     say('chart ' + chart.type + ': ' + chart.data.datasets[0].data.map(bar => `${bar.model} ${bar.error.toPrecision(2)}`).join(', '));
+    endLoading();
   )js");
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("chart bar: fem_p1 1.0, hybmss 2.0<"), std::string::npos) << said(dom);
@@ -370,13 +364,16 @@ TEST_F(FiguresInBrowser, OneDragTurnsAllBodies) {
       return ctx.getImageData(0, 0, copy.width, copy.height).data.join();
     });
     const mouse = (target, type, x) => target.dispatchEvent(new MouseEvent(type, {bubbles: true, button: 0, clientX: x, clientY: 300}));
-    setTimeout(() => {
-      const before = panels();
+    until(() => drawn(canvas), () => {
+      const before = panels(), turned = () => panels().map((now, i) => now !== before[i]);
       mouse(viewer, 'mousedown', 300);
       mouse(document, 'mousemove', 380);
       mouse(document, 'mouseup', 380);
-      setTimeout(() => panels().forEach((now, i) => say('panel ' + (now === before[i] ? 'still' : 'turned'))), 500);
-    }, 2000);
+      until(() => turned().every(Boolean), () => {
+        for (const panel of turned()) say('panel ' + (panel ? 'turned' : 'still'));
+        endLoading();
+      });
+    });
   )js");
   expect_no_complaint(dom);
   EXPECT_EQ(count(dom, "<p class=\"said\">panel turned"), 3u);
