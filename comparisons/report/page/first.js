@@ -21,9 +21,32 @@ function firstPictures(model) {
   return offers.find(offer => offer.surface === 'smooth') || offers[0] || null;
 }
 
+/// Of a model in motion: its curve beside that of finite elements in time, near nu = 0.4.
+function firstMotion(model) {
+  for (const result of judgedCases().filter(result => isMoving(result, model))) {
+    const records = result.histories.filter(record => record.model === model);
+    if (records.length === 0) continue;
+    const record = records.reduce((a, b) => Math.abs(b.poisson_ratio - 0.4) < Math.abs(a.poisson_ratio - 0.4) ? b : a);
+    const drawing = motionDrawing(result, String(record.poisson_ratio), record.probe || record.names[0]);
+    return {...drawing, notes: [], make() {
+      const configuration = drawing.make();
+      configuration.options.plugins.legend = {...configuration.options.plugins.legend, position: 'bottom'};
+      return configuration;
+    }};
+  }
+  return null;
+}
+
 /// Finite elements and the closest model, the latter coloured by the difference.
 function firstBodies(model) {
-  const box = document.getElementById('first-bodies'), offer = model && firstPictures(model);
+  const box = document.getElementById('first-bodies'), motion = model && firstMotion(model);
+  if (motion) {
+    const chart = figure();
+    chart.draw(motion);
+    charts.push(() => chart.draw(motion));
+    return box.append(el('b', {}, motion.caption), chart.node);
+  }
+  const offer = model && firstPictures(model);
   if (!offer) {
     box.parentNode.classList.add('text');
     return box.remove();

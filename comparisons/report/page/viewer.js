@@ -177,15 +177,21 @@ class Viewer {
     return false;
   }
 
-  /// Draws panels into boxes (left, top, width, height), all of one size, of a canvas of the given size in pixels of the page.
-  draw(canvas, size, panels, boxes, ratio, background) {
-    const gl = webGL(), [, , width, height] = boxes[0].map(x => Math.round(x * ratio));
-    if (gl.getContext().isContextLost()) return;   // the picture before stays
-    this.camera.aspect = width / height;
+  /// Camera and lamps for panels of this width by height.
+  light(panels, aspect) {
+    this.camera.aspect = aspect;
     this.camera.updateProjectionMatrix();
     this.applyAim();
     const lamp = this.camera.position.clone().sub(this.controls.target).normalize();   // moves with the camera
     lamp.add(new THREE.Vector3(0, 0, 0.6));
+    for (const panel of panels) panel.lamp.position.copy(lamp);
+  }
+
+  /// Draws panels into boxes (left, top, width, height), all of one size, of a canvas of the given size in pixels of the page.
+  draw(canvas, size, panels, boxes, ratio, background) {
+    const gl = webGL(), [, , width, height] = boxes[0].map(x => Math.round(x * ratio));
+    if (gl.getContext().isContextLost()) return;   // the picture before stays
+    this.light(panels, width / height);
     resize(canvas, ...size.map(x => Math.round(x * ratio)));
     if (gl.domElement.width !== width || gl.domElement.height !== height) gl.setSize(width, height, false);
     gl.setClearColor(background);   // opaque: printers paint transparency black
@@ -193,7 +199,6 @@ class Viewer {
     ctx.fillStyle = background;
     ctx.fillRect(0, 0, canvas.width, canvas.height);
     panels.forEach((panel, i) => {
-      panel.lamp.position.copy(lamp);
       gl.render(panel.scene, this.camera);
       ctx.drawImage(gl.domElement, Math.round(boxes[i][0] * ratio), Math.round(boxes[i][1] * ratio));
     });

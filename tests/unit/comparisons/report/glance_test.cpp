@@ -78,16 +78,26 @@ TEST_F(GlanceInBrowser, MotionsAreComparedInTime) {
     c.experiment.models.push_back({model, {}, label, {}, {}, true});
     c.runs.push_back({{label, 0.3, {2, 2, 2}}, "msm", "finite", true, "", "explicit", 9, 0, 0.1, 81});
     c.rows.push_back({{label, 0.3, {2, 2, 2}}, "compress", "finite", "motion_error", error, "1", 0.0, 0.01, error});
+    HistoryRecord& history = c.histories.emplace_back();
+    static_cast<RunKey&>(history) = {label, 0.3, {2, 2, 2}};
+    history.names = {"kinetic_energy", history.probe = "displacement.tip.z"};
+    history.units = {"J", "m"};
+    history.time = {0, 0.5, 1};
+    history.values = {{0, 1, 0}, {0, error, 0}};
   }
   const std::string dom = open_with(document({c}), pictures({}), tools + R"js(
+    say('curve ' + document.querySelector('#first-bodies b').textContent);
     say('head ' + document.querySelector('.dot-head b').textContent);
     say('dots ' + [...document.querySelectorAll('.dot')].map(dot => dot.title).join('; '));
     say('closest ' + document.querySelector('.dot-name.closest').textContent);
     say('facts ' + document.querySelector('#first-facts').textContent);
     say('row ' + [...document.querySelectorAll('#cases tbody td')].slice(3).map(cell => cell.textContent).join('; '));
-    endLoading();
+    const canvas = document.querySelector('#first-bodies canvas');
+    until(() => drawn(canvas), () => { say(drawn(canvas) ? 'drawn' : 'blank'); endLoading(); });
   )js");
   expect_no_complaint(dom);
+  EXPECT_NE(dom.find("curve compress: displacement.tip.z in time, ν = 0.3"), std::string::npos) << said(dom);
+  EXPECT_NE(dom.find("<p class=\"said\">drawn"), std::string::npos) << said(dom);
   EXPECT_NE(dom.find("head Largest difference of motions against finite elements"), std::string::npos) << said(dom);
   EXPECT_NE(dom.find("dots hybmss in motion, compress: 4.0 % at ν = 0.3; emsm in motion, compress: 12 % at ν = 0.3<"),
             std::string::npos)
