@@ -57,6 +57,11 @@ void for_all(F f) {
     if (p.model) f(*p.model);
 }
 
+Precision precision_of(const std::string& model, int digits) {
+  if (digits == 0) return sufficient_precision(model);
+  return digits == 32 ? Precision::float32 : Precision::float64;
+}
+
 LiveModel& model(int panel) { return *page().panel[panel].model; }
 
 }  // namespace
@@ -88,8 +93,7 @@ int live_model(int panel, const char* name, double poisson_ratio, double youngs_
     check(material);
     Panel& p = page().panel[panel];
     if (p.model && p.name == name && p.digits == digits) return p.model->set_material(material);
-    p.model = std::make_unique<LiveModel>(*page().body, name, material,
-                                          digits == 32 ? Precision::float32 : Precision::float64);
+    p.model = std::make_unique<LiveModel>(*page().body, name, material, precision_of(name, digits));
     p.name = name;
     p.digits = digits;
   });

@@ -14,7 +14,7 @@ int live_stl(const char* bytes, int size, double cells);
 const char* live_message(void);
 
 /// Puts a model of the table at rest into a panel; a panel that has one keeps its motion if the name is the same.
-/// `digits`: 32 or 64, the bits of the kernels' numbers.
+/// `digits`: 32 or 64, the bits of the kernels' numbers; 0: those that suffice (sufficient_precision()).
 int live_model(int panel, const char* name, double poisson_ratio, double youngs_modulus, double density, int digits);
 void live_rest(void);
 
@@ -42,7 +42,7 @@ enum LiveNumber {
   live_kinetic_energy,  ///< [J]
   live_unbalanced,      ///< [N]
   live_frequency,       ///< angular, of the motion that the load makes [1/s]
-  live_rescues,         ///< states taken back because they left the finite
+  live_rescues,         ///< unstable states taken back
   live_pull,            ///< force of the grip [N]
 };
 double live_number(int panel, int number);

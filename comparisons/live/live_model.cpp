@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "comparisons/live/live_body.h"
+#include "meshes/volume.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/laws_of_model.h"
@@ -18,11 +19,11 @@ constexpr double grip_reach = 1.6;      // cubes
 constexpr double stiffest_step = 0.1;   // share of the step below which a squeezed cell is not followed
 constexpr double stiffest_grip = 0.25;  // of its (frequency * step)^2, which is unstable from 4 on without the body
 constexpr double most_caution = 1.0 / 64;
+constexpr double widest = 8;  // stretch of a cell's mean edge that no pull reaches: the motion has become unstable
 
 ModelParameters parameters_of(const std::string& name) {
   for (const ModelRow& row : model_table())
-    if (row.name == name && row.topology == Topology::cells && row.extension != Extension::momentum_dispersion &&
-        holds_at_large_displacement(row)) {
+    if (row.name == name && row.topology == Topology::cells && holds_at_large_displacement(row)) {
       ModelParameters p;
       p.row = row;
       p.face_to_cube = row.face_to_cube;
@@ -33,15 +34,21 @@ ModelParameters parameters_of(const std::string& name) {
 
 /// The model of the table on the cubes of a mesh, by the same functions as build_embedded().
 MassSpringModel model_of(const Mesh& mesh, const std::string& name, const IsotropicMaterial& material) {
-  const ModelParameters p = parameters_of(name);
+  ModelParameters p = parameters_of(name);
   MassSpringModel model;
   model.network = cubic_lattice(mesh, p.has(Extension::averaging) ? CubicPattern{} : isotropic_pattern(p.face_to_cube));
   if (p.has(Extension::averaging)) {
     model.laws = {averaged_law(p, material)};
     return model;
   }
-  calibrate(spring_shear_modulus(p, material), model.network);
+  const double G = spring_shear_modulus(p, material);
+  calibrate(G, model.network);
   model.laws = {Springs{}};
+  if (p.has(Extension::momentum_dispersion)) {
+    const double q = dispersed_fraction(lame_lambda(material), G);
+    p.exact_volumes = q >= 0;  // as exact_volumes(), whose homogenisation a lattice does not need
+    model.laws.push_back(dispersion_law(p, model.network, {G, q}, volume_gradient(mesh)));
+  }
   if (p.has(Extension::volume_correction)) model.laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   return model;
 }
@@ -68,6 +75,11 @@ Eigen::Matrix3d edges_of(const Hexahedron& c, const NodalVectors& x) {
 }
 
 }  // namespace
+
+Precision sufficient_precision(const std::string& name) {
+  const ModelParameters p = parameters_of(name);
+  return p.has(Extension::volume_correction) || p.has(Extension::averaging) ? Precision::float32 : Precision::float64;
+}
 
 LiveModel::LiveModel(const LiveBody& body, const std::string& name, const IsotropicMaterial& material,
                      Precision precision)
@@ -206,14 +218,12 @@ int LiveModel::advance(double duration, double damping) {
   return steps;
 }
 
-/// Positions, volumes and energy of the state; false if it is not finite or has left the neighbourhood of the body.
+/// Positions, volumes and energy of the state; false if it is not finite, or a cell is wider than a pull can make it.
 bool LiveModel::measure() {
   x_ = motion_->positions();
   v_ = motion_->velocities();
   const Network& network = model_.network;
-  const double size = (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()).norm();
-  const bool finite = x_.allFinite() && v_.allFinite() && (x_ - network.X).cwiseAbs().maxCoeff() < 20 * size;
-  if (!finite) return false;
+  if (!x_.allFinite() || !v_.allFinite()) return false;
   kinetic_energy_ = (mass_.array() * v_.rowwise().squaredNorm().array()).sum() / 2;
   const NodalVectors u = x_ - network.X;
   const double work = force_.dot(u.transpose() * body_.pull);
@@ -233,6 +243,7 @@ bool LiveModel::measure() {
     sum += J - 1;
     least_volume_ = std::min(least_volume_, J);
     const Eigen::Vector3d stretch = A.colwise().norm().transpose() / (4 * network.cell_edge);
+    if (stretch.maxCoeff() > widest) return false;
     least_stretch_ = std::min({least_stretch_, J, stretch.minCoeff()});
     if (corrected)
       largest_area_ =

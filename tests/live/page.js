@@ -64,6 +64,26 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
     })()`);
     const cells = await page.value('simulation.cells');
     check('three bodies move 1/60 s in less than 0.1 s', ms < 100, `${ms.toFixed(1)} ms, ${cells} cubes each`);
+    const surfaces = await page.value(`(() => {
+      let best = 1e9;
+      for (let i = 0; i < 60; ++i) {
+        const begin = performance.now();
+        panels.forEach(paint);
+        best = Math.min(best, performance.now() - begin);
+      }
+      return best;
+    })()`);
+    check('their surfaces cost less than the springs', surfaces < ms, `${surfaces.toFixed(1)} ms`);
+    const sharpness = (frame, script) => page.value(`(() => {
+      viewer.sharpness = 1;
+      for (let i = 0; i < 3; ++i) {
+        Object.assign(state.measured, {frames: 100, frame: ${frame}, script: ${script}});
+        sharpen(${frame});
+      }
+      return viewer.sharpness;
+    })()`);
+    check('slow drawing lowers the resolution, slow springs do not',
+          await sharpness(60, 10) === 0.5 && await sharpness(60, 50) === 1 && await sharpness(17, 1) === 1);
 
     await page.value('state.cells = 600; showBody(pulls.bodies[0]); viewer.render()');   // enough for what follows
     const box = await page.value(`(() => { const {left, top, width, height} = viewer.viewOf(viewer.panels[1]); return [left, top, width, height]; })()`);
@@ -74,14 +94,17 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
     await page.mouse('mouseMoved', x + 60, y - 90, 1);
     await page.value(run(0.5));
     const pulled = await page.value(largestMove);
-    check('a drag pulls all bodies', pulled > 0.002, `${(1000 * pulled).toFixed(1)} mm`);
+    check('a drag pulls all bodies', pulled > 0.002 && pulled < 0.3, `${(1000 * pulled).toFixed(1)} mm`);
     await page.value('viewer.render()');
     await page.picture(`${pictures}/live-drag.png`);
-    for (const far of [[600, -500], [-600, 400], [500, 500]]) {
-      await page.mouse('mouseMoved', Math.max(1, x + far[0]), Math.max(1, y + far[1]), 1);
-      await page.value(run(0.2));
-    }
-    check('violent pulls stay finite', await page.value(finite), `${await page.value("[0, 1, 2].map(p => simulation.number(p, 'rescues')).join(' ')")} states taken back`);
+    const pullViolently = async () => {
+      for (const far of [[600, -500], [-600, 400], [500, 500]]) {
+        await page.mouse('mouseMoved', Math.max(1, x + far[0]), Math.max(1, y + far[1]), 1);
+        await page.value(run(0.2));
+      }
+      return [await page.value(`${finite} && ${largestMove} < 1`), `${(1000 * await page.value(largestMove)).toFixed(0)} mm, ${await page.value("[0, 1, 2].map(p => simulation.number(p, 'rescues')).join(' ')")} states taken back`];
+    };
+    check('violent pulls leave bodies whole', ...await pullViolently());
     await page.mouse('mouseReleased', x, y);
     check('a drag selects no text', await page.value('String(getSelection())') === '');
     check('the pointer lets go', await page.value('state.grip === null'));
@@ -94,12 +117,26 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
     await page.value('resetButton.click()');
     check('reset', await page.value(largestMove) < 1e-9);
 
-    await page.value('viewer.node.focus()');
+    await page.value('viewer.node.focus({preventScroll: true})');
     await page.key('ArrowRight');
     await page.key('ArrowUp');
     check('arrow keys pull', await page.value('state.grip !== null && document.activeElement === viewer.node'));
     await page.key('Escape');
     check('Escape lets go', await page.value('state.grip === null'));
+
+    const choose = (number, model) => page.value(`(() => {
+      const choice = panels[${number}].label.querySelector('select');
+      choice.value = '${model}';
+      choice.dispatchEvent(new Event('change'));
+    })()`);
+    await choose(1, 'emsm');
+    await page.value('panels.forEach(paint); viewer.render()');   // the pointer looks for what was drawn
+    await page.mouse('mousePressed', x, y, 1);
+    check('the pointer takes hold of emsm', await page.value("state.grip !== null && state.models[1] === 'emsm'"));
+    check('violent pulls leave it whole', ...await pullViolently());
+    await page.mouse('mouseReleased', x, y);
+    await choose(1, 'hybmss');
+    await page.value('resetButton.click()');
 
     await page.value('state.cells = 1700');
     for (const name of await page.value('pulls.bodies.map(b => b.name)')) {
@@ -115,6 +152,19 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
             volumes.map(v => (100 * v).toFixed(2) + ' %').join(', '));
     }
 
+    const ghost = await page.value(`(() => {
+      const input = nuSlider.node.querySelector('input'), ghosts = [];
+      for (const nu of [0.25, 0.32, 0.4]) {
+        input.value = nu;
+        input.dispatchEvent(new Event('input'));
+        ghosts.push({...state.fem.answer, u: Math.hypot(...state.fem.answer.u), shown: panels.every(p => p.ghost.visible), words: hint.textContent});
+      }
+      return ghosts;
+    })()`);
+    check('the ghost follows the slider', ghost.every(g => g.shown) && !ghost[0].between && ghost[1].between && !ghost[2].between &&
+          (ghost[0].u - ghost[1].u) * (ghost[1].u - ghost[2].u) > 0 &&
+          ghost[0].volume_change > ghost[1].volume_change && ghost[1].volume_change > ghost[2].volume_change, ghost[1].words);
+
     await page.value(drop('box.stl', stl(false)));
     check('a dropped STL', await page.until("state.body.name === 'stl' && simulation.facets.length === 36", 20), await page.value('hint.textContent'));
     check('it says that its cubes are whole', /whole cubes/.test(await page.value('said.textContent')));
@@ -124,7 +174,7 @@ const largestMove = 'Math.max(...panels.map(p => simulation.positions(p.number).
 
     await page.value("bodyChoice.box.value = pulls.bodies[0].name; showBody(pulls.bodies[0]); state.nu = 0.4; compareWithFem()");
     await page.value(run(6));
-    for (const [width, height] of [[1400, 1250], [500, 1250]])
+    for (const [width, height] of [[1400, 1250], [768, 1024], [390, 844]])
       for (const dark of [false, true]) {
         await page.look(width, height, dark);
         await page.value('new Promise(requestAnimationFrame).then(() => viewer.render())');

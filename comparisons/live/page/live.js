@@ -4,7 +4,7 @@
 const pulls = readJson('pulls-data');
 const names = ['msm_18', 'hybmss', 'hybmss_avg'];
 const modelWords = {msm_18: 'springs alone', msm_14: 'springs alone, 14', hybmss: 'springs + volume', hybmss_cf: 'springs alone, 26',
-                    hybmss_avg: 'averaged springs'};
+                    emsm: 'springs + dispersion', hybmss_avg: 'averaged springs'};
 const state = {body: null, fem: null, nu: 0.45, E: 1e4, density: 1000, damping: 4, cells: 2000, models: [...names],
                grip: null, loadTime: 0, top: 0.05, moved: 0, measured: {}};
 const frameBudget = 11;        // ms of springs per frame: the rest is for drawing
@@ -114,21 +114,28 @@ function setStored() {
   findFem();
 }
 
-const storedAt = nu => state.body.fem.find(f => Math.abs(f.nu - nu) < 5e-4);
+/// The answer of finite elements at this nu: the stored one, or the cubic through the four ratios nearest to it.
+function femAt(nu) {
+  const {fem} = state.body;
+  for (const f of fem) f.u = f.u || shortsOf(f.displacement);
+  const stored = fem.find(f => Math.abs(f.nu - nu) < 5e-4);
+  if (stored) return {...stored, between: false};
+  const above = fem.findIndex(f => f.nu > nu), from = Math.max(0, Math.min(fem.length - 4, above - 2)), near = fem.slice(from, from + 4);
+  const weights = near.map((f, i) => near.reduce((w, g, j) => i === j ? w : w * (nu - g.nu) / (f.nu - g.nu), 1));
+  const mix = value => near.reduce((sum, f, i) => sum + weights[i] * value(f), 0);
+  return {nu, between: true, uncertainty: Math.max(...near.map(f => f.uncertainty)), volume_change: mix(f => f.volume_change),
+          u: near[0].u.map((_, k) => mix(f => f.u[k]))};
+}
 
-/// While a stored pull acts, its answer at this nu, if there is one.
+/// While a stored pull acts, its answer at this nu.
 function findFem() {
-  if (state.fem) state.fem.answer = storedAt(state.nu) || null;
-  if (state.fem && state.fem.answer && !state.fem.answer.u) state.fem.answer.u = shortsOf(state.fem.answer.displacement);
+  if (state.fem) Object.assign(state.fem, {answer: femAt(state.nu), told: false});
   placeGhosts();
   if (state.fem) tellFem();
 }
 
 function compareWithFem() {
-  const nearest = state.body.fem.reduce((best, f) => Math.abs(f.nu - state.nu) < Math.abs(best.nu - state.nu) ? f : best);
   reset();
-  state.nu = nearest.nu;
-  nuSlider.set(state.nu);
   setModels();
   state.fem = {answer: null};
   state.loadTime = 0;
@@ -138,10 +145,9 @@ function compareWithFem() {
 }
 
 function tellFem() {
-  const {answer} = state.fem, ratios = state.body.fem.map(f => nuText(f.nu)).join(', ');
-  hint.textContent = `${state.body.pull.text}. ` + (answer
-    ? `Grey ghost: finite elements at ν = ${nuText(answer.nu)}, certain to ${percent(100 * answer.uncertainty)}.`
-    : `No finite elements are stored at ν = ${nuText(state.nu)}, only at ${ratios}.`);
+  const {answer} = state.fem, {fem, interpolation} = state.body;
+  hint.textContent = `${state.body.pull.text}. Grey ghost: finite elements at ν = ${nuText(answer.nu)}, certain to ${percent(100 * answer.uncertainty)}` +
+    (answer.between ? `, between those stored at ${fem.map(f => nuText(f.nu)).join(', ')} (to ${percent(100 * interpolation)}).` : '.');
 }
 
 /// Displacements do not depend on E: the force is in proportion to it.
@@ -169,10 +175,13 @@ function makePanels() {
   for (const {own} of panels) for (const object of own) { object.geometry.dispose(); object.material.dispose(); }
   const {triangles, source} = splitAtSharpEdges(simulation.rest, simulation.facets);
   const rest = taken(simulation.rest, source, 3), index = new THREE.BufferAttribute(triangles, 1);
+  const edges = new THREE.BufferAttribute(edgesOf(quadsOfTriangles(triangles)), 1);
   const shape = {rest, displacement: new Float32Array(rest.length), surface: {smooth: true, source, triangles: index, edges: null}};
   const box = boundsOf(rest), size = box.getSize(new THREE.Vector3());
   panels = state.models.map((name, number) => {
-    const surface = deformedSurface(shape), ghost = ghostSurface(rest, index), rope = ropeOf(), floor = floorUnder(box);
+    const surface = deformedSurface(shape), ghost = ghostSurface(rest, edges), rope = ropeOf(), floor = floorUnder(box);
+    surface.body.material = new THREE.MeshLambertMaterial({vertexColors: THREE.VertexColors,
+      side: state.body.bytes ? THREE.DoubleSide : THREE.FrontSide});   // dropped surfaces may be inside out
     ghost.visible = false;
     const own = [floor, ...surface.objects, ghost, rope];
     const volume = el('span', {class: 'volume'}), fem = el('small'), chip = el('span', {class: 'chip none off', hidden: true});
@@ -200,11 +209,14 @@ function changeModel(number) {
   panels[number].label.querySelector('.swatch').style.background = modelStyle(state.models[number]).color;
 }
 
-function ghostSurface(rest, index) {
+/// Triangles as quadrilaterals whose last corner is twice there.
+const quadsOfTriangles = triangles => Uint32Array.from({length: triangles.length / 3 * 4}, (_, i) => triangles[3 * (i >> 2) + Math.min(i & 3, 2)]);
+
+function ghostSurface(rest, edges) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(rest.slice(), 3));
-  geometry.setIndex(index);
-  const ghost = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0x8a8f98, wireframe: true, transparent: true, opacity: 0.35, depthWrite: false}));
+  geometry.setIndex(edges);
+  const ghost = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: 0x8a8f98, transparent: true, opacity: 0.35, depthWrite: false}));
   ghost.frustumCulled = false;
   return ghost;
 }
@@ -274,7 +286,45 @@ function paint({number, shape, surface, rope}) {
 
 // ---- the pull
 
+/// Whether WebGL is computed by the processor.
+function drawsInSoftware() {
+  const gl = el('canvas').getContext('webgl'), info = gl && gl.getExtension('WEBGL_debug_renderer_info');
+  const software = Boolean(info) && /swiftshader|llvmpipe|softpipe|software|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  if (gl) gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return software;
+}
+
+/// Draws the panels straight into its own canvas, which is the page's only one.
 class LiveViewer extends Viewer {
+  constructor() {
+    super();
+    this.software = drawsInSoftware();
+    this.sharpness = 1;   // of the canvas, in pixels of the screen along each direction
+    try {
+      sharedRenderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: !this.software});
+    } catch (error) {
+      sharedRenderer = null;
+    }
+  }
+
+  draw(canvas, size, panels, boxes, pixelRatio, background) {
+    const gl = sharedRenderer, ratio = pixelRatio * this.sharpness;
+    const [wide, high] = size.map(x => Math.round(x * ratio)), [width, height] = boxes[0].slice(2).map(x => Math.round(x * ratio));
+    if (gl.getContext().isContextLost()) return;
+    this.light(panels, width / height);
+    if (canvas.width !== wide || canvas.height !== high) gl.setSize(wide, high, false);
+    gl.setClearColor(background);
+    gl.setScissorTest(false);
+    gl.clear();
+    gl.setScissorTest(true);
+    panels.forEach((panel, i) => {
+      const box = [Math.round(boxes[i][0] * ratio), high - Math.round(boxes[i][1] * ratio) - height, width, height];
+      gl.setViewport(...box);
+      gl.setScissor(...box);
+      gl.render(panel.scene, this.camera);
+    });
+  }
+
   /// The place under the pointer: {point: of the surface, at, panel}; or null.
   hit(event) {
     for (const panel of this.panels) {
@@ -321,7 +371,7 @@ function letGo() {
 }
 
 function listen(node) {
-  window.addEventListener('resize', () => viewer.aim(...view));   // the bodies fit panels of any shape
+  window.addEventListener('resize', () => { viewer.sharpness = 1; viewer.aim(...view); });   // the bodies fit panels of any shape
   node.addEventListener('pointerdown', event => {
     const found = event.button === 0 ? viewer.hit(event) : null;
     viewer.controls.enabled = !(found && found.point !== null);
@@ -388,10 +438,12 @@ function pause(paused) {
   last = null;
 }
 
+const runningMean = (old, value) => old === undefined ? value : 0.9 * old + 0.1 * value;
+
 function frame(now) {
   requestAnimationFrame(frame);
   if (state.paused) return;
-  const wanted = last === null ? 1 / 60 : Math.min(0.05, (now - last) / 1000);
+  const begin = performance.now(), interval = last === null ? 1000 / 60 : now - last, wanted = Math.min(0.05, interval / 1000);
   last = now;
   if (state.rebuild) {
     state.rebuild = false;
@@ -401,6 +453,21 @@ function frame(now) {
   if (state.stale) setModels();
   step(wanted);
   viewer.render();
+  const m = state.measured;
+  m.frame = runningMean(m.frame, interval);
+  m.script = runningMean(m.script, performance.now() - begin);
+  sharpen(interval);
+}
+
+/// Draws fewer pixels where drawing, not this script, makes frames late: three quarters along each direction, and again,
+/// down to a half.
+function sharpen(interval) {
+  const m = state.measured;
+  if (interval > 300) m.frame = undefined, m.frames = 0;   // the page was hidden
+  m.frames = (m.frames || 0) + 1;
+  if (m.frames < 30 || m.frame < 22 || m.script > m.frame / 2 || viewer.sharpness <= 0.5) return;
+  viewer.sharpness = Math.max(0.5, 0.75 * viewer.sharpness);
+  m.frames = 0;
 }
 
 function step(wanted) {
@@ -413,10 +480,9 @@ function step(wanted) {
   state.loadTime += done.duration;
   const most = Math.max(...panels.map(paint));
   state.top = Math.max(0.02, most, 0.97 * state.top);
-  const m = state.measured, mean = (old, value) => old === undefined ? value : 0.9 * old + 0.1 * value;
-  m.ms = mean(m.ms, done.ms);
-  m.frame = mean(m.frame, wanted * 1000);
-  m.factor = mean(m.factor, done.duration / wanted);
+  const m = state.measured;
+  m.ms = runningMean(m.ms, done.ms);
+  m.factor = runningMean(m.factor, done.duration / wanted);
   m.steps = done.steps;
   sinceText += wanted;
   if (sinceText > 0.12) { sinceText = 0; write(); }
@@ -443,7 +509,9 @@ function write() {
   }
   bar.show(colourings.volume_change, state.top);
   const slow = m.factor < 0.97, rescues = [0, 1, 2].reduce((sum, p) => sum + simulation.number(p, 'rescues'), 0);
-  const facts = [['frames per second', number(1000 / m.frame, 2)], ['springs, of a frame', `${number(m.ms, 2)} ms`],
+  const facts = [['frames per second', m.frame ? number(1000 / m.frame, 2) : ''], ['springs, of a frame', `${number(m.ms, 2)} ms`],
+    ['surfaces and orders to draw', m.script ? `${number(Math.max(0, m.script - m.ms), 2)} ms` : ''],
+    ...(viewer.sharpness < 1 ? [['resolution, for speed', `× ${number(viewer.sharpness, 2)}`]] : []),
     ['steps in this frame', m.steps.join(' + ')], ['cubes, nodes', `${number(simulation.cells)}, ${number(simulation.nodes)}`],
     [slow ? 'slow motion' : 'real time', el('span', {class: slow ? 'amber' : ''}, `× ${number(m.factor, 2)}`)],
     ['states taken back', String(rescues)]];
@@ -464,8 +532,10 @@ springproofLive({wasmBinary: new Uint8Array(bytesOf(document.getElementById('lib
     'Arrow keys pull them, Escape lets go, Home resets. Their changes of volume are written above each.');
   document.getElementById('stage').append(viewer.node);
   document.getElementById('bar').append(bar.node);
-  document.getElementById('choices').append(bodyChoice.node, fileInput, nuSlider.node, el('datalist', {id: 'stored'}), eSlider.node, densitySlider.node,
-    dampingSlider.node, cellsSlider.node, el('div', {class: 'buttons'}, compareButton, resetButton, pauseButton));
+  document.getElementById('choices').append(bodyChoice.node, fileInput, nuSlider.node, el('datalist', {id: 'stored'}),
+    el('div', {class: 'buttons'}, compareButton, resetButton, pauseButton),
+    el('details', {class: 'more'}, el('summary', {}, 'stiffness, density, damping, number of cubes'),
+      el('div', {class: 'choices'}, eSlider.node, densitySlider.node, dampingSlider.node, cellsSlider.node)));
   bodyChoice.value = 'rabbit';
   showBody(pulls.bodies.find(b => b.name === 'rabbit') || pulls.bodies[0]);
   viewer.visible = true;

@@ -7,7 +7,7 @@ class Simulation {
   constructor(wasm) {
     this.wasm = wasm;
     this.costs = [0, 0, 0];   // ms per step, a running mean
-    this.digits = 32;
+    this.digits = 0;   // bits of the library's numbers: as many as each model needs
   }
 
   /// A copy of the values in the library's memory, to be freed.

@@ -9,6 +9,7 @@ takes surface, displacement and volume change of the reference from FOLDER/repor
 import array
 import base64
 import json
+import math
 import pathlib
 import re
 import sys
@@ -38,6 +39,32 @@ def shorts(numbers):
     return {"scale": scale, "base64": packed([round(x / scale) for x in numbers], "h")}
 
 
+def between(answers, nu):
+    """The cubic through the four ratios nearest to nu, as on the page: (displacement, volume change)."""
+    above = next((i for i, a in enumerate(answers) if a[0] > nu), len(answers))
+    begin = max(0, min(len(answers) - 4, above - 2))
+    near = answers[begin:begin + 4]
+    weights = [math.prod((nu - b[0]) / (a[0] - b[0]) for b in near if b is not a) for a in near]
+    mixed = [sum(w * u for w, u in zip(weights, values)) for values in zip(*(a[1] for a in near))]
+    return mixed, sum(w * a[2] for w, a in zip(weights, near))
+
+
+def interpolation_error(answers):
+    """Largest error, by the displacement, of what the others say of a ratio with two others on each side."""
+    largest = 0
+    for k in range(2, len(answers) - 2):
+        nu, u, volume = answers[k]
+        mixed, mixed_volume = between(answers[:k] + answers[k + 1:], nu)
+        error = math.dist(mixed, u) / math.hypot(*u)
+        print(f"  without nu = {nu}: displacement off by {100 * error:.2f} %, volume change by {100 * (mixed_volume - volume):.3f} %")
+        largest = max(largest, error)
+    return largest
+
+
+def floats(packed_shorts):
+    return [packed_shorts["scale"] * x for x in values(packed_shorts["base64"], "h")]
+
+
 def body(name, case, result, pictures):
     title, text, part_of = titles[name]
     fem = [p for p in pictures["pictures"] if p["model"] == "fem"]
@@ -58,6 +85,8 @@ def body(name, case, result, pictures):
     middle = lambda f: [sum(rest[3 * n + d] for n in f) / 3 for d in range(3)]
     uncertainty = {row["poisson_ratio"]: row["reference_uncertainty"] for row in result["rows"] if row["measure"] == "displacement_error"}
     volume = {row["poisson_ratio"]: row["reference"] for row in result["rows"] if row["measure"] == "volume_change"}
+    print(name)
+    answers = [(p["poisson_ratio"], floats(p["displacement"]), volume[p["poisson_ratio"]]) for p in fem]
     force = json.loads(re.search(r"force_N = (\[.*?\])", case["text"]).group(1))
     return {
         "name": name,
@@ -65,6 +94,7 @@ def body(name, case, result, pictures):
         "youngs_modulus": case["materials"][0]["youngs_modulus"],
         "pull": {"text": text, "force": force},
         "surface": {"points": points, "facets": packed([n for f in facets for n in f], "H"), "parts": packed([part_of(middle(f)) for f in facets], "B")},
+        "interpolation": interpolation_error(answers),
         "fem": [{"nu": p["poisson_ratio"], "volume_change": volume[p["poisson_ratio"]], "uncertainty": uncertainty[p["poisson_ratio"]],
                  "displacement": p["displacement"]} for p in fem],
     }
