@@ -82,6 +82,21 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> strain_matrix(const Matrix3d& F,
   return B;
 }
 
+// Gradients at all quadrature points, or stresses there; 3 q + j, i: du_i/dX_j.
+using PointTensors = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+// Column by column: for three of them Eigen's general product spends its time on packing.
+PointTensors gradients_of(const CellShape& shape, const Eigen::MatrixXd& u) {
+  PointTensors h(shape.gradients.rows(), 3);
+  for (int i = 0; i < 3; ++i) h.col(i).noalias() = shape.gradients * u.col(i);
+  return h;
+}
+
+// Forces of weighted first Piola-Kirchhoff stresses, each transposed.
+void add_forces(const CellShape& shape, const PointTensors& stress, Eigen::MatrixXd& f) {
+  for (int i = 0; i < 3; ++i) f.col(i).noalias() += shape.gradients.transpose() * stress.col(i);
+}
+
 // Displacement gradients, dilatations and pressures at all quadrature points.
 struct PointStates {
   std::vector<Matrix3d> h;
@@ -95,8 +110,9 @@ PointStates states(const CellLaw& law, const CellShape& shape, const CellVector&
   s.g.resize(n);
   s.p.resize(n);
   s.slope.resize(n);
+  const auto h = gradients_of(shape, x.u);
   for (int q = 0; q < n; ++q) {
-    s.h.emplace_back(x.u.transpose() * shape.gradients.middleRows<3>(3 * q).transpose());
+    s.h.emplace_back(h.middleRows<3>(3 * q).transpose());
     s.smallest = std::min(s.smallest, law.law ? (Matrix3d::Identity() + s.h[q]).determinant() : 1.0);
   }
   if (!(s.smallest > 0)) return s;
@@ -137,14 +153,21 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
   smallest = std::min(smallest, state.smallest);
   if (!(state.smallest > 0)) return r;
 
-  Eigen::MatrixXd B(6 * points, 3 * n), DB(6 * points, 3 * n), QB(points, 3 * n), GB(points, 3 * n);
+  Eigen::MatrixXd B, DB, QB, GB;
+  if (tangent) {
+    B.resize(6 * points, 3 * n);
+    DB.resize(6 * points, 3 * n);
+    QB.resize(points, 3 * n);
+    GB.resize(points, 3 * n);
+  }
+  PointTensors stress(3 * points, 3);
   std::vector<Matrix3d> stresses;
   for (int q = 0; q < points; ++q) {
     const double w = shape.weights[q];
     const auto dN = shape.gradients.middleRows<3>(3 * q);
     const PointResponse response = respond_at(law, state.h[q], state.p[q]);
     const Matrix3d S = tensor(response.S);
-    r.u += w * dN.transpose() * (response.F * S).transpose();
+    stress.middleRows<3>(3 * q) = w * S * response.F.transpose();
     if (law.form == Form::mixed)
       r.p += w * (state.g[q] - dilatation_of(law, state.p[q]).value) * shape.pressures.row(q).transpose();
     if (!tangent) continue;
@@ -155,6 +178,7 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
     QB.row(q) = response.Q.transpose() * b;
     GB.row(q) = response.G.transpose() * b;
   }
+  add_forces(shape, stress, r.u);
   if (!tangent) return r;
 
   tangent->uu = B.transpose() * DB;
@@ -182,16 +206,17 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
   const int n = shape.nodes(), points = shape.points();
   std::vector<Matrix3d> F(points), inverse(points);
   Eigen::VectorXd dilatation(points);  // its rate
+  const auto h = gradients_of(shape, u), h_rate = gradients_of(shape, rate);
+  PointTensors stress(3 * points, 3);
   for (int q = 0; q < points; ++q) {
-    const auto dN = shape.gradients.middleRows<3>(3 * q);
     F[q] = Matrix3d::Identity();
-    if (law.law) F[q] += u.transpose() * dN.transpose();
+    if (law.law) F[q] += h.middleRows<3>(3 * q).transpose();
     inverse[q] = F[q].inverse();
-    const Matrix3d F_rate = rate.transpose() * dN.transpose();
+    const Matrix3d F_rate = h_rate.middleRows<3>(3 * q).transpose();
     dilatation[q] = (F_rate * inverse[q]).trace();
     const Matrix3d product = F[q].transpose() * F_rate;
-    residual.u +=
-        viscosity * law.mu * shape.weights[q] * dN.transpose() * (F[q] * (product + product.transpose())).transpose();
+    stress.middleRows<3>(3 * q) =
+        viscosity * law.mu * shape.weights[q] * (product + product.transpose()) * F[q].transpose();
   }
   const auto weights = shape.weights.asDiagonal();
   const double scale = 1 + viscosity * per_rate;
@@ -200,9 +225,9 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
   } else {
     if (law.form == Form::mean_dilatation) dilatation.setConstant(dilatation.dot(shape.weights) / shape.weights.sum());
     for (int q = 0; q < points; ++q)
-      residual.u += viscosity * law.lambda * dilatation[q] * shape.weights[q] *
-                    shape.gradients.middleRows<3>(3 * q).transpose() * inverse[q];
+      stress.middleRows<3>(3 * q) += viscosity * law.lambda * dilatation[q] * shape.weights[q] * inverse[q];
   }
+  add_forces(shape, stress, residual.u);
   if (!tangent) return;
 
   Eigen::MatrixXd B(6 * points, 3 * n), DB(6 * points, 3 * n), traces(points, 3 * n);
