@@ -59,8 +59,9 @@ std::string stable_range_of_energy(const ModelParameters& p, const IsotropicMate
 
 BlockStability block_stability(const ModelParameters& parameters, const IsotropicMaterial& material, double cell_edge) {
   const bool planar = parameters.row.topology == Topology::hexagonal;
-  const Mesh mesh =
-      planar ? block_mesh(cell_edge * Vec3(6, 6, 1), {6, 6, 1}) : block_mesh(cell_edge * Vec3(3, 3, 3), {3, 3, 3});
+  const int n = planar || passes_patch_test(parameters.row) ? 6 : 3;  // fitted springs need nodes off the surface
+  const int layers = planar ? 1 : n;
+  const Mesh mesh = block_mesh(cell_edge * Vec3(n, n, layers), {n, n, layers});
   const MassSpringModel model = build_model(parameters, mesh, material);
   Eigen::MatrixXd K = dense_stiffness(model);
   if (planar) K = in_plane(K);

@@ -14,7 +14,8 @@ struct BlockStability {
                            ///< all are real
 };
 
-/// All eigenvalues of a free block of 3 x 3 x 3 cells (planar networks: 6 x 6) of edge `cell_edge` [m].
+/// All eigenvalues of a free block of 3 x 3 x 3 cells (springs fitted to the patch test: 6 x 6 x 6, planar networks:
+/// 6 x 6) of edge `cell_edge` [m].
 BlockStability block_stability(const ModelParameters& parameters, const IsotropicMaterial& material, double cell_edge);
 
 /// One line on where the model with this material is stable, and how that is known, for its actual weights and q.
