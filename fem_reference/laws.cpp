@@ -147,24 +147,17 @@ LawResponse respond(Law law, double mu, double p, const Matrix3& F) {
   const Eigen::Matrix3d& N = eigen.eigenvectors();
   const Principal r = principal(law, mu, p, c);
 
-  std::array<Vector6, 3> M;
-  Vector6 S = Vector6::Zero(), Q = S, G = S;
+  Eigen::Matrix<double, 6, 3> M, pairs;  // N_a N_a, and N_a N_b of each pair
+  Eigen::Vector3d of_pairs;
   for (int a = 0; a < 3; ++a) {
-    M[a] = symmetric_product(N.col(a), N.col(a));
-    S += r.s[a] * M[a];
-    Q += r.q[a] * M[a];
-    G += r.g[a] * M[a];
+    const int b = (a + 1) % 3;
+    M.col(a) = symmetric_product(N.col(a), N.col(a));
+    pairs.col(a) = symmetric_product(N.col(a), N.col(b));
+    of_pairs[a] = 2 * divided_difference(r, c, std::min(a, b), std::max(a, b));
   }
-  Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 6>::Zero();
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) D += r.d(a, b) * M[a] * M[b].transpose();
-  for (int a = 0; a < 3; ++a)
-    for (int b = a + 1; b < 3; ++b) {
-      const Vector6 mixed = symmetric_product(N.col(a), N.col(b));
-      D += 2 * divided_difference(r, c, a, b) * mixed * mixed.transpose();
-    }
-  LawResponse response{to_voigt(S), to_voigt(Q), to_voigt(G), {}};
-  for (int i = 0; i < 6; ++i) response.D[i] = to_voigt(D.row(i).transpose());
+  LawResponse response{to_voigt(M * r.s), to_voigt(M * r.q), to_voigt(M * r.g), {}};
+  using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  Eigen::Map<Rows>(response.D[0].data()) = M * r.d * M.transpose() + pairs * of_pairs.asDiagonal() * pairs.transpose();
   return response;
 }
 
