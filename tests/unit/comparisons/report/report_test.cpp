@@ -263,10 +263,11 @@ Json some_splits() {
 class FiguresInBrowser : public ReportInBrowser {
  protected:
   /// The page of embedded_case() with the parts of its errors and a script that runs after its own.
-  std::string open_with(const std::string& script, const std::string& fragment = "") {
+  std::string open_with(const std::string& script, const std::string& fragment = "",
+                        const std::string& options = whole_page) {
     Json results = document({embedded_case()});
     results["cases"][0]["splits"] = some_splits();
-    return ReportInBrowser::open_with(results, pictures({embedded_case()}), script, fragment);
+    return ReportInBrowser::open_with(results, pictures({embedded_case()}), script, fragment, options);
   }
 };
 
@@ -304,7 +305,8 @@ TEST_F(FiguresInBrowser, FirstScreenShowsTwoBodiesAndADotPerModelAndCase) {
       say('facts: ' + document.querySelector('#first-facts').textContent);
       endLoading();
     });
-  )js");
+  )js",
+                                    "", one_screen);
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("bodies drawn in 2"), std::string::npos) << said(dom);
   EXPECT_NE(dom.find("worst: hybmss, compress: 2.0 % at ν = 0.4; fem_p1, compress: 1.0 % at ν = 0.4<"),
@@ -330,7 +332,8 @@ TEST_F(FiguresInBrowser, ACasePageStartsWithTheBodyItsSupportsAndLoads) {
       viewer.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}));
       until(turned, () => { say(turned() ? 'turned' : 'still'); endLoading(); });
     });
-  )js");
+  )js",
+                                    "", one_screen);
   expect_no_complaint(dom);
   EXPECT_NE(dom.find("panels The problemheldmoved | FEM reference"), std::string::npos) << said(dom);
   EXPECT_NE(dom.find("then fail 1 of 2 hold. Largest displacement errors: hybmss 2.0 %"), std::string::npos)
@@ -355,6 +358,7 @@ TEST_F(FiguresInBrowser, OfASinglePoissonsRatioThereAreBarsInOrder) {
 TEST_F(FiguresInBrowser, OneDragTurnsAllBodies) {
   const std::string dom = open_with(tools + R"js(
     const viewer = document.querySelector('#shapes .viewer'), canvas = viewer.querySelector('canvas');
+    viewer.scrollIntoView({behavior: 'instant', block: 'center'});
     const panels = () => [...viewer.querySelectorAll('.panel')].map(panel => {
       const all = viewer.getBoundingClientRect(), box = panel.getBoundingClientRect(), scale = canvas.width / all.width;
       const copy = document.createElement('canvas');
@@ -374,7 +378,8 @@ TEST_F(FiguresInBrowser, OneDragTurnsAllBodies) {
         endLoading();
       });
     });
-  )js");
+  )js",
+                                    "", one_screen);
   expect_no_complaint(dom);
   EXPECT_EQ(count(dom, "<p class=\"said\">panel turned"), 3u);
   EXPECT_EQ(count(dom, "<p class=\"said\">panel still"), 0u);
