@@ -10,7 +10,10 @@ const state = {body: null, fem: null, nu: 0.45, E: 1e4, density: 1000, damping: 
 const frameBudget = 11;        // ms of springs per frame: the rest is for drawing
 const rampTime = 0.5;          // s of simulated time over which a stored pull grows
 const stress = E => E >= 1e6 ? `${number(E / 1e6, 3)} MPa` : E >= 1e3 ? `${number(E / 1e3, 3)} kPa` : `${number(E, 3)} Pa`;
-const percentText = (x, digits) => (x > 0 ? '+' : '') + minus((100 * x).toFixed(digits)) + ' %';
+const percentText = (x, digits) => {
+  const text = (100 * x).toFixed(digits);
+  return (Number(text) === 0 ? text.replace('-', '') : (x > 0 ? '+' : '') + minus(text)) + ' %';
+};
 
 let simulation, viewer, panels = [], view = null;
 
