@@ -1,8 +1,7 @@
 'use strict';
 // The first screen: two bodies, a dot for every model and case, and what the closest model costs.
 
-const namedClosest = (document.getElementById('first-bodies')?.dataset.closest || '').split('\n').filter(Boolean);
-const closestModels = () => namedClosest;
+const closestModels = (document.getElementById('first-bodies')?.dataset.closest || '').split('\n').filter(Boolean);
 /// The cases that the answer is about: the linear ones, or where there are none those of large deformation.
 const judgedCases = () => cases.some(result => result.linear) ? cases.filter(result => result.linear) : cases;
 
@@ -128,7 +127,7 @@ function dotPlot() {
   if (shown.length === 0) return box.remove();
   const nus = distinct(shown.flatMap(result => result.nus)).sort((a, b) => a - b);
   const ordinary = nus.filter(nu => nu >= 0), several = ordinary.length > 0 ? ordinary : nus;
-  const closest = closestModels(), compared = rankedMeasures.filter(measure => shown.some(result => result.measures.includes(measure)));
+  const closest = closestModels, compared = rankedMeasures.filter(measure => shown.some(result => result.measures.includes(measure)));
   const names = models.filter(model => shown.some(result => result.models.includes(model)));
   const axis = el('div', {class: 'dots'}), said = el('output', {});
   const slider = el('input', {type: 'range', min: 0, max: nus.length, value: 0, step: 1, 'aria-label': 'Poisson’s ratio', oninput: draw});
@@ -201,7 +200,7 @@ function firstFacts(model) {
 }
 
 function firstScreen() {
-  const [model] = closestModels();
+  const [model] = closestModels;
   for (const part of [() => firstFacts(model), dotPlot, () => firstBodies(model)]) {
     try {
       part();

@@ -69,7 +69,7 @@ function heldText(result) {
 
 /// The closest model and those of most cases get a column each, the others share one.
 function splitModels() {
-  const closest = closestModels(), byCases = model => cases.filter(c => c.models.includes(model)).length;
+  const closest = closestModels, byCases = model => cases.filter(c => c.models.includes(model)).length;
   const leading = [...models].sort((a, b) => closest.includes(b) - closest.includes(a) || byCases(b) - byCases(a)).slice(0, models.length > 6 ? 5 : 6);
   return {leading, others: models.filter(m => !leading.includes(m))};
 }

@@ -105,7 +105,7 @@ function markObjects(mark, body, box) {
 /// The model that the answer names, where it has a picture, else the first by its displacement error at this nu and these
 /// cells.
 function closestAt(result, pictures, nu, cells) {
-  const named = closestModels().find(model => pictures.some(p => p.model === model));
+  const named = closestModels.find(model => pictures.some(p => p.model === model));
   if (named) return named;
   const rows = result.rows.filter(row => row.measure === 'displacement_error' && row.poisson_ratio === nu && !isFem(row.model) &&
     cellsText(row.cells) === cells && isNumber(row.error));
