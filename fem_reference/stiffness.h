@@ -8,6 +8,8 @@
 #include <deal.II/matrix_free/fe_evaluation.h>
 #include <deal.II/matrix_free/matrix_free.h>
 
+#include <Eigen/SparseCore>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -122,6 +124,37 @@ class Stiffness : public dealii::Subscriptor {
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
       diagonal.local_element(i) = Number(1) / diagonal.local_element(i);
     return diagonal;
+  }
+
+  // The matrix of a level as contributions of its cells; ones on the diagonal of constrained rows.
+  std::vector<Eigen::Triplet<double>> entries() const {
+    std::vector<char> held(rows_, 0);
+    for (const unsigned int i : constrained_) held[i] = 1;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const unsigned int i : constrained_) entries.emplace_back(i, i, 1.0);
+    const auto& place = cells_.get_shape_info().lexicographic_numbering;
+    std::vector<dealii::types::global_dof_index> numbers(Cell::static_dofs_per_cell);
+    Cell u(cells_);
+    for (unsigned int batch = 0; batch < cells_.n_cell_batches(); ++batch) {
+      const unsigned int lanes = cells_.n_active_entries_per_cell_batch(batch);
+      std::array<std::array<unsigned int, Cell::static_dofs_per_cell>, Lanes<Number>::size()> row;
+      for (unsigned int lane = 0; lane < lanes; ++lane) {
+        cells_.get_cell_iterator(batch, lane)->get_mg_dof_indices(numbers);
+        for (unsigned int i = 0; i < Cell::static_dofs_per_cell; ++i) row[lane][i] = unsigned(numbers[place[i]]);
+      }
+      u.reinit(batch);
+      for (unsigned int j = 0; j < Cell::static_dofs_per_cell; ++j) {
+        for (unsigned int i = 0; i < Cell::static_dofs_per_cell; ++i) u.begin_dof_values()[i] = Number(i == j);
+        u.evaluate(gradients);
+        submit_stress(u);
+        u.integrate(gradients);
+        for (unsigned int lane = 0; lane < lanes; ++lane)
+          for (unsigned int i = 0; i < Cell::static_dofs_per_cell; ++i)
+            if (!held[row[lane][i]] && !held[row[lane][j]])
+              entries.emplace_back(row[lane][i], row[lane][j], u.begin_dof_values()[i][lane]);
+      }
+    }
+    return entries;
   }
 
   // Switches to the stiffness of the body deformed by u, integrated over the rest volume: gradients are taken in the

@@ -6,7 +6,7 @@
 #include <deal.II/multigrid/mg_constrained_dofs.h>
 #include <deal.II/multigrid/mg_transfer_matrix_free.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 #include <memory>
 #include <optional>
 
@@ -16,40 +16,35 @@
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
-// Cholesky factors of the matrix of a small level, found column by column; none if the level is too large, distributed
-// over processes, or numerically not positive definite.
-template <typename Level>
-class DenseInverse {
+// Sparse Cholesky factors of the matrix of the coarsest level; none where they would cost more than iterating on it
+// (`most_operations`), or where the matrix is distributed over processes or numerically not positive definite.
+class CoarsestInverse : Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> {
  public:
-  explicit DenseInverse(const Level& level) {
-    const Eigen::Index n = level.m();
-    auto x = level.vector(), y = level.vector();
-    if (n > largest || process_count() > 1) return;  // matrix products are collective
-    Eigen::MatrixXd K(n, n);
-    for (Eigen::Index column = 0; column < n; ++column) {
-      x.local_element(column) = 1;
-      level.vmult(y, x);
-      x.local_element(column) = 0;
-      for (Eigen::Index row = 0; row < n; ++row) K(row, column) = y.local_element(row);
-    }
-    factors_.compute(0.5 * (K + K.transpose()));
-    there_ = factors_.info() == Eigen::Success;
+  template <typename Level>
+  explicit CoarsestInverse(const Level& level) {
+    if (level.m() > most_rows || process_count() > 1) return;
+    Eigen::SparseMatrix<double> K(level.m(), level.m());
+    const auto entries = level.entries();
+    K.setFromTriplets(entries.begin(), entries.end());
+    analyzePattern(K);
+    if (m_nonZerosPerCol.cast<double>().squaredNorm() > most_operations) return;
+    factorize(K);
+    there_ = info() == Eigen::Success;
   }
   explicit operator bool() const { return there_; }
 
   template <typename V>
   void vmult(V& y, const V& x) const {
-    values_.resize(factors_.rows());
-    for (Eigen::Index i = 0; i < values_.size(); ++i) values_[i] = x.local_element(i);
-    factors_.solveInPlace(values_);
-    for (Eigen::Index i = 0; i < values_.size(); ++i) y.local_element(i) = float(values_[i]);
+    Eigen::VectorXd values(rows());
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = x.local_element(i);
+    values = solve(values).eval();
+    for (Eigen::Index i = 0; i < values.size(); ++i) y.local_element(i) = float(values[i]);
   }
 
  private:
-  static constexpr Eigen::Index largest = 1500;
+  static constexpr unsigned int most_rows = 30000;
+  static constexpr double most_operations = 5e8;  // half a second
 
-  Eigen::LLT<Eigen::MatrixXd> factors_;
-  mutable Eigen::VectorXd values_;
   bool there_ = false;
 };
 
@@ -141,7 +136,7 @@ class VCycle {
   dealii::MGTransferMatrixFree<3, float> transfer_;
   std::vector<std::unique_ptr<Level>> levels_;
   std::vector<std::unique_ptr<Smoother>> smoothers_;
-  std::optional<DenseInverse<Level>> coarsest_;
+  std::optional<CoarsestInverse> coarsest_;
   mutable dealii::MGLevelObject<Vector<float>> x_, b_, t_;
   mutable Vector<float> correction_;
 };
