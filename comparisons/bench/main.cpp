@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/bench/calculix.h"
 #include "comparisons/bench/dynamics.h"
 #include "comparisons/bench/engines.h"
 #include "comparisons/bench/experiments.h"
@@ -29,7 +30,8 @@ void add_options(CLI::App& app, BenchOptions& options) {
   app.add_option("WHAT", options.what,
                  "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
                  "damped dynamics), "
-                 "fem (the finite element reference), experiments (built-in cases), all of these; "
+                 "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
+                 "cases), all of these; "
                  "engines (real-time engines and our springs by the same measures; some 15 minutes)")
       ->required()
       ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "engines", "all"}));
@@ -77,7 +79,10 @@ void measure(const BenchOptions& options, Measured& m) {
     bench_dynamics(options, machine, findings);
   }
   if (wants(options, "experiments")) bench_experiments(options, findings);
-  if (wants(options, "fem")) fem = bench_fem(options, findings);
+  if (wants(options, "fem")) {
+    fem = bench_fem(options, findings);
+    if (!fem.is_null()) bench_calculix(options, findings);
+  }
   if (options.what == "engines") {
     if (options.install) install_packages();
     bench_engines(options, findings, engines);
