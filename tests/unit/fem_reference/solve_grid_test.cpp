@@ -147,6 +147,17 @@ std::string input_error(const fem::GridProblem& problem) {
   return "no error";
 }
 
+// The coarsest level of a slender body has thousands of unknowns and needs hundreds of products: it is factored.
+TEST(FemSolveGrid, ASlenderGridOfOneLevelIsSolvedDirectly) {
+  fem::GridProblem problem = test::fem_block({2.4, 0.4, 0.4}, {13, 2, 2}, 0, 2, 0.25);
+  problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, Gravity{{0, 0, -10}}};
+  problem.tolerance = 1e-8;
+  const fem::Solution solution = fem::solve_grid(problem);
+  ASSERT_TRUE(solution.ok) << solution.message;
+  EXPECT_GT(solution.degrees_of_freedom, 1500);
+  EXPECT_LE(solution.iterations, 3);  // the factors are of the matrix in single precision
+}
+
 TEST(FemSolveGrid, RefusesWhatCannotBeSolved) {
   const std::optional<double> is_free;
   fem::GridProblem problem = test::fem_block(size, {2, 2, 2}, 0, 1, 0.3);
