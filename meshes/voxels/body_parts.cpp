@@ -50,10 +50,10 @@ BodyParts::BodyParts(const VoxelGrid& grid, const Mesh& body) : grid_(grid), bod
     X_[n] = (body.nodes.row(n).transpose() - grid.origin) / grid.edge;
   for (const Tetrahedron& t : body.tetrahedra) {
     begin.push_back(static_cast<int>(cube.size()));
-    cut_by_lattice(TetrahedronCorners{X_[t[0]], X_[t[1]], X_[t[2]], X_[t[3]]}, grid.cells,
-                   [&](const std::array<int, 3>& at, const TetrahedronCorners& part) {
-                     if (volume_of(part) > 0) moments[find_or_add(cube_number(grid, at))].add(part);
-                   });
+    cut_by_cells(TetrahedronCorners{X_[t[0]], X_[t[1]], X_[t[2]], X_[t[3]]}, grid,
+                 [&](const std::array<int, 3>& at, const TetrahedronCorners& part) {
+                   if (volume_of(part) > 0) moments[find_or_add(cube_number(grid, at))].add(part);
+                 });
   }
   begin.push_back(static_cast<int>(cube.size()));
   connect();
@@ -74,6 +74,8 @@ std::array<int, 3> BodyParts::index(long at) const {
   return {static_cast<int>(at % grid_.cells[0]), static_cast<int>(row % grid_.cells[1]),
           static_cast<int>(row / grid_.cells[1])};
 }
+
+int BodyParts::size(long at) const { return cell_size(grid_, index(at)); }
 
 int BodyParts::find(int tetrahedron, long at) const {
   for (int p = begin[tetrahedron]; p < begin[tetrahedron + 1]; ++p)
@@ -98,7 +100,7 @@ long BodyParts::cube_beside(const TriangleCorners& part, int tetrahedron) const 
     if (std::abs(x - std::round(x)) < 4 * lattice_tolerance) x = std::round(x) + (inside[d] > x ? 0.5 : -0.5);
     at[d] = std::clamp(static_cast<int>(std::floor(x)), 0, grid_.cells[d] - 1);
   }
-  return cube_number(grid_, at);
+  return cube_number(grid_, cell_at(grid_, at));
 }
 
 int BodyParts::owner(const std::array<int, 3>& of) const {
@@ -111,7 +113,13 @@ int BodyParts::owner(const std::array<int, 3>& of) const {
 
 bool BodyParts::share_a_face(long a, long b) const {
   const std::array<int, 3> i = index(a), j = index(b);
-  return std::abs(i[0] - j[0]) + std::abs(i[1] - j[1]) + std::abs(i[2] - j[2]) == 1;
+  const int of_a = size(a), of_b = size(b);
+  int touching = 0, overlapping = 0;
+  for (int d = 0; d < 3; ++d) {
+    touching += i[d] + of_a == j[d] || j[d] + of_b == i[d];
+    overlapping += i[d] < j[d] + of_b && j[d] < i[d] + of_a;
+  }
+  return touching == 1 && overlapping == 2;
 }
 
 void BodyParts::connect() {
@@ -123,17 +131,16 @@ void BodyParts::connect() {
   for (std::size_t f = 0; f + 1 < facets_.size(); ++f) {
     if (facets_[f].nodes != facets_[f + 1].nodes) continue;
     const int a = facets_[f].tetrahedron, b = facets_[f + 1].tetrahedron;
-    cut_by_lattice(triangle(facets_[f].nodes), grid_.cells,
-                   [&](const std::array<int, 3>&, const TriangleCorners& part) {
-                     if (area_of(part) < least_area) return;
-                     const long at = cube_beside(part, a), beyond = cube_beside(part, b);
-                     const int p = find(a, at), q = find(b, beyond);
-                     if (p < 0 || q < 0) return;
-                     if (at == beyond)
-                       in_cube.push_back({p, q});
-                     else if (share_a_face(at, beyond))
-                       to_next.push_back({p, q});
-                   });
+    cut_by_cells_beside(triangle(facets_[f].nodes), grid_, [&](const std::array<int, 3>&, const TriangleCorners& part) {
+      if (area_of(part) < least_area) return;
+      const long at = cube_beside(part, a), beyond = cube_beside(part, b);
+      const int p = find(a, at), q = find(b, beyond);
+      if (p < 0 || q < 0) return;
+      if (at == beyond)
+        in_cube.push_back({p, q});
+      else if (share_a_face(at, beyond))
+        to_next.push_back({p, q});
+    });
   }
 }
 
@@ -147,6 +154,7 @@ BodyPieces::BodyPieces(const BodyParts& parts) {
     if (n < 0) {
       n = static_cast<int>(cube.size());
       cube.push_back(parts.cube[p]);
+      capacity.push_back(std::pow(parts.size(parts.cube[p]), 3));
       moments.emplace_back();
     }
     of_part[p] = n;
@@ -162,7 +170,7 @@ double BodyPieces::number_cells() {
   std::vector<char> large(n);
   double all = 0;
   for (std::size_t p = 0; p < n; ++p) {
-    large[p] = moments[p].volume >= least_fraction;
+    large[p] = moments[p].volume >= least_fraction * capacity[p];
     all += moments[p].volume;
   }
   UnitedNumbers together(n);

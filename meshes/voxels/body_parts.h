@@ -10,7 +10,7 @@
 
 namespace springproof {
 
-// All lengths in edges of the cubes, from the origin of the grid.
+// All lengths in edges of the grid's cubes, from its origin; a cell is known by the number of its lowest cube.
 
 /// Moments of a solid, to second order.
 struct SolidMoments {
@@ -30,6 +30,7 @@ class BodyParts {
   BodyParts(const VoxelGrid& grid, const Mesh& body);
 
   std::array<int, 3> index(long cube) const;  ///< (i,j,k) of a cube from its number
+  int size(long cube) const;                  ///< of the cell whose lowest cube that is
 
   /// Part of a tetrahedron in a cube; -1: none.
   int find(int tetrahedron, long cube) const;
@@ -80,6 +81,7 @@ struct BodyPieces {
   std::vector<long> cube;
   std::vector<SolidMoments> moments;
   std::vector<std::array<int, 2>> links;  ///< through faces
+  std::vector<double> capacity;           ///< volume of the cell that it is in
   std::vector<int> cell;                  ///< its number as a cell; -1: left out
 };
 

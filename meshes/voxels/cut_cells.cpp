@@ -19,43 +19,30 @@ namespace {
 constexpr double largest_loss = 0.02, noted_loss = 1e-3, noted_thin = 0.02;
 constexpr double thin = 0.75;  // 2 V / A in edges: sheets of that thickness, rods of twice that diameter
 
-/// Of a piece in a cube, from its moments about the origin of the grid.
-FilledPart part_in_cube(const SolidMoments& m, const std::array<int, 3>& cube) {
-  const Vec3 centre = Vec3(cube[0], cube[1], cube[2]) + Vec3::Constant(0.5);
-  return filled_part(
-      m.volume, m.first - m.volume * centre,
-      m.second - centre * m.first.transpose() - m.first * centre.transpose() + m.volume * centre * centre.transpose());
+/// Of a piece in a cell, from its moments about the origin of the grid.
+FilledPart part_in_cell(const SolidMoments& m, const std::array<int, 3>& at, double size) {
+  const Vec3 centre = Vec3(at[0], at[1], at[2]) + Vec3::Constant(size / 2);
+  return filled_part(m.volume / std::pow(size, 3), (m.first - m.volume * centre) / std::pow(size, 4),
+                     (m.second - centre * m.first.transpose() - m.first * centre.transpose() +
+                      m.volume * centre * centre.transpose()) /
+                         std::pow(size, 5));
 }
 
 /// Gives the cells corners: those on a face through which two cells are connected are the same.
 void number_points(const BodyPieces& pieces, CutBody& out) {
-  UnitedNumbers corners(8 * out.cells.size());
-  for (const auto& [p, q] : pieces.links) {
-    const int a = pieces.cell[p], b = pieces.cell[q];
-    if (a < 0 || b < 0) continue;
-    const std::array<int, 3>&i = out.cells[a].index, &j = out.cells[b].index;
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) {
-        bool same = true;
-        for (int d = 0; d < 3; ++d) same &= i[d] + hexahedron_corners[m][d] == j[d] + hexahedron_corners[n][d];
-        if (same) corners.unite(8 * a + m, 8 * b + n);
-      }
+  std::vector<LatticeCube> cubes;
+  for (const CutCell& c : out.cells) cubes.push_back({c.index, c.size});
+  std::vector<std::array<int, 2>> links;
+  for (const auto& [p, q] : pieces.links)
+    if (pieces.cell[p] >= 0 && pieces.cell[q] >= 0) links.push_back({pieces.cell[p], pieces.cell[q]});
+  JoinedCubes joined = join_cubes(cubes, links);
+  for (std::size_t c = 0; c < cubes.size(); ++c) out.cells[c].corners = joined.corners[c];
+  out.carried = std::move(joined.carried);
+  out.points.resize(static_cast<Eigen::Index>(joined.points.size()), 3);
+  for (std::size_t p = 0; p < joined.points.size(); ++p) {
+    const auto [i, j, k] = joined.points[p];
+    out.points.row(static_cast<Eigen::Index>(p)) = (out.grid.origin + out.grid.edge * Vec3(i, j, k)).transpose();
   }
-  std::vector<int> number(8 * out.cells.size(), -1);
-  std::vector<Vec3> points;
-  for (std::size_t c = 0; c < out.cells.size(); ++c)
-    for (int n = 0; n < 8; ++n) {
-      int& at = number[corners.of(static_cast<int>(8 * c + n))];
-      if (at < 0) {
-        at = static_cast<int>(points.size());
-        Vec3 x;
-        for (int d = 0; d < 3; ++d) x[d] = out.cells[c].index[d] + hexahedron_corners[n][d];
-        points.push_back(out.grid.origin + out.grid.edge * x);
-      }
-      out.cells[c].corners[n] = at;
-    }
-  out.points.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t p = 0; p < points.size(); ++p) out.points.row(static_cast<Eigen::Index>(p)) = points[p].transpose();
 }
 
 /// Quadrature on a triangle, exact to degree 4 (Strang and Fix, six points): barycentric coordinates and weights.
@@ -93,12 +80,12 @@ FilledPart filled_part(double volume, const Vec3& first, const Eigen::Matrix3d& 
 double PatchInCell::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
 
 Vec3 CutBody::centre(int cell) const {
-  const std::array<int, 3>& i = cells[cell].index;
-  return grid.origin + grid.edge * (Vec3(i[0], i[1], i[2]) + Vec3::Constant(0.5));
+  const auto& [i, j, k] = cells[cell].index;
+  return grid.origin + grid.edge * (Vec3(i, j, k) + Vec3::Constant(0.5 * cells[cell].size));
 }
 
 std::array<double, 8> CutBody::weights(int cell, const Vec3& point) const {
-  const Vec3 xi = (point - centre(cell)) / grid.edge;
+  const Vec3 xi = (point - centre(cell)) / (grid.edge * cells[cell].size);
   std::array<double, 8> w;
   for (int n = 0; n < 8; ++n) {
     w[n] = 1;
@@ -115,7 +102,7 @@ int CutBody::nearest_cell(const Vec3& point) const {
     for (int k = std::max(0, at[2] - rings); k <= std::min(grid.cells[2] - 1, at[2] + rings); ++k)
       for (int j = std::max(0, at[1] - rings); j <= std::min(grid.cells[1] - 1, at[1] + rings); ++j)
         for (int i = std::max(0, at[0] - rings); i <= std::min(grid.cells[0] - 1, at[0] + rings); ++i) {
-          const auto here = cells_of_.find(cube_number(grid, {i, j, k}));
+          const auto here = cells_of_.find(cube_number(grid, cell_at(grid, {i, j, k})));
           if (here == cells_of_.end()) continue;
           for (const int c : here->second)
             if (best < 0 || distance(c) < distance(best)) best = c;
@@ -127,7 +114,7 @@ int CutBody::nearest_cell(const Vec3& point) const {
 
 CutBody::Place CutBody::place(const Vec3& point) const {
   const auto tetrahedron = (*locator_)(point).cell;
-  const long cube = cube_number(grid, cube_at(grid, point));
+  const long cube = cube_number(grid, cell_at(grid, cube_at(grid, point)));
   int best = -1;
   double least = std::numeric_limits<double>::infinity();
   for (int p = part_begin_[tetrahedron]; p < part_begin_[tetrahedron + 1]; ++p) {
@@ -154,29 +141,29 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
     for (const auto& f : patch.facets) {
       if (f[3] >= 0) throw std::invalid_argument("voxels: a patch has facets with four corners");
       const int owner = parts.owner({f[0], f[1], f[2]});
-      cut_by_lattice(parts.triangle({f[0], f[1], f[2]}), out.grid.cells,
-                     [&](const std::array<int, 3>&, const TriangleCorners& part) {
-                       const Vec3 normal = l * l * (part[1] - part[0]).cross(part[2] - part[0]) / 2;
-                       if (normal.isZero(0)) return;
-                       const auto position = [&](const std::array<double, 3>& b) -> Vec3 {
-                         return out.grid.origin + l * (b[0] * part[0] + b[1] * part[1] + b[2] * part[2]);
-                       };
-                       const int p = parts.find(owner, parts.cube_beside(part, owner));
-                       int cell = p < 0 ? -1 : pieces.cell[pieces.of_part[p]];
-                       if (cell < 0) cell = nearest(position({1.0 / 3, 1.0 / 3, 1.0 / 3}));
-                       auto [at, is_new] = in_cell.try_emplace(cell);
-                       if (is_new) {
-                         at->second.cell = cell;
-                         at->second.normal.fill(Vec3::Zero());
-                       }
-                       for (const TrianglePoint& q : rule) {
-                         const std::array<double, 8> N = out.weights(cell, position(q.at));
-                         for (int n = 0; n < 8; ++n) {
-                           at->second.area[n] += q.weight * N[n] * normal.norm();
-                           at->second.normal[n] += q.weight * N[n] * normal;
-                         }
-                       }
-                     });
+      cut_by_cells_beside(parts.triangle({f[0], f[1], f[2]}), out.grid,
+                          [&](const std::array<int, 3>&, const TriangleCorners& part) {
+                            const Vec3 normal = l * l * (part[1] - part[0]).cross(part[2] - part[0]) / 2;
+                            if (normal.isZero(0)) return;
+                            const auto position = [&](const std::array<double, 3>& b) -> Vec3 {
+                              return out.grid.origin + l * (b[0] * part[0] + b[1] * part[1] + b[2] * part[2]);
+                            };
+                            const int p = parts.find(owner, parts.cube_beside(part, owner));
+                            int cell = p < 0 ? -1 : pieces.cell[pieces.of_part[p]];
+                            if (cell < 0) cell = nearest(position({1.0 / 3, 1.0 / 3, 1.0 / 3}));
+                            auto [at, is_new] = in_cell.try_emplace(cell);
+                            if (is_new) {
+                              at->second.cell = cell;
+                              at->second.normal.fill(Vec3::Zero());
+                            }
+                            for (const TrianglePoint& q : rule) {
+                              const std::array<double, 8> N = out.weights(cell, position(q.at));
+                              for (int n = 0; n < 8; ++n) {
+                                at->second.area[n] += q.weight * N[n] * normal.norm();
+                                at->second.normal[n] += q.weight * N[n] * normal;
+                              }
+                            }
+                          });
     }
     auto& list = out.patches[patch.name];
     for (auto& [cell, piece] : in_cell) list.push_back(piece);
@@ -188,25 +175,27 @@ double thin_fraction(const Mesh& body, const BodyParts& parts, const BodyPieces&
   std::map<long, std::array<double, 2>> in_cube;  // volume and area
   for (std::size_t p = 0; p < pieces.cube.size(); ++p) in_cube[pieces.cube[p]][0] += pieces.moments[p].volume;
   for (const OuterFacet& f : outer_facets(body))
-    cut_by_lattice(parts.triangle({f.nodes[0], f.nodes[1], f.nodes[2]}), grid.cells,
-                   [&](const std::array<int, 3>& at, const TriangleCorners& part) {
-                     in_cube[cube_number(grid, at)][1] += area_of(part);
-                   });
+    cut_by_cells_beside(parts.triangle({f.nodes[0], f.nodes[1], f.nodes[2]}), grid,
+                        [&](const std::array<int, 3>& at, const TriangleCorners& part) {
+                          in_cube[cube_number(grid, at)][1] += area_of(part);
+                        });
   double all = 0, in_thin = 0;
   for (const auto& [cube, here] : in_cube) {
     const std::array<int, 3> at = parts.index(cube);
+    const int size = parts.size(cube);
     double volume = 0, surface = 0;
     for (int n = 0; n < 27; ++n) {
-      const std::array<int, 3> near = {at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
+      const std::array<int, 3> near = {at[0] + size * (n % 3 - 1), at[1] + size * (n / 3 % 3 - 1),
+                                       at[2] + size * (n / 9 - 1)};
       bool in_grid = true;
       for (int d = 0; d < 3; ++d) in_grid &= near[d] >= 0 && near[d] < grid.cells[d];
-      const auto found = in_grid ? in_cube.find(cube_number(grid, near)) : in_cube.end();
+      const auto found = in_grid ? in_cube.find(cube_number(grid, cell_at(grid, near))) : in_cube.end();
       if (found == in_cube.end()) continue;
       volume += found->second[0];
       surface += found->second[1];
     }
     all += here[0];
-    if (2 * volume < thin * surface) in_thin += here[0];
+    if (2 * volume < thin * size * surface) in_thin += here[0];
   }
   return in_thin / all;
 }
@@ -241,7 +230,8 @@ CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
   for (std::size_t p = 0; p < pieces.cube.size(); ++p) {
     if (pieces.cell[p] < 0) continue;
     const std::array<int, 3> at = parts.index(pieces.cube[p]);
-    out.cells[pieces.cell[p]] = {at, {}, part_in_cube(pieces.moments[p], at)};
+    const int size = parts.size(pieces.cube[p]);
+    out.cells[pieces.cell[p]] = {at, {}, part_in_cell(pieces.moments[p], at, size), size};
   }
   for (std::size_t c = 0; c < out.cells.size(); ++c)
     out.cells_of_[cube_number(grid, out.cells[c].index)].push_back(static_cast<int>(c));

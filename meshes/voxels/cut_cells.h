@@ -10,16 +10,18 @@
 #include "meshes/locate/tetrahedron_locator.h"
 #include "meshes/mesh.h"
 #include "meshes/voxels/filled_part.h"
+#include "meshes/voxels/joined_cubes.h"
 #include "meshes/voxels/voxelise.h"
 
 namespace springproof {
 
 /// A connected part of the body within one cube.
 struct CutCell {
-  std::array<int, 3> index;  ///< of the cube
+  std::array<int, 3> index;  ///< of the cube; of a larger one, of the lowest cube of the grid in it
   Hexahedron corners;        ///< points of the lattice; two parts of one cube share only corners through which they are
                              ///< connected outside it
   FilledPart filled;         ///< what the body fills of the cube
+  int size = 1;              ///< edge of the cube, in edges of the grid
 };
 
 /// The part of a patch in one cell, by the trilinear weights N_a of the cell's corners.
@@ -36,6 +38,7 @@ class CutBody {
  public:
   VoxelGrid grid;                                           ///< of the cubes
   NodalVectors points;                                      ///< corners of the cells [m]
+  std::vector<CarriedPoint> carried;                        ///< those in edges and faces of larger cells
   std::vector<CutCell> cells;                               ///< by layers: x fastest, then y, then z
   std::map<std::string, std::vector<PatchInCell>> patches;  ///< by name
   std::vector<std::string> notes;                           ///< what was left out or is too thin, for the user

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "meshes/voxels/voxelise.h"
 #include "problem/vector.h"
 
 namespace springproof {
@@ -100,6 +101,41 @@ void cut_by_lattice(const Simplex& s, const std::array<int, 3>& cells, const Act
   }
   const auto further = [&](const Simplex& part) { cut_by_lattice(part, cells, act, axis, cube); };
   cut_at(s, axis, (first + last + 1) / 2, further, further);
+}
+
+/// The same for the cells of a grid, which may be of several sizes; act(lowest cube of a cell, part).
+template <class Simplex, class Act>
+void cut_by_cells(const Simplex& s, const VoxelGrid& grid, const Act& act, std::array<int, 3> at = {}, int size = 0) {
+  if (grid.doubled.empty()) return cut_by_lattice(s, grid.cells, act);
+  if (size == 0)
+    for (size = 1; size < *std::max_element(grid.cells.begin(), grid.cells.end());) size *= 2;
+  if (cell_size(grid, at) >= size) return act(at, s);
+  const auto halve = [&](const auto& self, const Simplex& part, int axis, const std::array<int, 3>& low) -> void {
+    if (axis == 3) return cut_by_cells(part, grid, act, low, size / 2);
+    std::array<int, 3> high = low;
+    high[axis] += size / 2;
+    const auto below = [&](const Simplex& p) { self(self, p, axis + 1, low); };
+    if (high[axis] >= grid.cells[axis]) return below(part);
+    cut_at(part, axis, high[axis], below, [&](const Simplex& p) { self(self, p, axis + 1, high); });
+  };
+  halve(halve, s, 0, at);
+}
+
+/// A triangle is cut by the cells on both sides of the plane that it lies in.
+template <class Act>
+void cut_by_cells_beside(const TriangleCorners& t, const VoxelGrid& grid, const Act& act) {
+  cut_by_cells(t, grid, [&](const std::array<int, 3>& at, const TriangleCorners& part) {
+    for (int d = 0; d < 3; ++d) {
+      const auto is_low = [&](const Vec3& x) { return std::abs(x[d] - at[d]) <= lattice_tolerance; };
+      if (at[d] == 0 || !std::all_of(part.begin(), part.end(), is_low)) continue;
+      std::array<int, 3> below = at;
+      const int size = cell_size(grid, at);
+      below[d] -= size;
+      return cut_by_cells(
+          part, grid, [&](const std::array<int, 3>&, const TriangleCorners& piece) { act(at, piece); }, below, size);
+    }
+    act(at, part);
+  });
 }
 
 }  // namespace springproof

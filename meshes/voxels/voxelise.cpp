@@ -224,6 +224,15 @@ class CubeMesh {
 
 }  // namespace
 
+int cell_size(const VoxelGrid& grid, const std::array<int, 3>& cube) {
+  return grid.doubled.empty() ? 1 : 1 << grid.doubled[cube_number(grid, cube)];
+}
+
+std::array<int, 3> cell_at(const VoxelGrid& grid, const std::array<int, 3>& cube) {
+  const int size = cell_size(grid, cube);
+  return {cube[0] - cube[0] % size, cube[1] - cube[1] % size, cube[2] - cube[2] % size};
+}
+
 long cube_number(const VoxelGrid& grid, const std::array<int, 3>& at) {
   return (long(at[2]) * grid.cells[1] + at[1]) * grid.cells[0] + at[0];
 }

@@ -13,10 +13,17 @@ struct VoxelGrid {
   Vec3 origin = Vec3::Zero();            ///< [m]
   double edge = 0;                       ///< [m]
   std::array<int, 3> cells = {0, 0, 0};  ///< numbers of cubes along x, y and z
+  /// Of cut_body(): per cube how often the edge of the cell that holds it is doubled; the numbers of cubes are
+  /// multiples of the largest cell.  Empty: cells are cubes.
+  std::vector<unsigned char> doubled = {};
 };
 
 /// Number of cube (i,j,k), x fastest.
 long cube_number(const VoxelGrid& grid, const std::array<int, 3>& cube);
+/// Edge of the cell that holds a cube, in edges of cubes.
+int cell_size(const VoxelGrid& grid, const std::array<int, 3>& cube);
+/// The lowest cube of the cell that holds a cube.
+std::array<int, 3> cell_at(const VoxelGrid& grid, const std::array<int, 3>& cube);
 /// The cube (i,j,k) that holds a point; of a point outside the nearest one.
 std::array<int, 3> cube_at(const VoxelGrid& grid, const Vec3& point);
 
