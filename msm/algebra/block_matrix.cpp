@@ -14,6 +14,23 @@ BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& coupled) {
   blocks_.assign(column_.size(), Blocks::Zero());
 }
 
+BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& coupled, Carriers carriers) : BlockMatrix(coupled) {
+  carriers_ = std::move(carriers);
+}
+
+BlockMatrix::BlockMatrix(const Network& network)
+    : BlockMatrix(coupled_through(carriers_of(network.nodes(), network.carried), coupled_nodes(network)),
+                  carriers_of(network.nodes(), network.carried)) {}
+
+void BlockMatrix::hand_on(int i, int j, const Eigen::Matrix3d& block) {
+  const auto for_each_carrier = [&](int n, const auto& act) {
+    if (carriers_[n].empty()) act(n, 1.0);
+    for (const auto& [p, w] : carriers_[n]) act(p, w);
+  };
+  for_each_carrier(
+      i, [&](int p, double v) { for_each_carrier(j, [&](int q, double w) { blocks_[find(p, q)] += v * w * block; }); });
+}
+
 void BlockMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Blocks::Zero()); }
 
 std::size_t BlockMatrix::find(int i, int j) const {
@@ -73,6 +90,27 @@ void sort_unique(std::vector<std::vector<int>>& rows) {
 }
 
 }  // namespace
+
+std::vector<std::vector<int>> coupled_through(const Carriers& carriers, const std::vector<std::vector<int>>& coupled) {
+  if (carriers.empty()) return coupled;
+  std::vector<std::vector<int>> through(coupled.size());
+  std::vector<int> columns;
+  for (std::size_t i = 0; i < coupled.size(); ++i) {
+    columns.clear();
+    for (const int j : coupled[i]) {
+      if (carriers[j].empty()) columns.push_back(j);
+      for (const auto& [q, w] : carriers[j]) columns.push_back(q);
+    }
+    const auto couple = [&](std::size_t p) { through[p].insert(through[p].end(), columns.begin(), columns.end()); };
+    if (carriers[i].empty())
+      couple(i);
+    else
+      through[i] = {static_cast<int>(i)};
+    for (const auto& [p, w] : carriers[i]) couple(static_cast<std::size_t>(p));
+  }
+  sort_unique(through);
+  return through;
+}
 
 std::vector<std::vector<int>> coupled_nodes(int nodes, const std::vector<Hexahedron>& cells) {
   std::vector<std::vector<int>> coupled(nodes);

@@ -19,6 +19,13 @@ class BlockMatrix {
   /// Pattern: for each node the nodes it couples to, ascending, itself included.
   explicit BlockMatrix(const std::vector<std::vector<int>>& coupled);
 
+  /// The same for points of which some are carried: what is added in their rows and columns is handed to those that
+  /// carry them, and theirs stay empty.  `coupled`: coupled_through() of the carriers.
+  BlockMatrix(const std::vector<std::vector<int>>& coupled, Carriers carriers);
+
+  /// Of a network's nodes.
+  explicit BlockMatrix(const Network& network);
+
   /// Number of block rows.
   int nodes() const { return static_cast<int>(row_begin_.size()) - 1; }
   /// Number of stored blocks.
@@ -26,7 +33,12 @@ class BlockMatrix {
   void set_zero();  ///< the pattern stays
 
   /// Adds to block (i, j), which must be in the pattern.
-  void add(int i, int j, const Eigen::Matrix3d& block) { blocks_[find(i, j)] += block; }
+  void add(int i, int j, const Eigen::Matrix3d& block) {
+    if (carriers_.empty() || (carriers_[i].empty() && carriers_[j].empty()))
+      blocks_[find(i, j)] += block;
+    else
+      hand_on(i, j, block);
+  }
 
   /// Block (i, j), which must be in the pattern.
   const Blocks& at(int i, int j) const { return blocks_[find(i, j)]; }
@@ -42,14 +54,19 @@ class BlockMatrix {
 
  private:
   std::size_t find(int i, int j) const;
+  void hand_on(int i, int j, const Eigen::Matrix3d& block);
 
   std::vector<int> row_begin_ = {0};
   std::vector<int> column_;
   std::vector<Blocks> blocks_;
+  Carriers carriers_;  ///< empty: no point is carried
 };
 
 /// For each node of a network the nodes that share a spring, a triangle or a cell with it, itself included, ascending.
 std::vector<std::vector<int>> coupled_nodes(const Network& network);
+
+/// The pattern of the points that carry the others; a carried point couples to itself.
+std::vector<std::vector<int>> coupled_through(const Carriers& carriers, const std::vector<std::vector<int>>& coupled);
 
 /// The same for cells alone.
 std::vector<std::vector<int>> coupled_nodes(int nodes, const std::vector<Hexahedron>& cells);

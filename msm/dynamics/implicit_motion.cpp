@@ -121,7 +121,7 @@ void ImplicitMotion::renew(const Formula& step, const NodalVectors& x1) {
     return;
   }
   ++factorisations_;
-  if (K_.local.nodes() == 0) K_.local = BlockMatrix(coupled_nodes(model_.network));
+  if (K_.local.nodes() == 0) K_.local = BlockMatrix(model_.network);
   update_tangent(model_, x1, K_);
   scale_ = step.of_stiffness;
   const double a = prepared_for_ / scale_;

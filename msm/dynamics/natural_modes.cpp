@@ -145,6 +145,7 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
 
 NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta,
                            int count) {
+  require_cells_of_one_size(model.network, "natural modes");
   const double start = cpu_seconds();
   NaturalModes modes;
   if (!conservative(model))

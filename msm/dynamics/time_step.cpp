@@ -147,6 +147,7 @@ double averaged_frequency_squared(const AveragedSprings& law, const Network& net
 
 double safe_time_step(const MassSpringModel& model, double density, bool lagged) {
   const Network& network = model.network;
+  require_cells_of_one_size(network, "time step");
   const Eigen::VectorXd mass = checked_masses(network, density);
   const bool cells =
       !network.cell_springs.empty() && std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);

@@ -196,6 +196,7 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
     prescribe(load, number, held, network.X, kinematics, factor, bc);
   });
   bc.external = network_forces(loads, mesh, embedding, network.X, density, factor);
+  hand_back(network.carried, bc.external);
   if (!network.triangles.empty())
     for (int n = 0; n < network.nodes(); ++n) bc.fixed[3 * n + 2] = 1;
   return bc;

@@ -1,5 +1,6 @@
 #include "msm/embedding/cut_lattice.h"
 
+#include <cmath>
 #include <set>
 
 namespace springproof {
@@ -30,7 +31,7 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
       Anchor anchor{body.cells[p.cell].corners,
                     {},
                     corners + static_cast<int>(anchored.size()),
-                    anchor_stiffness * youngs_modulus * area / l};
+                    anchor_stiffness * youngs_modulus * area / (l * body.cells[p.cell].size)};
       Vec3 centroid = Vec3::Zero();
       for (int n = 0; n < 8; ++n) {
         anchor.weights[n] = p.area[n] / area;
@@ -47,8 +48,11 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
   for (const CutCell& cell : body.cells) {
     network.cells.push_back(cell.corners);
     network.filled.push_back(cell.filled);
-    for (const int n : cell.corners) network.volume[n] += cell.filled.fraction * l * l * l / 8;
+    network.cell_edges.push_back(l * cell.size);
+    for (const int n : cell.corners) network.volume[n] += cell.filled.fraction * std::pow(l * cell.size, 3) / 8;
   }
+  network.carried = body.carried;
+  if (body.grid.doubled.empty()) network.cell_edges.clear();
   return network;
 }
 
@@ -63,10 +67,17 @@ Embedding embed(const CutBody& body, const std::vector<std::string>& held, const
     for (int n = 0; n < 8; ++n)
       if (std::abs(weights[n]) > least_weight) entries.emplace_back(node, body.cells[cell].corners[n], weights[n]);
   };
+  const auto holds = [&](int cell, const Vec3& point) {  // of one size, cells continue to the nodes of their cube
+    const double half = body.grid.edge * body.cells[cell].size * (0.5 + 1e-9);
+    return body.grid.doubled.empty() || (point - body.centre(cell)).cwiseAbs().maxCoeff() <= half;
+  };
   for (const Hexahedron& cube : mesh.hexahedra) {
     const Vec3 middle = (mesh.nodes.row(cube[0]) + mesh.nodes.row(cube[6])).transpose() / 2;
     const int cell = body.place(middle).cell;
-    for (const int n : cube) follow(n, cell);
+    for (const int n : cube) {
+      const Vec3 X = mesh.nodes.row(n).transpose();
+      if (!done[n]) follow(n, holds(cell, X) ? cell : body.place(X).cell);
+    }
   }
   for (const Tetrahedron& t : mesh.tetrahedra)
     for (const int n : t)
@@ -74,10 +85,11 @@ Embedding embed(const CutBody& body, const std::vector<std::string>& held, const
   e.weights.resize(mesh.nodes.rows(), network.X.rows());
   e.weights.setFromTriplets(entries.begin(), entries.end());
 
-  const double volume = network.cell_volume();
   e.volumes = Eigen::VectorXd::Zero(network.X.rows());
-  for (const CutCell& cell : body.cells)
+  for (const CutCell& cell : body.cells) {
+    const double volume = std::pow(body.grid.edge * cell.size, 3);
     for (int n = 0; n < 8; ++n) e.volumes[cell.corners[n]] += volume * weight_of_corner(cell.filled, n);
+  }
   for (const auto& [name, parts] : body.patches) {
     PatchShares shares{Eigen::VectorXd::Zero(network.X.rows()), NodalVectors::Zero(network.X.rows(), 3)};
     for (const PatchInCell& p : parts)

@@ -231,6 +231,7 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
+  require_cells_of_one_size(network, "springs file");
   out.document.head = {{"format", springs_format},
                        {"version", network.filled.empty() ? springs_version : springs_version_of_cut_cells}};
   out.at({"origin"}) = origin_json(springs.origin);

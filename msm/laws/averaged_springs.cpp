@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 
 #include "msm/laws/hourglass_correction.h"
 
@@ -160,27 +162,34 @@ CellMatrix tangent_of(const CellForm& form, const Deformed& s) {
   return K;
 }
 
-/// Calls act(cell, make(its filled part)); that of full cells is made once.
+/// Calls act(cell, make(its edge, its filled part)); that of full cells of one size is made once.
 template <class Make, class Act>
 void for_each_cell(const Network& network, const Make& make, const Act& act) {
-  const auto full = make(FilledPart{});
-  for (std::size_t c = 0; c < network.cells.size(); ++c)
-    if (const FilledPart& part = part_of(network, c); part.fraction == 1)
-      act(network.cells[c], full);
-    else
-      act(network.cells[c], make(part));
+  std::map<double, decltype(make(1.0, FilledPart{}))> full;
+  auto last = full.end();
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const FilledPart& part = part_of(network, c);
+    const double edge = network.edge(c);
+    if (part.fraction != 1) {
+      act(network.cells[c], make(edge, part));
+      continue;
+    }
+    if (last == full.end() || last->first != edge) last = full.find(edge);
+    if (last == full.end()) last = full.emplace(edge, make(edge, part)).first;
+    act(network.cells[c], last->second);
+  }
 }
 
 template <class Act>
 void for_each_shape(const Network& network, const Act& act) {
   for_each_cell(
-      network, [&](const FilledPart& part) { return CellShape(network.cell_edge, part); }, act);
+      network, [](double edge, const FilledPart& part) { return CellShape(edge, part); }, act);
 }
 
 template <class Act>
 void for_each_stiffness(const AveragedSprings& law, const Network& network, const Act& act) {
   for_each_cell(
-      network, [&](const FilledPart& part) { return law.cell_matrix(network.cell_edge, part); }, act);
+      network, [&](double edge, const FilledPart& part) { return law.cell_matrix(edge, part); }, act);
 }
 
 /// Sum over the corners of a cell of a nodal field times their mean gradients: of positions, F.
@@ -352,8 +361,8 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
   else
     for_each_cell(
         network,
-        [&](const FilledPart& part) {
-          return std::pair(cell_form(*this, network.cell_edge, part), CellShape(network.cell_edge, part));
+        [&](double edge, const FilledPart& part) {
+          return std::pair(cell_form(*this, edge, part), CellShape(edge, part));
         },
         [&](const Hexahedron& cell, const auto& of) {
           add(cell, tangent_of(of.first, Deformed(*this, of.second, corners_of(cell, x), Derivative::second)));
@@ -362,11 +371,11 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
 
 CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x) {
   const FilledPart& part = part_of(network, cell);
-  const std::array<Vec3, 8> g = mean_gradients(network.cell_edge, part);
+  const std::array<Vec3, 8> g = mean_gradients(network.edge(cell), part);
   const Eigen::Matrix3d F = mean_gradient(network.cells[cell], g, x);
   Eigen::Matrix3d cofactor;
   for (int i = 0; i < 3; ++i) cofactor.col(i) = F.col((i + 1) % 3).cross(F.col((i + 2) % 3));
-  const double volume = part.fraction * network.cell_volume();
+  const double volume = part.fraction * std::pow(network.edge(cell), 3);
   CellVolume result{volume * F.determinant(), {}};
   for (int n = 0; n < 8; ++n) result.gradient.segment<3>(3 * n) = volume * cofactor * g[n];
   return result;
@@ -376,11 +385,11 @@ void add_volume_curvature(const Network& network, std::size_t cell, const NodalV
                           BlockMatrix& K) {
   const FilledPart& part = part_of(network, cell);
   const Hexahedron& corners = network.cells[cell];
-  const std::array<Vec3, 8> g = mean_gradients(network.cell_edge, part);
+  const std::array<Vec3, 8> g = mean_gradients(network.edge(cell), part);
   const Eigen::Matrix3d F = mean_gradient(corners, g, x);
+  const double pressure_on_all = pressure * part.fraction * std::pow(network.edge(cell), 3);
   for (int m = 0; m < 8; ++m)
-    for (int n = 0; n < 8; ++n)
-      K.add(corners[m], corners[n], volume_curvature(pressure * part.fraction * network.cell_volume(), F, g[m], g[n]));
+    for (int n = 0; n < 8; ++n) K.add(corners[m], corners[n], volume_curvature(pressure_on_all, F, g[m], g[n]));
 }
 
 VolumeChange volume_change(const Network& network, const NodalVectors& u) {
@@ -389,11 +398,13 @@ VolumeChange volume_change(const Network& network, const NodalVectors& u) {
   const std::array<Vec3, 8> of_full = mean_gradients(network.cell_edge, {});
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const FilledPart& part = part_of(network, c);
-    const std::array<Vec3, 8> g = part.fraction == 1 ? of_full : mean_gradients(network.cell_edge, part);
+    const double edge = network.edge(c), own = part.fraction * std::pow(edge / network.cell_edge, 3);
+    const bool known = part.fraction == 1 && edge == network.cell_edge;
+    const std::array<Vec3, 8> g = known ? of_full : mean_gradients(edge, part);
     const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + mean_gradient(network.cells[c], g, u);
-    volume += part.fraction;
-    change.first_order += part.fraction * (F.trace() - 3);
-    change.exact += part.fraction * (F.determinant() - 1);
+    volume += own;
+    change.first_order += own * (F.trace() - 3);
+    change.exact += own * (F.determinant() - 1);
   }
   return {change.first_order / volume, change.exact / volume};
 }

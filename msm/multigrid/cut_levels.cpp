@@ -12,10 +12,18 @@ namespace {
 
 constexpr std::size_t smallest_cut_level = 300;  // points
 
-std::array<int, 3> lattice_corner(const std::array<int, 3>& cell, int n) {
-  return {cell[0] + hexahedron_corners[n][0], cell[1] + hexahedron_corners[n][1], cell[2] + hexahedron_corners[n][2]};
+/// The smallest cubes become their parents; others stay.  In edges of the coarser level.
+LatticeCube parent_of(const LatticeCube& c) {
+  return {{c.at[0] >> 1, c.at[1] >> 1, c.at[2] >> 1}, std::max(1, c.size / 2)};
 }
-std::array<int, 3> parent_of(const std::array<int, 3>& i) { return {i[0] >> 1, i[1] >> 1, i[2] >> 1}; }
+
+/// Trilinear weight of corner n of a cube at a place in half edges.
+double weight_at(const LatticeCube& cube, int n, const std::array<int, 3>& place) {
+  const std::array<int, 3> corner = cube.corner(n);
+  double w = 1;
+  for (int d = 0; d < 3; ++d) w *= std::max(0.0, 1 - std::abs(place[d] - 2.0 * corner[d]) / (2 * cube.size));
+  return w;
+}
 
 /// Moments about the middle of a cube, in its edges: volume, first, second.
 struct ChildMoments {
@@ -46,65 +54,70 @@ std::vector<std::vector<int>> cells_at_points(const CutLevel& level) {
   return at;
 }
 
+/// Pairs of cells that share a point, or of which one carries a point of the other.
+std::vector<std::array<int, 2>> neighbours(const CutLevel& level, const std::vector<std::vector<int>>& at_point) {
+  std::vector<std::array<int, 2>> pairs;
+  for (const std::vector<int>& cells : at_point)
+    for (const int c : cells)
+      if (c != cells.front()) pairs.push_back({c, cells.front()});
+  for (const CarriedPoint& p : level.carried)
+    for (const int carrier : at_point[p.by.front()]) {
+      const Hexahedron& all = level.corners[carrier];
+      if (std::all_of(p.by.begin(), p.by.end(),
+                      [&](int q) { return std::find(all.begin(), all.end(), q) != all.end(); }))
+        for (const int c : at_point[p.point]) pairs.push_back({c, carrier});
+    }
+  return pairs;
+}
+
 /// The cells of twice the edge: children of one cube that share points are one cell, and cells whose children share
 /// points share their corners.
 CutLevel coarsen(CutLevel& fine) {
   const auto at_point = cells_at_points(fine);
-  UnitedNumbers family(fine.index.size());
+  UnitedNumbers family(fine.cubes.size());
+  const auto are_siblings = [&](const LatticeCube& a, const LatticeCube& b) {
+    return a.size == 1 && b.size == 1 && parent_of(a).at == parent_of(b).at;
+  };
   for (const std::vector<int>& cells : at_point)
     for (const int c : cells)
       for (const int d : cells)
-        if (d < c && parent_of(fine.index[c]) == parent_of(fine.index[d])) family.unite(c, d);
+        if (d < c && are_siblings(fine.cubes[c], fine.cubes[d])) family.unite(c, d);
 
   CutLevel coarse;
   coarse.edge = 2 * fine.edge;
   std::vector<int>& parent = fine.parent;
-  parent.assign(fine.index.size(), -1);
+  parent.assign(fine.cubes.size(), -1);
   std::vector<ChildMoments> moments;
-  for (std::size_t c = 0; c < fine.index.size(); ++c) {
+  for (std::size_t c = 0; c < fine.cubes.size(); ++c) {
     const int head = family.of(static_cast<int>(c));
     if (parent[head] < 0) {
-      parent[head] = static_cast<int>(moments.size());
+      parent[head] = static_cast<int>(coarse.cubes.size());
+      coarse.cubes.push_back(parent_of(fine.cubes[c]));
+      coarse.filled.push_back(fine.filled[c]);
       moments.emplace_back();
-      coarse.index.push_back(parent_of(fine.index[c]));
     }
     parent[c] = parent[head];
-    moments[parent[c]].add_child(fine.filled[c], fine.index[c]);
+    if (fine.cubes[c].size == 1) moments[parent[c]].add_child(fine.filled[c], fine.cubes[c].at);
   }
-  for (const ChildMoments& m : moments) coarse.filled.push_back(filled_part(m.volume, m.first, m.second));
+  for (std::size_t c = 0; c < moments.size(); ++c)
+    if (const ChildMoments& m = moments[c]; m.volume > 0) coarse.filled[c] = filled_part(m.volume, m.first, m.second);
 
-  UnitedNumbers corner(8 * coarse.index.size());
-  for (const std::vector<int>& cells : at_point)
-    for (const int c : cells) {
-      const int a = parent[c], b = parent[cells.front()];
-      if (a == b) continue;
-      for (int m = 0; m < 8; ++m)
-        for (int n = 0; n < 8; ++n)
-          if (lattice_corner(coarse.index[a], m) == lattice_corner(coarse.index[b], n))
-            corner.unite(8 * a + m, 8 * b + n);
-    }
-  std::vector<int> number(8 * coarse.index.size(), -1);
-  coarse.corners.resize(coarse.index.size());
-  for (std::size_t c = 0; c < coarse.index.size(); ++c)
-    for (int n = 0; n < 8; ++n) {
-      int& p = number[corner.of(static_cast<int>(8 * c + n))];
-      if (p < 0) {
-        p = static_cast<int>(coarse.point.size());
-        coarse.point.push_back(lattice_corner(coarse.index[c], n));
-      }
-      coarse.corners[c][n] = p;
-    }
+  std::vector<std::array<int, 2>> links;
+  for (const auto& [c, d] : neighbours(fine, at_point))
+    if (parent[c] != parent[d]) links.push_back({parent[c], parent[d]});
+  JoinedCubes joined = join_cubes(coarse.cubes, links);
+  coarse.corners = std::move(joined.corners);
+  coarse.point = std::move(joined.points);
+  coarse.carried = std::move(joined.carried);
 
   fine.weight_begin = {0};
   for (std::size_t p = 0; p < fine.point.size(); ++p) {
     const int c = parent[at_point[p].front()];
     for (int n = 0; n < 8; ++n) {
-      const std::array<int, 3> q = lattice_corner(coarse.index[c], n);
-      float w = 1;
-      for (int d = 0; d < 3; ++d) w *= 1 - std::abs(static_cast<float>(fine.point[p][d] - 2 * q[d])) / 2;
+      const double w = weight_at(coarse.cubes[c], n, fine.point[p]);
       if (w <= 0) continue;
       fine.weight_point.push_back(coarse.corners[c][n]);
-      fine.weight.push_back(w);
+      fine.weight.push_back(static_cast<float>(w));
     }
     fine.weight_begin.push_back(static_cast<int>(fine.weight.size()));
   }
@@ -116,24 +129,19 @@ CutLevel coarsen(CutLevel& fine) {
     const int up = parent[cell];
     Anchor above{coarse.corners[up], {}, a.node, a.stiffness};
     for (int n = 0; n < 8; ++n)
-      for (int e = fine.weight_begin[a.corners[n]]; e < fine.weight_begin[a.corners[n] + 1]; ++e)
-        for (int m = 0; m < 8; ++m)
-          if (coarse.corners[up][m] == fine.weight_point[e]) {
-            above.weights[m] += a.weights[n] * fine.weight[e];
-            break;
-          }
+      for (int m = 0; m < 8; ++m)
+        above.weights[m] += a.weights[n] * weight_at(coarse.cubes[up], m, fine.point[a.corners[n]]);
     coarse.anchors.push_back(above);
   }
   return coarse;
 }
 
-BlockMatrix stiffness_of(const CutLevel& level, const std::vector<std::vector<int>>& pattern,
-                         const AveragedSprings& law) {
-  BlockMatrix K(pattern);
+void add_stiffness(const CutLevel& level, const AveragedSprings& law, BlockMatrix& K) {
   const auto full = law.cell_matrix(level.edge, {});
   for (std::size_t c = 0; c < level.corners.size(); ++c) {
     const FilledPart& part = level.filled[c];
-    const Eigen::Matrix<double, 24, 24> own = part.fraction == 1 ? full : law.cell_matrix(level.edge, part);
+    const Eigen::Matrix<double, 24, 24> own =
+        part.fraction == 1 ? (full * level.cubes[c].size).eval() : law.cell_matrix(level.cell_edge(c), part);
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) K.add(level.corners[c][m], level.corners[c][n], own.block<3, 3>(3 * m, 3 * n));
   }
@@ -143,7 +151,6 @@ BlockMatrix stiffness_of(const CutLevel& level, const std::vector<std::vector<in
       for (int n = 0; n < 8; ++n)
         K.add(a.corners[m], a.corners[n], (a.stiffness * a.weights[m] * a.weights[n] * held).asDiagonal());
   }
-  return K;
 }
 
 /// In units of `unit`, without the rows and columns of fixed unknowns (empty: none).
@@ -165,7 +172,8 @@ FloatBlocks float_blocks(const BlockMatrix& K, const std::vector<std::vector<int
       if (j != static_cast<int>(i)) continue;
       for (int a = 0; a < 3; ++a)
         if (!fixed.empty() && fixed[3 * i + a]) block(a, a) = 1;
-      Eigen::Matrix3d inverse = block.inverse();
+      Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+      if (!block.isZero(0)) inverse = block.inverse();  // else carried
       for (int a = 0; a < 3; ++a)
         if (!fixed.empty() && fixed[3 * i + a]) inverse(a, a) = 0;
       for (int a = 0; a < 3; ++a)
@@ -179,37 +187,47 @@ FloatBlocks float_blocks(const BlockMatrix& K, const std::vector<std::vector<int
 }  // namespace
 
 void CutLevel::invert_anchored() {
-  using SingleCellMatrix = Eigen::Matrix<float, 24, 24, Eigen::RowMajor>;
   anchored.clear();
-  for (const Anchor& a : anchors) anchored.push_back(a.corners);
+  const Carriers carriers = carriers_of(static_cast<int>(point.size()), carried);
+  for (const Anchor& a : anchors) {
+    std::vector<int>& points = anchored.emplace_back();
+    for (const int n : a.corners) {
+      if (carriers.empty() || carriers[n].empty()) points.push_back(n);
+      if (!carriers.empty())
+        for (const auto& [p, w] : carriers[n]) points.push_back(p);
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  }
   std::sort(anchored.begin(), anchored.end());
   anchored.erase(std::unique(anchored.begin(), anchored.end()), anchored.end());
-  anchored_inverse.resize(576 * anchored.size());
-  for (std::size_t c = 0; c < anchored.size(); ++c) {
-    Eigen::Matrix<double, 24, 24> K = Eigen::Matrix<double, 24, 24>::Zero();
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) {
-        const int i = anchored[c][m];
-        const auto row = A.column.begin() + A.begin[i];
-        const auto at = std::lower_bound(row, A.column.begin() + A.begin[i + 1], anchored[c][n]);
+  anchored_inverse.clear();
+  for (const std::vector<int>& points : anchored) {
+    const auto size = static_cast<Eigen::Index>(points.size());
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * size, 3 * size);
+    for (Eigen::Index m = 0; m < size; ++m)
+      for (Eigen::Index n = 0; n < size; ++n) {
+        const int i = points[m];
+        const auto row = A.column.begin() + A.begin[i], end = A.column.begin() + A.begin[i + 1];
+        const auto at = std::lower_bound(row, end, points[n]);
+        if (at == end || *at != points[n]) continue;
         const float* block = &A.block[9 * static_cast<std::size_t>(at - A.column.begin())];
         for (int a = 0; a < 3; ++a)
           for (int b = 0; b < 3; ++b) K(3 * m + a, 3 * n + b) = block[3 * a + b];
       }
-    for (int i = 0; i < 24; ++i)
+    for (Eigen::Index i = 0; i < K.rows(); ++i)
       if (K(i, i) == 0) K(i, i) = 1e30;  // fixed
-    const SingleCellMatrix inverse = K.inverse().cast<float>();
-    std::copy_n(inverse.data(), 576, &anchored_inverse[576 * c]);
+    anchored_inverse.push_back(K.inverse().cast<float>());
   }
 }
 
 void CutLevel::relax_anchored(std::size_t c, const float* b, float* x) const {
-  Eigen::Matrix<float, 24, 1> r;
-  for (int n = 0; n < 8; ++n) A.residual(b, x, anchored[c][n], r.data() + 3 * n);
-  const Eigen::Map<const Eigen::Matrix<float, 24, 24, Eigen::RowMajor>> inverse(&anchored_inverse[576 * c]);
-  const Eigen::Matrix<float, 24, 1> d = inverse * r;
-  for (int n = 0; n < 8; ++n)
-    for (int a = 0; a < 3; ++a) x[3 * anchored[c][n] + a] += d[3 * n + a];
+  const std::vector<int>& points = anchored[c];
+  Eigen::VectorXf r(3 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t n = 0; n < points.size(); ++n) A.residual(b, x, points[n], r.data() + 3 * n);
+  const Eigen::VectorXf d = anchored_inverse[c] * r;
+  for (std::size_t n = 0; n < points.size(); ++n)
+    for (int a = 0; a < 3; ++a) x[3 * points[n] + a] += d[static_cast<Eigen::Index>(3 * n) + a];
 }
 
 void FloatBlocks::residual(const float* b, const float* x, int i, float* r) const {
@@ -233,20 +251,24 @@ void FloatBlocks::relax(const float* b, int i, float* x) const {
   for (int a = 0; a < 3; ++a) x[3 * i + a] += d[3 * a] * r[0] + d[3 * a + 1] * r[1] + d[3 * a + 2] * r[2];
 }
 
-void CutLevel::restrict_to(const float* r, float* out) const {
+void CutLevel::restrict_to(const Eigen::VectorXf& r, const CutLevel& next, Eigen::VectorXf& out) const {
   for (std::size_t i = 0; i < point.size(); ++i)
     for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
-      for (int a = 0; a < 3; ++a) out[3 * weight_point[e] + a] += weight[e] * r[3 * i + a];
+      for (int a = 0; a < 3; ++a) out[3 * weight_point[e] + a] += weight[e] * r[static_cast<Eigen::Index>(3 * i) + a];
+  hand_back(next.carried, out);
 }
 
-void CutLevel::prolongate(const float* coarse, float* u) const {
+void CutLevel::prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::VectorXf& u) const {
+  carry(next.carried, coarse);
   for (std::size_t i = 0; i < point.size(); ++i)
     for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
-      for (int a = 0; a < 3; ++a) u[3 * i + a] += weight[e] * coarse[3 * weight_point[e] + a];
+      for (int a = 0; a < 3; ++a)
+        u[static_cast<Eigen::Index>(3 * i) + a] += weight[e] * coarse[3 * weight_point[e] + a];
 }
 
 AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns)
     : anchors(network.anchors),
+      carried(network.carried),
       fixed(std::move(fixed_unknowns)),
       corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
 
@@ -256,6 +278,7 @@ Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
     for (int d = 0; d < 3; ++d)
       if (!fixed[3 * a.node + d])
         for (int n = 0; n < 8; ++n) b[3 * a.corners[n] + d] += a.weights[n] * r[3 * a.node + d];
+  hand_back(carried, b);
   for (int i = 0; i < 3 * corners; ++i)
     if (fixed[i]) b[i] = 0;
   return b;
@@ -264,12 +287,14 @@ Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
 void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of_corners, Eigen::VectorXd& z) const {
   z.setZero(r.size());
   z.head(3 * corners) = of_corners;
+  carry(carried, z);
   for (const Anchor& a : anchors)
     for (int d = 0; d < 3; ++d) {
       if (fixed[3 * a.node + d]) continue;
       z[3 * a.node + d] = r[3 * a.node + d] / a.stiffness;
       for (int n = 0; n < 8; ++n) z[3 * a.node + d] += a.weights[n] * z[3 * a.corners[n] + d];
     }
+  for (const CarriedPoint& c : carried) z.segment<3>(3 * c.point).setZero();
 }
 
 std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes) {
@@ -283,14 +308,17 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
     for (int d = 0; d < 3; ++d) at[d] = static_cast<int>(std::lround((network.X(n, d) - lower[d]) / network.cell_edge));
     finest.point.push_back(at);
   }
-  for (const Hexahedron& cell : network.cells) finest.index.push_back(finest.point[cell[0]]);
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    finest.cubes.push_back(
+        {finest.point[network.cells[c][0]], static_cast<int>(std::lround(network.edge(c) / network.cell_edge))});
+  finest.carried = network.carried;
   for (const Anchor& a : nodes.anchors) {
     int held = 0;
     for (int d = 0; d < 3; ++d) held |= int(nodes.fixed[3 * a.node + d] != 0) << d;
     finest.anchors.push_back({a.corners, a.weights, held, a.stiffness});
   }
   std::vector<CutLevel> levels = {std::move(finest)};
-  while (levels.back().point.size() > smallest_cut_level && levels.back().index.size() > 8) {
+  while (levels.back().point.size() > smallest_cut_level && levels.back().cubes.size() > 8) {
     CutLevel coarse = coarsen(levels.back());
     levels.push_back(std::move(coarse));
   }
@@ -298,8 +326,12 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
 }
 
 void assemble(const AveragedSprings& law, double unit, const std::vector<char>& fixed, CutLevel& level) {
-  const auto pattern = coupled_nodes(static_cast<int>(level.point.size()), level.corners);
-  level.A = float_blocks(stiffness_of(level, pattern, law), pattern, unit, fixed);
+  const int points = static_cast<int>(level.point.size());
+  const Carriers carriers = carriers_of(points, level.carried);
+  const auto pattern = coupled_through(carriers, coupled_nodes(points, level.corners));
+  BlockMatrix K(pattern, carriers);
+  add_stiffness(level, law, K);
+  level.A = float_blocks(K, pattern, unit, fixed);
 }
 
 Eigen::SparseMatrix<double> sparse(const FloatBlocks& A) {

@@ -1,4 +1,5 @@
-// Lattices of cut cells and of cells of twice the edge, which are cut cells again by the moments of their children.
+// Lattices of cut cells, in which the smallest cells give way to cells of twice the edge level by level; those are cut
+// cells again, by the moments of their children.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -23,11 +24,12 @@ struct FloatBlocks {
 
 /// One level: cells with corners of their own, and how its points follow those of the next coarser level.
 struct CutLevel {
-  double edge = 0;  ///< [m]
-  std::vector<std::array<int, 3>> index;
-  std::vector<Hexahedron> corners;
-  std::vector<FilledPart> filled;
+  double edge = 0;                        ///< of the smallest cells [m]
+  std::vector<LatticeCube> cubes;         ///< of the cells, in edges
+  std::vector<Hexahedron> corners;        ///< points
+  std::vector<FilledPart> filled;         ///< of the cells
   std::vector<std::array<int, 3>> point;  ///< in edges
+  std::vector<CarriedPoint> carried;      ///< points without rows and columns in A
   std::vector<Anchor> anchors;            ///< on the corners of a cell; `node`: bits of the directions that are held
 
   // Transfer to the coarser level; empty on the coarsest.
@@ -35,24 +37,27 @@ struct CutLevel {
   std::vector<int> weight_begin, weight_point;  ///< per point, of the coarser level's points
   std::vector<float> weight;
 
-  /// Cells with anchors, which are stiffer than cells: their corners are relaxed together.
-  std::vector<Hexahedron> anchored;
-  std::vector<float> anchored_inverse;  ///< 24 x 24 each, of the corners' rows and columns of A
-  void invert_anchored();               ///< sets the two from A
+  /// Points that move the corners of a cell with anchors, which is stiffer than others: they are relaxed together.
+  std::vector<std::vector<int>> anchored;
+  std::vector<Eigen::MatrixXf> anchored_inverse;  ///< of their rows and columns of A
+  void invert_anchored();                         ///< sets the two from A
   void relax_anchored(std::size_t number, const float* b, float* x) const;
 
   FloatBlocks A;  ///< in units of the shear modulus times the finest edge
 
   Eigen::Index unknowns() const { return 3 * static_cast<Eigen::Index>(point.size()); }
-  /// out += P^T r and u += P coarse.
-  void restrict_to(const float* r, float* out) const;
-  void prolongate(const float* coarse, float* u) const;
+  /// Edge of a cell [m].
+  double cell_edge(std::size_t cell) const { return edge * cubes[cell].size; }
+  /// out += P^T r and u += P coarse; `coarse` and its right-hand side `out` are of the next level.
+  void restrict_to(const Eigen::VectorXf& r, const CutLevel& next, Eigen::VectorXf& out) const;
+  void prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::VectorXf& u) const;
 };
 
 /// The nodes of a network of cut cells that are anchored, and those that are corners of cells.
 struct AnchoredNodes {
   std::vector<Anchor> anchors;
-  std::vector<char> fixed;  ///< per unknown of the network
+  std::vector<CarriedPoint> carried;
+  std::vector<char> fixed;  ///< per unknown of the network; carried ones count as such
   int corners = 0;          ///< nodes that are corners; the anchored ones follow
 
   AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns);

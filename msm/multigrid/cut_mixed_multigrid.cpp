@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "msm/multigrid/multigrid.h"
 
@@ -37,8 +38,9 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
   gradient_.resize(24, static_cast<Eigen::Index>(network.cells.size()));
   compliance_.resize(gradient_.cols());
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient(1, network.filled[c]);
-    compliance_[static_cast<Eigen::Index>(c)] = network.filled[c].fraction / kappa;
+    const double h = network.edge(c) / l;
+    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient(h, network.filled[c]);
+    compliance_[static_cast<Eigen::Index>(c)] = network.filled[c].fraction * h * h * h / kappa;
   }
   levels_.resize(lattice_.size());
   for (CutLevel& level : lattice_)
@@ -57,8 +59,8 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
 void CutMixedMultigrid::set_up(std::size_t l, double kappa) {
   const CutLevel& lattice = lattice_[l];
   Level& level = levels_[l];
-  const double h = lattice.edge / lattice_[0].edge;
-  const std::size_t cells = lattice.index.size();
+  const std::size_t cells = lattice.cubes.size();
+  const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   level.f = level.u = level.d = Eigen::VectorXf::Zero(lattice.unknowns());
   level.compliance = level.inverse_schur = level.g = level.p = level.Bu = level.r = level.z = level.q =
       Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
@@ -67,11 +69,21 @@ void CutMixedMultigrid::set_up(std::size_t l, double kappa) {
   for (float& value : level.D) value /= omega;
   level.gradient.resize(24 * cells);
   for (std::size_t c = 0; c < cells; ++c) {
+    const double h = lattice.cell_edge(c) / lattice_[0].edge;
     const Eigen::Matrix<double, 24, 1> b = volume_gradient(h, lattice.filled[c]);
-    double sum = 0;
+    std::map<int, Vec3> row;  // with what carried corners hand back
     for (int n = 0; n < 8; ++n) {
-      Eigen::Vector3d own = b.segment<3>(3 * n);
-      const float* D = &level.D[9 * static_cast<std::size_t>(lattice.corners[c][n])];
+      const int point = lattice.corners[c][n];
+      const auto hand = [&](int p, double w) {
+        row.try_emplace(p, Vec3::Zero()).first->second += w * b.segment<3>(3 * n);
+      };
+      if (carriers.empty() || carriers[point].empty()) hand(point, 1);
+      if (!carriers.empty())
+        for (const auto& [p, w] : carriers[point]) hand(p, w);
+    }
+    double sum = 0;
+    for (const auto& [point, own] : row) {
+      const float* D = &level.D[9 * static_cast<std::size_t>(point)];
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) sum += own[i] * D[3 * i + j] * own[j];
     }
@@ -107,10 +119,16 @@ double CutMixedMultigrid::damping(std::size_t l) const {
 void CutMixedMultigrid::divergence(std::size_t l, const Eigen::VectorXf& u, Eigen::VectorXf& out) const {
   const CutLevel& lattice = lattice_[l];
   const float* b = levels_[l].gradient.data();
+  Eigen::VectorXf copy;
+  if (!lattice.carried.empty()) {
+    copy = u;
+    carry(lattice.carried, copy);
+  }
+  const float* at = lattice.carried.empty() ? u.data() : copy.data();
   for (std::size_t c = 0; c < lattice.corners.size(); ++c, b += 24) {
     float sum = 0;
     for (int n = 0; n < 8; ++n) {
-      const float* v = u.data() + 3 * lattice.corners[c][n];
+      const float* v = at + 3 * lattice.corners[c][n];
       sum += b[3 * n] * v[0] + b[3 * n + 1] * v[1] + b[3 * n + 2] * v[2];
     }
     out[static_cast<Eigen::Index>(c)] = sum;
@@ -127,6 +145,7 @@ void CutMixedMultigrid::add_gradient(std::size_t l, const Eigen::VectorXf& p, Ei
       for (int a = 0; a < 3; ++a) v[a] += value * b[3 * n + a];
     }
   }
+  hand_back(lattice.carried, out);
 }
 
 void CutMixedMultigrid::scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) const {
@@ -217,12 +236,12 @@ void CutMixedMultigrid::cycle(std::size_t l) {
   for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(l);
   residual(l);
   below.f.setZero();
-  lattice.restrict_to(level.d.data(), below.f.data());
+  lattice.restrict_to(level.d, lattice_[l + 1], below.f);
   below.g.setZero();
   const Eigen::VectorXf volumes = level.g - level.Bu + level.compliance.cwiseProduct(level.p);
   for (Eigen::Index c = 0; c < volumes.size(); ++c) below.g[lattice.parent[c]] += volumes[c];
   cycle(l + 1);
-  lattice.prolongate(below.u.data(), level.u.data());
+  lattice.prolongate(below.u, lattice_[l + 1], level.u);
   if (l == 0)
     for (Eigen::Index i = 0; i < level.u.size(); ++i)
       if (nodes_.fixed[i]) level.u[i] = 0;
@@ -237,10 +256,13 @@ Eigen::VectorXd CutMixedMultigrid::force(const Eigen::VectorXd& u, const Eigen::
   for (Eigen::Index c = 0; c < p.size(); ++c)
     for (int n = 0; n < 8; ++n)
       y.segment<3>(3 * springs_.network.cells[c][n]) += p[c] * gradient_.col(c).segment<3>(3 * n);
+  hand_back(springs_.network.carried, y);
   return y;
 }
 
-Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& u) const {
+Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& displacement) const {
+  Eigen::VectorXd u = displacement;
+  carry(springs_.network.carried, u);
   Eigen::VectorXd J = Eigen::VectorXd::Zero(gradient_.cols());
   for (Eigen::Index c = 0; c < J.size(); ++c)
     for (int n = 0; n < 8; ++n)

@@ -46,9 +46,9 @@ void CutMultigrid::cycle(std::size_t l) const {
   for (int i = 0; i < A.rows(); ++i) A.residual(b.data(), x.data(), i, &r[3 * i]);
   Vectors& below = at_level_[l + 1];
   below.b.setZero();
-  level.restrict_to(r.data(), below.b.data());
+  level.restrict_to(r, levels_[l + 1], below.b);
   cycle(l + 1);
-  level.prolongate(below.x.data(), x.data());
+  level.prolongate(below.x, levels_[l + 1], x);
   if (l == 0)
     for (Eigen::Index i = 0; i < x.size(); ++i)
       if (nodes_.fixed[i]) x[i] = 0;

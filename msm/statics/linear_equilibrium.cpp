@@ -30,15 +30,16 @@ void keep(const std::vector<char>& fixed, bool on_fixed, Eigen::VectorXd& v) {
 /// The linear problem: u = prescribed + du, du zero on fixed unknowns.
 struct LinearProblem {
   const MassSpringModel& model;
-  const BoundaryConditions& conditions;
+  std::vector<char> fixed;  ///< carried ones included
   const LinearOptions& options;
   Eigen::VectorXd prescribed, external;
 };
 
 void finish(const LinearProblem& p, const Eigen::VectorXd& u, const Eigen::VectorXd& internal, Equilibrium& result) {
   Eigen::VectorXd support = internal - p.external;
-  keep(p.conditions.fixed, true, support);
+  keep(p.fixed, true, support);
   result.displacement = nodal(u);
+  carry(p.model.network.carried, result.displacement);
   result.support = nodal(support);
 }
 
@@ -54,7 +55,7 @@ void report(const KrylovResult& k, const std::string& name, Equilibrium& result)
 }
 
 void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
-  TangentSolver K(p.model, p.conditions.fixed, direct ? std::numeric_limits<long>::max() : 0);
+  TangentSolver K(p.model, p.fixed, direct ? std::numeric_limits<long>::max() : 0);
   if (!K.take(p.model.network.X)) {
     result.message = "the stiffness is not positive definite: the model has zero-energy or unstable modes here";
     result.solver = K.name();
@@ -75,7 +76,7 @@ void solve_mixed(const LinearProblem& p, Mixed&& multigrid, double unit, std::si
   // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
   const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(volumes));
   Eigen::VectorXd f = p.external / unit - multigrid.force(p.prescribed, no_pressure), du, pressure;
-  keep(p.conditions.fixed, false, f);
+  keep(p.fixed, false, f);
   const KrylovResult k = multigrid.solve(f, -multigrid.volume_change(p.prescribed), p.options.tolerance,
                                          p.options.max_iterations, du, pressure);
   report(k, "GMRES + mixed multigrid", result);
@@ -88,12 +89,12 @@ void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Eq
   const Network& network = p.model.network;
   const double l = network.cell_edge, unit = G * l;
   if (CutMultigrid::covers(p.model))
-    solve_mixed(p, CutMixedMultigrid(p.model, p.conditions.fixed), unit, network.cells.size(), result);
+    solve_mixed(p, CutMixedMultigrid(p.model, p.fixed), unit, network.cells.size(), result);
   else if (dispersion_of(p.model))
-    solve_mixed(p, DispersionMultigrid(p.model, p.conditions.fixed, G), unit, network.volume.size(), result);
+    solve_mixed(p, DispersionMultigrid(p.model, p.fixed, G), unit, network.volume.size(), result);
   else
-    solve_mixed(p, MixedMultigrid(lattice_levels(network, p.conditions.fixed), in_units(cell, G, l)), unit,
-                network.cells.size(), result);
+    solve_mixed(p, MixedMultigrid(lattice_levels(network, p.fixed), in_units(cell, G, l)), unit, network.cells.size(),
+                result);
 }
 
 /// Stiffness of the volume term [Pa] of a lattice for which there is a mixed multigrid.
@@ -108,9 +109,10 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
                          const LinearOptions& options) {
   const double start = cpu_seconds();
   Equilibrium result;
-  for (char fixed : conditions.fixed) result.unknowns += !fixed;
+  const LinearProblem problem{model, fixed_or_carried(model.network, conditions.fixed), options,
+                              flat(conditions.prescribed), flat(conditions.external)};
+  for (char fixed : problem.fixed) result.unknowns += !fixed;
   progress::detail([&] { return fmt::format("{} unknowns", result.unknowns); });
-  const LinearProblem problem{model, conditions, options, flat(conditions.prescribed), flat(conditions.external)};
   LinearSolver solver = options.solver;
   const double G = affine_shear_modulus(model);
   const bool has_cells = consists_of_cells(model);

@@ -73,14 +73,16 @@ MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& 
   else
     use(std::make_shared<MixedMultigrid>(lattice_levels(model.network, fixed),
                                          in_units(cell_stiffness(model), unit_pressure_, unit_length_)));
-  K_ = BlockMatrix(coupled_nodes(model.network));
+  K_ = BlockMatrix(model.network);
   rest_volume_.resize(static_cast<Eigen::Index>(network_.cells.size()));
   for (std::size_t c = 0; c < network_.cells.size(); ++c)
     rest_volume_[static_cast<Eigen::Index>(c)] = cell_volume(network_, c, network_.X).value;
   p_ = accepted_p_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.network.cells.size()));
 }
 
-MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& x, const Eigen::VectorXd& external) {
+MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& positions, const Eigen::VectorXd& external) {
+  NodalVectors x = positions;
+  carry(network_.carried, x);
   Linearised at{{}, Eigen::VectorXd(p_.size()), external, Eigen::VectorXd(p_.size())};
   K_.set_zero();
   NodalVectors f = NodalVectors::Zero(x.rows(), 3);
@@ -101,6 +103,7 @@ MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& x, const Eige
     for (int n = 0; n < 8; ++n) f.row(network_.cells[c][n]) -= p_[i] * v.gradient.segment<3>(3 * n).transpose();
     add_volume_curvature(network_, c, x, p_[i], K_);
   }
+  hand_back(network_.carried, f);
   at.force += flat(f);
   return at;
 }
@@ -119,6 +122,7 @@ void MixedNewton::solve(const Linearised& at, const Eigen::VectorXd& r, const Ei
   const Operator A = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
     y.resize(n + m);
     u = x.head(n);
+    carry(network_.carried, u);
     K_.multiply(u, Ku);
     y.head(n) = Ku / stiffness;
     for (Eigen::Index c = 0; c < m; ++c) {
@@ -131,6 +135,7 @@ void MixedNewton::solve(const Linearised& at, const Eigen::VectorXd& r, const Ei
       }
       y[n + c] = change / area - unit_pressure_ / (kappa_ * at.curvature[c]) * rest_volume_[c] / volume * x[n + c];
     }
+    hand_back(network_.carried, y);
     clear(y);
   };
   const Operator precondition = [&](const Eigen::VectorXd& x, Eigen::VectorXd& z) {

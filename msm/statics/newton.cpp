@@ -20,7 +20,8 @@ enum class Outcome { accepted, unstable, inverted, not_converged };
 
 /// Whether a corner of a cell is turned inside out; of cut cells, which have corners outside of the body, the filled
 /// part as a whole.
-bool has_inverted_cell(const Network& network, const NodalVectors& x) {
+bool has_inverted_cell(const Network& network, NodalVectors x) {
+  carry(network.carried, x);
   if (network.filled.empty()) return min_relative_jacobian({network.X, network.cells, {}, {}, {}, {}}, x) <= 0;
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     if (cell_volume(network, c, x).value <= 0) return true;
@@ -165,7 +166,7 @@ std::string describe(Outcome outcome, double reached) {
 Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path, const NewtonOptions& options) {
   const double start = cpu_seconds();
   const BoundaryConditions full = load_path(1.0);
-  Newton newton(model, load_path, options, full.fixed);
+  Newton newton(model, load_path, options, fixed_or_carried(model.network, full.fixed));
   Equilibrium result;
   result.load_reached = 0;
   NodalVectors x = model.network.X;
@@ -195,6 +196,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   if (result.ok) result.message.clear();
   const BoundaryConditions reached = load_path(result.load_reached);
   result.displacement = x - model.network.X;
+  carry(model.network.carried, result.displacement);
   result.support = support_forces(model, x, reached);
   result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K.name(),
                               steps, steps == 1 ? "" : "s");

@@ -44,10 +44,10 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
 bool TangentSolver::take(const NodalVectors& x) {
   at_rest_ = (lattice_ || list_) && x == model_.network.X;  // the multigrid or the list provides the tangent
   if (at_rest_) return true;
-  if (K_.local.nodes() == 0) K_.local = BlockMatrix(coupled_nodes(model_.network));
+  if (K_.local.nodes() == 0) K_.local = BlockMatrix(model_.network);
   update_tangent(model_, x, K_);
   if (!companion_) return !direct_ || factors_.factor(K_, fixed_);
-  if (companion_K_.local.nodes() == 0) companion_K_.local = BlockMatrix(coupled_nodes(model_.network));
+  if (companion_K_.local.nodes() == 0) companion_K_.local = BlockMatrix(model_.network);
   update_tangent(*companion_, x, companion_K_);
   return !direct_ || factors_.factor(companion_K_, fixed_);
 }

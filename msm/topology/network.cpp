@@ -38,6 +38,16 @@ std::vector<Spring> merge_springs(std::vector<Spring> springs) {
 
 Eigen::VectorXd masses(const Network& network, double density) { return density * network.volume; }
 
+std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fixed) {
+  for (const CarriedPoint& c : network.carried) std::fill_n(fixed.begin() + 3 * c.point, 3, 1);
+  return fixed;
+}
+
+void require_cells_of_one_size(const Network& network, const std::string& what) {
+  if (!network.carried.empty())
+    throw std::invalid_argument(what + ": the cells are of several sizes, which stand still (allowed: one size)");
+}
+
 Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Network& network, const NodalVectors& x) {
   Eigen::Matrix<double, 24, 1> u;
   for (int n = 0; n < 8; ++n) u.segment<3>(3 * n) = (x.row(cell[n]) - network.X.row(cell[n])).transpose();

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "meshes/mesh.h"
 #include "meshes/voxels/filled_part.h"
+#include "meshes/voxels/joined_cubes.h"
 
 namespace springproof {
 
@@ -32,13 +34,17 @@ struct Network {
   NodalVectors X;                    ///< rest positions [m], n x 3
   std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
   std::vector<Hexahedron> cells;     ///< cubic cells, empty for networks without
-  double cell_edge = 0;              ///< l [m] of the cells
+  double cell_edge = 0;              ///< l [m] of the cells; of several sizes, of the smallest
+  std::vector<double> cell_edges;    ///< [m] of cells of several sizes, one per cell; empty: all are equal
   std::vector<FilledPart> filled;    ///< of cut cells, one per cell; empty: all cells are full
   std::vector<Anchor> anchors;       ///< of the supports of cut cells
   std::vector<Spring> cell_springs;  ///< contribution of one cell: springs between its corners 0..7
-  Eigen::VectorXd volume;            ///< volume share of each node in the body [m^3]
-  std::optional<Grid> grid;          ///< the lattice of the cells
-  std::vector<int> image_of;         ///< per node the node it is a periodic image of (itself if none); empty: no images
+  /// Nodes on edges and faces of larger cells.  They are no unknowns: they follow the others, to which the forces on
+  /// them are handed back.
+  std::vector<CarriedPoint> carried;
+  Eigen::VectorXd volume;     ///< volume share of each node in the body [m^3]
+  std::optional<Grid> grid;   ///< the lattice of the cells
+  std::vector<int> image_of;  ///< per node the node it is a periodic image of (itself if none); empty: no images
   std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
 
   /// @return number of nodes, periodic images included
@@ -46,7 +52,10 @@ struct Network {
   /// @param node a node
   /// @return the node that it is an image of; itself if it is none
   int master(int node) const { return image_of.empty() ? node : image_of[node]; }
-  /// @return of a full cell [m^3]
+  /// @param cell its number
+  /// @return its edge [m]
+  double edge(std::size_t cell) const { return cell_edges.empty() ? cell_edge : cell_edges[cell]; }
+  /// @return of a full cell, the smallest if there are several sizes [m^3]
   double cell_volume() const { return cell_edge * cell_edge * cell_edge; }
 };
 
@@ -56,6 +65,18 @@ struct Network {
 /// @return each pair once
 /// @throws std::invalid_argument if merged springs differ in rest length.
 std::vector<Spring> merge_springs(std::vector<Spring> springs);
+
+/// Per unknown whether it is prescribed or that of a carried node, which solvers have no equation for.
+/// @param network with carried nodes or without
+/// @param fixed prescribed unknowns, 3 * node + axis
+/// @return the same, with the carried nodes'
+std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fixed);
+
+/// Cells of several sizes are for bodies at rest.
+/// @param network of any model
+/// @param what needs cells of one size, for the message
+/// @throws std::invalid_argument if some nodes are carried.
+void require_cells_of_one_size(const Network& network, const std::string& what);
 
 /// Displacement of the corners of a cell.
 /// @param cell its corners

@@ -46,7 +46,8 @@ std::vector<Case> cases() {
           {"DispersionTransposed" + name, {network, {MomentumDispersion{q, Dispersion::published_transposed}}}, true});
     }
   }
-  const Network cut = test::cut_network(), cells = cubic_lattice(mesh, CubicPattern{});
+  const Network cut = test::cut_network(), refined = test::refined_network(),
+                cells = cubic_lattice(mesh, CubicPattern{});
   for (double nu : {-0.9, 0.0, 0.4, 0.499})
     for (double shift : {0.0, 0.5}) {
       const IsotropicMaterial material{1e4, nu, 1000};
@@ -60,10 +61,12 @@ std::vector<Case> cases() {
       for (int curve = 0; curve < 5; ++curve) {
         law.curve = static_cast<StrainCurve>(curve);
         all.push_back({name + "_curve" + std::to_string(curve), {cut, {law}}, true});
+        if (curve == 0) all.push_back({name + "_refined", {refined, {law}}, true});
         all.push_back({name + "_full_curve" + std::to_string(curve), {cells, {law}}, true});
       }
     }
   all.push_back({"Anchors", {cut, {Anchors{}}}, true});
+  all.push_back({"AnchorsRefined", {refined, {Anchors{}}}, true});
   const Network sheet = test::bent_triangles();
   for (double beta : {-20.0, 100.0})
     all.push_back({"Angular" + std::string(beta < 0 ? "Negative" : "Positive"), {sheet, {AngularSprings{beta}}}, true});

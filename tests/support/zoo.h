@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "meshes/voxels/refined_grid.h"
 #include "msm/models.h"
 #include "support/bodies.h"
+#include "support/solids.h"
 
 namespace springproof::test {
 
@@ -76,6 +78,14 @@ inline Network cut_network(double edge = 0.5) {
     network.anchors.push_back(anchor);
   }
   return network;
+}
+
+/// Eight cells beside one of twice their edge, cut at the top, with anchors at one end.
+inline Network refined_network(double edge = 0.5) {
+  const Mesh body = solid_of(block_mesh(edge * Vec3(4, 2, 1.7), {2, 1, 1}));
+  VoxelGrid grid = with_halved_cubes({Vec3::Zero(), 2 * edge, {2, 1, 1}});
+  halve_cell(grid, {2, 0, 0});
+  return cut_lattice(cut_body(grid, body), {"x_min"}, 100);
 }
 
 /// A sheet of 3 x 3 rhombi cut into two triangles each, nodes moved in the plane and out of it.
