@@ -1,0 +1,136 @@
+#include "msm/measure/promised_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "meshes/voxels/refined_grid.h"
+
+namespace springproof {
+namespace {
+
+constexpr double share_of_the_error = 0.3;  // of the cells that are halved at once
+constexpr int most_halvings = 4;
+
+/// Strains as rows of nine.
+using Strains = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
+
+Eigen::Matrix3d as_matrix(const Eigen::Matrix<double, 1, 9>& row) {
+  return Eigen::Map<const Eigen::Matrix3d>(row.data());
+}
+
+double energy_density(const AveragedSprings& law, const Eigen::Matrix3d& strain) {
+  return law.lame_lambda / 2 * strain.trace() * strain.trace() + law.shear_modulus * strain.squaredNorm();
+}
+
+FilledPart part_of(const Network& network, std::size_t cell) {
+  return network.filled.empty() ? FilledPart{} : network.filled[cell];
+}
+
+/// Mean strain of each cell.
+Strains cell_strains(const Network& network, const NodalVectors& u) {
+  Strains strains(static_cast<Eigen::Index>(network.cells.size()), 9);
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const std::array<Vec3, 8> g = mean_gradients(network.edge(c), part_of(network, c));
+    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+    for (int n = 0; n < 8; ++n) H += u.row(network.cells[c][n]).transpose() * g[n].transpose();
+    const Eigen::Matrix3d strain = (H + H.transpose()) / 2;
+    strains.row(static_cast<Eigen::Index>(c)) = Eigen::Map<const Eigen::Matrix<double, 1, 9>>(strain.data());
+  }
+  return strains;
+}
+
+double volume_of(const Network& network, std::size_t cell) {
+  return part_of(network, cell).fraction * std::pow(network.edge(cell), 3);
+}
+
+/// Strain at each node; that of a carried one follows from the others.
+Strains nodal_strains(const Network& network, const Strains& of_cells) {
+  Strains sum = Strains::Zero(network.nodes(), 9);
+  Eigen::VectorXd volume = Eigen::VectorXd::Zero(network.nodes());
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    for (const int n : network.cells[c]) {
+      sum.row(n) += volume_of(network, c) * of_cells.row(static_cast<Eigen::Index>(c));
+      volume[n] += volume_of(network, c);
+    }
+  for (auto p = network.carried.rbegin(); p != network.carried.rend(); ++p)
+    for (const int n : p->by) {
+      sum.row(n) += sum.row(p->point) / static_cast<double>(p->by.size());
+      volume[n] += volume[p->point] / static_cast<double>(p->by.size());
+    }
+  for (int n = 0; n < network.nodes(); ++n)
+    if (volume[n] > 0) sum.row(n) /= volume[n];
+  for (const CarriedPoint& p : network.carried) {
+    sum.row(p.point).setZero();
+    for (const int n : p.by) sum.row(p.point) += sum.row(n) / static_cast<double>(p.by.size());
+  }
+  return sum;
+}
+
+/// The cells whose errors, the largest first, make up this share of the error.
+std::vector<int> worst_cells(const std::vector<double>& errors, double share) {
+  std::vector<int> order(errors.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return errors[a] > errors[b]; });
+  const double enough = share * std::accumulate(errors.begin(), errors.end(), 0.0);
+  double sum = 0;
+  std::size_t taken = 0;
+  while (taken < order.size() && sum < enough) sum += errors[order[taken++]];
+  order.resize(taken);
+  return order;
+}
+
+}  // namespace
+
+double CellEnergies::promised_error() const {
+  return elastic > 0 ? std::accumulate(error.begin(), error.end(), 0.0) / elastic : 0;
+}
+
+CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) {
+  const AveragedSprings* law = averaged_springs_of(model);
+  if (!law) throw std::invalid_argument("the error of a model without averaged springs cannot be estimated");
+  const Network& network = model.network;
+  const Strains of_cells = cell_strains(network, u), of_nodes = nodal_strains(network, of_cells);
+  CellEnergies energies;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const FilledPart part = part_of(network, c);
+    double mean = 0;  // over eight points with the moments of the filled part along each axis
+    for (int point = 0; point < 8; ++point) {
+      Eigen::Matrix<double, 1, 9> difference = -of_cells.row(static_cast<Eigen::Index>(c));
+      for (int n = 0; n < 8; ++n) {
+        double weight = 1;
+        for (int d = 0; d < 3; ++d) {
+          const double xi = part.mean[d] + (2 * hexahedron_corners[point][d] - 1) * std::sqrt(part.variance[d]);
+          weight *= 0.5 + (2 * hexahedron_corners[n][d] - 1) * xi;
+        }
+        difference += weight * of_nodes.row(network.cells[c][n]);
+      }
+      mean += energy_density(*law, as_matrix(difference)) / 8;
+    }
+    energies.error.push_back(volume_of(network, c) * mean);
+    Eigen::Matrix<double, 24, 1> of_corners;
+    for (int n = 0; n < 8; ++n) of_corners.segment<3>(3 * n) = u.row(network.cells[c][n]).transpose();
+    energies.elastic += of_corners.dot(law->cell_matrix(network.edge(c), part) * of_corners) / 2;
+  }
+  return energies;
+}
+
+bool halve_worst_cells(const CutBody& cut, const std::vector<double>& errors, VoxelGrid& grid) {
+  const int most = grid.doubled.empty() ? 0 : *std::max_element(grid.doubled.begin(), grid.doubled.end());
+  std::vector<LatticeCube> cubes;
+  for (const int c : worst_cells(errors, share_of_the_error)) cubes.push_back({cut.cells[c].index, cut.cells[c].size});
+  if (most < most_halvings && std::any_of(cubes.begin(), cubes.end(), [](const auto& c) { return c.size == 1; })) {
+    grid = with_halved_cubes(grid);
+    for (LatticeCube& c : cubes) c = {{2 * c.at[0], 2 * c.at[1], 2 * c.at[2]}, 2 * c.size};
+  }
+  bool halved = false;
+  for (const LatticeCube& c : cubes) {
+    if (c.size == 1 || cell_size(grid, c.at) < c.size) continue;  // as small as may be, or halved for a neighbour
+    halve_cell(grid, c.at);
+    halved = true;
+  }
+  return halved;
+}
+
+}  // namespace springproof

@@ -1,0 +1,37 @@
+// Error of cells of averaged springs, estimated without a reference.
+#pragma once
+
+#include <vector>
+
+#include "meshes/voxels/cut_cells.h"
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+/// Energies of cells in a small displacement.
+struct CellEnergies {
+  std::vector<double> error;  ///< of each cell's stress against that recovered at its nodes [J]
+  double elastic = 0;         ///< of all cells [J]
+
+  /// Promised relative error of the displacement: the energy of the error over that of the displacement.  Under given
+  /// forces the displacement in their direction is too small by exactly that fraction, if the energy of the error is.
+  double promised_error() const;
+};
+
+/// Zienkiewicz and Zhu's estimate (1987): the strain recovered at a node is the mean of the strains of its cells by
+/// volume, and between nodes trilinear.
+/// @param model of averaged springs, cut or full, of one size or several
+/// @param displacement small, of the nodes, carried ones in their places [m], n x 3
+/// @return one error per cell
+/// @throws std::invalid_argument if the model has no averaged springs.
+CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& displacement);
+
+/// Halves the cells of a body whose errors are the largest and make up three tenths of the error; cells may be halved
+/// four times.
+/// @param cut the body in cells of the grid
+/// @param errors one per cell
+/// @param grid gets smaller cells
+/// @return false if no cell was halved
+bool halve_worst_cells(const CutBody& cut, const std::vector<double>& errors, VoxelGrid& grid);
+
+}  // namespace springproof
