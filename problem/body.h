@@ -19,11 +19,14 @@ struct Body {
   std::vector<double> voxel_edges = {};  ///< [m]; empty: no voxels, or their counts are given
   std::vector<int> voxel_counts = {};    ///< approximate numbers of cubes; empty: no voxels, or their edges are given
   bool cut = true;                       ///< voxels: models that can take cut cells instead of whole cubes
+  std::vector<double> accuracies = {};   ///< voxels: promised errors to which cut cells are halved; empty: one size
   double scale = 1;                      ///< coordinates of a file are multiplied by it
 
   bool is_script() const;  ///< true for a .geo, whose size is a parameter; false for a file with fixed geometry
   bool is_voxels() const { return !voxel_edges.empty() || !voxel_counts.empty(); }
-  std::size_t resolutions() const { return std::max({cells.size(), voxel_edges.size(), voxel_counts.size()}); }
+  std::size_t resolutions() const {
+    return std::max({cells.size(), voxel_edges.size(), voxel_counts.size(), accuracies.size()});
+  }
 };
 
 }  // namespace springproof

@@ -135,6 +135,7 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
   e.body.cells.clear();
   e.body.voxel_edges.clear();
   e.body.voxel_counts.clear();
+  e.body.accuracies.clear();
   for (const int n : all)
     if (voxels)
       e.body.voxel_counts.push_back(n);

@@ -127,6 +127,12 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
   if (!e.body.cells.empty()) e.body.cells.resize(1);
   if (e.body.voxel_edges.size() > 1) e.body.voxel_edges.resize(1);
   if (e.body.voxel_counts.size() > 1) e.body.voxel_counts.resize(1);
+  if (!e.body.accuracies.empty() && !request.voxels)
+    throw InputError(
+        fmt::format("{}: body.accuracy: cells of several sizes are for compare (allowed: --voxels N, cells "
+                    "of one size)",
+                    request.what));
+  e.body.accuracies.clear();
   if (request.voxels) {
     if (!e.body.is_voxels()) throw InputError("--voxels: is for bodies of voxels; this one has --cells NX NY NZ");
     e.body.voxel_edges.clear();

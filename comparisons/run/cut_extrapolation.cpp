@@ -10,7 +10,7 @@
 namespace springproof {
 
 std::vector<ExtrapolatedModel> extrapolate_cut_cells(const PreparedCase& prepared, const std::vector<CutState>& all) {
-  const auto edge = [&](const CutState* s) { return prepared.lattices[s->lattice].voxel_edge; };
+  const auto edge = [&](const CutState* s) { return prepared.lattices[s->lattice].error_scale(); };
   std::vector<ExtrapolatedModel> limits;
   for (std::size_t model = 0; model < prepared.models.size(); ++model) {
     std::vector<const CutState*> states;
@@ -23,7 +23,9 @@ std::vector<ExtrapolatedModel> extrapolate_cut_cells(const PreparedCase& prepare
     ExtrapolatedModel limit;
     limit.label = prepared.experiment.models[model].label + extrapolated_suffix;
     limit.lattice = fine.lattice;
-    limit.from = fmt::format("from edges of {:.4g} and {:.4g} m", H, h);
+    limit.from = prepared.lattices[fine.lattice].promised > 0
+                     ? fmt::format("from promised errors of {:.3g} and {:.3g}", H, h)
+                     : fmt::format("from edges of {:.4g} and {:.4g} m", H, h);
     const NodalVectors from_coarse = displacement_at(*prepared.lattices[coarse.lattice].cut, coarse.displacement,
                                                      prepared.lattices[fine.lattice].mesh->nodes);
     limit.field = fine.field + factor * (fine.field - from_coarse);

@@ -141,6 +141,10 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
 }  // namespace
 
 Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
+  if (!e.body.accuracies.empty())
+    throw InputError(
+        e.body.where,
+        "body.accuracy: cells of several sizes have no frequencies (allowed: voxels, or voxel_edge_m, alone)");
   std::vector<Load> supports;
   std::vector<SourceLocation> locations;
   for (std::size_t i = 0; !options.free && i < e.loads.size(); ++i)

@@ -11,6 +11,7 @@
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
 #include "msm/measure/block_moduli.h"
+#include "msm/measure/promised_error.h"
 #include "msm/measure/statistics.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
@@ -114,6 +115,8 @@ ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, con
       field_measures(prepared, sample.field,
                      cut ? displacement_at(*lattice.cut, sample.state.displacement, measured_points(prepared))
                          : at_measured_points(prepared, lattice, sample.field.displacement));
+  if (cut && asked(e, "promised_error") && !in_motion)
+    sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);

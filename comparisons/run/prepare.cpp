@@ -62,6 +62,13 @@ void choose_cut_cells(PreparedCase& prepared) {
                       p.row.name, reason));
     p.cut = p.cut.value_or(e.body.cut && !reason);
   }
+  if (e.body.accuracies.empty()) return;
+  const auto is_cut = [](const ModelParameters& p) { return *p.cut; };
+  if (e.fracture || e.dynamics || std::none_of(prepared.models.begin(), prepared.models.end(), is_cut))
+    throw InputError(
+        e.body.where,
+        "body.accuracy: cells of several sizes are for models of cut cells at rest (allowed: no [dynamics] "
+        "or [fracture], and one such model)");
 }
 
 /// Averaged springs follow the material law of the case.

@@ -25,7 +25,12 @@ struct Lattice {
   std::shared_ptr<const Mesh> tetrahedra = {};  ///< for a body of voxels, with edges as long as the cubes', if
                                                 ///< elements on them are compared, else empty
   std::shared_ptr<const CutBody> cut = {};      ///< of a body of voxels, if a model takes cut cells, else empty
+  double promised = 0;                          ///< error of a refined lattice; 0: its cells are of one size
   Eigen::Index first_node = 0;                  ///< first row of its nodes in fem::Solution::displacement
+
+  /// What errors of cut cells are proportional to: the edge of the cells, or the promised error of those of several
+  /// sizes.
+  double error_scale() const { return promised > 0 ? promised : voxel_edge; }
 };
 
 /// How the displacement at a lattice node of a body of voxels follows from the finite elements' at

@@ -83,9 +83,10 @@ double unknowns(const Body& body, std::size_t lattice, int degree) {
   if (!body.is_voxels()) return unknowns(body.cells[lattice], degree);
   double cubes = cubes_of_a_file;
   if (!body.voxel_counts.empty())
-    cubes = body.voxel_counts[lattice];
+    cubes = body.voxel_counts[std::min(lattice, body.voxel_counts.size() - 1)];
   else if (body.is_script())
-    cubes = share_of_the_box * body.size.prod() / std::pow(body.voxel_edges[lattice], 3);
+    cubes = share_of_the_box * body.size.prod() /
+            std::pow(body.voxel_edges[std::min(lattice, body.voxel_edges.size() - 1)], 3);
   return 3 * nodes_per_cube * cubes * (degree == 1 ? 1 : 8);
 }
 

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/run/refined_lattice.h"
 #include "comparisons/run/sampling.h"
 #include "meshes/locate/facet_tree.h"
 #include "meshes/locate/locate.h"
@@ -111,10 +112,23 @@ std::string cut_cells_note(const PreparedCase& prepared, const CutBody& cut) {
   std::vector<std::string> cut_models, others;
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
     (*prepared.models[m].cut ? cut_models : others).push_back(prepared.experiment.models[m].label);
-  std::string note = fmt::format("{} cells of {:.6g} m, cut along the true surface: {}", cut.cells.size(),
-                                 cut.grid.edge, fmt::join(cut_models, ", "));
+  int largest = 1;
+  for (const CutCell& c : cut.cells) largest = std::max(largest, c.size);
+  const std::string sizes = largest > 1 ? fmt::format("{:.4g} to {:.4g}", cut.grid.edge, largest * cut.grid.edge)
+                                        : fmt::format("{:.6g}", cut.grid.edge);
+  std::string note = fmt::format("{} cells of {} m, cut along the true surface: {}", cut.cells.size(), sizes,
+                                 fmt::join(cut_models, ", "));
   if (!others.empty()) note += fmt::format("; whole cubes: {}", fmt::join(others, ", "));
   return note;
+}
+
+/// What was promised for what was asked.
+std::string refinement_note(const RefinedBody& refined, double accuracy) {
+  return fmt::format(
+      "{} cells, refined where the stress is least certain, promise a displacement error of {:.2g} %; {:.3g} % "
+      "were asked for{}",
+      refined.cut.cells.size(), 100 * refined.promised, 100 * accuracy,
+      refined.reached ? "" : ", which smaller cells than these would take");
 }
 
 void cut_lattices(PreparedCase& prepared) {
@@ -123,13 +137,27 @@ void cut_lattices(PreparedCase& prepared) {
   prepared.size = region->upper - region->lower;
   const std::vector<double> edges = voxel_edges(prepared.experiment.body, region->volume);
   check_counts(edges, region->volume);
+  const auto add_cubes = [&](const VoxelGrid& grid) {
+    Voxels voxels = voxelise(grid, true_body);
+    for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
+    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), grid.edge, region->volume, prepared.notes);
+    add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), grid.edge, region}, prepared);
+  };
+  for (const double accuracy : prepared.experiment.body.accuracies) {
+    RefinedBody refined = refine_until(prepared, voxel_grid(true_body, edges.front()), true_body, accuracy);
+    const auto cells = static_cast<double>(refined.cut.cells.size());
+    add_cubes(voxel_grid(true_body, std::cbrt(region->volume / cells)));  // for results, and models of whole cubes
+    prepared.notes.push_back(refinement_note(refined, accuracy));
+    prepared.notes.push_back(cut_cells_note(prepared, refined.cut));
+    prepared.notes.insert(prepared.notes.end(), refined.cut.notes.begin(), refined.cut.notes.end());
+    prepared.lattices.back().promised = refined.promised;
+    prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(refined.cut));
+  }
+  if (!prepared.experiment.body.accuracies.empty()) return;
   for (const double edge : edges) {
     const VoxelGrid grid = voxel_grid(true_body, edge);
     progress::detail(fmt::format("voxels of {:.4g} m", edge));
-    Voxels voxels = voxelise(grid, true_body);
-    for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
-    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), edge, region->volume, prepared.notes);
-    add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), edge, region}, prepared);
+    add_cubes(grid);
     const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
     if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
     CutBody cut = cut_body(grid, true_body);

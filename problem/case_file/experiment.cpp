@@ -32,7 +32,8 @@ constexpr Key body_schema[] = {
     {"cells"},
     {"voxels"},
     {"voxel_edge_m"},
-    {"cut"}};
+    {"cut"},
+    {"accuracy"}};
 
 constexpr Key material_schema[] = {{"youngs_modulus_Pa"}, {"poisson_ratio"},  {"shear_modulus_Pa"},
                                    {"bulk_modulus_Pa"},   {"lame_lambda_Pa"}, {"density_kg_m3"}};
@@ -117,6 +118,12 @@ Body read_body(const TomlValue& value) {
   if (const auto cut = table.find("cut")) {
     if (cells) refuse(*cut, "is for bodies of voxels", "voxels or voxel_edge_m");
     body.cut = as_flag(*cut);
+  }
+  if (const auto accuracy = table.find("accuracy")) {
+    body.accuracies =
+        read_each_once<double>(*accuracy, {"a number from 0.001 to 0.5, or a list of such", 0.001, 0.5, true, true});
+    if (body.voxel_edges.size() + body.voxel_counts.size() != 1 || !body.cut)
+      refuse(*accuracy, "starts from one lattice of cut cells", "one voxels or voxel_edge_m, and not cut = false");
   }
   if (cells && !script) refuse(*cells, "is for bodies of hexahedra", "voxels or voxel_edge_m");
   return body;

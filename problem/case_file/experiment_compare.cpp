@@ -294,6 +294,8 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   // Displacement errors alone are not enough for a body that is moved by its supports.
   if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
     experiment.measures.emplace_back("reaction_error");
+  if (!experiment.body.accuracies.empty() && !experiment.models.empty() && !asks_for(experiment, "promised_error"))
+    experiment.measures.emplace_back("promised_error");
   if (experiment.reference.in_time && !experiment.models.empty())
     for (const char* measure : {"motion", "motion_error"})
       if (!asks_for(experiment, measure)) experiment.measures.emplace_back(measure);
