@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "comparisons/run/frequencies.h"
 #include "comparisons/run/sampling.h"
 #include "meshes/volume.h"
 #include "msm/embedding/boundary.h"
@@ -171,6 +172,36 @@ TEST(VoxelBody, CutCellsHaveALimitFromTwoLatticesAndWholeCubesHaveNone) {
   EXPECT_NEAR(limit.spread.value(), std::abs(factor * step), 1e-12 * std::abs(u));
   EXPECT_TRUE(std::none_of(part.rows.begin(), part.rows.end(),
                            [](const Row& row) { return row.model == "hybmss cut=false extrapolated"; }));
+}
+
+TEST(VoxelBody, RefinedLatticesKeepTheirPromiseAndHaveALimit) {
+  std::string text = ball_case(100, "[[load]]\non = \"high\"\nforce_N = [0, 0, 1]", "\"hybmss_avg\", \"emsm\"",
+                               "elements = []\nedge_m = 0.03");
+  text.replace(text.find("voxels = 100"), 12, "voxels = 60\naccuracy = [0.15, 0.1]");
+  const Experiment experiment = parse_experiment(text, "ball.toml");
+  const PreparedCase prepared = prepare(experiment);
+  const Part part = run_part(prepared, 0, {});
+  const auto value = [&](const std::string& model, const Lattice& on, const std::string& measure) {
+    for (const Row& row : part.rows)
+      if (row.model == model && row.cells == on.cells && row.measure == measure) return row.value;
+    ADD_FAILURE() << "no " << measure << " of " << model;
+    return 0.0;
+  };
+  const Lattice &coarse = prepared.lattices[0], &fine = prepared.lattices[1];
+  EXPECT_FALSE(fine.cut->carried.empty());
+  EXPECT_GT(fine.cut->cells.size(), coarse.cut->cells.size());
+  EXPECT_LE(coarse.promised, 0.15);
+  EXPECT_LE(fine.promised, 0.1);
+  EXPECT_NEAR(value("hybmss_avg", fine, "promised_error"), fine.promised, 1e-3 * fine.promised);
+  for (const Lattice* lattice : {&coarse, &fine}) EXPECT_NEAR(value("hybmss_avg", *lattice, "force.low.z"), -1, 1e-8);
+  const double u = value("hybmss_avg", fine, "displacement.top.z"),
+               step = u - value("hybmss_avg", coarse, "displacement.top.z");
+  EXPECT_NEAR(value("hybmss_avg extrapolated", fine, "displacement.top.z"),
+              u + step * fine.promised / (coarse.promised - fine.promised), 1e-12 * std::abs(u));
+  EXPECT_NE(value("emsm", fine, "displacement.top.z"), 0);
+  const std::string notes = fmt::format("{}", fmt::join(prepared.notes, "\n"));
+  EXPECT_NE(notes.find("promise a displacement error of"), std::string::npos) << notes;
+  EXPECT_THROW(case_of_modes(experiment, {}), InputError);
 }
 
 TEST(VoxelBody, TorquesMoveToTheTruePatch) {

@@ -1,6 +1,8 @@
 // [body] of voxels: what is read, written back, refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
@@ -38,6 +40,14 @@ TEST(VoxelBody, CountsAndEdgesAreRead) {
   EXPECT_FALSE(body_of("geo = \"block.geo\"\nsize_m = [1, 2, 3]\ncells = [1, 2, 3]").is_voxels());
 }
 
+TEST(VoxelBody, AnAccuracyMakesOneLatticeEach) {
+  const Body body = body_of("geo = \"a.stl\"\nvoxels = 300\naccuracy = [0.1, 0.05]");
+  EXPECT_EQ(body.accuracies, (std::vector<double>{0.1, 0.05}));
+  EXPECT_EQ(body.resolutions(), 2u);
+  const Experiment e = parse_experiment(case_with("geo = \"a.stl\"\nvoxels = 300\naccuracy = 0.1"), "case.toml");
+  EXPECT_NE(std::find(e.measures.begin(), e.measures.end(), "promised_error"), e.measures.end());
+}
+
 TEST(VoxelBody, ItsReferenceIsOfQuadraticTetrahedra) {
   const std::string body = "geo = \"a.stl\"\nvoxels = 500";
   EXPECT_EQ(parse_experiment(case_with(body), "case.toml").reference.elements, (std::vector<std::string>{"p2"}));
@@ -60,6 +70,9 @@ TEST(VoxelBody, MistakesAreRefused) {
         Mistake{"geo = \"a.stl\"\nscale = -1\nvoxels = 5", "body.scale"},
         Mistake{"geo = \"a.geo\"\nsize_m = [1, 1, 1]\nscale = 2\nvoxels = 5", "is for files"},
         Mistake{"geo = \"a.geo\"\nvoxels = 5", "body.size_m: is missing"},
+        Mistake{"geo = \"a.stl\"\nvoxels = 5\naccuracy = 0", "body.accuracy"},
+        Mistake{"geo = \"a.stl\"\nvoxels = [5, 9]\naccuracy = 0.1", "starts from one lattice of cut cells"},
+        Mistake{"geo = \"a.stl\"\nvoxels = 5\ncut = false\naccuracy = 0.1", "starts from one lattice of cut cells"},
         Mistake{"geo = \"a.stl\"\ncells = [2, 2, 2]", "is for bodies of hexahedra"}}) {
     const std::string message = message_of(case_with(m.body));
     EXPECT_NE(message.find(m.says), std::string::npos) << m.body << "\n" << message;
