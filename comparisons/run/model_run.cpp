@@ -61,7 +61,7 @@ Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const
   const LoadPath path = [&](double factor) {
     BoundaryConditions bc =
         transfer(prepared.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
-    if (parameters.hold_rigid_motions) hold_free_motions(s.built.model.network.X, bc);
+    if (parameters.hold_rigid_motions) hold_free_motions(s.built.model.network.X, bc, s.built.model.network.carried);
     return bc;
   };
   s.conditions = path(1.0);

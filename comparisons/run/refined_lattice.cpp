@@ -23,8 +23,10 @@ CellEnergies worst_energies(const PreparedCase& prepared, const CutBody& cut, co
   CellEnergies worst;
   for (const IsotropicMaterial& material : prepared.experiment.materials) {
     const EmbeddedModel built = build_cut(*parameters, cut, {held.begin(), held.end()}, body, material);
-    const BoundaryConditions conditions =
+    BoundaryConditions conditions =
         transfer(prepared.loads, body, built.embedding, built.model.network, material.density, Kinematics::linear);
+    if (parameters->hold_rigid_motions)
+      hold_free_motions(built.model.network.X, conditions, built.model.network.carried);
     require_supported(conditions, built.model.network.X);
     const Equilibrium state = solve_linear(built.model, conditions);
     if (!state.ok) throw InputError(fmt::format("body.accuracy: {}", state.message));

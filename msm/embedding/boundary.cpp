@@ -226,13 +226,15 @@ void require_supported(const BoundaryConditions& bc, const NodalVectors& X) {
       any ? names[dominant] : "all six"));
 }
 
-void hold_free_motions(const NodalVectors& X, BoundaryConditions& bc) {
+void hold_free_motions(const NodalVectors& X, BoundaryConditions& bc, const std::vector<CarriedPoint>& carried) {
   const RigidMotions rigid{X};
+  std::vector<char> follows(bc.fixed.size(), 0);
+  for (const CarriedPoint& p : carried) std::fill_n(follows.begin() + 3 * p.point, 3, 1);
   while (const auto motion = free_motion(bc, rigid)) {
     int best = 0;
     double most = -1;
     for (int i = 0; i < static_cast<int>(bc.fixed.size()); ++i)
-      if (const double moved = std::abs(rigid.at(i).dot(*motion)); !bc.fixed[i] && moved > most + 1e-9) {
+      if (const double moved = std::abs(rigid.at(i).dot(*motion)); !bc.fixed[i] && !follows[i] && moved > most + 1e-9) {
         most = moved;
         best = i;
       }

@@ -60,7 +60,9 @@ void require_supported(const BoundaryConditions& conditions, const NodalVectors&
 /// and no reaction if the loads are in equilibrium.
 /// @param X positions of the nodes at rest [m], n x 3
 /// @param conditions that get the additional supports
-void hold_free_motions(const NodalVectors& X, BoundaryConditions& conditions);
+/// @param carried nodes that follow others and cannot be held: Network::carried
+void hold_free_motions(const NodalVectors& X, BoundaryConditions& conditions,
+                       const std::vector<CarriedPoint>& carried = {});
 
 /// Support forces and torques per patch with prescribed displacement, from the support force of each node at X [N].
 /// An unknown that two patches prescribe counts for the load named first.
