@@ -124,6 +124,17 @@ void overhead(const Context& c, const std::string& size, const std::string& name
   if (std::none_of(c.findings.points.begin(), c.findings.points.end(), same)) c.findings.points.push_back(point);
 }
 
+/// The same model with dashpots in its cells.
+void viscous_overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
+                      double nu, Target target) {
+  progress(name + " with viscosity", size);
+  const Viscosity viscosity = Viscosity::of(model, {youngs_modulus, nu, density}, 1e-3);
+  const auto viscous = fastest_motion(model, {.viscosity = viscosity}), elastic = fastest_motion(model);
+  const std::vector<double> seconds = least_seconds({viscous->advance, elastic->advance}, c.timer);
+  c.findings.rows.push_back({"dynamics", name + " with viscosity", size, "us per step", 1e6 * seconds[0], "without",
+                             1e6 * seconds[1], target, usage_of(*viscous, seconds[0], c.machine), viscous->how});
+}
+
 void overheads(const Context& c) {
   for (const int n : c.options.quick ? std::vector{10} : std::vector{10, 30}) {
     const std::string size = fmt::format("{}^3", n);
@@ -135,6 +146,8 @@ void overheads(const Context& c) {
     overhead(c, size, "averaged springs", block("hybmss_avg", 0.3), "HybMSS", hybmss, at_most(1.6));
     overhead(c, size, "averaged springs, neo-Hooke", lattice("hybmss_avg", {n, n, n}, 0.3, {{"curve", "neo_hooke"}}),
              "HybMSS", hybmss, at_most(1.6));
+    viscous_overhead(c, size, "HybMSS", hybmss, 0.3, at_most(2));
+    viscous_overhead(c, size, "averaged springs", block("hybmss_avg", 0.3), 0.3, at_most(2));
     overhead(c, size, "eMSM as published", lattice("emsm", {n, n, n}, 0.3, {{"dispersion", "published"}}),
              "MSM of 18 springs", msm, at_most(1.65));
     overhead(c, size, "eMSM, exact nodal volumes", block("emsm", 0.3), "MSM of 18 springs", msm, at_most(1.65));

@@ -33,6 +33,7 @@ struct Motion {
 struct MotionOptions {
   int threads = 1;
   Precision precision = Precision::float64;
+  Viscosity viscosity = {};
 };
 
 /// The library's fastest implementation for a model; empty if none supports these options.  The model must outlive it.

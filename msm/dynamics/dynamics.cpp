@@ -153,7 +153,8 @@ class MotionOfList : public Motion {
 class MotionOfLattice : public Motion {
  public:
   MotionOfLattice(const MassSpringModel& model, double density, double time_step, const DynamicsOptions& options)
-      : motion_(model, density, {.precision = options.precision, .threads = options.threads}),
+      : motion_(model, density,
+                {.precision = options.precision, .threads = options.threads, .viscosity = options.viscosity}),
         dt_(time_step),
         damping_(options.damping) {}
 
@@ -196,7 +197,7 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
     return std::make_unique<MotionInLargeSteps>(
         model, density, ImplicitOptions{.integrator = options.integrator, .time_step = dt, .damping = options.damping});
   const bool viscous = options.viscosity.time > 0;
-  if (!viscous && !options.lagged && LatticeMotion::suits(model))
+  if (!options.lagged && LatticeMotion::suits(model, options.viscosity))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
   if (viscous || !ListForces<double>::covers(model))

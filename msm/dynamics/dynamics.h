@@ -28,7 +28,7 @@ struct DynamicsOptions {
                           ///< step starts from rest, as published
   double damping = 0;   ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
                         ///< some, or it flutters
-  Viscosity viscosity;  ///< for explicit steps, by the plain loops
+  Viscosity viscosity;  ///< for explicit steps; by kernels that of lattices of cells
   Course course;        ///< of the loads and supports
   double duration = 10;       ///< [s]
   double rest_tolerance = 0;  ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never

@@ -4,88 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <stdexcept>
+#include <utility>
 
+#include "msm/kernels/aligned_array.h"
 #include "msm/kernels/lattice_layout.h"
+#include "msm/kernels/lattice_set_up.h"
 #include "msm/kernels/workers.h"
 
 namespace springproof {
 namespace {
 
-constexpr std::size_t cache_line = 64;
 constexpr double far_away = 1e4;  // [edges] displacement where there is no node, so that none ever coincides with it
-
-template <class Real>
-LatticeKernels<Real> kernels_for(InstructionSet set) {
-  const auto& usable = usable_instruction_sets();
-  if (std::find(usable.begin(), usable.end(), set) == usable.end())
-    throw std::invalid_argument("instruction set " + name_of(set) + " cannot be used here");
-  LatticeKernels<Real> kernels;
-#ifdef SPRINGPROOF_X86_KERNELS
-  if (set == InstructionSet::avx512)
-    avx512::get_lattice_kernels(kernels);
-  else if (set == InstructionSet::avx2)
-    avx2::get_lattice_kernels(kernels);
-  else
-#endif
-    portable::get_lattice_kernels(kernels);
-  return kernels;
-}
-
-/// Array aligned to cache lines.
-template <class Real>
-class AlignedArray {
- public:
-  AlignedArray() = default;
-  AlignedArray(std::size_t size, Real value)
-      : size_(size), values_(static_cast<Real*>(::operator new(size * sizeof(Real), alignment))) {
-    std::fill_n(values_.get(), size, value);
-  }
-  Real* data() const { return values_.get(); }
-  std::size_t bytes() const { return size_ * sizeof(Real); }
-
- private:
-  static constexpr std::align_val_t alignment{cache_line};
-  struct Delete {
-    void operator()(Real* p) const { ::operator delete(p, alignment); }
-  };
-  std::size_t size_ = 0;
-  std::unique_ptr<Real, Delete> values_;
-};
-
-template <class Real>
-AlignedArray<Real> aligned_copy(const std::vector<double>& values) {
-  AlignedArray<Real> copy(values.size(), Real(0));
-  std::transform(values.begin(), values.end(), copy.data(), [](double v) { return static_cast<Real>(v); });
-  return copy;
-}
-
-/// First plane of each of `slabs` slabs with equal computational work, and the end.
-std::vector<int> split_planes(const LatticeLayout& l, int slabs) {
-  std::vector<double> work(l.nodes[2] + 1, 0.0);  // cumulative: of the planes below
-  for (int z = 0; z < l.nodes[2]; ++z) {
-    work[z + 1] = work[z] + 1e-3;
-    for (int r = l.first_run[long(z) * l.nodes[1]]; r < l.first_run[long(z + 1) * l.nodes[1]]; ++r)
-      work[z + 1] += (l.runs[r].end - l.runs[r].begin) * (1.0 + __builtin_popcount(l.runs[r].springs));
-  }
-  std::vector<int> begin = {0};
-  for (int s = 1; s < slabs; ++s) {
-    const double share = work.back() * s / slabs;
-    const auto above = std::lower_bound(work.begin(), work.end(), share);
-    int z = static_cast<int>(above - work.begin());
-    if (z > 0 && share - work[z - 1] < work[z] - share) --z;
-    begin.push_back(std::clamp(z, begin.back() + 1, l.nodes[2] - (slabs - s)));
-  }
-  begin.push_back(l.nodes[2]);
-  return begin;
-}
-
-/// Number of steps that a slab has completed; read by its neighbours.
-struct alignas(cache_line) Progress {
-  std::atomic<long> swept = 0;       ///< forces of all planes are computed
-  std::atomic<long> first_done = 0;  ///< the first plane has moved
-};
 
 }  // namespace
 
@@ -113,16 +43,21 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
         edge_(model.network.cell_edge),
         density_(density),
         instructions_(options.instructions),
-        kernels_(kernels_for<Real>(options.instructions)),
-        layout_(lattice_layout(model, kernels_.lanes, sizeof(Real))),
+        kernels_(lattice_kernels<Real>(options.instructions)),
+        layout_(lattice_layout(model, kernels_.lanes, sizeof(Real), options.viscosity.time > 0)),
         workers_(dispersion_of(model) ? 1 : std::clamp(options.threads, 1, layout_.nodes[2])),
         progress_(workers_.count()) {
     for (const ForceLaw& law : model.laws) {
       if (const auto* volume = std::get_if<VolumeCorrection>(&law)) bounded_ = volume->form == VolumeEnergy::bounded;
-      if (const auto* hourglass = std::get_if<HourglassCorrection>(&law))
-        hourglass_ = scaled(hourglass->stiffness(edge_));
-      if (const auto* averaged = std::get_if<AveragedSprings>(&law)) averaged_ = scaled(*averaged);
+      if (const auto* hourglass = std::get_if<HourglassCorrection>(&law)) {
+        hourglass_ = lattice_constants<Real>(hourglass->stiffness(edge_), edge_);
+        corrected_ = true;
+      }
+      if (const auto* averaged = std::get_if<AveragedSprings>(&law))
+        averaged_ = lattice_constants<Real>(*averaged, edge_);
     }
+    viscous_ = options.viscosity.time > 0;
+    if (viscous_) dashpots_ = lattice_constants<Real>(options.viscosity.cells, edge_, options.viscosity.time);
     make_arrays();
     if (const MomentumDispersion* dispersion = dispersion_of(model)) make_dispersion(*dispersion);
     make_slabs();
@@ -155,7 +90,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   void move_supports() override {
-    for (const Support& s : supports_) u_[s.component][s.slot] = s.displacement;
+    for (const Support& s : supports_) u_[s.component][s.slot] = s.value;
     supports_wait_ = false;
   }
 
@@ -185,10 +120,14 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
 
   ForceNorms advance(long steps, double time_step, double damping) override {
     ForceNorms norms;
-    if (steps > 0 && supports_wait_) {
-      norms = run(1, time_step, damping);
+    for (; steps > 0 && (supports_wait_ || !speeds_.empty()); --steps) {
+      norms = step_with_speeds(time_step, damping);
+      if (!supports_wait_) continue;
+      for (const Support& s : supports_)
+        if (const Real speed = (s.value - u_[s.component][s.slot]) / static_cast<Real>(time_step);
+            viscous_ && speed != 0)
+          speeds_.push_back({s.component, s.slot, speed});
       move_supports();
-      --steps;
     }
     return steps > 0 ? run(steps, time_step, damping) : norms;
   }
@@ -225,25 +164,22 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
  private:
   struct Support {
     int component, slot;
-    Real displacement;
+    Real value;  ///< displacement [edges], speed [edges/s]
   };
 
-  LatticeHourglass<Real> scaled(const HourglassCorrection::Stiffness& k) const {
-    const auto real = [&](double value) {
-      return static_cast<Real>(value * edge_ / 8);
-    };  // patterns have entries +-1, not +-1/sqrt(8)
-    return {real(k.bending), real(k.coupling), real(k.torsion), real(k.torsion_coupling)};
-  }
-
-  LatticeAveraged<Real> scaled(const AveragedSprings& law) const {
-    const double area = edge_ * edge_, G = law.shear_modulus;
-    const auto real = [&](double value) { return static_cast<Real>(value * area); };
-    const HourglassStiffness& h = law.hourglass;
-    return {lattice_curve(law.curve), real(G),
-            real(law.lame_lambda),    real(law.lame_lambda + 2 * G / 3),
-            real(G / 8 * h.bending),  real(G / 8 * h.coupling),
-            real(G / 8 * h.torsion),  real(G / 8 * h.twist),
-            real(G / 8 * h.warping)};
+  /// A step in which dashpots see the speeds of supports that have just moved; these stay where they are.
+  ForceNorms step_with_speeds(double time_step, double damping) {
+    struct Kept {
+      Real *u, *v, place, speed;
+    };
+    std::vector<Kept> kept;
+    for (const Support& s : std::exchange(speeds_, {})) {
+      Real *u = u_[s.component] + s.slot, *v = v_[s.component] + s.slot;
+      kept.push_back({u, v, *u, std::exchange(*v, s.value)});
+    }
+    const ForceNorms norms = run(1, time_step, damping);
+    for (const Kept& k : kept) *k.u = k.place, *k.v = k.speed;
+    return norms;
   }
 
   void make_arrays() {
@@ -339,7 +275,10 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
                                     nodes_.data(),
                                     bounded_,
                                     hourglass_,
+                                    corrected_,
                                     averaged_,
+                                    viscous_ && step.finish != LatticeFinish::store_forces,
+                                    dashpots_,
                                     J_.data(),
                                     layout_.inflow_entry.data(),
                                     inflow_.data(),
@@ -405,9 +344,9 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   InstructionSet instructions_;
   LatticeKernels<Real> kernels_;
   LatticeLayout layout_;
-  bool bounded_ = false;
   LatticeHourglass<Real> hourglass_ = {};
-  LatticeAveraged<Real> averaged_ = {};
+  bool bounded_ = false, corrected_ = false, viscous_ = false, supports_wait_ = false;
+  LatticeAveraged<Real> averaged_ = {}, dashpots_ = {};
   AlignedArray<Real> motion_, rings_, springs_, nodes_, inflow_, outflow_, J_, inverse_lengths_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>>
       shared_;            ///< pairs of J that share a sum, by the last plane that adds to it
@@ -415,20 +354,24 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   std::array<Real*, 3> u_, v_;
   std::vector<int> node_entry_;
   std::vector<Support> supports_;
-  bool supports_wait_ = false;
+  std::vector<Support> speeds_;  ///< of supports that moved at the end of the last step; only dashpots need them
   std::vector<LatticeSlab<Real>> slabs_[2];
   Workers workers_;
   std::vector<Progress> progress_;
   long steps_done_ = 0;
 };
 
-bool LatticeMotion::suits(const MassSpringModel& model) { return is_lattice_of_springs(model); }
+bool LatticeMotion::suits(const MassSpringModel& model, const Viscosity& viscosity) {
+  const bool of_cells = !viscosity.along_springs && viscosity.cells.shift == 0 && model.network.filled.empty() &&
+                        !model.network.cells.empty();
+  return is_lattice_of_springs(model) && (viscosity.time == 0 || of_cells);
+}
 
 LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {
-  if (!suits(model))
+  if (!suits(model, options.viscosity))
     throw std::invalid_argument(
         "the lattice kernel is for cubic lattices of springs, with or without volume and hourglass correction or "
-        "momentum dispersion, and of averaged springs in full cells");
+        "momentum dispersion, and of averaged springs in full cells; viscosity is that of their cells");
   if (options.precision == Precision::float64)
     arrays_ = std::make_unique<ArraysOf<double>>(model, density, options);
   else

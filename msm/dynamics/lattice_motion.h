@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "msm/dynamics/viscosity.h"
 #include "msm/embedding/boundary.h"
 #include "msm/kernels/instruction_set.h"
 #include "msm/laws/laws.h"
@@ -17,6 +18,7 @@ struct LatticeMotionOptions {
   Precision precision = Precision::float64;  ///< float32: forces to 1e-6 of the largest, twice as fast
   int threads = 1;                           ///< at most one per plane of nodes; momentum dispersion uses one
   InstructionSet instructions = instruction_set();
+  Viscosity viscosity = {};
 };
 
 /// Norms of the sum of internal and external forces [N].
@@ -31,10 +33,12 @@ class LatticeMotion {
  public:
   /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without
   /// volume and hourglass correction or momentum dispersion; or of averaged springs in full cells.
-  static bool suits(const MassSpringModel& model);
+  /// Viscosity: of cells; there is none along springs.
+  static bool suits(const MassSpringModel& model, const Viscosity& viscosity = {});
 
   /// At rest at X, nothing fixed, no load.  Keeps a reference to the network.
-  /// @throws std::invalid_argument unless suits(model), or for an instruction set that is not usable here.
+  /// @throws std::invalid_argument unless suits(model, options.viscosity), or for an instruction set that is not usable
+  /// here.
   LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options = {});
   LatticeMotion(LatticeMotion&&) noexcept;
   LatticeMotion& operator=(LatticeMotion&&) noexcept;

@@ -222,10 +222,12 @@ void forces_of_run(const LatticeView<Real>& l, const Neighbours<Real>& r, const 
     volume_of_cells<true>(rows, on, c, run.begin, run.end);
   else if (run.volume)
     volume_of_cells<false>(rows, on, c, run.begin, run.end);
-  if (run.hourglass && l.averaged.curve != LatticeCurve::none)
-    averaged_of_cells(rows, on, c, l.averaged, run.begin, run.end);
-  else if (run.hourglass)
-    hourglass_of_cells(rows, on, c, l.hourglass, run.begin, run.end);
+  if (!run.hourglass) return;
+  if (l.corrected) hourglass_of_cells(rows, on, c, l.hourglass, run.begin, run.end);
+  if (!l.viscous) return averaged_of_cells<false>(rows, rows, on, c, l, run.begin, run.end);
+  const Row<Real> moving[4] = {velocities_of(l, y, z), velocities_of(l, y + 1, z), velocities_of(l, y, z + 1),
+                               velocities_of(l, y + 1, z + 1)};
+  averaged_of_cells<true>(rows, moving, on, c, l, run.begin, run.end);
 }
 
 template <class Real>

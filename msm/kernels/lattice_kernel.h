@@ -15,7 +15,8 @@ constexpr int row_pairs[lattice_pairs][2] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1
 constexpr int kappa_coefficient =
     lattice_directions;  ///< after the spring constants: of the volume correction of cells
 constexpr int hourglass_coefficient =
-    kappa_coefficient + 1;  ///< 1 if a cell's hourglass modes are corrected or its springs averaged, else 0
+    kappa_coefficient +
+    1;  ///< 1 if a cell's hourglass modes are corrected, its springs averaged or there are dashpots in it, else 0
 constexpr int lattice_coefficients = hourglass_coefficient + 1;
 constexpr int flow_coefficients =
     2 * lattice_directions;           ///< per direction: at the start and at the end of its springs
@@ -27,7 +28,8 @@ struct LatticeRun {
   unsigned springs;  ///< bit d: there are springs of direction d
   unsigned flows;    ///< the same for springs with momentum dispersion; within a pair, the straight ones whenever the
                      ///< others are marked
-  bool volume, hourglass;  ///< there are cells that start from this row and correct their volume, their hourglass modes
+  bool volume, hourglass;  ///< there are cells that start from this row and correct their volume; and what
+                           ///< hourglass_coefficient says
 };
 
 /// HourglassCorrection::Stiffness over 8, times the edge [N].  Real is float or double.
@@ -63,8 +65,11 @@ struct LatticeView {
   const Real* nodes;  ///< node_coefficients vectors per entry: 1 / (mass edge), force [N]
   bool bounded;       ///< VolumeEnergy::bounded
   LatticeHourglass<Real> hourglass;
+  bool corrected;  ///< hourglass modes are, by `hourglass`
   LatticeAveraged<Real> averaged;
-  Real* J;  ///< inflow of momentum dispersion, at row (y + rows z) + x; nullptr: there is none
+  bool viscous;                    ///< cells have `dashpots`
+  LatticeAveraged<Real> dashpots;  ///< the constants of Viscosity::cells times its time [N s]; without a curve
+  Real* J;                         ///< inflow of momentum dispersion, at row (y + rows z) + x; nullptr: there is none
   const int* inflow_entry;
   const Real* inflow;  ///< flow_coefficients vectors per entry, times elongations [edges]: the inflow
   const int* outflow_entry;

@@ -158,7 +158,7 @@ PlaceOfSpring place_of(const Spring& s, const LatticeLayout& l) {
           d.from_first};
 }
 
-BlockCoefficients spring_coefficients(const MassSpringModel& model, const LatticeLayout& l) {
+BlockCoefficients spring_coefficients(const MassSpringModel& model, const LatticeLayout& l, bool viscous) {
   const Network& network = model.network;
   BlockCoefficients c(l, lattice_coefficients);
   const bool has_springs = law_of<Springs>(model) != nullptr;
@@ -167,7 +167,7 @@ BlockCoefficients spring_coefficients(const MassSpringModel& model, const Lattic
     if (has_springs) c.at(p.slot, p.direction) += s.stiffness * network.cell_edge;
   }
   const auto* volume = law_of<VolumeCorrection>(model);
-  const bool hourglass = law_of<HourglassCorrection>(model) || law_of<AveragedSprings>(model);
+  const bool hourglass = viscous || law_of<HourglassCorrection>(model) || law_of<AveragedSprings>(model);
   if (!volume && !hourglass) return c;
   for (const Hexahedron& cell : network.cells) {
     int low = l.slot[cell[0]];
@@ -304,7 +304,7 @@ bool is_lattice_of_springs(const MassSpringModel& model) {
   return box * lattice_coefficients < std::numeric_limits<int>::max() && box < 64.0 * network.nodes() + 1e6;
 }
 
-LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_per_value) {
+LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_per_value, bool viscous) {
   const Network& network = model.network;
   const std::vector<Place> places = places_of(network);
   const Place extent = extent_of(places);
@@ -322,7 +322,7 @@ LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_
     l.slot.push_back(static_cast<int>(p[l.axis[2]] * l.plane + p[l.axis[1]] * l.row + p[l.axis[0]]));
     has_node[l.block_of(l.slot.back())] = 1;
   }
-  const BlockCoefficients coefficients = spring_coefficients(model, l);
+  const BlockCoefficients coefficients = spring_coefficients(model, l, viscous);
   l.spring_entry = coefficients.table(l.springs);
   if (const MomentumDispersion* dispersion = dispersion_of(model)) add_flows(*dispersion, network, l);
   std::vector<unsigned> flows(l.spring_entry.size(), 0);
@@ -335,6 +335,25 @@ LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_
     l.first_run.push_back(static_cast<int>(l.runs.size()));
   }
   return l;
+}
+
+std::vector<int> split_planes(const LatticeLayout& l, int slabs) {
+  std::vector<double> work(l.nodes[2] + 1, 0.0);  // cumulative: of the planes below
+  for (int z = 0; z < l.nodes[2]; ++z) {
+    work[z + 1] = work[z] + 1e-3;
+    for (int r = l.first_run[long(z) * l.nodes[1]]; r < l.first_run[long(z + 1) * l.nodes[1]]; ++r)
+      work[z + 1] += (l.runs[r].end - l.runs[r].begin) * (1.0 + __builtin_popcount(l.runs[r].springs));
+  }
+  std::vector<int> begin = {0};
+  for (int s = 1; s < slabs; ++s) {
+    const double share = work.back() * s / slabs;
+    const auto above = std::lower_bound(work.begin(), work.end(), share);
+    int z = static_cast<int>(above - work.begin());
+    if (z > 0 && share - work[z - 1] < work[z] - share) --z;
+    begin.push_back(std::clamp(z, begin.back() + 1, l.nodes[2] - (slabs - s)));
+  }
+  begin.push_back(l.nodes[2]);
+  return begin;
 }
 
 }  // namespace springproof

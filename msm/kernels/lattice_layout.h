@@ -56,7 +56,11 @@ bool is_lattice_of_springs(const MassSpringModel& model);
 LatticeCurve lattice_curve(StrainCurve curve);
 
 /// Rows run along the axis that wastes fewest lanes, planes across the longest of the others.
+/// `viscous`: there are dashpots in all cells.
 /// Requires is_lattice_of_springs().
-LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_per_value);
+LatticeLayout lattice_layout(const MassSpringModel& model, int lanes, int bytes_per_value, bool viscous = false);
+
+/// First plane of each of `slabs` slabs with equal computational work, and the end.
+std::vector<int> split_planes(const LatticeLayout& layout, int slabs);
 
 }  // namespace springproof

@@ -42,6 +42,12 @@ Row<Real> row_of(const LatticeView<Real>& l, int y, int z) {
 }
 
 template <class Real>
+Row<Real> velocities_of(const LatticeView<Real>& l, int y, int z) {
+  const long at = z * l.plane + y * l.row;
+  return {l.v[0] + at, l.v[1] + at, l.v[2] + at};
+}
+
+template <class Real>
 SPRINGPROOF_INLINE void add(Force<Real>& f, const Lanes<Real>& t, const Lanes<Real>& x, const Lanes<Real>& y,
                             const Lanes<Real>& z) {
   f.x += t * x;

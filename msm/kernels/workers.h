@@ -6,6 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "msm/kernels/aligned_array.h"
+
 namespace springproof {
 
 class Workers {
@@ -32,5 +34,11 @@ class Workers {
 
 /// Waits until `reached` is at least `value`: first by spinning, then yielding to other threads.
 void wait_until(const std::atomic<long>& reached, long value);
+
+/// Number of steps that a slab has completed; read by its neighbours.
+struct alignas(cache_line) Progress {
+  std::atomic<long> swept = 0;       ///< forces of all planes are computed
+  std::atomic<long> first_done = 0;  ///< the first plane has moved
+};
 
 }  // namespace springproof
