@@ -1,8 +1,14 @@
 #include "msm/measure/validity.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
+#include "msm/measure/waves.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 
@@ -45,6 +51,57 @@ double neo_hooke_stress(const IsotropicMaterial& m, double stretch) {
   return (G * (stretch * stretch - 1) + lambda * std::log(stretch * t * t)) / stretch;
 }
 
+/// The homogeneous states of a lattice stretched along z.
+class Path {
+ public:
+  Path(const MassSpringModel& model, const IsotropicMaterial& m, Sides sides)
+      : model_(model), sides_(sides), G_(shear_modulus(m)), unit_(G_ * model.network.cell_edge) {}
+
+  /// The wave that grows at this strain (k = 0: no state, or one that gives way sideways); empty: it is stable.
+  std::optional<Vec3> lost_at(double strain) {
+    double across = across_;
+    StrainedCell cell = at(strain, across);
+    for (int i = 0; sides_ == Sides::free && i < 30; ++i) {
+      const auto [along, other] = lateral(cell);
+      if (!(along + other > 0)) return Vec3::Zero();
+      const double step = -cell.stress(0, 0) / (along + other);
+      across += std::clamp(step, -0.05, 0.05);
+      cell = at(strain, across);
+      if (std::abs(step) < 1e-12) break;
+    }
+    if (!cell.tangent.allFinite()) return Vec3::Zero();
+    if (sides_ == Sides::free) {
+      const auto [along, other] = lateral(cell);
+      if (std::abs(cell.stress(0, 0)) > 1e-8 * G_ || along - std::abs(other) <= 0) return Vec3::Zero();
+    }
+    const SoftestWave weakest = weakest_wave(cell.tangent, unit_);
+    if (weakest.stiffness < 1e-6) return weakest.k;
+    across_ = across;
+    return {};
+  }
+
+ private:
+  StrainedCell at(double strain, double across) const {
+    return strained_cell(model_, Vec3(across, across, 1 + strain).asDiagonal());
+  }
+
+  /// dP_xx / dF_xx and dP_xx / dF_yy.
+  std::pair<double, double> lateral(const StrainedCell& cell) const {
+    CellVector x = CellVector::Zero(), y = CellVector::Zero();
+    for (int n = 0; n < 8; ++n) {
+      x[3 * n] = hexahedron_corners[n][0];
+      y[3 * n + 1] = hexahedron_corners[n][1];
+    }
+    const double l = model_.network.cell_edge;
+    return {x.dot(cell.tangent * x) / l, x.dot(cell.tangent * y) / l};
+  }
+
+  const MassSpringModel& model_;
+  Sides sides_;
+  double G_, unit_;
+  double across_ = 1;  ///< stretch across z of the last stable state
+};
+
 }  // namespace
 
 StrainLimits strain_limits(const ModelParameters& parameters, const IsotropicMaterial& material) {
@@ -67,6 +124,39 @@ std::vector<StressAtStretch> stress_curve(const ModelParameters& parameters, con
     curve.push_back(at);
   }
   return curve;
+}
+
+std::optional<StrainLimit> strain_limit(const ModelParameters& parameters, const IsotropicMaterial& material,
+                                        Sides sides, double strain) {
+  const MassSpringModel model =
+      build_model(without_corrections(parameters), block_mesh(Vec3::Ones(), {2, 2, 2}), material);
+  if (!consists_of_cells(model)) throw std::invalid_argument("homogeneous states are those of a lattice of cells");
+  constexpr double precision = 1e-4;
+  const double most = std::abs(strain), direction = strain < 0 ? -1 : 1;
+  Path path(model, material, sides);
+  double stable = 0, step = 0.02;
+  std::optional<StrainLimit> limit;
+  if (const auto k = path.lost_at(0)) return StrainLimit{0, *k};
+  while (stable < most && step > precision) {
+    const double next = std::min(most, stable + step);
+    if (const auto k = path.lost_at(direction * next)) {
+      limit = {direction * stable, *k};
+      step /= 2;
+    } else {
+      stable = next;
+    }
+  }
+  if (limit) limit->strain = direction * stable;
+  return limit;
+}
+
+std::string describe_wave(const Vec3& k) {
+  std::vector<std::string> axes;
+  for (int axis = 0; axis < 3; ++axis)
+    if (k[axis] > 0.5) axes.push_back(std::string(1, "xyz"[axis]));
+  if (k.isZero()) return "the lattice gives way sideways";
+  if (axes.empty()) return "waves of any length grow";
+  return fmt::format("neighbours move against each other along {}", fmt::join(axes, " and "));
 }
 
 }  // namespace springproof

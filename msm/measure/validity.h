@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "msm/parameters/model_table.h"
@@ -28,5 +29,30 @@ struct StressAtStretch {
 
 /// Stretches of 0.6 to 1.4.
 std::vector<StressAtStretch> stress_curve(const ModelParameters& parameters, const IsotropicMaterial& material);
+
+/// The sides of a body that is stretched along z.
+enum class Sides { free, held };
+
+/// Where a homogeneously stretched lattice without end is no longer stable.
+struct StrainLimit {
+  double strain;  ///< the last stable one along z, negative in compression [1]
+  /// Of the wave that grows beyond it, in units of pi / l: 1 along an axis along which neighbours move against each
+  /// other; 0: all of the lattice gives way sideways.
+  Vec3 k;
+};
+
+/// The first strain on the way to `strain` that a wave (weakest_wave()) or the homogeneous state itself does not
+/// survive, to 1e-4.  A body of these cells is stable beyond it only where its size or supports forbid the wave.
+/// @param parameters of a lattice of cells without momentum dispersion
+/// @param material of it
+/// @param sides free: no stress across z; held: no strain across z
+/// @param strain along z, more than -1
+/// @return the limit; empty: all are stable
+/// @throws std::invalid_argument for other models.
+std::optional<StrainLimit> strain_limit(const ModelParameters& parameters, const IsotropicMaterial& material,
+                                        Sides sides, double strain);
+
+/// "neighbours move against each other along x and y": what a wave of the short ones does; else "waves of all lengths".
+std::string describe_wave(const Vec3& k);
 
 }  // namespace springproof

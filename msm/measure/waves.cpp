@@ -6,8 +6,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "msm/multigrid/cell_stiffness.h"
-
 namespace springproof {
 namespace {
 
@@ -80,6 +78,21 @@ SoftestWave softest_wave(const MassSpringModel& model, double G) {
           softest = {stiffness, at};
       }
   return softest;
+}
+
+SoftestWave weakest_wave(const CellMatrix& tangent, double unit) {
+  constexpr int fineness = 8;
+  SoftestWave weakest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  for (int i = 0; i <= fineness; ++i)
+    for (int j = 0; j <= i; ++j)
+      for (int k = i == 0 ? 1 : 0; k <= fineness; ++k) {
+        const Vec3 at = Vec3(i, j, k) / fineness;
+        const double steepness = (2 - 2 * (pi * at).array().cos()).sum();
+        const double least = Solver(symbol(tangent, pi * at), Eigen::EigenvaluesOnly).eigenvalues()[0];
+        if (const double stiffness = least / (unit * steepness); stiffness < weakest.stiffness)
+          weakest = {stiffness, at};
+      }
+  return weakest;
 }
 
 }  // namespace springproof

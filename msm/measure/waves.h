@@ -1,7 +1,7 @@
 // Plane waves of an infinite lattice of cells at rest: how fast they travel, and the softest of the short ones.
 #pragma once
 
-#include "msm/laws/laws.h"
+#include "msm/multigrid/cell_stiffness.h"
 
 namespace springproof {
 
@@ -25,5 +25,13 @@ struct SoftestWave {
 };
 /// Of a model of cells with the shear modulus G [Pa].
 SoftestWave softest_wave(const MassSpringModel& model, double shear_modulus);
+
+/// The wave that a homogeneously strained lattice resists least, relative to its steepness.
+/// @param tangent of a cell (strained_cell()), equal along x and y
+/// @param unit of stiffness, G l [N/m]
+/// @return smallest eigenvalue of K(k) over `unit` sum_i (2 - 2 cos k_i l), over the Brillouin zone: at rest some 0.1
+/// to
+///   1; 0 or less: the wave grows.  Its k, of the long waves along a direction the one of an eighth of the zone.
+SoftestWave weakest_wave(const CellMatrix& tangent, double unit);
 
 }  // namespace springproof

@@ -62,4 +62,10 @@ CellStiffness cell_stiffness(const MassSpringModel& model) {
   return s;
 }
 
+StrainedCell strained_cell(const MassSpringModel& model, const Eigen::Matrix3d& F) {
+  const MassSpringModel cell = one_cell(model);
+  const NodalVectors x = cell.network.X * F.transpose();
+  return {dense(tangent(cell, x)), -forces(cell, x).transpose() * cell.network.X / cell.network.cell_volume()};
+}
+
 }  // namespace springproof

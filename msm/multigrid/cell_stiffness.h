@@ -28,4 +28,14 @@ CellStiffness in_units(CellStiffness cell, double shear_modulus, double edge);
 /// @throws std::invalid_argument for a network without cells.
 CellStiffness cell_stiffness(const MassSpringModel& model);
 
+/// One cell of a lattice in a homogeneous state, without momentum dispersion.
+struct StrainedCell {
+  CellMatrix tangent;      ///< [N/m], as CellStiffness::total
+  Eigen::Matrix3d stress;  ///< force over area at rest [Pa], row: of the force, column: of the normal
+};
+
+/// The cell at x = F X.
+/// @throws std::invalid_argument for a network without cells.
+StrainedCell strained_cell(const MassSpringModel& model, const Eigen::Matrix3d& F);
+
 }  // namespace springproof

@@ -3,12 +3,22 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "msm/embedding/boundary.h"
 #include "msm/laws/laws.h"
 
 namespace springproof {
+
+/// Why a state of large displacements is the last one.
+enum class Loss { none, unstable, inverted_cell, no_convergence };
+
+/// The motion that a state resists least, compared with how it resists it at rest.
+struct SoftestMotion {
+  double stiffness;  ///< u^T K u over that of the tangent at rest; 0: the equilibrium is lost
+  Vec3 alternation;  ///< along each axis of a lattice: 0 neighbours move alike, 2 against each other
+};
 
 /// Result of a static solver.
 struct Equilibrium {
@@ -23,6 +33,8 @@ struct Equilibrium {
   double seconds = 0;         ///< CPU time of the thread
   long unknowns = 0;          ///< free unknowns
   double memory_MiB = 0;      ///< largest resident memory of the program so far
+  Loss loss = Loss::none;     ///< of solve_finite(): why there is no stable state beyond load_reached
+  std::optional<SoftestMotion> softest = {};  ///< of the returned state, if it was asked for
 };
 
 /// Solvers of the linear equations; mixed_multigrid has pressures as unknowns, for nu near 1/2.
@@ -50,6 +62,7 @@ struct NewtonOptions {
   double first_step = 0.25;           ///< fraction of the load
   double smallest_step = 1.0 / 1024;  ///< fraction of the load below which the solver gives up
   int max_iterations = 25;            ///< per load step
+  bool softest_motion = false;        ///< of conservative models: Equilibrium::softest, some ten solutions more
 };
 
 /// Boundary conditions at a fraction of the load (rotations are not linear in it).

@@ -6,6 +6,7 @@
 #include "meshes/volume.h"
 #include "msm/statics/equilibrium.h"
 #include "msm/statics/mixed_newton.h"
+#include "msm/statics/softest_motion.h"
 #include "msm/statics/tangent_solver.h"
 #include "problem/system/progress.h"
 #include "problem/system/run_cost.h"
@@ -14,9 +15,6 @@ namespace springproof {
 namespace {
 
 constexpr long dispersive_limit = 4000;  // the factors of momentum dispersion are several times as large
-
-/// Outcome of one load step: a stable state, or the reason for the failure.
-enum class Outcome { accepted, unstable, inverted, not_converged };
 
 /// Whether a corner of a cell is turned inside out; of cut cells, which have corners outside of the body, the filled
 /// part as a whole.
@@ -105,28 +103,28 @@ struct Newton {
   }
 
   /// Checks the stability of a state in equilibrium; x becomes it if it is accepted.
-  Outcome judge(const NodalVectors& trial, bool definite, NodalVectors& x) const {
-    if (!definite || !K.stable()) return Outcome::unstable;
-    if (has_inverted_cell(model.network, trial)) return Outcome::inverted;
+  Loss judge(const NodalVectors& trial, bool definite, NodalVectors& x) const {
+    if (!definite || !K.stable()) return Loss::unstable;
+    if (has_inverted_cell(model.network, trial)) return Loss::inverted_cell;
     x = trial;
-    return Outcome::accepted;
+    return Loss::none;
   }
 
-  Outcome mixed_step(const BoundaryConditions& bc, NodalVectors& x, double& relative) {
+  Loss mixed_step(const BoundaryConditions& bc, NodalVectors& x, double& relative) {
     NodalVectors trial = x;
     const int before = mixed->iterations();
     const bool balanced = mixed->step(bc, options.tolerance, options.max_iterations, trial);
     iterations += mixed->iterations() - before;
-    if (!balanced) return Outcome::not_converged;
+    if (!balanced) return Loss::no_convergence;
     Eigen::VectorXd r;
     relative = residual(trial, bc.external, r);
     const bool definite = K.take(trial);
-    const Outcome outcome = judge(trial, definite, x);
-    if (outcome == Outcome::accepted) mixed->accept();
-    return outcome;
+    const Loss loss = judge(trial, definite, x);
+    if (loss == Loss::none) mixed->accept();
+    return loss;
   }
 
-  Outcome step(double factor_of_load, NodalVectors& x, double& relative) {
+  Loss step(double factor_of_load, NodalVectors& x, double& relative) {
     const BoundaryConditions bc = path(factor_of_load);
     progress::detail([&] {
       return fmt::format("{} unknowns, load step to {:.3g} %, {} Newton steps so far", K.unknowns(),
@@ -137,7 +135,7 @@ struct Newton {
     for (int i = 0; i < options.max_iterations; ++i) {
       Eigen::VectorXd r, du;
       relative = residual(trial, bc.external, r);
-      if (!std::isfinite(relative)) return Outcome::not_converged;
+      if (!std::isfinite(relative)) return Loss::no_convergence;
       const bool definite = K.take(trial);
       if (relative <= options.tolerance) return judge(trial, definite, x);
       ++iterations;
@@ -145,19 +143,19 @@ struct Newton {
         return fmt::format("{} unknowns, load step to {:.3g} %, Newton step {}, residual {:.1e}", K.unknowns(),
                            100 * factor_of_load, i + 1, relative);
       });
-      if (!definite) return Outcome::unstable;
-      if (!solve(r, std::clamp(1e-2 * relative, 1e-8, 1e-3), du)) return Outcome::unstable;
-      if (!line_search(r, relative, du, bc.external, trial)) return Outcome::not_converged;
+      if (!definite) return Loss::unstable;
+      if (!solve(r, std::clamp(1e-2 * relative, 1e-8, 1e-3), du)) return Loss::unstable;
+      if (!line_search(r, relative, du, bc.external, trial)) return Loss::no_convergence;
     }
-    return Outcome::not_converged;
+    return Loss::no_convergence;
   }
 };
 
-std::string describe(Outcome outcome, double reached) {
-  const char* why = outcome == Outcome::unstable
+std::string describe(Loss loss, double reached) {
+  const char* why = loss == Loss::unstable
                         ? "the tangent stiffness is no longer positive definite (limit point or buckling)"
-                    : outcome == Outcome::inverted ? "a cell is turned inside out"
-                                                   : "Newton's method does not converge";
+                    : loss == Loss::inverted_cell ? "a cell is turned inside out"
+                                                  : "Newton's method does not converge";
   return fmt::format("no stable equilibrium beyond {:.4g} of the load: {}", reached, why);
 }
 
@@ -180,20 +178,23 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
     double step = options.first_step;
     while (result.load_reached < 1 && step >= options.smallest_step) {
       const double next = std::min(1.0, result.load_reached + step);
-      const Outcome outcome = newton.step(next, x, result.residual);
-      if (outcome == Outcome::accepted) {
+      const Loss loss = newton.step(next, x, result.residual);
+      if (loss == Loss::none) {
         result.load_reached = next;
         ++steps;
         step *= 1.5;
       } else {
         newton.K.take(x);
         step = std::min(step, next - result.load_reached) / 2;
-        result.message = describe(outcome, result.load_reached);
+        result.message = describe(loss, result.load_reached);
+        result.loss = loss;
       }
     }
   }
   result.ok = result.load_reached >= 1;
-  if (result.ok) result.message.clear();
+  if (result.ok) result.message.clear(), result.loss = Loss::none;
+  if (options.softest_motion && newton.stiffness > 0 && conservative(model))
+    result.softest = softest_motion(model, newton.K, full.fixed);
   const BoundaryConditions reached = load_path(result.load_reached);
   result.displacement = x - model.network.X;
   carry(model.network.carried, result.displacement);
