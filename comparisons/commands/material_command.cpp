@@ -139,6 +139,34 @@ struct MaterialFacts {
   }
 };
 
+/// What stable_strains_json() and print_stable_strains() tell of: sides, and strains up to which the lattice is asked.
+constexpr std::array<std::pair<Sides, const char*>, 2> kinds_of_sides = {
+    {{Sides::free, "free"}, {Sides::held, "held"}}};
+constexpr double asked_strain = 0.5;
+
+nlohmann::json stable_strains_json(const ModelParameters& p, const IsotropicMaterial& m) {
+  nlohmann::json out = {{"asked", asked_strain}};
+  for (const auto& [sides, name] : kinds_of_sides)
+    for (const double sign : {-1.0, 1.0}) {
+      nlohmann::json& entry = out[name][sign < 0 ? "compression" : "tension"];
+      if (const auto limit = strain_limit(p, m, sides, sign * asked_strain))
+        entry = {{"strain", limit->strain}, {"k_l_over_pi", {limit->k[0], limit->k[1], limit->k[2]}}};
+    }
+  return out;
+}
+
+void print_stable_strains(const ModelParameters& p, const IsotropicMaterial& m) {
+  fmt::print("\nthe lattice without end, strained along an axis, is stable (no wave grows)\n");
+  for (const auto& [sides, name] : kinds_of_sides)
+    for (const double sign : {-1.0, 1.0}) {
+      const auto limit = strain_limit(p, m, sides, sign * asked_strain);
+      fmt::print("  sides {}, {:<11} {}\n", name, sign < 0 ? "compression" : "tension",
+                 limit
+                     ? fmt::format("up to {:.1f} %; beyond, {}", 100 * std::abs(limit->strain), describe_wave(limit->k))
+                     : fmt::format("up to {:g} % and more", 100 * asked_strain));
+    }
+}
+
 nlohmann::json moduli_json(double E, double nu, double G) {
   return {{"youngs_modulus_Pa", E}, {"poisson_ratio", nu}, {"shear_modulus_Pa", G}};
 }
@@ -182,7 +210,10 @@ nlohmann::json json_of(const MaterialFacts& f) {
                                          {"model_Pa", s.model ? nlohmann::json(*s.model) : nlohmann::json(nullptr)},
                                          {"hencky_Pa", s.hencky},
                                          {"neo_hooke_Pa", s.neo_hooke}});
-  if (f.has_limits) out["waves"] = waves_json(f);
+  if (f.has_limits) {
+    out["waves"] = waves_json(f);
+    out["stable_strains"] = stable_strains_json(p, f.m);
+  }
   if (f.model.network.springs.empty() || !f.lattice) out.erase("springs");
   out["engines"] = json_of(f.for_engines());
   out.update(json_of(f.dispersion, p, f.m));
@@ -318,7 +349,10 @@ int MaterialCommand::run() const {
   print(facts.dispersion, p, m);
   print_limits(facts);
   print_stresses(facts);
-  if (facts.has_limits) print_waves(facts);
+  if (facts.has_limits) {
+    print_stable_strains(p, m);
+    print_waves(facts);
+  }
   print_measured(facts);
   fmt::print("{}", text_of(facts.for_engines()));
   print_warnings(p, m);

@@ -12,6 +12,7 @@
 #include "comparisons/report/headline_cases.h"
 #include "comparisons/report/headline_words.h"
 #include "comparisons/report/results.h"
+#include "comparisons/report/stability_words.h"
 
 namespace springproof {
 namespace {
@@ -303,6 +304,7 @@ class Collector {
     append(headline_.deformations, {deformation_line(result)});
     append(headline_.motions, motion_lines(result));
     if (const auto warning = deformation_warning(result, case_number)) headline_.warnings.push_back(*warning);
+    for (Warning& warning : stability_warnings(result, case_number)) headline_.warnings.push_back(std::move(warning));
     if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
     for (const Json& model : list_of(experiment, "models"))
       models_for(string_of(model, "label"), number_of(model, "own_poisson_ratio"));

@@ -32,7 +32,7 @@ struct Headline {
   std::vector<ModelVerdict> models;  ///< springs first, then finite elements; linear cases before large deformation
   std::vector<std::string> deformations;  ///< per case the reference's largest principal strain and rotation at each nu
   std::vector<std::string> motions;       ///< period and amplitude, drift of energy and momentum; one line each
-  std::vector<Warning> warnings;          ///< linear cases to which linear theory does not apply
+  std::vector<Warning> warnings;          ///< that linear theory does not apply, and lost equilibria
   std::vector<std::string> verification;  ///< of cases without models: value, target, error, verdict; one line each
   int held = 0, failed = 0, reference_too_coarse = 0, no_reference = 0, no_result = 0;  ///< expectations
   std::vector<std::string> failed_checks;  ///< one line each, with expected and computed value

@@ -70,12 +70,13 @@ Json table_of(const Json& rows) {
 /// warning that.
 Json packed(Json results, const std::vector<Warning>& warnings) {
   results["measures"] = measures_json();
+  for (const MotionMeasure& m : motion_measures()) results["motion_measures"].push_back({m.name, m.heading});
   if (!results.contains("cases")) return results;
   for (Json& result : results.at("cases")) {
     shorten(result);
     result["rows"] = table_of(result["rows"]);
   }
-  for (const Warning& w : warnings) results["cases"][w.case_number]["warning"] = w.brief + "; " + w.advice;
+  for (const Warning& w : warnings) results["cases"][w.case_number]["warnings"].push_back(w.brief + "; " + w.advice);
   return results;
 }
 
@@ -141,8 +142,7 @@ std::string warnings_html(const std::vector<Warning>& warnings) {
   if (items.empty()) return "";
   const std::string list = "<ul class=\"warnings\">\n" + items + "</ul>\n";
   if (warnings.size() <= 3) return list;
-  return fmt::format("<details class=\"words\"><summary>Beyond linear theory: {} cases</summary>\n{}</details>\n",
-                     warnings.size(), list);
+  return fmt::format("<details class=\"words\"><summary>{} warnings</summary>\n{}</details>\n", warnings.size(), list);
 }
 
 std::string count_html(const char* verdict, int count, const char* words) {

@@ -69,6 +69,25 @@ Json json_of(const Row& r) {
           {"spread", number(r.spread)}};
 }
 
+Json json_of(const Stability& s) {
+  return {{"load_reached", number(s.load_reached)},
+          {"lost", s.lost},
+          {"strain", number(s.strain)},
+          {"softest", number(s.softest)},
+          {"alternation", numbers(s.alternation)},
+          {"wrinkles", number(s.wrinkles)}};
+}
+
+Json json_of(const LatticeLimit& l) {
+  return {{"model", l.model},
+          {"poisson_ratio", number(l.poisson_ratio)},
+          {"imposed", number(l.imposed)},
+          {"free", number(l.free)},
+          {"held", number(l.held)},
+          {"wave", l.wave},
+          {"instead", l.instead}};
+}
+
 Json json_of(const Run& r) {
   return {{"model", r.model},
           {"kind", r.kind},
@@ -83,7 +102,8 @@ Json json_of(const Run& r) {
           {"set_up_seconds", number(r.set_up_seconds)},
           {"seconds", number(r.seconds)},
           {"unknowns", r.unknowns},
-          {"memory_MiB", number(r.memory_MiB)}};
+          {"memory_MiB", number(r.memory_MiB)},
+          {"stability", r.stability ? json_of(*r.stability) : Json(nullptr)}};
 }
 
 Json json_of(const ReferenceRecord& r) {
@@ -275,7 +295,8 @@ Json to_json(const CaseResult& result) {
           {"checks", list(result.checks)}, {"published", list(result.published)},
           {"lines", list(result.lines)},   {"histories", list(result.histories)},
           {"splits", list(result.splits)}, {"deformations", list(result.deformations)},
-          {"cracks", list(result.cracks)}, {"notes", result.notes}};
+          {"cracks", list(result.cracks)}, {"limits", list(result.limits)},
+          {"notes", result.notes}};
 }
 
 std::string csv_text(const std::string& field) {

@@ -37,6 +37,16 @@ struct Row : RunKey {
   std::optional<double> spread = {};  ///< standard deviation over them; empty: one sample
 };
 
+/// How near the state of a model is to the loss of its equilibrium, or where it was lost.
+struct Stability {
+  double load_reached = 1;          ///< share of the load up to which there is a stable state
+  std::string lost;                 ///< why there is none beyond it: "unstable", "inverted cell", "no convergence"
+  double strain = 0;                ///< largest principal strain of the state, 99 % of the volume are below [1]
+  std::optional<double> softest;    ///< stiffness of the motion that the state resists least, over that at rest
+  std::vector<double> alternation;  ///< of that motion along x, y, z: 0 neighbours move alike, 2 against each other
+  double wrinkles = 0;  ///< strain that alternates from cell to cell, over all (comparisons/judge/wrinkles.h)
+};
+
 /// One run of one solver.
 struct Run : RunKey {
   std::string kind;  ///< "msm" or "fem"
@@ -51,6 +61,7 @@ struct Run : RunKey {
   double memory_MiB = 0;      ///< peak resident set of the solver's process up to the end of this run; in an experiment
                               ///< with `cost` the growth due to the run
   double set_up_seconds = 0;  ///< CPU time from the mesh in memory to that system
+  std::optional<Stability> stability = {};  ///< of models that are lattices of cells
 };
 
 /// Uncertainty of the reference for one measure: three grids, observed order, Richardson limit, GCI.
@@ -172,6 +183,18 @@ struct Deformation {
   double rotation_deg = 0;
 };
 
+/// A model whose lattice is not stable at the strain that moved supports impose, or a quarter more, as a body has in
+/// places: known before it is run.
+struct LatticeLimit {
+  std::string model;
+  double poisson_ratio = 0;
+  double imposed = 0;          ///< nominal strain along an axis, negative in compression [1]
+  std::optional<double> free;  ///< the last stable strain with free sides [1]; empty: all are
+  std::optional<double> held;  ///< the same with held sides
+  std::string wave;            ///< what happens beyond it, in words
+  std::string instead;         ///< a model of the table that is stable there; empty: none is known
+};
+
 /// Results of the runs of a case, at one Poisson's ratio or at all of them.
 struct Part {
   std::vector<Run> runs;
@@ -183,6 +206,7 @@ struct Part {
   std::vector<ErrorSplit> splits;
   std::vector<Deformation> deformations;
   std::vector<CrackRecord> cracks;
+  std::vector<LatticeLimit> limits;
 };
 
 struct CaseResult : Part {

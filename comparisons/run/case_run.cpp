@@ -11,6 +11,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/picture.h"
 #include "comparisons/run/case_checks.h"
+#include "comparisons/run/case_motion.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/external_points.h"
 #include "comparisons/run/fracture_run.h"
@@ -30,36 +31,6 @@
 
 namespace springproof {
 namespace {
-
-/// The finite element reference at the nodes of one lattice.
-struct Reference {
-  ReferenceField field;
-  std::map<std::string, ReferenceValue> scalars;  ///< the same for every lattice
-};
-
-/// One case at one material, while it is being run.
-struct PartRun {
-  const PreparedCase& prepared;
-  const IsotropicMaterial& material;
-  const VtuOutput& vtu;
-  Part part;
-
-  ReferenceGrids grids;                             ///< no elements: no reference
-  std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: no reference
-  std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
-  std::vector<CutState> cut_states;
-  std::optional<MotionReference> in_time;  ///< finite elements in time, where there are
-
-  const Experiment& experiment() const { return prepared.experiment; }
-  const Mesh& mesh(std::size_t lattice) const { return *prepared.lattices[lattice].mesh; }
-  RunKey key(const std::string& model, const Cells& cells) const { return {model, material.poisson_ratio, cells}; }
-  VtuNotes notes(const RunKey& key) const {
-    return vtu_notes(experiment().name, key, material.youngs_modulus, vtu.single);
-  }
-  RunKey key(const std::string& model, std::size_t lattice) const {
-    return key(model, prepared.lattices[lattice].cells);
-  }
-};
 
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
   return {run.key(model, s.grid.cells),
@@ -198,15 +169,6 @@ void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<st
   }
 }
 
-/// What a model is compared with at rest: nothing where its motion is compared with finite elements in time, of which
-/// the last instant is no equilibrium.
-const Reference* reference_at_rest(const PartRun& run, std::size_t lattice, const std::string& model) {
-  const auto& models = run.experiment().models;
-  const auto moves = [&](const auto& m) { return m.label == model && m.in_motion; };
-  if (run.in_time && std::any_of(models.begin(), models.end(), moves)) return nullptr;
-  return run.reference[lattice] ? &*run.reference[lattice] : nullptr;
-}
-
 /// One displacement field and one set of scalars per sample.
 void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
               const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
@@ -258,37 +220,6 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   write_file(run.vtu.folder / (vtu_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
 }
 
-/// The history of a motion; its frames become those of the first lattice's pictures, and a series of VTU files.
-void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Field field, MotionRecord motion) {
-  const RunKey key = run.key(model, lattice);
-  static_cast<RunKey&>(motion.history) = key;
-  if (run.in_time) {
-    motion.history.measured["motion_error"] = history_error(motion.history, run.in_time->history);
-    motion.history.probe = run.in_time->history.probe;  // the same component
-    for (const char* name : {"period", "amplitude", "arrival", "damping_ratio"}) motion.history.measured.erase(name);
-    motion.history.measured.merge(measured_in_time(*run.experiment().dynamics, motion.history));
-  }
-  run.part.histories.push_back(std::move(motion.history));
-  std::vector<std::pair<double, std::string>> series;
-  for (auto& [time, displacement] : motion.frames) {
-    field.displacement = std::move(displacement);
-    if (!run.vtu.folder.empty()) {
-      series.emplace_back(time, fmt::format("{}_{:04}.vtu", vtu_stem(key), series.size() + 1));
-      VtuNotes notes = run.notes(key);
-      notes.numbers.emplace_back("time_s", time);
-      write_vtu(run.vtu.folder / series.back().second, field, {}, notes);
-    }
-    for (Picture& p : run.part.pictures) {
-      if (!same_run(p, key)) continue;
-      p.frame_times.push_back(time);
-      p.frames.push_back(p.surface == "cells"
-                             ? picture(key, field, nullptr).displacement
-                             : smooth_picture(key, field, *run.prepared.tetrahedra.back(), nullptr).displacement);
-    }
-  }
-  if (!series.empty()) write_pvd(run.vtu.folder / (vtu_stem(key) + ".pvd"), series);
-}
-
 void add_splits(PartRun& run, std::size_t lattice, const std::string& model, const std::vector<NodalVectors>& u,
                 const std::vector<std::map<std::string, double>>& scalars) {
   const auto* reference = reference_at_rest(run, lattice, model);
@@ -318,48 +249,13 @@ void add_splits_of_cut_cells(PartRun& run, std::size_t lattice, std::size_t numb
   for (std::size_t s = 0; s < of_cubes.size(); ++s) without_staircase(of_cubes[s], run.part.splits[first + s]);
 }
 
-/// Finite elements in time.
-void run_motion_reference(PartRun& run) {
-  run.in_time = solve_motion(run.prepared, run.material);
-  MotionReference& r = *run.in_time;
-  const RunKey key = run.key(fem_in_motion, r.run.cells);
-  static_cast<RunKey&>(r.run) = static_cast<RunKey&>(r.history) = key;
-  r.run.kind = "fem";
-  run.part.runs.push_back(r.run);
-  if (r.run.ok)
-    run.part.histories.push_back(r.history);
-  else
-    run.in_time.reset();
-}
-
-/// What is measured in time of one model, and its distance from the reference.
-void add_motion_rows(PartRun& run, const Row& blank, const HistoryRecord& history) {
-  const auto add = [&](Row row, const std::string& measure, double value) {
-    if (!wanted(measure, run.experiment().measures)) return;
-    row.measure = measure;
-    row.unit = unit_of(measure);
-    row.value = value;
-    run.part.rows.push_back(row);
-  };
-  for (const std::string& measure : rows_of_measure("motion", run.experiment())) {
-    const std::string name = measure.substr(measure.find('.') + 1);
-    const auto measured = history.measured.find(name);
-    if (measured == history.measured.end()) continue;
-    Row row = blank;
-    if (run.in_time && run.in_time->measured.contains(name)) {
-      const ReferenceValue& r = run.in_time->measured.at(name);
-      row.reference = r.value;
-      row.reference_uncertainty = r.uncertainty;
-      row.error = measured->second - r.value;
-    }
-    add(row, measure, measured->second);
-  }
-  if (!run.in_time) return;
-  Row row = blank;
-  row.reference = 0.0;
-  row.reference_uncertainty = run.in_time->uncertainty;
-  row.error = history.measured.at("motion_error");
-  add(row, "motion_error", *row.error);
+/// The share of the load that a model bears, of models without a result too.
+void add_stable_load(PartRun& run, Row row, double load_reached) {
+  row.measure = "stable_load";
+  if (!wanted(row.measure, run.experiment().measures)) return;
+  row.unit = unit_of(row.measure);
+  row.value = load_reached;
+  run.part.rows.push_back(row);
 }
 
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
@@ -374,7 +270,10 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     const Equilibrium& s = sample.state;
     run.part.runs.push_back({run.key(label, lattice), is_external(e.models[number]) ? "external" : "msm", kind, s.ok,
                              s.message, s.solver, s.iterations, s.residual, sample.times.solve, s.unknowns,
-                             s.memory_MiB, sample.times.set_up});
+                             s.memory_MiB, sample.times.set_up, sample.stability});
+    if (sample.stability)
+      add_stable_load(run, {run.key(label, lattice), e.name, kind, "", 0, "", {}, {}, {}, 1, {}},
+                      sample.stability->load_reached);
     if (!s.ok) continue;
     if (fields.empty()) {
       save(run, lattice, label, sample.field);
@@ -449,6 +348,8 @@ void add_fem(PartRun& run, std::size_t lattice) {
 Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu) {
   PartRun run{prepared, prepared.experiment.materials[material], vtu, {}, {}, {}, {}, {}, {}};
   if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);
+  for (const LatticeLimit& limit : prepared.limits)
+    if (same_poisson_ratio(limit.poisson_ratio, run.material.poisson_ratio)) run.part.limits.push_back(limit);
   if (!prepared.experiment.reference.elements.empty()) run_fem(run);
   if (prepared.experiment.reference.in_time) run_motion_reference(run);
   record_elements(run);

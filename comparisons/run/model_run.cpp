@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "comparisons/judge/deformation.h"
 #include "comparisons/judge/line_measure.h"
 #include "comparisons/judge/measures.h"
+#include "comparisons/judge/wrinkles.h"
 #include "comparisons/run/external.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
@@ -70,7 +72,7 @@ Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const
   if (e.cost) options.tolerance = compared_residual;
   s.state = in_motion                          ? run_motion(prepared, lattice, s.built, material, path, s.motion)
             : kinematics == Kinematics::linear ? solve_linear(s.built.model, s.conditions, options)
-                                               : solve_finite(s.built.model, path);
+                                               : solve_finite(s.built.model, path, {.softest_motion = !e.cost});
   s.times = {ready - start, cpu_seconds() - ready};
   return s;
 }
@@ -89,6 +91,32 @@ Solved solve_and_count(const PreparedCase& prepared, const Lattice& lattice, con
   return s;
 }
 
+const char* name_of(Loss loss) {
+  switch (loss) {
+    case Loss::none:
+      return "";
+    case Loss::unstable:
+      return "unstable";
+    case Loss::inverted_cell:
+      return "inverted cell";
+    case Loss::no_convergence:
+      return "no convergence";
+  }
+  return "";
+}
+
+/// Of a lattice whose nodes are the mesh's; a motion has the wrinkles of its worst frame.
+Stability stability_of(const Equilibrium& state, const Mesh& mesh, const MotionRecord& motion, Kinematics kinematics) {
+  Stability s{state.load_reached, name_of(state.loss), 0, {}, {}, wrinkles(mesh, state.displacement)};
+  s.strain = deformation_size(mesh, state.displacement, kinematics).principal_strain;
+  for (const auto& [time, displacement] : motion.frames)
+    s.wrinkles = std::max(s.wrinkles, wrinkles(mesh, displacement));
+  if (!state.softest) return s;
+  s.softest = state.softest->stiffness;
+  s.alternation.assign(state.softest->alternation.begin(), state.softest->alternation.end());
+  return s;
+}
+
 /// One network of the model, solved and measured.
 ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material, bool in_motion) {
@@ -101,6 +129,8 @@ ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, con
   sample.state = state;
   sample.times = times;
   sample.motion = std::move(motion);
+  if (sample.state.displacement.rows() == mesh->nodes.rows() && !network.cells.empty() && network.filled.empty())
+    sample.stability = stability_of(sample.state, *mesh, sample.motion, e.model_kinematics());
   if (!sample.state.ok) return sample;
   sample.field =
       to_field(sample.state, mesh, built.embedding, network, prepared.loads, conditions, e.model_kinematics());

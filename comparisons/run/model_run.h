@@ -18,10 +18,11 @@ namespace springproof {
 struct ModelSample {
   Equilibrium state;
   RunTimes times;
-  Field field;                            ///< on the lattice's mesh; empty where state.ok is false
-  std::map<std::string, double> scalars;  ///< every measure that has a value of its own
-  std::optional<LineRecord> line;         ///< where the case has one
-  MotionRecord motion;                    ///< empty: the model is solved for its equilibrium
+  Field field;                              ///< on the lattice's mesh; empty where state.ok is false
+  std::map<std::string, double> scalars;    ///< every measure that has a value of its own
+  std::optional<LineRecord> line;           ///< where the case has one
+  MotionRecord motion;                      ///< empty: the model is solved for its equilibrium
+  std::optional<Stability> stability = {};  ///< of a lattice of cells
 };
 
 /// Rows of the measure `network`.

@@ -9,8 +9,10 @@ namespace springproof {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Row, case_name, kinematics, model, poisson_ratio, cells, measure, value, unit,
                                    reference, reference_uncertainty, error, samples, spread)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stability, load_reached, lost, strain, softest, alternation, wrinkles)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LatticeLimit, model, poisson_ratio, imposed, free, held, wave, instead)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Run, model, kind, poisson_ratio, cells, kinematics, ok, message, solver, iterations,
-                                   residual, seconds, unknowns, memory_MiB, set_up_seconds)
+                                   residual, seconds, unknowns, memory_MiB, set_up_seconds, stability)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, poisson_ratio, measure, unit, cells, values, observed_order, value,
                                    uncertainty, note, element, converging, correlation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Picture, model, poisson_ratio, cells, rest, displacement, difference, quads,
@@ -26,10 +28,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain,
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CrackRecord, model, poisson_ratio, cells, shrinkage, broken, fragments, stored,
                                    released, directions, svg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
-                                   cracks)
+                                   cracks, limits)
 
 // File format: this heading (comparisons/run/checked_file.h), then the stamp and the part.
-static constexpr std::string_view heading = "springproof part 1 ";
+static constexpr std::string_view heading = "springproof part 2 ";
 
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part) {
   write_checked(file, heading, {{"stamp", stamp}, {"part", part}});

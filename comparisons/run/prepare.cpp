@@ -10,6 +10,7 @@
 #include "comparisons/run/case_checks.h"
 #include "comparisons/run/external.h"
 #include "comparisons/run/fracture_run.h"
+#include "comparisons/run/lattice_limits.h"
 #include "comparisons/run/motion_run.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
@@ -228,6 +229,7 @@ PreparedCase prepare(const Experiment& experiment) {
     }
     for (std::size_t m = 0; m < prepared.models.size(); ++m)
       if (is_external(experiment.models[m])) check_external(prepared, m);
+    prepared.limits = lattice_limits(prepared);
     return prepared;
   });
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "comparisons/judge/patch_mean.h"
+#include "comparisons/report/results.h"
 #include "meshes/mesh.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/models.h"
@@ -60,6 +61,7 @@ struct PreparedCase {
   Cells reference_cells = {0, 0, 0};  ///< finest of the three reference grids
   std::set<std::string> sharing;      ///< patches whose separate forces are a convention
   std::filesystem::path geo;          ///< the body's file
+  std::vector<LatticeLimit> limits;   ///< models that the imposed strain may be too much for
 
   /// Nodes of all lattices: the first row of the measured points in fem::Solution::displacement.
   Eigen::Index nodes() const {

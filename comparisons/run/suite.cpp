@@ -12,6 +12,7 @@
 #include <mutex>
 #include <thread>
 
+#include "comparisons/report/stability_words.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/chosen_cases.h"
 #include "comparisons/run/find_cases.h"
@@ -236,6 +237,13 @@ void check_names(const std::vector<fs::path>& cases) {
                                      cases[j].string(), cases[i].string()));
 }
 
+/// Says which models may lose their equilibrium, before anything is run.
+void warn_of_limits(const std::vector<PreparedCase>& prepared) {
+  for (const PreparedCase& p : prepared)
+    for (const LatticeLimit& limit : p.limits)
+      fmt::print(stderr, "warning: {}\n", limit_sentence(p.experiment.name, limit));
+}
+
 /// Runs the tasks; false if interrupted, which is said.
 bool completed(std::vector<Task>& tasks, const SuiteOptions& options) {
   if (!fem::available()) fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
@@ -262,6 +270,7 @@ int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
   });
   const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
   if (interrupted) return 130;
+  warn_of_limits(prepared);
   for (const PreparedCase& p : prepared) save_meshed(options.out, key_of(p.experiment.file), case_of(p));
   std::vector<Task> tasks = tasks_of(sweep, prepared, options);
   if (!completed(tasks, options)) return 130;
@@ -274,6 +283,7 @@ int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
   const std::vector<Experiment> cases = read_all(files, options);
   const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
   if (interrupted) return 130;
+  warn_of_limits(prepared);
   require_writable(options.out);
   const FolderLock lock(options.out);
   const ByteLock no_shards(

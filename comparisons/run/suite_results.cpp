@@ -91,6 +91,7 @@ void append(const Part& from, Part& to) {
   append(from.splits, to.splits);
   append(from.deformations, to.deformations);
   append(from.cracks, to.cracks);
+  append(from.limits, to.limits);
 }
 
 bool write_results(std::vector<CaseResult> results, const std::string& libraries, const ResultsChoice& choice) {

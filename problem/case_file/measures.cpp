@@ -75,13 +75,9 @@ std::vector<std::string> network_rows(const Experiment&) {
 }
 
 std::vector<std::string> motion_rows(const Experiment&) {
-  return {"motion.period",
-          "motion.amplitude",
-          "motion.arrival",
-          "motion.damping_ratio",
-          "motion.energy_drift",
-          "motion.momentum_drift",
-          "motion.angular_momentum_drift"};
+  std::vector<std::string> rows;
+  for (const MotionMeasure& measure : motion_measures()) rows.push_back("motion." + measure.name);
+  return rows;
 }
 
 std::vector<std::string> moduli_rows(const Experiment&) {
@@ -120,6 +116,19 @@ std::size_t common(const std::string& row, const std::string& name) {
 
 }  // namespace
 
+const std::vector<MotionMeasure>& motion_measures() {
+  static const std::vector<MotionMeasure> all = {
+      {"period", "period [s]"},
+      {"amplitude", "amplitude [m]"},
+      {"arrival", "arrival [s]"},
+      {"damping_ratio", "share of critical damping"},
+      {"energy_drift", "change of energy", false},
+      {"momentum_drift", "of momentum", false},
+      {"angular_momentum_drift", "of angular momentum", false},
+  };
+  return all;
+}
+
 const std::vector<Measure>& measure_table() {
   using enum MeasureKind;
   // clang-format off
@@ -142,6 +151,8 @@ const std::vector<Measure>& measure_table() {
      "size of the volume change", "|V′ − V| / V, as the paper prints it; errors in percentage points"},
     {"volume_change_first_order", value, {{"volume_change_first_order", "1"}}, "integral of div u over V",
      "volume change, first order", "integral of div u over V; errors in percentage points"},
+    {"stable_load", value, {{"stable_load", "1"}}, "share of the load up to which a lattice has a stable equilibrium; also of models without a result",
+     "share of the load that is borne", "the largest share of the load at which a stable equilibrium was found; 1: all of it"},
     {"reaction", value, {{"force", "N"}, {"torque", "N m"}}, "force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m], where displacement is prescribed",
      "", "", reaction_rows},
     {"reaction_error", distance, {{"reaction_error", "1"}},

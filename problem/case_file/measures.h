@@ -30,6 +30,14 @@ struct Measure {
 
 const std::vector<Measure>& measure_table();
 
+/// What the measure `motion` measures of one model in time: HistoryRecord::measured, and the row "motion.NAME".
+struct MotionMeasure {
+  std::string name;      ///< "period"
+  std::string heading;   ///< of a column of the report
+  bool of_probe = true;  ///< of the displacement of the first probe, so that finite elements in time have it too
+};
+const std::vector<MotionMeasure>& motion_measures();
+
 /// The measure that produces the row of this name, e.g. `reaction` for force.x_min.z; nullptr: none.
 const Measure* measure_of(const std::string& row);
 

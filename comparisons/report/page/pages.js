@@ -192,9 +192,11 @@ function deformationTable(result) {
   return [el('h5', {}, 'Largest principal strain and rotation', el('small', {}, '99 % of the volume stay below' +
       (result.linear ? '; linear theory is for a few per cent and a few degrees: marked beyond 5 % or 5°' : ''))),
     table('deformation', ['ν', right('principal strain'), right('rotation')], result.deformations.map(d => tr(nuText(d.poisson_ratio),
-      cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°')))),
-    result.warning ? el('p', {}, el('span', {class: 'amber'}, result.warning + '.')) : null];
+      cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°'))))];
 }
+
+/// What to know of a case before its numbers are believed.
+const warningsOf = result => result.warnings.map(warning => el('p', {}, el('span', {class: 'amber'}, warning + '.')));
 
 function minorFold(measures, tables) {
   return measures.length === 0 ? null : el('details', {class: 'fold'},
@@ -341,7 +343,7 @@ function casePage(result, jumps) {
     if (body.childElementCount > 0) return;
     const picture = problemPicture(result);
     if (picture) charts.push(picture.redraw);
-    body.append(...[picture && picture.node, outcome(result), el('p', {class: 'jumps'}, links), referencePart(result),
+    body.append(...[picture && picture.node, outcome(result), warningsOf(result), el('p', {class: 'jumps'}, links), referencePart(result),
       result.verifies ? [] : resultsPart(result),
       checksPart(result), publishedPart(result), problemPart(result), runsPart(result)].flat(Infinity).filter(Boolean));
     if (result.experiment.text)

@@ -1,0 +1,64 @@
+#include "comparisons/judge/wrinkles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace springproof {
+namespace {
+
+/// Sign of a corner along an axis.
+double sign(int corner, int axis) { return hexahedron_corners[corner][axis] ? 1 : -1; }
+
+/// Of one cell: the patterns yz, zx, xy and xyz of its corners' displacements over its edge, and its Green strain.
+struct CellStrain {
+  Eigen::Matrix<double, 3, 4> hourglass = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix3d strain;
+};
+
+CellStrain strain_of(const Mesh& mesh, const Hexahedron& cell, const NodalVectors& u) {
+  CellStrain s;
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Zero(), change = Eigen::Matrix3d::Zero();  // column: mean edge along an axis
+  for (int n = 0; n < 8; ++n) {
+    const Vec3 X = mesh.nodes.row(cell[n]), at = u.row(cell[n]);
+    const double x = sign(n, 0), y = sign(n, 1), z = sign(n, 2);
+    for (int axis = 0; axis < 3; ++axis) {
+      edges.col(axis) += sign(n, axis) / 4 * X;
+      change.col(axis) += sign(n, axis) / 4 * at;
+    }
+    s.hourglass.col(0) += y * z / 4 * at;
+    s.hourglass.col(1) += z * x / 4 * at;
+    s.hourglass.col(2) += x * y / 4 * at;
+    s.hourglass.col(3) += x * y * z / 4 * at;
+  }
+  s.hourglass /= std::cbrt(std::abs(edges.determinant()));
+  const Eigen::Matrix3d H = change * edges.inverse();
+  s.strain = (H + H.transpose() + H.transpose() * H) / 2;
+  return s;
+}
+
+}  // namespace
+
+double wrinkles(const Mesh& mesh, const NodalVectors& displacement) {
+  std::vector<CellStrain> cells;
+  double all = 0, alternating = 0;
+  for (const Hexahedron& cell : mesh.hexahedra) {
+    cells.push_back(strain_of(mesh, cell, displacement));
+    all += cells.back().strain.squaredNorm() + cells.back().hourglass.squaredNorm();
+  }
+  std::map<std::array<int, 4>, std::size_t> open;  // faces that one cell was seen at
+  int pairs = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (int f = 0; f < 6; ++f) {
+      std::array<int, 4> face = face_of(mesh.hexahedra[c], f);
+      std::sort(face.begin(), face.end());
+      const auto [at, is_new] = open.try_emplace(face, c);
+      if (is_new) continue;
+      alternating += ((cells[c].hourglass - cells[at->second].hourglass) / 2).squaredNorm();
+      ++pairs;
+      open.erase(at);
+    }
+  return all > 0 && pairs > 0 ? std::sqrt(alternating / pairs / (all / static_cast<double>(cells.size()))) : 0;
+}
+
+}  // namespace springproof

@@ -1,0 +1,17 @@
+// Strain that alternates from cell to cell: wrinkles of a lattice, which no smooth displacement of a solid has.
+#pragma once
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+/// Root mean square, over pairs of neighbouring cells, of half the difference of their hourglass strains, over that of
+/// all strain.  The hourglass strain of a cell is what its corners do beyond an affine motion; bending has it too, but
+/// alike in neighbours.  A smooth field is of the order (edge over its length)^2; the wave (-1)^(i+j) across x and y,
+/// in which the two diagonals of each face grow and shrink in turn (Golec et al. 2019, Figs. 3 and 6), has 0.8.
+/// @param mesh of hexahedra
+/// @param displacement of its nodes [m], n x 3
+/// @return [1]; 0 without strain
+double wrinkles(const Mesh& mesh, const NodalVectors& displacement);
+
+}  // namespace springproof

@@ -1,0 +1,120 @@
+#include "comparisons/report/stability_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "comparisons/report/headline_words.h"
+
+namespace springproof {
+namespace {
+
+using namespace words;
+
+// More of a smooth field's strain does not alternate: bending by two cells across has 0.1, wrinkles 0.3 to 0.8.
+constexpr double wrinkled = 0.25;
+// Neighbours of a wave of four cells are a quarter of a period apart; of shorter ones more (1 - cos k l > 1).
+constexpr double short_wave = 1;
+
+std::string change_words(double strain) {
+  return fmt::format("{} by {} %", strain < 0 ? "shortened" : "lengthened", percent(std::abs(strain)));
+}
+
+std::string what_happens(const Json& stability) {
+  const std::string lost = string_of(stability, "lost");
+  if (lost == "inverted cell") return "a cell is turned inside out";
+  if (lost == "no convergence") return "no state was found beyond it";
+  std::vector<std::string> axes;
+  const Json& alternation = list_of(stability, "alternation");
+  for (std::size_t axis = 0; axis < alternation.size() && axis < 3; ++axis)
+    if (alternation[axis].is_number() && alternation[axis].get<double>() > short_wave)
+      axes.push_back(std::string(1, "xyz"[axis]));
+  if (!axes.empty())
+    return fmt::format(
+        "the lattice wrinkles, neighbours move against each other along {}: the springs' failure, not the material's",
+        listed(axes));
+  return "it buckles or passes a limit point in a wave of more than four cells, as the material may";
+}
+
+/// Models of the case that have a result at this Poisson's ratio and on these cells.
+std::vector<std::string> holding(const Json& result, const Json& of) {
+  std::vector<std::string> names;
+  for (const Json& run : list_of(result, "runs"))
+    if (string_of(run, "kind") == "msm" && run.value("ok", false) &&
+        run.at("poisson_ratio") == of.at("poisson_ratio") && run.at("cells") == of.at("cells") &&
+        number_of(object_of(run, "stability"), "wrinkles").value_or(0) <= wrinkled &&
+        std::find(names.begin(), names.end(), string_of(run, "model")) == names.end())
+      names.push_back(string_of(run, "model"));
+  return names;
+}
+
+std::string advice(const Json& result, const Json& run) {
+  const std::vector<std::string> names = holding(result, run);
+  if (names.empty()) return "no model of the case holds: apply less, or take hybmss_avg";
+  return fmt::format("{} {} the whole load there", listed(names), names.size() == 1 ? "bears" : "bear");
+}
+
+bool is_lost(const Json& run) { return !string_of(object_of(run, "stability"), "lost").empty(); }
+
+std::string loss_words(const Json& run) {
+  const Json& stability = object_of(run, "stability");
+  return fmt::format("ν = {} at {} % of the load, {} % of strain", nu_text(number_of(run, "poisson_ratio")),
+                     percent(number_of(stability, "load_reached").value_or(0)),
+                     percent(number_of(stability, "strain").value_or(0)));
+}
+
+}  // namespace
+
+std::string limit_sentence(const std::string& case_name, const LatticeLimit& limit) {
+  std::vector<std::string> limits;
+  const auto add = [&](const std::optional<double>& strain, const char* sides) {
+    if (strain) limits.push_back(fmt::format("{} % with {} sides", percent(std::abs(*strain)), sides));
+  };
+  add(limit.free, "free");
+  add(limit.held, "held");
+  return fmt::format(
+      "{}: {} at ν = {} may lose its equilibrium: it is to be {}, more in places, and its lattice without end is "
+      "stable "
+      "to {} ({}); {}",
+      case_name, limit.model, nu_text(limit.poisson_ratio), change_words(limit.imposed), listed(limits), limit.wave,
+      limit.instead.empty() ? "apply less" : limit.instead + " is stable there");
+}
+
+std::vector<Warning> stability_warnings(const Json& result, std::size_t case_number) {
+  const std::string name = string_of(object_of(result, "experiment"), "name");
+  // One warning per model and kind of loss, of the worst resolution and Poisson's ratio first.
+  struct Group {
+    std::vector<std::string> where;
+    const Json* first = nullptr;
+  };
+  std::map<std::pair<std::string, std::string>, Group> lost, waves;
+  std::vector<Warning> warnings;
+  for (const Json& run : list_of(result, "runs")) {
+    const Json& stability = object_of(run, "stability");
+    const bool wrinkles = number_of(stability, "wrinkles").value_or(0) > wrinkled;
+    if (!is_lost(run) && !(wrinkles && run.value("ok", false))) continue;
+    Group& group =
+        is_lost(run) ? lost[{string_of(run, "model"), what_happens(stability)}] : waves[{string_of(run, "model"), ""}];
+    if (!group.first) group.first = &run;
+    group.where.push_back(is_lost(run) ? loss_words(run)
+                                       : fmt::format("ν = {} ({} % of the strain alternates)",
+                                                     nu_text(number_of(run, "poisson_ratio")),
+                                                     percent(*number_of(stability, "wrinkles"))));
+  }
+  for (const auto& [key, group] : lost)
+    warnings.push_back(
+        {case_number,
+         fmt::format("{}: {} loses its equilibrium, {}: {}", name, key.first, fmt::join(group.where, "; "), key.second),
+         advice(result, *group.first)});
+  for (const auto& [key, group] : waves)
+    warnings.push_back({case_number,
+                        fmt::format("{}: {} wrinkles from cell to cell, {}: a wave of the lattice, not of the material",
+                                    name, key.first, fmt::join(group.where, "; ")),
+                        advice(result, *group.first)});
+  return warnings;
+}
+
+}  // namespace springproof

@@ -1,0 +1,21 @@
+// Sentences on models that lose their equilibrium: before they are run, and when it happened.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "comparisons/report/headline.h"
+#include "comparisons/report/results.h"
+
+namespace springproof {
+
+/// "bar: hybmss at ν = 0 may lose its equilibrium: it is to be lengthened by 40 %, and its lattice is stable to 17 %
+/// ..."
+std::string limit_sentence(const std::string& case_name, const LatticeLimit& limit);
+
+/// Of a case one warning for each model that lost its equilibrium, may have, or has wrinkles: at which nu and strain,
+/// what happened, and what to do.
+std::vector<Warning> stability_warnings(const nlohmann::json& result, std::size_t case_number);
+
+}  // namespace springproof

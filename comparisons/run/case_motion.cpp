@@ -1,0 +1,92 @@
+#include "comparisons/run/case_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "comparisons/report/picture.h"
+#include "problem/case_file/measures.h"
+
+namespace springproof {
+
+const Reference* reference_at_rest(const PartRun& run, std::size_t lattice, const std::string& model) {
+  const auto& models = run.experiment().models;
+  const auto moves = [&](const auto& m) { return m.label == model && m.in_motion; };
+  if (run.in_time && std::any_of(models.begin(), models.end(), moves)) return nullptr;
+  return run.reference[lattice] ? &*run.reference[lattice] : nullptr;
+}
+
+void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Field field, MotionRecord motion) {
+  const RunKey key = run.key(model, lattice);
+  static_cast<RunKey&>(motion.history) = key;
+  if (run.in_time) {
+    motion.history.measured["motion_error"] = history_error(motion.history, run.in_time->history);
+    motion.history.probe = run.in_time->history.probe;  // the same component
+    for (const MotionMeasure& m : motion_measures())
+      if (m.of_probe) motion.history.measured.erase(m.name);
+    motion.history.measured.merge(measured_in_time(*run.experiment().dynamics, motion.history));
+  }
+  run.part.histories.push_back(std::move(motion.history));
+  std::vector<std::pair<double, std::string>> series;
+  for (auto& [time, displacement] : motion.frames) {
+    field.displacement = std::move(displacement);
+    if (!run.vtu.folder.empty()) {
+      series.emplace_back(time, fmt::format("{}_{:04}.vtu", vtu_stem(key), series.size() + 1));
+      VtuNotes notes = run.notes(key);
+      notes.numbers.emplace_back("time_s", time);
+      write_vtu(run.vtu.folder / series.back().second, field, {}, notes);
+    }
+    for (Picture& p : run.part.pictures) {
+      if (!same_run(p, key)) continue;
+      p.frame_times.push_back(time);
+      p.frames.push_back(p.surface == "cells"
+                             ? picture(key, field, nullptr).displacement
+                             : smooth_picture(key, field, *run.prepared.tetrahedra.back(), nullptr).displacement);
+    }
+  }
+  if (!series.empty()) write_pvd(run.vtu.folder / (vtu_stem(key) + ".pvd"), series);
+}
+
+void run_motion_reference(PartRun& run) {
+  run.in_time = solve_motion(run.prepared, run.material);
+  MotionReference& r = *run.in_time;
+  const RunKey key = run.key(fem_in_motion, r.run.cells);
+  static_cast<RunKey&>(r.run) = static_cast<RunKey&>(r.history) = key;
+  r.run.kind = "fem";
+  run.part.runs.push_back(r.run);
+  if (r.run.ok)
+    run.part.histories.push_back(r.history);
+  else
+    run.in_time.reset();
+}
+
+void add_motion_rows(PartRun& run, const Row& blank, const HistoryRecord& history) {
+  const auto add = [&](Row row, const std::string& measure, double value) {
+    if (!wanted(measure, run.experiment().measures)) return;
+    row.measure = measure;
+    row.unit = unit_of(measure);
+    row.value = value;
+    run.part.rows.push_back(row);
+  };
+  for (const std::string& measure : rows_of_measure("motion", run.experiment())) {
+    const std::string name = measure.substr(measure.find('.') + 1);
+    const auto measured = history.measured.find(name);
+    if (measured == history.measured.end()) continue;
+    Row row = blank;
+    if (run.in_time && run.in_time->measured.contains(name)) {
+      const ReferenceValue& r = run.in_time->measured.at(name);
+      row.reference = r.value;
+      row.reference_uncertainty = r.uncertainty;
+      row.error = measured->second - r.value;
+    }
+    add(row, measure, measured->second);
+  }
+  if (!run.in_time) return;
+  Row row = blank;
+  row.reference = 0.0;
+  row.reference_uncertainty = run.in_time->uncertainty;
+  row.error = history.measured.at("motion_error");
+  add(row, "motion_error", *row.error);
+}
+
+}  // namespace springproof

@@ -1,0 +1,50 @@
+// One case at one material, while it is being run.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "comparisons/judge/reference_value.h"
+#include "comparisons/report/results.h"
+#include "comparisons/run/cut_extrapolation.h"
+#include "comparisons/run/motion_reference.h"
+#include "comparisons/run/prepared_case.h"
+#include "comparisons/run/reference_grids.h"
+#include "comparisons/run/voxel_reference.h"
+#include "comparisons/run/vtu_output.h"
+
+namespace springproof {
+
+/// The finite element reference at the nodes of one lattice.
+struct Reference {
+  ReferenceField field;
+  std::map<std::string, ReferenceValue> scalars;  ///< the same for every lattice
+};
+
+/// Its inputs, what is known of it so far, and its results.
+struct PartRun {
+  const PreparedCase& prepared;
+  const IsotropicMaterial& material;
+  const VtuOutput& vtu;
+  Part part;
+
+  ReferenceGrids grids;                             ///< no elements: no reference
+  std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: no reference
+  std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
+  std::vector<CutState> cut_states;
+  std::optional<MotionReference> in_time;  ///< finite elements in time, where there are
+
+  const Experiment& experiment() const { return prepared.experiment; }
+  const Mesh& mesh(std::size_t lattice) const { return *prepared.lattices[lattice].mesh; }
+  RunKey key(const std::string& model, const Cells& cells) const { return {model, material.poisson_ratio, cells}; }
+  VtuNotes notes(const RunKey& key) const {
+    return vtu_notes(experiment().name, key, material.youngs_modulus, vtu.single);
+  }
+  RunKey key(const std::string& model, std::size_t lattice) const {
+    return key(model, prepared.lattices[lattice].cells);
+  }
+};
+
+}  // namespace springproof
