@@ -1,5 +1,6 @@
 #include "comparisons/judge/wrinkles.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -185,6 +185,9 @@ std::vector<std::string> motion_lines(const Json& result) {
       line += fmt::format("; energy within {:.1e} of the largest kinetic energy", *drift);
     if (const auto arrival = number_of(measured, "arrival"))
       line += fmt::format("; {} moves after {:.4g} s", string_of(h, "probe"), *arrival);
+    if (const auto contact = number_of(measured, "contact_time"))
+      line += fmt::format("; touches the plane for {:.4g} s and leaves with {} % of its velocity", *contact,
+                          percent(number_of(measured, "restitution").value_or(0)));
     if (const auto ratio = number_of(measured, "damping_ratio"))
       line += fmt::format("; damped by {} % of critical", percent(*ratio));
     if (const auto drift = number_of(measured, "momentum_drift"))

@@ -76,7 +76,7 @@ class Recorder {
  public:
   Recorder(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
            const IsotropicMaterial& material, const Steps& steps, double damping, const Viscosity& viscosity,
-           MotionRecord& record)
+           PlaneContact* contact, MotionRecord& record)
       : prepared_(prepared),
         lattice_(lattice),
         built_(built),
@@ -84,6 +84,7 @@ class Recorder {
         behind_(steps.integrator == Integrator::explicit_euler ? steps.size / 2 : 0),
         damping_(damping),
         viscosity_(viscosity),
+        contact_(contact),
         cut_(lattice.cut && !built.model.network.filled.empty()),
         record_(record) {}
 
@@ -104,6 +105,7 @@ class Recorder {
     add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());
     add("volume_change", "1", cut_ ? volume_change(built_.model.network, u).exact : field.volume_change);
     for (const PatchReaction& r : field.reactions) add_vector("force." + r.patch, "N", r.force);
+    if (contact_) add_vector("contact_impulse", "N s", impulse_ += contact_->take_impulse());
     const std::vector<Probe>& probes = prepared_.experiment.probes;
     const NodalVectors at_points = cut_ ? displacement_at(*lattice_.cut, u, measured_points(prepared_))
                                         : at_measured_points(prepared_, lattice_, field.displacement);
@@ -121,6 +123,11 @@ class Recorder {
     const NodalVectors f = forces(built_.model, x) + viscous_forces(x, v) + conditions.external;
     for (Eigen::Index i = 0; i < v.size(); ++i)
       if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] / mass_[i / 3] - damping_ * v.data()[i]);
+    for (Eigen::Index n = 0; contact_ && n < x.rows(); ++n) {  // nodes on the plane do not enter it
+      const Vec3 normal = contact_->plane().normal;
+      const double into = normal.dot(Vec3(v.row(n).transpose()));
+      if (into < 0 && contact_->plane().distance(x.row(n).transpose()) <= 0) v.row(n) -= into * normal.transpose();
+    }
     return v;
   }
 
@@ -166,7 +173,9 @@ class Recorder {
   double behind_;   ///< the velocities of a step [s]
   double damping_;  ///< [1/s]
   Viscosity viscosity_;
-  bool cut_;  ///< the network is of cut cells of the lattice
+  PlaneContact* contact_;        ///< nullptr: there is no plane
+  Vec3 impulse_ = Vec3::Zero();  ///< of the plane on the body so far [N s]
+  bool cut_;                     ///< the network is of cut cells of the lattice
   MotionRecord& record_;
   std::size_t next_ = 0;  ///< quantity
 };
@@ -199,7 +208,8 @@ void measure(const Experiment& e, const MotionChoice& motion, double mass, doubl
   }
   const std::vector<double>*kinetic = series(h, "kinetic_energy"), *elastic = series(h, "elastic_energy"),
         *load = series(h, "load_potential");
-  if (motion.damping == 0 && motion.viscosity == 0 && elastic && first < h.time.size()) {
+  if (motion.damping == 0 && motion.viscosity == 0 && !(motion.plane && motion.plane->friction > 0) && elastic &&
+      first < h.time.size()) {
     const auto total = [&](std::size_t i) { return (*kinetic)[i] + (*elastic)[i] + (*load)[i]; };
     double drift = 0, largest = 0;
     for (std::size_t i = first; i < h.time.size(); ++i) {
@@ -210,7 +220,7 @@ void measure(const Experiment& e, const MotionChoice& motion, double mass, doubl
   }
   const double scale = std::sqrt(2 * mass * *std::max_element(kinetic->begin(), kinetic->end()));
   const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });
-  if (flies && last.external.isZero(0) && motion.damping == 0) {
+  if (flies && !motion.plane && last.external.isZero(0) && motion.damping == 0) {
     double drift = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const std::vector<double>& spin = *series(h, fmt::format("angular_momentum.{}", "xyz"[axis]));
@@ -221,7 +231,8 @@ void measure(const Experiment& e, const MotionChoice& motion, double mass, doubl
   double drift = -1;
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<double>& p = *series(h, fmt::format("linear_momentum.{}", "xyz"[axis]));
-    bool free = last.external.col(axis).isZero(0);
+    bool free = last.external.col(axis).isZero(0) &&
+                !(motion.plane && (motion.plane->friction > 0 || motion.plane->normal[axis] != 0));
     for (std::size_t i = axis; i < last.fixed.size(); i += 3) free = free && !last.fixed[i];
     if (free && motion.damping == 0 && first < h.time.size())
       for (std::size_t i = first; i < h.time.size(); ++i) drift = std::max(drift, std::abs(p[i] - p[first]));
@@ -281,7 +292,12 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   record.history.time_step = steps.size;
   DynamicsOptions options;
   options.viscosity = Viscosity::of(built.model, material, motion.viscosity);
-  Recorder recorder(prepared, lattice, built, material, steps, motion.damping, options.viscosity, record);
+  const Eigen::VectorXd mass = masses(built.model.network, material.density);
+  std::optional<PlaneContact> contact;
+  if (motion.plane) contact.emplace(*motion.plane, mass, std::max(motion.duration / motion.samples, 5 * steps.size));
+  options.contact = contact ? &*contact : nullptr;
+  Recorder recorder(prepared, lattice, built, material, steps, motion.damping, options.viscosity, options.contact,
+                    record);
   options.integrator = steps.integrator;
   options.time_step = steps.size;
   options.damping = motion.damping;
@@ -292,7 +308,7 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
     recorder(time, x, v, bc);
     progress::detail(fmt::format("{:.3g} of {:.3g} s", time, motion.duration));
   };
-  options.velocity = rigid_velocity(motion, built.model.network, masses(built.model.network, material.density));
+  options.velocity = rigid_velocity(motion, built.model.network, mass);
   LoadPath in_time = path;
   if (motion.released) {
     const Equilibrium start = solve_finite(built.model, path);
@@ -306,8 +322,11 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   }
   Equilibrium state = run_dynamics(built.model, material.density, in_time, options).state;
   record.history.integrator = name_of(steps.integrator);
-  measure(prepared.experiment, motion, masses(built.model.network, material.density).sum(), prepared.size.norm(),
-          in_time(1.0), record.history);
+  measure(prepared.experiment, motion, mass.sum(), prepared.size.norm(), in_time(1.0), record.history);
+  if (const auto bounce = contact ? contact->bounce() : std::nullopt) {
+    record.history.measured["contact_time"] = bounce->end - bounce->begin;
+    record.history.measured["restitution"] = -bounce->velocity_after / bounce->velocity_before;
+  }
   return state;
 }
 

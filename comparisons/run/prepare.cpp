@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/report/results.h"
@@ -51,6 +52,7 @@ void choose_cut_cells(PreparedCase& prepared) {
                          : !e.body.is_voxels()                                   ? "the body is a block"
                          : e.fracture                                            ? "the body breaks"
                          : e.models[m].in_motion && !p.has(Extension::averaging) ? "it is to move in time"
+                         : e.dynamics && e.dynamics->plane                       ? "it is to fall on a plane"
                          : e.model_kinematics() != Kinematics::linear && !p.has(Extension::averaging)
                              ? "the displacements are large"
                              : nullptr;
@@ -147,6 +149,21 @@ void sample_patches(PreparedCase& prepared) {
       samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
 }
 
+/// @throws InputError for a body that starts behind the plane that it is to fall on.
+void check_plane(const Experiment& e, const Mesh& mesh) {
+  if (!e.dynamics || !e.dynamics->plane) return;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n)
+    nearest = std::min(nearest, e.dynamics->plane->distance(mesh.nodes.row(n).transpose()));
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  if (nearest < -1e-9 * size)
+    throw InputError(
+        e.dynamics->where,
+        fmt::format("dynamics.plane: the body reaches {:.3g} m behind it (allowed: a plane that the body is "
+                    "in front of, or touches)",
+                    -nearest));
+}
+
 /// Checks patches, loads, models and measures of the case on one lattice.
 void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   const Experiment& e = prepared.experiment;
@@ -155,6 +172,7 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   for (const Patch& p : mesh.patches) patches.push_back(p.name);
   check_patches(e, patches);
   check_mean_displacements(e, patches);
+  check_plane(e, mesh);
   prepared.sharing = patches_sharing_supports(prepared.loads, mesh, e.model_kinematics());
   if ((needs_supports(e) || !e.reference.elements.empty()) &&
       std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))

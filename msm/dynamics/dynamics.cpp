@@ -31,6 +31,7 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
     if (const std::string why = EnergyMomentum::lacks(model); !why.empty())
       throw InputError("integrator: energy_momentum does not suit this model: " + why);
   if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
+  if (implicit && options.contact) throw InputError("integrator: contact with a plane needs the explicit one");
   if (implicit && options.viscosity.time != 0) throw InputError("integrator: viscosity needs the explicit one");
   if (const std::string why = options.viscosity.time > 0 ? Viscosity::lacks(model) : ""; !why.empty())
     throw InputError("viscosity does not suit this model: " + why);
@@ -255,6 +256,12 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   return v;
 }
 
+/// Contact with the plane at the end of a step.
+void touch(Motion& motion, PlaneContact& contact, double time, double dt, const BoundaryConditions& bc) {
+  NodalVectors x = motion.positions(), v = motion.velocities();
+  if (contact.correct(time, dt, bc.fixed, x, v)) motion.set_state(x, v);
+}
+
 }  // namespace
 
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
@@ -286,7 +293,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       changing = time < options.course.settled();
     }
     const long to_stop = options.after_step ? options.stride - result.steps % options.stride : steps_between_looks;
-    const long steps = changing ? 1 : std::min({steps_between_looks, to_stop, last - result.steps});
+    const long steps = changing || options.contact ? 1 : std::min({steps_between_looks, to_stop, last - result.steps});
     const ForceNorms norms = motion->advance(steps);
     if (const std::string why = motion->failure(); !why.empty()) {
       state.message =
@@ -294,6 +301,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       return result;
     }
     result.steps += steps;
+    if (options.contact) touch(*motion, *options.contact, result.steps * dt, dt, bc);
     if (options.after_step && (result.steps % options.stride == 0 || result.steps == last))
       options.after_step(result.steps * dt, motion->positions(), motion->velocities(), bc);
     const double scale = std::max(norms.support, bc.external.norm());

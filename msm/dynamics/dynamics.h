@@ -8,6 +8,7 @@
 
 #include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/plane_contact.h"
 #include "msm/dynamics/viscosity.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/course.h"
@@ -29,9 +30,10 @@ struct DynamicsOptions {
   double damping = 0;   ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
                         ///< some, or it flutters
   Viscosity viscosity;  ///< for explicit steps; by kernels that of lattices of cells
-  Course course;        ///< of the loads and supports
-  double duration = 10;       ///< [s]
-  double rest_tolerance = 0;  ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
+  PlaneContact* contact = nullptr;  ///< a plane that the body may fall on, for explicit steps; nullptr: there is none
+  Course course;                    ///< of the loads and supports
+  double duration = 10;             ///< [s]
+  double rest_tolerance = 0;        ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
   Precision precision = Precision::float64;  ///< of the kernels; the plain loops use float64
   int threads = 1;                           ///< of the kernels; the plain loops and momentum dispersion use one
   bool lagged = false;  ///< dispersion uses the J of the previous step; Kot & Nagahashi (2015), sec. 7

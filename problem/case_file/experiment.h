@@ -14,6 +14,7 @@
 #include "problem/material.h"
 #include "problem/model_choice.h"
 #include "problem/patch_rule.h"
+#include "problem/plane.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {
@@ -66,6 +67,7 @@ struct MotionChoice {
       time_step;                 ///< [s]; empty: 0.95 of the bound of each model, implicit: a sample's, up to 10 of it
   double damping = 0;            ///< mass-proportional [1/s]
   double viscosity = 0;          ///< time of retardation of a Kelvin-Voigt solid [s]
+  std::optional<Plane> plane;    ///< that the body may fall on
   Course course;                 ///< of the loads; of a released body's, how they are removed
   Vec3 velocity = Vec3::Zero();  ///< at the start, of the body as a whole [m/s]
   Vec3 spin = Vec3::Zero();      ///< and about its centre of mass [rad/s]

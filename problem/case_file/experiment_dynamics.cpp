@@ -20,11 +20,32 @@ constexpr Key dynamics_schema[] = {{"duration_s", "a finite number > 0"},
                                    {"ramp_s"},
                                    {"pulse_s"},
                                    {"shake_Hz"},
+                                   {"plane"},
                                    {"velocity_m_s"},
                                    {"spin_rad_s"},
                                    {"equilibrium"},
                                    {"samples"},
                                    {"frames"}};
+
+constexpr Key plane_schema[] = {
+    {"point_m", "a point in the plane [m]"}, {"normal", "its normal, towards the body"}, {"friction"}};
+
+/// A plane that the body falls on: explicit steps, of models alone.
+void read_plane(const TomlTable& table, const Experiment& experiment, MotionChoice& motion) {
+  const auto value = table.find("plane");
+  if (!value) return;
+  if (motion.integrator != "explicit")
+    refuse(*value, fmt::format("does not suit the integrator {}", motion.integrator), "integrator = \"explicit\"");
+  if (experiment.reference.in_time) refuse(*value, "has no finite elements in time", "no in_time in [reference]");
+  const TomlTable keys(*value, plane_schema);
+  Plane plane;
+  plane.point = as_vector(keys.at("point_m"));
+  plane.normal = as_vector(keys.at("normal"));
+  if (!(plane.normal.norm() > 0)) refuse(keys.at("normal"), "has no length", "a vector other than 0");
+  plane.normal.normalize();
+  if (const auto friction = keys.find("friction")) plane.friction = as_number(*friction, not_negative);
+  motion.plane = plane;
+}
 
 /// One course at most, and none but a ramp for a body that is released.
 void check_course(const TomlTable& table, const MotionChoice& motion) {
@@ -97,6 +118,7 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
     motion.where = location_of(*step);
   }
   read_damping(table, motion);
+  read_plane(table, experiment, motion);
   if (const auto ramp = table.find("ramp_s"))
     motion.course.ramp = as_number(*ramp, {"a finite number >= 0, up to duration_s", 0, motion.duration, true, true});
   if (const auto pulse = table.find("pulse_s"))

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "comparisons/report/stability_words.h"
 #include "support/sample_case.h"
 
 namespace springproof {
@@ -436,6 +437,62 @@ TEST(Headline, NothingRunIsNothingSaid) {
   EXPECT_TRUE(h.models.empty());
   EXPECT_EQ(h.answer, "");
   EXPECT_EQ(expectations_sentence(h), "No expectations are stated.");
+}
+
+TEST(Headline, ALostEquilibriumIsToldWithWhatHappenedAndWhatHolds) {
+  CaseResult c = with_errors("press", "hybmss_fd", {});
+  c.experiment.kinematics = "hencky";
+  const Cells cells = {6, 6, 6};
+  const auto run = [&](const std::string& model, double nu, Stability stability) {
+    c.runs.push_back(
+        {{model, nu, cells}, "msm", "finite", stability.lost.empty(), "", "", 1, 0, 0, 0, 0, 0, stability});
+  };
+  run("hybmss_fd", 0.25, {0.1, "unstable", 0.02, 0.01, {1.5, 1.4, 0.2}, 0.05});
+  run("hybmss_fd", 0.4, {0.2, "unstable", 0.04, 0.01, {1.5, 1.4, 0.2}, 0.05});
+  run("hybmss", 0.25, {0.5, "inverted cell", 0.3, 0.4, {0.1, 0.1, 0.1}, 0.1});
+  run("hybmss_avg", 0.25, {1, "", 0.2, 0.6, {0.1, 0.1, 0.1}, 0.02});
+  const std::vector<Warning> warnings = headline_of({c}).warnings;
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].brief,
+            "press: hybmss loses its equilibrium, ν = 0.25 at 50 % of the load, 30 % of strain: a cell "
+            "is turned inside out");
+  EXPECT_EQ(
+      warnings[1].brief,
+      "press: hybmss_fd loses its equilibrium, ν = 0.25 at 10 % of the load, 2 % of strain; ν = 0.4 at 20 % of the "
+      "load, 4 % of strain: the lattice wrinkles, neighbours move against each other along x and y: the springs' "
+      "failure, not the material's");
+  EXPECT_EQ(warnings[1].advice, "hybmss_avg bears the whole load there");
+}
+
+TEST(Headline, AStateWithWrinklesIsNoStateOfTheMaterial) {
+  CaseResult c = with_errors("press", "hybmss_fd", {});
+  c.runs.push_back({{"hybmss_fd", 0.25, {6, 6, 6}},
+                    "msm",
+                    "linear",
+                    true,
+                    "",
+                    "",
+                    1,
+                    0,
+                    0,
+                    0,
+                    0,
+                    0,
+                    Stability{1, "", 0.02, {}, {}, 0.4}});
+  const Headline h = headline_of({c});
+  ASSERT_EQ(h.warnings.size(), 1u);
+  EXPECT_EQ(h.warnings[0].brief,
+            "press: hybmss_fd wrinkles from cell to cell, ν = 0.25 (40 % of the strain alternates): a wave of the "
+            "lattice, not of the material");
+  EXPECT_EQ(h.warnings[0].advice, "no model of the case holds: apply less, or take hybmss_avg");
+}
+
+TEST(Headline, WhatMayBeLostIsSaidBeforeTheRun) {
+  EXPECT_EQ(
+      limit_sentence("press", {"hybmss", -0.5, -0.2, -0.212, -0.209, "waves of any length grow", "hybmss_avg"}),
+      "press: hybmss at ν = −0.5 may lose its equilibrium: it is to be shortened by 20 %, more in places, and its "
+      "lattice without end is stable to 21 % with free sides and 21 % with held sides (waves of any length grow); "
+      "hybmss_avg is stable there");
 }
 
 }  // namespace

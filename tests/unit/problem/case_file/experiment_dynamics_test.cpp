@@ -54,6 +54,22 @@ TEST(DynamicsTable, HasOneCourseOfTheLoads) {
   EXPECT_NE(message("pulse_s = 3\n").find("up to duration_s"), std::string::npos);
 }
 
+TEST(DynamicsTable, HasAPlaneForExplicitSteps) {
+  const std::string moving = "[dynamics]\nduration_s = 2\n",
+                    plane = "plane = { point_m = [0, 0, -1], normal = [0, 0, 2], friction = 0.3 }\n";
+  const std::optional<Plane> found = parse_experiment(at_large_strain + moving + plane, "case.toml").dynamics->plane;
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->normal, Vec3(0, 0, 1));
+  EXPECT_EQ(found->distance({5, 5, 0}), 1);
+  EXPECT_EQ(found->friction, 0.3);
+  EXPECT_NE(
+      message_of(at_large_strain + moving + plane + "integrator = \"bdf2\"\n").find("does not suit the integrator"),
+      std::string::npos);
+  EXPECT_NE(message_of(at_large_strain + moving + "plane = { point_m = [0, 0, 0], normal = [0, 0, 0] }\n")
+                .find("has no length"),
+            std::string::npos);
+}
+
 TEST(DynamicsTable, AsksForFiniteElementsInTime) {
   const std::string probe = "[[probe]]\nname = \"tip\"\nat_m = [1, 1, 1]\n", asked = "[reference]\nin_time = true\n",
                     moving = "[dynamics]\nduration_s = 2\n";
