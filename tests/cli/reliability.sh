@@ -6,7 +6,7 @@ failures=0
 names=$(grep -oE '`[A-Z][A-Za-z]+\.[A-Z][A-Za-z]+`|`(cli|experiment)\.[a-z_]+`' docs/reliability.md | tr -d '`' | sort -u)
 for name in $names; do
   case $name in
-    cli.* | experiment.*) grep -qE "add_test\(NAME $name " tests/CMakeLists.txt ;;
+    cli.* | experiment.*) grep -hqE "add_test\(NAME $name " tests/CMakeLists.txt tests/experiments.cmake ;;
     *) grep -rqE "TEST(_[FP])?\(${name%.*}, ${name#*.}\)" tests --include=*.cpp ;;
   esac || { echo "FAILED: docs/reliability.md names $name, which is no test"; failures=$((failures + 1)); }
 done
