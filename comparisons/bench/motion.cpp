@@ -113,7 +113,7 @@ Motion forces_motion(const MassSpringModel& model) {
 
 std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
   if (LatticeMotion::suits(model, options.viscosity)) return lattice_motion(model, options);
-  if (options.viscosity.time > 0) return {};
+  if (options.viscosity.acts()) return {};
   if (ListForces<double>::covers(model))
     return options.precision == Precision::float64 ? list_motion<double>(model, options)
                                                    : list_motion<float>(model, options);

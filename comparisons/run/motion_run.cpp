@@ -133,7 +133,7 @@ class Recorder {
 
   NodalVectors viscous_forces(const NodalVectors& x, const NodalVectors& v) const {
     NodalVectors f = NodalVectors::Zero(x.rows(), 3);
-    if (viscosity_.time > 0) viscosity_.add_forces(built_.model.network, x, v, f);
+    if (viscosity_.acts()) viscosity_.add_forces(built_.model.network, x, v, f);
     return f;
   }
 

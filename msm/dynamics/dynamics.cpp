@@ -32,10 +32,9 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
       throw InputError("integrator: energy_momentum does not suit this model: " + why);
   if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
   if (implicit && options.contact) throw InputError("integrator: contact with a plane needs the explicit one");
-  if (implicit && options.viscosity.time != 0) throw InputError("integrator: viscosity needs the explicit one");
-  if (const std::string why = options.viscosity.time > 0 ? Viscosity::lacks(model) : ""; !why.empty())
+  if (implicit && options.viscosity.acts()) throw InputError("integrator: viscosity needs the explicit one");
+  if (const std::string why = options.viscosity.acts() ? Viscosity::lacks(model) : ""; !why.empty())
     throw InputError("viscosity does not suit this model: " + why);
-  if (!(options.viscosity.time >= 0)) throw InputError("viscosity: its time must be >= 0");
   if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
   const double least = options.lagged ? lagged_damping(model, density, dt) : 0;
   if (least > 0 && !(options.damping > least))
@@ -87,7 +86,7 @@ class PlainMotion : public Motion {
  private:
   ForceNorms step() {
     NodalVectors f = forces_at_x();
-    if (viscosity_.time > 0) viscosity_.add_forces(model_.network, x_, v_ + of_supports_, f);
+    if (viscosity_.acts()) viscosity_.add_forces(model_.network, x_, v_ + of_supports_, f);
     double unbalanced = 0, support = 0;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
       const double force = f.data()[i] + conditions_.external.data()[i];
@@ -97,7 +96,7 @@ class PlainMotion : public Motion {
       speed = (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
       x_.data()[i] += dt_ * speed;
     }
-    if (viscosity_.time > 0)
+    if (viscosity_.acts())
       for (Eigen::Index i = 0; i < x_.size(); ++i)
         if (conditions_.fixed[i])
           of_supports_.data()[i] = (model_.network.X.data()[i] + conditions_.prescribed.data()[i] - x_.data()[i]) / dt_;
@@ -197,7 +196,7 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
   if (options.integrator != Integrator::explicit_euler)
     return std::make_unique<MotionInLargeSteps>(
         model, density, ImplicitOptions{.integrator = options.integrator, .time_step = dt, .damping = options.damping});
-  const bool viscous = options.viscosity.time > 0;
+  const bool viscous = options.viscosity.acts();
   if (!options.lagged && LatticeMotion::suits(model, options.viscosity))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
@@ -245,7 +244,7 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (bc.fixed[i]) there.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i];
   NodalVectors f = forces(model, there) + bc.external;
-  if (options.viscosity.time > 0) options.viscosity.add_forces(model.network, there, v, f);
+  if (options.viscosity.acts()) options.viscosity.add_forces(model.network, there, v, f);
   const bool explicit_steps = options.integrator == Integrator::explicit_euler;
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     if (bc.fixed[i])

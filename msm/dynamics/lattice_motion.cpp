@@ -44,7 +44,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
         density_(density),
         instructions_(options.instructions),
         kernels_(lattice_kernels<Real>(options.instructions)),
-        layout_(lattice_layout(model, kernels_.lanes, sizeof(Real), options.viscosity.time > 0)),
+        layout_(lattice_layout(model, kernels_.lanes, sizeof(Real), options.viscosity.acts())),
         workers_(dispersion_of(model) ? 1 : std::clamp(options.threads, 1, layout_.nodes[2])),
         progress_(workers_.count()) {
     for (const ForceLaw& law : model.laws) {
@@ -56,8 +56,8 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
       if (const auto* averaged = std::get_if<AveragedSprings>(&law))
         averaged_ = lattice_constants<Real>(*averaged, edge_);
     }
-    viscous_ = options.viscosity.time > 0;
-    if (viscous_) dashpots_ = lattice_constants<Real>(options.viscosity.cells, edge_, options.viscosity.time);
+    viscous_ = options.viscosity.acts();
+    if (viscous_) dashpots_ = lattice_constants<Real>(options.viscosity.cells(), edge_, options.viscosity.time());
     make_arrays();
     if (const MomentumDispersion* dispersion = dispersion_of(model)) make_dispersion(*dispersion);
     make_slabs();
@@ -362,9 +362,9 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
 };
 
 bool LatticeMotion::suits(const MassSpringModel& model, const Viscosity& viscosity) {
-  const bool of_cells = !viscosity.along_springs && viscosity.cells.shift == 0 && model.network.filled.empty() &&
+  const bool of_cells = !viscosity.along_springs() && viscosity.cells().shift == 0 && model.network.filled.empty() &&
                         !model.network.cells.empty();
-  return is_lattice_of_springs(model) && (viscosity.time == 0 || of_cells);
+  return is_lattice_of_springs(model) && (!viscosity.acts() || of_cells);
 }
 
 LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "msm/dynamics/time_step.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 
@@ -13,35 +14,39 @@ std::string Viscosity::lacks(const MassSpringModel& model) {
 }
 
 Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& material, double time) {
+  if (!(time >= 0)) throw InputError("viscosity: its time must be >= 0");
   Viscosity viscosity;
-  viscosity.time = time;
-  viscosity.along_springs = of_springs_alone(model);
+  if (time == 0) return viscosity;
+  if (const std::string why = lacks(model); !why.empty())
+    throw InputError("viscosity does not suit this model: " + why);
+  viscosity.time_ = time;
+  viscosity.along_springs_ = of_springs_alone(model);
   if (const AveragedSprings* own = averaged_springs_of(model))
-    viscosity.cells = *own;
+    viscosity.cells_ = *own;
   else if (!model.network.cells.empty()) {
-    viscosity.cells.shear_modulus = shear_modulus(material);
-    viscosity.cells.lame_lambda = lame_lambda(material);
-    viscosity.cells.hourglass = HourglassStiffness::of_pattern(2, material.poisson_ratio, true, true);
+    viscosity.cells_.shear_modulus = shear_modulus(material);
+    viscosity.cells_.lame_lambda = lame_lambda(material);
+    viscosity.cells_.hourglass = HourglassStiffness::of_pattern(2, material.poisson_ratio, true, true);
   }
   return viscosity;
 }
 
 void Viscosity::add_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
                            NodalVectors& f) const {
-  if (!along_springs) return cells.add_viscous_forces(network, x, v, time, f);
+  if (!along_springs_) return cells_.add_viscous_forces(network, x, v, time_, f);
   for (const Spring& s : network.springs) {
     const Eigen::RowVector3d along = (x.row(s.j) - x.row(s.i)).normalized();
-    const Eigen::RowVector3d pull = time * s.stiffness * (v.row(s.j) - v.row(s.i)).dot(along) * along;
+    const Eigen::RowVector3d pull = time_ * s.stiffness * (v.row(s.j) - v.row(s.i)).dot(along) * along;
     f.row(s.i) += pull;
     f.row(s.j) -= pull;
   }
 }
 
 double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic) {
-  if (viscosity.time == 0) return elastic;
-  const MassSpringModel dashpots{model.network, {viscosity.cells}};
-  const double of_dashpots = viscosity.along_springs ? elastic : safe_time_step(dashpots, density);
-  const double frequency = 2 / elastic, rate = viscosity.time * 4 / (of_dashpots * of_dashpots);
+  if (!viscosity.acts()) return elastic;
+  const MassSpringModel dashpots{model.network, {viscosity.cells()}};
+  const double of_dashpots = viscosity.along_springs() ? elastic : safe_time_step(dashpots, density);
+  const double frequency = 2 / elastic, rate = viscosity.time() * 4 / (of_dashpots * of_dashpots);
   return 4 / (std::sqrt(rate * rate + 4 * frequency * frequency) + rate);
 }
 

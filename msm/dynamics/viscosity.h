@@ -14,19 +14,31 @@ namespace springproof {
 ///  - Models of springs alone: a dashpot time * k along each spring.
 ///  - Others, of cells: AveragedSprings::add_viscous_forces(), with lambda for every nu; below 1/4 dashpots along the
 ///    springs would resist changes of volume too much.
-struct Viscosity {
-  double time = 0;             ///< of retardation [s]; 0: none
-  bool along_springs = false;  ///< dashpots are along springs, not of cells
-  AveragedSprings cells;       ///< whose stiffness at rest, times `time`, are the dashpots of cells
+class Viscosity {
+ public:
+  /// None.
+  Viscosity() = default;
 
   /// Why a model cannot have viscosity; empty: it can.
   static std::string lacks(const MassSpringModel& model);
 
-  /// Of a model that can have it: along its springs, of its own averaged springs, or of those exact for the material.
+  /// That of a model: along its springs, of its own averaged springs, or of those exact for the material.
+  /// @param time of retardation [s]; 0: none, for any model
+  /// @throws InputError for a model that cannot have it, and for time < 0.
   static Viscosity of(const MassSpringModel& model, const IsotropicMaterial& material, double time);
+
+  bool acts() const { return time_ > 0; }
+  double time() const { return time_; }                    ///< of retardation [s]
+  bool along_springs() const { return along_springs_; }    ///< dashpots are along springs, not of cells
+  const AveragedSprings& cells() const { return cells_; }  ///< their stiffness at rest, times time(): the dashpots
 
   /// f += viscous forces [N] at positions x [m] and velocities v [m/s], n x 3.
   void add_forces(const Network& network, const NodalVectors& x, const NodalVectors& v, NodalVectors& f) const;
+
+ private:
+  double time_ = 0;
+  bool along_springs_ = false;
+  AveragedSprings cells_;
 };
 
 /// Largest safe step [s] of explicit integration whose viscous forces are those of the velocity half a step before:

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace springproof {
 namespace {
@@ -17,16 +18,40 @@ CellMatrix stiffness_of_cell(const MassSpringModel& model) {
   return cell_stiffness(model).total;
 }
 
+/// Distance of two corners over the edge.
+Vec3 apart(int a, int b) {
+  Vec3 d;
+  for (int axis = 0; axis < 3; ++axis) d[axis] = hexahedron_corners[b][axis] - hexahedron_corners[a][axis];
+  return d;
+}
+
 /// K(k), k in units of 1/l; real, since cells are symmetric about their centres.
 Eigen::Matrix3d symbol(const CellMatrix& cell, const Vec3& k) {
   Eigen::Matrix3d K = Eigen::Matrix3d::Zero();
   for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b) K += std::cos(k.dot(apart(a, b))) * cell.block<3, 3>(3 * a, 3 * b);
+  return K;
+}
+
+/// Its derivative as k moves along n.
+Eigen::Matrix3d symbol_along(const CellMatrix& cell, const Vec3& k, const Vec3& n) {
+  Eigen::Matrix3d K = Eigen::Matrix3d::Zero();
+  for (int a = 0; a < 8; ++a)
     for (int b = 0; b < 8; ++b) {
-      double phase = 0;
-      for (int d = 0; d < 3; ++d) phase += k[d] * (hexahedron_corners[b][d] - hexahedron_corners[a][d]);
-      K += std::cos(phase) * cell.block<3, 3>(3 * a, 3 * b);
+      const Vec3 d = apart(a, b);
+      K -= n.dot(d) * std::sin(k.dot(d)) * cell.block<3, 3>(3 * a, 3 * b);
     }
   return K;
+}
+
+/// Mass of a wave over rho l^3, and its derivative as k moves along n.
+std::pair<double, double> mass_of(const Vec3& k, const Vec3& n, double consistent) {
+  double full = 1, relative = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    full *= (2 + std::cos(k[axis])) / 3;
+    relative -= n[axis] * std::sin(k[axis]) / (2 + std::cos(k[axis]));
+  }
+  return {consistent * full + 1 - consistent, consistent * full * relative};
 }
 
 /// Directions of one of the 48 equal sectors of a cubic lattice.
@@ -44,24 +69,32 @@ void take_larger(double error, double& worst) {
 
 }  // namespace
 
-PhaseError phase_error(const MassSpringModel& model, double G, double lambda, double cells, double consistent) {
+WaveErrors wave_errors(const MassSpringModel& model, double G, double lambda, double cells, double consistent) {
   const CellMatrix cell = stiffness_of_cell(model);
   const double l = model.network.cell_edge, wave = 2 * pi / cells;
-  PhaseError worst{0, 0};
+  WaveErrors worst{};
   for (const Vec3& n : directions_of_sector()) {
-    double full = 1;
-    for (const double k : wave* n) full *= (2 + std::cos(k)) / 3;
-    const double mass = consistent * full + 1 - consistent;  // over rho l^3
-    const Solver modes(symbol(cell, wave * n));
+    const Vec3 k = wave * n;
+    const auto [mass, mass_along] = mass_of(k, n, consistent);
+    const Solver modes(symbol(cell, k));
+    const Eigen::Matrix3d K_along = symbol_along(cell, k, n);
     Eigen::Index along = 0;
     (modes.eigenvectors().transpose() * n).cwiseAbs().maxCoeff(&along);
     for (Eigen::Index m = 0; m < 3; ++m) {
-      const double modulus = m == along ? lambda + 2 * G : G;
-      const double ratio = std::sqrt(modes.eigenvalues()[m] / (mass * modulus * l * wave * wave));
-      take_larger(ratio - 1, m == along ? worst.longitudinal : worst.transverse);
+      const Vec3 u = modes.eigenvectors().col(m);
+      const double modulus = m == along ? lambda + 2 * G : G, squared = modes.eigenvalues()[m] / mass,  // of frequency
+          velocity = std::sqrt(modulus * l);  // of the solid, in the same units
+      const double phase = std::sqrt(squared) / wave;
+      const double group = (u.dot(K_along * u) - squared * mass_along) / (2 * mass * std::sqrt(squared));
+      take_larger(phase / velocity - 1, m == along ? worst.phase.longitudinal : worst.phase.transverse);
+      take_larger(group / velocity - 1, m == along ? worst.group.longitudinal : worst.group.transverse);
     }
   }
   return worst;
+}
+
+PhaseError phase_error(const MassSpringModel& model, double G, double lambda, double cells, double consistent) {
+  return wave_errors(model, G, lambda, cells, consistent).phase;
 }
 
 SoftestWave softest_wave(const MassSpringModel& model, double G) {

@@ -5,16 +5,26 @@
 
 namespace springproof {
 
-/// Largest relative error of the phase velocity over directions; negative: too slow.
-struct PhaseError {
+/// Largest relative error of a velocity over directions; negative: too slow.
+struct VelocityError {
   double longitudinal;  ///< of the wave that moves along k [1]
   double transverse;    ///< of the two that move across it [1]
+};
+using PhaseError = VelocityError;
+
+/// Of the crests, omega / k, and of a pulse, d omega / dk along k: three times as large for long waves.
+struct WaveErrors {
+  VelocityError phase, group;
 };
 
 /// Waves u exp(i k x) of K(k) u = omega^2 m(k) u, K(k) the sum of the blocks of a cell's stiffness times cos(k d), d
 /// the distance of their corners, against the velocities of the solid.  `cells` per wavelength; `consistent`: share
 /// theta of consistent mass, m(k) = rho l^3 (theta prod (2 + cos k_i l) / 3 + 1 - theta).
 /// @throws std::invalid_argument unless the model consists of cells (msm/multigrid/cell_stiffness.h).
+WaveErrors wave_errors(const MassSpringModel& model, double shear_modulus, double lame_lambda, double cells,
+                       double consistent);
+
+/// Its error of the phase velocity.
 PhaseError phase_error(const MassSpringModel& model, double shear_modulus, double lame_lambda, double cells,
                        double consistent);
 

@@ -133,7 +133,7 @@ State plain_steps(const MassSpringModel& model, State s, const BoundaryCondition
   if (s.of_supports.rows() == 0) s.of_supports = NodalVectors::Zero(s.x.rows(), 3);
   for (int n = 0; n < steps; ++n) {
     NodalVectors f = forces(model, s.x) + bc.external;
-    if (viscosity.time > 0) viscosity.add_forces(model.network, s.x, s.v + s.of_supports, f);
+    if (viscosity.acts()) viscosity.add_forces(model.network, s.x, s.v + s.of_supports, f);
     s.norms = {};
     for (Eigen::Index i = 0; i < f.size(); ++i) {
       double& sum = bc.fixed[i] ? s.norms.support : s.norms.unbalanced;
@@ -200,7 +200,7 @@ TEST(LatticeMotion, ViscousStepsAreThoseOfThePlainLoops) {
       BoundaryConditions moved = bc;
       moved.prescribed *= 1.2;
       const State rest = {X, NodalVectors::Zero(X.rows(), 3), {}, 0};
-      const int steps = body.mesh.hexahedra.size() > 500 ? 10 : 40;
+      const int steps = body.mesh.hexahedra.size() > 500 ? 5 : 15;
       const State first = plain_steps(model, rest, bc, steps, dt, damping, viscosity);
       const State plain = plain_steps(model, first, moved, steps, dt, damping, viscosity);
       for (LatticeMotionOptions options : every_kernel({1, 2})) {

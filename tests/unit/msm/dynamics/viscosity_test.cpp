@@ -72,11 +72,9 @@ TEST(Viscosity, AtRestIsTheStiffnessTimesTheRetardation) {
 TEST(Viscosity, OfAModelWithoutCellsButMoreThanSpringsIsRefused) {
   const EmbeddedModel body = bar("emsm_random", 0.25);
   EXPECT_NE(Viscosity::lacks(body.model), "");
-  DynamicsOptions options;
-  options.damping = 1;
-  checked_time_step(body.model, density, options);
-  options.viscosity.time = 1e-4;
-  EXPECT_THROW(checked_time_step(body.model, density, options), InputError);
+  EXPECT_FALSE(Viscosity::of(body.model, {1e4, 0.25, density}, 0).acts());
+  EXPECT_THROW(viscosity_of(body.model, 0.25), InputError);
+  EXPECT_THROW(Viscosity::of(bar("hybmss", 0.25).model, {1e4, 0.25, density}, -1e-3), InputError);
   for (const std::string model : any_model) EXPECT_EQ(Viscosity::lacks(bar(model, own_ratio(model)).model), "");
 }
 

@@ -25,6 +25,27 @@ TEST(Waves, VelocitiesConvergeWithOrderTwo) {
   }
 }
 
+// omega = c k (1 + a k^2): the phase velocity is off by a k^2, the group velocity by 3 a k^2.
+TEST(Waves, APulseIsOffThreeTimesAsMuchAsItsCrestsAndWithTheSameOrder) {
+  for (const char* name : {"hybmss", "hybmss_bt", "hybmss_avg"})
+    for (const double consistent : {0.0, 1.0}) {
+      const auto errors = [&](double cells) { return wave_errors(lattice(name), 1, 1, cells, consistent); };
+      const WaveErrors coarse = errors(40), fine = errors(80);
+      EXPECT_NEAR(coarse.group.longitudinal / fine.group.longitudinal, 4, 0.05) << name;
+      EXPECT_NEAR(coarse.group.transverse / fine.group.transverse, 4, 0.05) << name;
+      EXPECT_NEAR(fine.group.longitudinal / fine.phase.longitudinal, 3, 0.02) << name;
+      EXPECT_NEAR(fine.group.transverse / fine.phase.transverse, 3, 0.02) << name;
+    }
+}
+
+// A wave along the axis: omega = 2 sqrt(K / m) sin(k / 2) / ..., whose slope is c cos(k / 2).
+TEST(Waves, APulseAlongAnAxisHasTheSlopeOfTheChain) {
+  const double k = 2 * std::numbers::pi / 10;
+  const WaveErrors e = wave_errors(lattice("hybmss_avg"), 1, 1, 10, 0);
+  EXPECT_LT(e.group.longitudinal, std::cos(k / 2) - 1 + 1e-12);  // the worst direction is no better
+  EXPECT_GT(e.group.longitudinal, 3 * (std::cos(k / 2) - 1));
+}
+
 // Along an axis a lattice of springs is a chain, omega = 2 sqrt(k/m) sin(k l / 2): the worst direction is no better.
 TEST(Waves, AreInTheWorstDirectionSlowerThanInAChain) {
   const double wave = 2 * std::numbers::pi / 10;
