@@ -171,16 +171,21 @@ nlohmann::json moduli_json(double E, double nu, double G) {
   return {{"youngs_modulus_Pa", E}, {"poisson_ratio", nu}, {"shear_modulus_Pa", G}};
 }
 
-PhaseError phase_error_of(const MaterialFacts& f, double consistent) {
-  return phase_error(f.model, shear_modulus(f.m), lame_lambda(f.m), wave_cells, consistent);
+WaveErrors wave_errors_of(const MaterialFacts& f, double consistent) {
+  return wave_errors(f.model, shear_modulus(f.m), lame_lambda(f.m), wave_cells, consistent);
 }
 
 nlohmann::json waves_json(const MaterialFacts& f) {
-  const PhaseError lumped = phase_error_of(f, 0), half = phase_error_of(f, 0.5);
+  const auto json = [](const VelocityError& e) {
+    return nlohmann::json{{"longitudinal", e.longitudinal}, {"transverse", e.transverse}};
+  };
+  const WaveErrors lumped = wave_errors_of(f, 0), half = wave_errors_of(f, 0.5);
   const SoftestWave softest = softest_wave(f.model, shear_modulus(f.m));
   return {{"cells_per_wavelength", wave_cells},
-          {"phase_error", {{"longitudinal", lumped.longitudinal}, {"transverse", lumped.transverse}}},
-          {"phase_error_half_consistent", {{"longitudinal", half.longitudinal}, {"transverse", half.transverse}}},
+          {"phase_error", json(lumped.phase)},
+          {"group_error", json(lumped.group)},
+          {"phase_error_half_consistent", json(half.phase)},
+          {"group_error_half_consistent", json(half.group)},
           {"softest_short_wave",
            {{"stiffness_over_Gl", softest.stiffness}, {"k_l_over_pi", {softest.k[0], softest.k[1], softest.k[2]}}}}};
 }
@@ -261,13 +266,15 @@ void print_limits(const MaterialFacts& f) {
 }
 
 void print_waves(const MaterialFacts& f) {
-  const PhaseError lumped = phase_error_of(f, 0), half = phase_error_of(f, 0.5);
   const SoftestWave softest = softest_wave(f.model, shear_modulus(f.m));
-  fmt::print("\nwaves of {:g} cells, phase velocity in the worst direction\n", wave_cells);
-  fmt::print("  longitudinal {:+.2f} %, transverse {:+.2f} %   (corner masses)\n", 100 * lumped.longitudinal,
-             100 * lumped.transverse);
-  fmt::print("  longitudinal {:+.2f} %, transverse {:+.2f} %   (half of the mass consistent)\n",
-             100 * half.longitudinal, 100 * half.transverse);
+  fmt::print("\nwaves of {:g} cells, velocity of crests (phase) and of pulses (group) in the worst direction\n",
+             wave_cells);
+  for (const auto& [consistent, masses] : {std::pair(0.0, "corner masses"), {0.5, "half of the mass consistent"}}) {
+    const auto [phase, group] = wave_errors_of(f, consistent);
+    fmt::print("  longitudinal {:+.2f} %, group {:+.2f} %; transverse {:+.2f} %, group {:+.2f} %   ({})\n",
+               100 * phase.longitudinal, 100 * group.longitudinal, 100 * phase.transverse, 100 * group.transverse,
+               masses);
+  }
   fmt::print("softest wave of less than four cells: {:.2g} G l at k l = ({:.2g}, {:.2g}, {:.2g}) pi{}\n",
              std::max(0.0, softest.stiffness), softest.k[0], softest.k[1], softest.k[2],
              softest.stiffness < 1e-9 ? ", which costs no energy" : "");

@@ -93,10 +93,6 @@ WaveErrors wave_errors(const MassSpringModel& model, double G, double lambda, do
   return worst;
 }
 
-PhaseError phase_error(const MassSpringModel& model, double G, double lambda, double cells, double consistent) {
-  return wave_errors(model, G, lambda, cells, consistent).phase;
-}
-
 SoftestWave softest_wave(const MassSpringModel& model, double G) {
   const CellMatrix cell = stiffness_of_cell(model);
   constexpr int fineness = 12;

@@ -10,7 +10,6 @@ struct VelocityError {
   double longitudinal;  ///< of the wave that moves along k [1]
   double transverse;    ///< of the two that move across it [1]
 };
-using PhaseError = VelocityError;
 
 /// Of the crests, omega / k, and of a pulse, d omega / dk along k: three times as large for long waves.
 struct WaveErrors {
@@ -22,10 +21,6 @@ struct WaveErrors {
 /// theta of consistent mass, m(k) = rho l^3 (theta prod (2 + cos k_i l) / 3 + 1 - theta).
 /// @throws std::invalid_argument unless the model consists of cells (msm/multigrid/cell_stiffness.h).
 WaveErrors wave_errors(const MassSpringModel& model, double shear_modulus, double lame_lambda, double cells,
-                       double consistent);
-
-/// Its error of the phase velocity.
-PhaseError phase_error(const MassSpringModel& model, double shear_modulus, double lame_lambda, double cells,
                        double consistent);
 
 /// The wave of least energy among those shorter than four cells.

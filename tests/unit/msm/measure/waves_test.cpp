@@ -13,13 +13,13 @@ MassSpringModel lattice(const char* name, double nu = 0.25) {
   return build_model(test::model(name), block_mesh({1, 1, 1}, {4, 4, 4}), {2 * (1 + nu), nu, 1});  // G = 1
 }
 
-PhaseError error_of(const char* name, double cells, double consistent, double nu = 0.25) {
-  return phase_error(lattice(name, nu), 1, 2 * nu / (1 - 2 * nu), cells, consistent);
+VelocityError error_of(const char* name, double cells, double consistent, double nu = 0.25) {
+  return wave_errors(lattice(name, nu), 1, 2 * nu / (1 - 2 * nu), cells, consistent).phase;
 }
 
 TEST(Waves, VelocitiesConvergeWithOrderTwo) {
   for (const char* name : {"hybmss", "hybmss_bt", "hybmss_avg", "msm_18"}) {
-    const PhaseError coarse = error_of(name, 20, 0), fine = error_of(name, 40, 0);
+    const VelocityError coarse = error_of(name, 20, 0), fine = error_of(name, 40, 0);
     EXPECT_NEAR(coarse.longitudinal / fine.longitudinal, 4, 0.05) << name;
     EXPECT_NEAR(coarse.transverse / fine.transverse, 4, 0.05) << name;
   }
@@ -49,9 +49,9 @@ TEST(Waves, APulseAlongAnAxisHasTheSlopeOfTheChain) {
 // Along an axis a lattice of springs is a chain, omega = 2 sqrt(k/m) sin(k l / 2): the worst direction is no better.
 TEST(Waves, AreInTheWorstDirectionSlowerThanInAChain) {
   const double wave = 2 * std::numbers::pi / 10;
-  const PhaseError e = error_of("hybmss_bt", 10, 0);
+  const VelocityError e = error_of("hybmss_bt", 10, 0);
   EXPECT_LT(e.longitudinal, std::sin(wave / 2) / (wave / 2) - 1 + 1e-12);  // the worst direction is worse
-  const PhaseError half = error_of("hybmss_bt", 10, 0.5);
+  const VelocityError half = error_of("hybmss_bt", 10, 0.5);
   EXPECT_LT(std::abs(half.transverse), 0.5 * std::abs(e.transverse));
 }
 
