@@ -39,11 +39,13 @@ std::string what_happens(const Json& stability) {
   return "it buckles or passes a limit point in a wave of more than four cells, as the material may";
 }
 
-/// Models of the case that have a result at this Poisson's ratio and on these cells.
+bool moves(const std::string& model) { return model.ends_with(" in motion"); }
+
+/// Models of the case at rest that have a result at this Poisson's ratio and on these cells.
 std::vector<std::string> holding(const Json& result, const Json& of) {
   std::vector<std::string> names;
   for (const Json& run : list_of(result, "runs"))
-    if (string_of(run, "kind") == "msm" && run.value("ok", false) &&
+    if (string_of(run, "kind") == "msm" && run.value("ok", false) && !moves(string_of(run, "model")) &&
         run.at("poisson_ratio") == of.at("poisson_ratio") && run.at("cells") == of.at("cells") &&
         number_of(object_of(run, "stability"), "wrinkles").value_or(0) <= wrinkled &&
         std::find(names.begin(), names.end(), string_of(run, "model")) == names.end())
@@ -109,11 +111,17 @@ std::vector<Warning> stability_warnings(const Json& result, std::size_t case_num
         {case_number,
          fmt::format("{}: {} loses its equilibrium, {}: {}", name, key.first, fmt::join(group.where, "; "), key.second),
          advice(result, *group.first)});
-  for (const auto& [key, group] : waves)
-    warnings.push_back({case_number,
-                        fmt::format("{}: {} wrinkles from cell to cell, {}: a wave of the lattice, not of the material",
-                                    name, key.first, fmt::join(group.where, "; ")),
-                        advice(result, *group.first)});
+  for (const auto& [key, group] : waves) {
+    const bool motion = moves(key.first);
+    warnings.push_back(
+        {case_number,
+         fmt::format("{}: {} {}, {}: a wave of the lattice, not of the material", name, key.first,
+                     motion ? "ripples from cell to cell" : "wrinkles from cell to cell", fmt::join(group.where, "; ")),
+         motion ? "the motion is more sudden than its cells can carry (smaller cells, damping, a slower load), or the "
+                  "lattice has no "
+                  "face diagonals"
+                : advice(result, *group.first)});
+  }
   return warnings;
 }
 

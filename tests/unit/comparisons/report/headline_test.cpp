@@ -485,6 +485,12 @@ TEST(Headline, AStateWithWrinklesIsNoStateOfTheMaterial) {
             "press: hybmss_fd wrinkles from cell to cell, ν = 0.25 (40 % of the strain alternates): a wave of the "
             "lattice, not of the material");
   EXPECT_EQ(h.warnings[0].advice, "no model of the case holds: apply less, or take hybmss_avg");
+
+  c.runs.back().model = "hybmss in motion";
+  const Headline moving = headline_of({c});
+  ASSERT_EQ(moving.warnings.size(), 1u);
+  EXPECT_NE(moving.warnings[0].brief.find("hybmss in motion ripples from cell to cell"), std::string::npos);
+  EXPECT_NE(moving.warnings[0].advice.find("more sudden than its cells can carry"), std::string::npos);
 }
 
 TEST(Headline, WhatMayBeLostIsSaidBeforeTheRun) {
