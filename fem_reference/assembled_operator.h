@@ -24,7 +24,8 @@ class AssembledOperator {
   MixedVector vector() const;
   void apply(MixedVector& f, const MixedVector& x) const;
   void vmult(MixedVector& y, const MixedVector& x) const;
-  void precondition(MixedVector& z, const MixedVector& r) const;
+  void couple(DofVector& f, const DofVector& p) const;
+  void precondition_displacement(DofVector& z, const DofVector& r) const;
   void precondition_pressure(DofVector& y, const DofVector& x) const;
   void clear_constrained(DofVector& f) const;
   CellPressures pressures(const MixedVector& x) const;

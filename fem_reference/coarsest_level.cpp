@@ -20,13 +20,14 @@ struct Interpolation {
 
 class LinearElements {
  public:
-  LinearElements(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place, const ElasticSystem& fine)
-      : body_(triangulate(coarse, 0, place)), handler_(body_->triangulation) {
-    handler_.distribute_dofs(*displacement_element(*body_, 1));
+  /// On the coarsest cells of the body, triangulated once more; null: those of a body that is not refined.
+  LinearElements(std::unique_ptr<Body3> coarsest, const ElasticSystem& fine)
+      : own_(std::move(coarsest)), body_(own_ ? *own_ : fine.body), handler_(body_.triangulation) {
+    handler_.distribute_dofs(*displacement_element(body_, 1));
     interpolate_to(fine);
     // The operator of the multigrid: for the mixed form the shear part alone.
     const bool mixed = fine.form == Form::mixed;
-    system_.emplace(ElasticSystem{*body_,
+    system_.emplace(ElasticSystem{body_,
                                   handler_,
                                   held_,
                                   {},
@@ -38,20 +39,23 @@ class LinearElements {
                                   false,
                                   false,
                                   most_factored_rows,
+                                  {},
                                   {}});
     operator_.emplace(*system_, std::nullopt);
-    r_ = z_ = operator_->vector();
+    r_ = z_ = operator_->vector().u;
   }
+
+  const std::string& name() const { return operator_->preconditioner(); }
 
   // x = P (one cycle for P^T b)
   void cycle(LevelVector& x, const LevelVector& b) {
-    r_.u = 0;
+    r_ = 0;
     for (std::size_t i = 0; i + 1 < p_.start.size(); ++i)
-      for (std::size_t k = p_.start[i]; k < p_.start[i + 1]; ++k) r_.u(p_.column[k]) += p_.weight[k] * b(i);
-    operator_->precondition(z_, r_);
+      for (std::size_t k = p_.start[i]; k < p_.start[i + 1]; ++k) r_(p_.column[k]) += p_.weight[k] * b(i);
+    operator_->precondition_displacement(z_, r_);
     for (std::size_t i = 0; i + 1 < p_.start.size(); ++i) {
       double sum = 0;
-      for (std::size_t k = p_.start[i]; k < p_.start[i + 1]; ++k) sum += p_.weight[k] * z_.u(p_.column[k]);
+      for (std::size_t k = p_.start[i]; k < p_.start[i + 1]; ++k) sum += p_.weight[k] * z_(p_.column[k]);
       x(i) = float(sum);
     }
   }
@@ -59,15 +63,24 @@ class LinearElements {
  private:
   void interpolate_to(const ElasticSystem& fine) {
     const auto &fe = fine.dof_handler.get_fe(), &linear = handler_.get_fe();
-    const dealii::IndexSet& prescribed = fine.level_constrained[0];
-    std::vector<std::vector<std::pair<global_dof_index, float>>> rows(fine.dof_handler.n_dofs(0));
+    const bool has_levels = fine.dof_handler.has_level_dofs();
+    dealii::IndexSet prescribed(has_levels ? fine.dof_handler.n_dofs(0) : fine.dof_handler.n_dofs());
+    if (has_levels)
+      prescribed = fine.level_constrained[0];
+    else
+      prescribed.add_indices(fine.constrained.begin(), fine.constrained.end());
+    std::vector<std::vector<std::pair<global_dof_index, float>>> rows(prescribed.size());
     std::vector<char> held(handler_.n_dofs(), 0);
     std::vector<global_dof_index> own(linear.n_dofs_per_cell()), on_level(fe.n_dofs_per_cell());
     for (const auto& cell : handler_.active_cell_iterators()) {
-      const dealii::DoFHandler<3>::level_cell_iterator same(&fine.body.triangulation, 0, cell->index(),
-                                                            &fine.dof_handler);
+      const auto& cells = fine.body.triangulation;
       cell->get_dof_indices(own);
-      same->get_mg_dof_indices(on_level);
+      if (has_levels)
+        dealii::DoFHandler<3>::level_cell_iterator(&cells, 0, cell->index(), &fine.dof_handler)
+            ->get_mg_dof_indices(on_level);
+      else
+        dealii::DoFHandler<3>::active_cell_iterator(&cells, 0, cell->index(), &fine.dof_handler)
+            ->get_dof_indices(on_level);
       // The vertex degrees of freedom of a cell come first in every element.
       for (std::size_t j = 0; j < own.size(); ++j) held[own[j]] |= char(prescribed.is_element(on_level[j]));
       for (unsigned int i = 0; i < on_level.size(); ++i) {
@@ -93,20 +106,23 @@ class LinearElements {
     }
   }
 
-  std::unique_ptr<Body3> body_;
+  std::unique_ptr<Body3> own_;
+  const Body3& body_;
   dealii::DoFHandler<3> handler_;
   Interpolation p_;
   std::vector<unsigned int> held_;
   std::optional<ElasticSystem> system_;
   std::optional<assembled::AssembledOperator> operator_;
-  assembled::MixedVector r_, z_;
+  DofVector r_, z_;
 };
 
 }  // namespace
 
 void add_linear_coarse_space(const Mesh& coarse, const std::function<Vec3(const Vec3&)>& place, ElasticSystem& system) {
   start_mpi();
-  const auto below = std::make_shared<LinearElements>(coarse, place, system);
+  const bool refined = system.dof_handler.has_level_dofs();
+  const auto below = std::make_shared<LinearElements>(refined ? triangulate(coarse, 0, place) : nullptr, system);
+  system.below_name = below->name();
   system.below = [below](LevelVector& x, const LevelVector& b) { below->cycle(x, b); };
 }
 

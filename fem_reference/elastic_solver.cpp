@@ -28,6 +28,7 @@
 #include "fem_reference/mixed_operator.h"
 #include "fem_reference/newton.h"
 #include "fem_reference/stiffness.h"
+#include "fem_reference/tetrahedra_operator.h"
 #include "fem_reference/v_cycle.h"
 
 #if SPRINGPROOF_VECTOR_BITS > 0
@@ -75,10 +76,11 @@ class LinearOperator {
   void vmult(MixedVector& y, const MixedVector& x) const {
     mixed_ ? with_pressure_->vmult(y, x) : stiffness_.vmult(y.u, x.u);
   }
-  void precondition(MixedVector& z, const MixedVector& r) const {
-    multigrid_.vmult(z.u, r.u);
-    if (mixed_) with_pressure_->precondition_pressure(z.p, r.p);
+  void precondition_displacement(Vector<double>& z, const Vector<double>& r) const { multigrid_.vmult(z, r); }
+  void precondition_pressure(Vector<double>& z, const Vector<double>& r) const {
+    with_pressure_->precondition_pressure(z, r);
   }
+  void couple(Vector<double>& f, const Vector<double>& p) const { with_pressure_->couple(f, p); }
   void clear_constrained(Vector<double>& f) const { stiffness_.clear_constrained(f); }
   CellPressures pressures(const MixedVector& x) const { return with_pressure_->pressures(x); }
 
@@ -96,10 +98,7 @@ class TangentOperator : public FiniteOperator<degree> {
       : FiniteOperator<degree>(base, law, system.form, system.lambda), multigrid_(system, smoothed(system)) {}
 
   void prepare(const MixedVector& x) { multigrid_.deform(x.u); }
-  void precondition(MixedVector& z, const MixedVector& r) const {
-    multigrid_.vmult(z.u, r.u);
-    this->precondition_pressure(z.p, r.p);
-  }
+  void precondition_displacement(Vector<double>& z, const Vector<double>& r) const { multigrid_.vmult(z, r); }
 
  private:
   VCycle<degree> multigrid_;
@@ -122,9 +121,12 @@ FiniteAnswer finite_strain(const ElasticSystem& system, const FiniteProblem& pro
 }  // namespace
 
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
-  ElasticAnswer answer =
-      system.degree == 1 ? small_strain<1>(system, load, displacement) : small_strain<2>(system, load, displacement);
-  answer.method = system.form == Form::mixed ? "MINRES, matrix-free multigrid" : "CG, matrix-free multigrid";
+  const bool tetrahedra = system.body.has_tetrahedra();
+  ElasticAnswer answer = tetrahedra           ? solve_linear(TetrahedraOperator(system), system, load, displacement)
+                         : system.degree == 1 ? small_strain<1>(system, load, displacement)
+                                              : small_strain<2>(system, load, displacement);
+  answer.method = system.form == Form::mixed ? "GMRES, matrix-free" : "CG, matrix-free";
+  answer.method += tetrahedra ? ", linear elements by " + system.below_name : " multigrid";
   return answer;
 }
 

@@ -57,7 +57,8 @@ struct ElasticSystem {
   bool plain_gamg;    ///< assembled matrices: no level of linear elements
   int most_factored;  ///< assembled matrices: largest number of rows for which linear elements are factored
   std::function<void(LevelVector& x, const LevelVector& r)> below =
-      {};  ///< coarse-grid correction of the coarsest level; empty: none
+      {};                       ///< coarse-grid correction of the coarsest level; empty: none
+  std::string below_name = {};  ///< its method, for the report
 };
 
 struct ElasticAnswer {

@@ -55,6 +55,14 @@ class FiniteOperator {
     base_.clear_constrained(y.u);
   }
 
+  /// f = the forces of increments of pressure alone, where not constrained.
+  void couple(Vector<double>& f, const Vector<double>& p) const {
+    MixedVector x = vector(), y = x;
+    x.p = p;
+    vmult(y, x);
+    f = y.u;
+  }
+
   void clear_constrained(Vector<double>& f) const { base_.clear_constrained(f); }
 
   CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(base_.cells(), x.p); }

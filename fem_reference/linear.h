@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "fem_reference/block_triangular.h"
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/krylov.h"
 #include "fem_reference/mixed_vector.h"
@@ -14,14 +15,18 @@ namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 //   vector()               zero displacement and pressure
 //   apply(f, x)            the stiffness (the tangent) times x on all degrees of freedom
 //   vmult(y, x)            the same, with constrained rows and columns eliminated
-//   precondition(z, r)     symmetric, positive definite
+//   precondition_displacement(z, r), precondition_pressure(z, r)  symmetric, positive definite
+//   couple(f, p)           forces of pressures on unconstrained degrees of freedom
 //   clear_constrained(f)   zero where displacement is prescribed
 //   pressures(x)           CellPressures
 template <typename Operator>
 ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const DofVector& load,
                            DofVector& displacement) {
+  constexpr int most_stored = 100;  // vectors of GMRES, twice
   const bool mixed = system.form == Form::mixed;
-  const auto precondition = [&](MixedVector& z, const MixedVector& r) { K.precondition(z, r); };
+  const int most_repeats = mixed ? 20 : 6;
+  const BlockTriangular<Operator> precondition(K, system);
+  const ResidualProduct dot(system);
   int products = 0;
   const auto multiply = [&](MixedVector& y, const MixedVector& v) {
     ++products;
@@ -29,31 +34,25 @@ ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const
     K.vmult(y, v);
   };
   ElasticAnswer answer;
-  MixedVector x = K.vector(), r = x, f = x, z = x, dx = x;
+  MixedVector x = K.vector(), r = x, f = x, dx = x;
   x.u = displacement;
-  double start = 0, start_force = 0;  // reference values of the residual norms
-  for (int repeat = 0; repeat < 6; ++repeat) {
+  double start = 0;  // reference value of the residual's norm
+  for (int repeat = 0; repeat < most_repeats; ++repeat) {
     K.apply(f, x);
     r = f;
     r.sadd(-1, 0, r);
     r.u += load;
     K.clear_constrained(r.u);
-    const double norm_force = r.u.l2_norm();
-    double norm = norm_force;
-    if (mixed) {
-      precondition(z, r);
-      norm = std::sqrt(z.dot(r));
-    }
-    if (repeat == 0) start = norm, start_force = norm_force;
+    const double norm = std::sqrt(dot(r, r));
+    if (repeat == 0) start = norm;
     // Reactions may be far larger than the loads that cause them (slender bodies), and rounding errors scale with them.
-    start_force = std::max(start_force, f.u.l2_norm());
-    if (!mixed) start = start_force;
-    answer.residual = start > 0 ? std::max(norm / start, start_force > 0 ? norm_force / start_force : 0) : 0;
+    start = std::max(start, f.u.l2_norm());
+    answer.residual = start > 0 ? norm / start : 0;
     answer.converged = answer.residual <= system.tolerance;
-    if (answer.converged || repeat == 5) break;
+    if (answer.converged || repeat + 1 == most_repeats) break;
     dx.sadd(0, 0, dx);
     const double reduction = 0.3 * system.tolerance / answer.residual;
-    const KrylovOutcome outcome = mixed ? minres(multiply, precondition, r, reduction, 2000, dx)
+    const KrylovOutcome outcome = mixed ? gmres(multiply, precondition, dot, r, reduction, most_stored, dx)
                                         : conjugate_gradients(multiply, precondition, r, reduction, 2000, dx);
     answer.iterations += outcome.iterations;
     x.add(1, dx);

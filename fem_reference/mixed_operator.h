@@ -122,6 +122,24 @@ class MixedOperator {
     shear_.cells().cell_loop(add, y.u, x.u, true);
   }
 
+  /// f = the forces of pressures alone, where not constrained.
+  void couple(Vector<double>& f, const Vector<double>& p) const {
+    f = 0;
+    Cell u(shear_.cells());
+    for (unsigned int batch = 0; batch < shear_.cells().n_cell_batches(); ++batch) {
+      u.reinit(batch);
+      const auto c = pressure_.read(p, batch);
+      for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
+        dealii::Tensor<2, 3, Lane> stress;
+        for (int i = 0; i < 3; ++i) stress[i][i] = pressure_.value(c, q);
+        u.submit_gradient(stress, q);
+      }
+      u.integrate_scatter(gradients, f);
+    }
+    f.compress(dealii::VectorOperation::add);
+    shear_.clear_constrained(f);
+  }
+
   CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(shear_.cells(), x.p); }
 
   /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1, an approximate inverse of the Schur complement.

@@ -5,6 +5,7 @@
 #include <deal.II/grid/grid_tools.h>
 #include <fmt/format.h>
 
+#include "fem_reference/block_triangular.h"
 #include "fem_reference/elastic_system.h"
 #include "fem_reference/krylov.h"
 #include "fem_reference/mixed_vector.h"
@@ -25,6 +26,7 @@ class Newton {
         system_(system),
         problem_(problem),
         load_(load),
+        dot_(system),
         x_(K.vector()),
         r_(x_),
         f_(x_),
@@ -105,7 +107,7 @@ class Newton {
   bool correct(double eta, FiniteAnswer& answer) {
     K_.prepare(x_);
     dx_.sadd(0, 0, dx_);
-    const auto precondition = [&](MixedVector& z, const MixedVector& r) { K_.precondition(z, r); };
+    const BlockTriangular<Operator> precondition(K_, system_);
     int products = answer.iterations;
     const auto multiply = [&](MixedVector& y, const MixedVector& v) {
       ++products;
@@ -116,7 +118,7 @@ class Newton {
       });
       K_.vmult(y, v);
     };
-    const KrylovOutcome outcome = gmres(multiply, precondition, r_, eta, 120, dx_);
+    const KrylovOutcome outcome = gmres(multiply, precondition, dot_, r_, eta, 120, dx_);
     answer.iterations += outcome.iterations;
     return outcome.reduction < 0.2;
   }
@@ -153,6 +155,7 @@ class Newton {
   const ElasticSystem& system_;
   const FiniteProblem& problem_;
   const DofVector& load_;
+  ResidualProduct dot_;
   MixedVector x_, r_, f_, dx_, z_;
   double round_off_;
 };

@@ -45,7 +45,7 @@ static bool processor_has_avx2() { return __builtin_cpu_supports("avx2") && __bu
 #endif
 
 ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
-  if (system.level_constrained.empty()) return assembled::solve(system, load, displacement);
+  if (system.level_constrained.empty() && !system.below) return assembled::solve(system, load, displacement);
 #ifdef SPRINGPROOF_HAVE_AVX2
   if (system.wide_vectors && processor_has_avx2()) return avx2::solve(system, load, displacement);
 #endif
@@ -87,6 +87,12 @@ bool matrix_free(const GridProblem& problem, const Body3& body) {
          (body.triangulation.n_cells(0) <= largest_coarse_grid || has_linear_coarse_space(problem, body));
 }
 
+// Quadratic tetrahedra at small strain: a matrix-free level above linear ones.
+bool matrix_free_tetrahedra(const GridProblem& problem, const Body3& body) {
+  return body.has_tetrahedra() && problem.degree == 2 && problem.law == "linear" &&
+         problem.method == Method::automatic && process_count() == 1;
+}
+
 std::string element_name(const ElasticSystem& system) {
   return describe({system.body.has_tetrahedra(), system.degree}, system.form);
 }
@@ -109,12 +115,14 @@ struct Discrete {
             problem.wide_vectors,
             problem.method == Method::assembled_gamg,
             problem.method == Method::automatic ? most_factored_rows : 0,
+            {},
             {}} {
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
     const dealii::IndexSet& owned = dof_handler.locally_owned_dofs();
     held.erase(std::remove_if(held.begin(), held.end(), [&](const auto& p) { return !owned.is_element(p.dof); }),
                held.end());
     check_held(held, dof_handler.get_communicator());
+    if (matrix_free_tetrahedra(problem, body)) add_linear_coarse_space(problem.coarse, problem.place, system);
     if (!dof_handler.has_level_dofs()) return;
     system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
     if (has_linear_coarse_space(problem, body)) add_linear_coarse_space(problem.coarse, problem.place, system);
