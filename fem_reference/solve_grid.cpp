@@ -78,13 +78,14 @@ constexpr unsigned int smallest_grid_for_coarse_space = 300;
 
 // The linear coarse space is for small strain and one process.
 bool has_linear_coarse_space(const GridProblem& problem, const Body3& body) {
-  return body.triangulation.n_cells(0) > smallest_grid_for_coarse_space && problem.coarse.grid &&
-         problem.law == "linear" && process_count() == 1;
+  return body.triangulation.n_cells(0) > smallest_grid_for_coarse_space &&
+         (problem.coarse.grid || problem.coarse.curved.size() > 0) && problem.law == "linear" && process_count() == 1;
 }
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
-  return problem.method == Method::automatic && !body.has_tetrahedra() && problem.coarse.curved.size() == 0 &&
-         (body.triangulation.n_cells(0) <= largest_coarse_grid || has_linear_coarse_space(problem, body));
+  const bool few_cells = body.triangulation.n_cells(0) <= largest_coarse_grid && problem.coarse.curved.size() == 0;
+  return problem.method == Method::automatic && !body.has_tetrahedra() &&
+         (few_cells || has_linear_coarse_space(problem, body));
 }
 
 // Quadratic tetrahedra at small strain: a matrix-free level above linear ones.
