@@ -148,6 +148,20 @@ MeshAt script_at(const MeshRequest& r) {
   };
 }
 
+/// Whether some line of the model is cut into more pieces for shorter edges: quickly told, and then the cells follow
+/// too.
+bool lines_follow(double edge, double drawn) {
+  const auto pieces = [&](double times) {
+    gmsh::model::mesh::clear();
+    gmsh::option::setNumber("Mesh.MeshSizeFactor", times * edge / drawn);
+    gmsh::model::mesh::generate(1);
+    std::vector<std::size_t> tags, nodes;
+    gmsh::model::mesh::getElementsByType(1, tags, nodes);
+    return tags.size();
+  };
+  return pieces(4) != pieces(1);
+}
+
 /// Whether the number of cells does not depend on the edge length.
 bool is_structured(const MeshAt& at, double edge) try {
   const auto count = [&](double times) { return at(times * edge, times).mesh.tetrahedra.size(); };
@@ -178,7 +192,7 @@ MeshedBody mesh_script(const MeshRequest& request) {
     const double volume = std::pow(r.scale, 3) * model_volume();
     if (request.edge == 0 && volume > 0) r.edge = edge_for(r.tetrahedra, volume);
     const MeshAt at = model_at(r, session, drawn);
-    if (r.coarser.empty() || !is_structured(at, r.edge)) return mesh_refined(r, at);
+    if (r.coarser.empty() || lines_follow(r.edge, drawn) || !is_structured(at, r.edge)) return mesh_refined(r, at);
   }
   return mesh_refined(r, script_at(r));
 }
