@@ -30,6 +30,7 @@ std::vector<ExtrapolatedModel> extrapolate_cut_cells(const PreparedCase& prepare
                                                      prepared.lattices[fine.lattice].mesh->nodes);
     limit.field = fine.field + factor * (fine.field - from_coarse);
     for (const auto& [measure, value] : fine.scalars) {
+      if (measure == "promised_error") continue;  // what the limit is in proportion to: 0
       const double step = factor * (value - coarse.scalars.at(measure));
       limit.scalars[measure] = value + step;
       limit.step[measure] = std::abs(step);
