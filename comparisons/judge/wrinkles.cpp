@@ -40,7 +40,7 @@ CellStrain strain_of(const Mesh& mesh, const Hexahedron& cell, const NodalVector
 
 }  // namespace
 
-double wrinkles(const Mesh& mesh, const NodalVectors& displacement) {
+Wrinkles wrinkles(const Mesh& mesh, const NodalVectors& displacement) {
   std::vector<CellStrain> cells;
   double all = 0, alternating = 0;
   for (const Hexahedron& cell : mesh.hexahedra) {
@@ -59,7 +59,8 @@ double wrinkles(const Mesh& mesh, const NodalVectors& displacement) {
       ++pairs;
       open.erase(at);
     }
-  return all > 0 && pairs > 0 ? std::sqrt(alternating / pairs / (all / static_cast<double>(cells.size()))) : 0;
+  if (pairs == 0) return {};
+  return {std::sqrt(alternating / pairs), std::sqrt(all / static_cast<double>(cells.size()))};
 }
 
 }  // namespace springproof

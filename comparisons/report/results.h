@@ -44,7 +44,7 @@ struct Stability {
   double strain = 0;                ///< largest principal strain of the state, 99 % of the volume are below [1]
   std::optional<double> softest;    ///< stiffness of the motion that the state resists least, over that at rest
   std::vector<double> alternation;  ///< of that motion along x, y, z: 0 neighbours move alike, 2 against each other
-  double wrinkles = 0;  ///< strain that alternates from cell to cell, over all (comparisons/judge/wrinkles.h)
+  double wrinkles = 0;  ///< strain that alternates from cell to cell, over all; of a motion the largest of each
 };
 
 /// One run of one solver.

@@ -73,7 +73,8 @@ std::string loss_words(const Json& run) {
 std::string limit_sentence(const std::string& case_name, const LatticeLimit& limit) {
   std::vector<std::string> limits;
   const auto add = [&](const std::optional<double>& strain, const char* sides) {
-    if (strain) limits.push_back(fmt::format("{} % with {} sides", percent(std::abs(*strain)), sides));
+    if (strain)
+      limits.push_back(fmt::format("{} % with {} sides", *strain == 0 ? "0" : percent(std::abs(*strain)), sides));
   };
   add(limit.free, "free");
   add(limit.held, "held");

@@ -105,12 +105,16 @@ const char* name_of(Loss loss) {
   return "";
 }
 
-/// Of a lattice whose nodes are the mesh's; a motion has the wrinkles of its worst frame.
+/// Of a lattice whose nodes are the mesh's.  A motion has the wrinkles of its worst frame over the strain of its
+/// largest: what rings when little is strained is no wrinkle.
 Stability stability_of(const Equilibrium& state, const Mesh& mesh, const MotionRecord& motion, Kinematics kinematics) {
-  Stability s{state.load_reached, name_of(state.loss), 0, {}, {}, wrinkles(mesh, state.displacement)};
+  Wrinkles worst = wrinkles(mesh, state.displacement);
+  for (const auto& [time, displacement] : motion.frames) {
+    const Wrinkles frame = wrinkles(mesh, displacement);
+    worst = {std::max(worst.alternating, frame.alternating), std::max(worst.strain, frame.strain)};
+  }
+  Stability s{state.load_reached, name_of(state.loss), 0, {}, {}, worst.share()};
   s.strain = deformation_size(mesh, state.displacement, kinematics).principal_strain;
-  for (const auto& [time, displacement] : motion.frames)
-    s.wrinkles = std::max(s.wrinkles, wrinkles(mesh, displacement));
   if (!state.softest) return s;
   s.softest = state.softest->stiffness;
   s.alternation.assign(state.softest->alternation.begin(), state.softest->alternation.end());
