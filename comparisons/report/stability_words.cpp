@@ -14,8 +14,9 @@ namespace {
 
 using namespace words;
 
-// More of a smooth field's strain does not alternate: bending by two cells across has 0.1, wrinkles 0.3 to 0.8.
-constexpr double wrinkled = 0.25;
+// A smooth field has less: bending by two cells across 0.1, a body of whole cubes, whose corners stick out, up to 0.26.
+// The wave of Golec et al. (2019), Figs. 3 and 6, alone has 0.8.
+constexpr double wrinkled = 0.3;
 // Neighbours of a wave of four cells are a quarter of a period apart; of shorter ones more (1 - cos k l > 1).
 constexpr double short_wave = 1;
 
