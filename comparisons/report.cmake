@@ -33,6 +33,7 @@ set(report_assets
     report_js=${report_dir}/report/page/line.js
     report_js=${report_dir}/report/page/motion.js
     report_js=${report_dir}/report/page/cracks.js
+    report_js=${report_dir}/report/page/stability.js
     report_js=${report_dir}/report/page/cost.js
     report_js=${report_dir}/report/page/splits.js
     report_js=${report_dir}/report/page/colours.js

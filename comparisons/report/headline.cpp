@@ -420,6 +420,7 @@ Headline headline(const Json& results) {
   const Json& cases = list_of(results, "cases");
   for (std::size_t i = 0; i < cases.size(); ++i) collector.add_case(cases[i], i);
   Headline h = collector.take();
+  if (h.answer.empty()) h.answer = stability_answer(cases);
   h.doubt = doubt_of_reference(cases);
   return h;
 }

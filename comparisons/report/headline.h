@@ -25,7 +25,8 @@ struct Warning {
 
 struct Headline {
   std::string answer;  ///< which spring model comes closest in the linear cases, or, where there are none, in those of
-                       ///< large deformation; then which in time; empty: none was compared
+                       ///< large deformation; then which in time; where none was compared, up to which load each is
+                       ///< stable, if some are not
   std::optional<Warning> doubt;      ///< that the reference does not converge or is uncertain by more than 5 %, of the
                                      ///< worst such case; follows the answer
   std::vector<std::string> closest;  ///< that model, or those that cannot be told apart

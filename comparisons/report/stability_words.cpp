@@ -87,6 +87,35 @@ std::string limit_sentence(const std::string& case_name, const LatticeLimit& lim
       limit.instead.empty() ? "apply less" : limit.instead + " is stable there");
 }
 
+std::string stability_answer(const Json& cases) {
+  std::map<std::string, double> least;
+  for (const Json& result : cases) {
+    const Json& runs = list_of(result, "runs");
+    if (std::none_of(runs.begin(), runs.end(), is_lost)) continue;
+    double finest = 0;
+    for (const Json& run : runs) finest = std::max(finest, cell_count(cells_of(run)));
+    for (const Json& run : runs) {
+      const std::string model = string_of(run, "model");
+      const bool ok = run.value("ok", false);
+      if (string_of(run, "kind") != "msm" || moves(model) || cell_count(cells_of(run)) < finest ||
+          !(ok || is_lost(run)))
+        continue;
+      const double share = ok ? 1 : number_of(object_of(run, "stability"), "load_reached").value_or(0);
+      const auto known = least.try_emplace(model, share).first;
+      known->second = std::min(known->second, share);
+    }
+  }
+  if (least.empty()) return "";
+  std::vector<std::pair<std::string, double>> models(least.begin(), least.end());
+  std::stable_sort(models.begin(), models.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<std::string> parts;
+  for (const auto& [model, share] : models)
+    parts.push_back(fmt::format(
+        "{} {}", model, share < 1 ? fmt::format("up to {} % of the load", percent(share)) : "under the whole load"));
+  return fmt::format("In stable equilibrium, on the finest cells and at the worst Poisson's ratio: {}.",
+                     fmt::join(parts, ", "));
+}
+
 std::vector<Warning> stability_warnings(const Json& result, std::size_t case_number) {
   const std::string name = string_of(object_of(result, "experiment"), "name");
   // One warning per model and kind of loss, of the worst resolution and Poisson's ratio first.

@@ -18,4 +18,8 @@ std::string limit_sentence(const std::string& case_name, const LatticeLimit& lim
 /// what happened, and what to do.
 std::vector<Warning> stability_warnings(const nlohmann::json& result, std::size_t case_number);
 
+/// Of cases in which a model at rest lost its equilibrium: the least share of the load, over them and all Poisson's
+/// ratios at the finest cells, up to which each model is stable, the best model first.  Empty: none was lost.
+std::string stability_answer(const nlohmann::json& cases);
+
 }  // namespace springproof

@@ -146,7 +146,9 @@ void cut_lattices(PreparedCase& prepared) {
   for (const double accuracy : prepared.experiment.body.accuracies) {
     RefinedBody refined = refine_until(prepared, voxel_grid(true_body, edges.front()), true_body, accuracy);
     const auto cells = static_cast<double>(refined.cut.cells.size());
-    add_cubes(voxel_grid(true_body, std::cbrt(region->volume / cells)));  // for results, and models of whole cubes
+    const VoxelGrid cubes = voxel_grid(true_body, std::cbrt(region->volume / cells));  // for results, and whole cubes
+    if (!prepared.lattices.empty() && prepared.lattices.back().cells == cubes.cells) prepared.lattices.pop_back();
+    add_cubes(cubes);
     prepared.notes.push_back(refinement_note(refined, accuracy));
     prepared.notes.push_back(cut_cells_note(prepared, refined.cut));
     prepared.notes.insert(prepared.notes.end(), refined.cut.notes.begin(), refined.cut.notes.end());

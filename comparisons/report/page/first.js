@@ -36,14 +36,20 @@ function firstMotion(model) {
   return null;
 }
 
-/// Finite elements and the closest model, the latter coloured by the difference.
+/// Where no model was compared: how much of the load each of them bears, if some lose their equilibrium.
+function firstStability() {
+  const result = cases.find(losesEquilibrium);
+  return result ? {...stabilityDrawing(result, finestOf(result)), notes: []} : null;
+}
+
+/// Finite elements and the closest model, the latter coloured by the difference; or a curve.
 function firstBodies(model) {
-  const box = document.getElementById('first-bodies'), motion = model && firstMotion(model);
-  if (motion) {
+  const box = document.getElementById('first-bodies'), curve = model ? firstMotion(model) : firstStability();
+  if (curve) {
     const chart = figure();
-    chart.draw(motion);
-    charts.push(() => chart.draw(motion));
-    return box.append(el('b', {}, motion.caption), chart.node);
+    chart.draw(curve);
+    charts.push(() => chart.draw(curve));
+    return box.append(el('b', {}, curve.caption), chart.node);
   }
   const offer = model && firstPictures(model);
   if (!offer) {

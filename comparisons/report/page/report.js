@@ -94,6 +94,7 @@ function start() {
   const motion = build('motion', motionSection);
   const line = build('line', lineSection);
   const cracks = build('cracks', cracksSection);
+  const stability = build('stability', stabilitySection);
   build('verification', verificationSection);
   build('fem-column', femColumnSection);
   build('pages', section => pagesSection(section, [
@@ -103,12 +104,13 @@ function start() {
     {text: 'Parts of the error', go: jumpTo('splits', splits), has: id => splits.has(id)},
     {text: 'Along the line', go: jumpTo('line', line), has: id => line.has(id)},
     {text: 'Cracks', go: jumpTo('cracks', cracks), has: id => cracks.has(id)},
+    {text: 'Equilibrium lost', go: jumpTo('stability', stability), has: id => stability.has(id)},
     {text: 'Motion', go: jumpTo('motion', motion), has: id => motion.has(id)},
     {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
   ]));
   build('about', aboutSection);
   const wanted = /^#png=(\d+)(?:&only=(.*))?$/.exec(location.hash);
-  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, cost, splits, motion, line, cracks], decodeURIComponent(wanted[2] || ''));
+  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, cost, splits, motion, line, cracks, stability], decodeURIComponent(wanted[2] || ''));
   preparePrinting();
   window.addEventListener('hashchange', followHash);
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);

@@ -107,6 +107,29 @@ TEST_F(GlanceInBrowser, MotionsAreComparedInTime) {
   EXPECT_NE(dom.find("row ± 1.0 %; 4.0 %ν = 0.3; 12 %ν = 0.3"), std::string::npos) << said(dom);
 }
 
+TEST_F(GlanceInBrowser, LostEquilibriaAreACurve) {
+  CaseResult c;
+  c.experiment = sample_experiment();
+  c.experiment.kinematics = "hencky";
+  c.experiment.models = {{"hybmss", {}, "hybmss"}, {"hybmss_avg", {}, "hybmss_avg"}};
+  for (const auto& [model, nu, load] :
+       {std::tuple("hybmss", 0.0, 0.75), {"hybmss", 0.4, 1.0}, {"hybmss_avg", 0.0, 1.0}}) {
+    const Stability stability{load, load < 1 ? "unstable" : "", 0.2, 0.1, {}, 0.05};
+    c.runs.push_back({{model, nu, {2, 2, 2}}, "msm", "finite", load == 1, "", "", 1, 0, 0, 0, 0, 0, stability});
+  }
+  const std::string dom = open_with(document({c}), pictures({}), tools + R"js(
+    const chart = canvas => Chart.getChart(canvas).data.datasets.map(d => `${d.label} ${d.data.map(p => p.x + ': ' + p.y).join(', ')}`).join('; ');
+    say('curve ' + document.querySelector('#first-bodies b').textContent);
+    for (const at of ['#first-bodies', '#stability']) say(at + ' ' + chart(document.querySelector(at + ' canvas')));
+    endLoading();
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("curve compress: share of the load up to which equilibria are stable"), std::string::npos)
+      << said(dom);
+  for (const std::string at : {"#first-bodies", "#stability"})
+    EXPECT_NE(dom.find(at + " hybmss 0: 75, 0.4: 100; hybmss_avg 0: 100, 0.4: null"), std::string::npos) << said(dom);
+}
+
 // ---- warnings
 
 /// Too much strain for linear theory, and a reference of 7 %.

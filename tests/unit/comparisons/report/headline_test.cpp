@@ -451,7 +451,11 @@ TEST(Headline, ALostEquilibriumIsToldWithWhatHappenedAndWhatHolds) {
   run("hybmss_fd", 0.4, {0.2, "unstable", 0.04, 0.01, {1.5, 1.4, 0.2}, 0.05});
   run("hybmss", 0.25, {0.5, "inverted cell", 0.3, 0.4, {0.1, 0.1, 0.1}, 0.1});
   run("hybmss_avg", 0.25, {1, "", 0.2, 0.6, {0.1, 0.1, 0.1}, 0.02});
-  const std::vector<Warning> warnings = headline_of({c}).warnings;
+  const Headline h = headline_of({c});
+  EXPECT_EQ(h.answer,
+            "In stable equilibrium, on the finest cells and at the worst Poisson's ratio: hybmss_avg under the whole "
+            "load, hybmss up to 50 % of the load, hybmss_fd up to 10 % of the load.");
+  const std::vector<Warning>& warnings = h.warnings;
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0].brief,
             "press: hybmss loses its equilibrium, ν = 0.25 at 50 % of the load, 30 % of strain: a cell "

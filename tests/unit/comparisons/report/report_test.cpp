@@ -74,7 +74,8 @@ TEST_F(Report, HoldsTheDocumentsAsTheyWere) {
   Json held = Json::parse(between(page, "id=\"results-data\">", "</script>"));
   held["cases"][0]["rows"] = unpacked(held["cases"][0]["rows"]);
   EXPECT_EQ(held.at("measures").at("volume_change").at("title"), "volume change");
-  held.erase("measures");
+  EXPECT_EQ(held.at("motion_measures").at(0).at(0), "period");
+  for (const char* table : {"measures", "motion_measures"}) held.erase(table);
   EXPECT_EQ(held, document(cases));
   EXPECT_EQ(Json::parse(between(page, "id=\"pictures-data\">", "</script>")), pictures(cases));
 }

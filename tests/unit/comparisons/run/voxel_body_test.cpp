@@ -177,7 +177,7 @@ TEST(VoxelBody, CutCellsHaveALimitFromTwoLatticesAndWholeCubesHaveNone) {
 TEST(VoxelBody, RefinedLatticesKeepTheirPromiseAndHaveALimit) {
   std::string text = ball_case(100, "[[load]]\non = \"high\"\nforce_N = [0, 0, 1]", "\"hybmss_avg\", \"emsm\"",
                                "elements = []\nedge_m = 0.03");
-  text.replace(text.find("voxels = 100"), 12, "voxels = 60\naccuracy = [0.15, 0.1]");
+  text.replace(text.find("voxels = 100"), 12, "voxels = 60\naccuracy = [0.15, 0.14, 0.05]");
   const Experiment experiment = parse_experiment(text, "ball.toml");
   const PreparedCase prepared = prepare(experiment);
   const Part part = run_part(prepared, 0, {});
