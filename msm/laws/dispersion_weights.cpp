@@ -139,7 +139,8 @@ std::vector<double> edge_weights(const Network& network, double unit) {
     w.insert(w.end(), 2, k);
     sum += 2 * k * s.rest_length;
   }
-  for (double& e : w) e *= 3 * network.volume.sum() / (unit * unit * sum);
+  const double scale = 3 * network.volume.sum() / (unit * unit * sum);
+  for (double& e : w) e *= scale;
   return w;
 }
 
