@@ -94,8 +94,9 @@ struct Conditions {
     }
   }
 
-  /// Inverses of the node blocks of A D A^T, slightly regularised because they may be singular, and its diagonal.
-  std::vector<Block> inverse_blocks(const std::vector<double>& D, Eigen::VectorXd& diagonal) const {
+  /// Inverses of the node blocks of A D A^T + slack diag(A D A^T), which may be singular for slack = 0, and the
+  /// diagonal of A D A^T.
+  std::vector<Block> inverse_blocks(const std::vector<double>& D, double slack, Eigen::VectorXd& diagonal) const {
     std::vector<Block> blocks(network.nodes(), Block::Zero());
     for (std::size_t s = 0; s < direction.size(); ++s)
       for (int side = 0; side < 2; ++side) {
@@ -115,7 +116,8 @@ struct Conditions {
     for (int n = 0; n < network.nodes(); ++n) diagonal.segment<per_node>(per_node * n) = blocks[n].diagonal();
     for (Block& b : blocks) {
       const double floor = 1e-10 * b.trace() + 1e-300;
-      b = (b + floor * Block::Identity()).inverse().eval();
+      b.diagonal() += slack * b.diagonal() + Condition::Constant(floor);
+      b = b.inverse().eval();
     }
     return blocks;
   }
@@ -166,9 +168,9 @@ int correct(const Conditions& A, const Eigen::VectorXd& target, std::vector<doub
   A.apply(w, met);
   const Eigen::VectorXd missing = target - met;
   if (!(missing.norm() > 1e-13 * target.norm())) return 0;
-  const std::vector<Block> inverse = A.inverse_blocks(D, diagonal);
   std::vector<double> change;
   double slack = 0;  // regularisation, as a fraction of the diagonal of A D A^T
+  std::vector<Block> inverse = A.inverse_blocks(D, slack, diagonal);
   const Operator normal = [&](const Eigen::VectorXd& y, Eigen::VectorXd& r) {
     A.transpose(y, D, change);
     A.apply(change, r);
@@ -184,9 +186,10 @@ int correct(const Conditions& A, const Eigen::VectorXd& target, std::vector<doub
   Eigen::VectorXd y = Eigen::VectorXd::Zero(target.size());
   KrylovResult k;
   k.residual = 1;
-  if (consistent) k = conjugate_gradients(normal, jacobi, missing, 1e-12 * target.norm() / missing.norm(), 500, y);
+  if (consistent) k = conjugate_gradients(normal, jacobi, missing, 1e-12 * target.norm() / missing.norm(), 2000, y);
   if (!(k.residual < 1e-6)) {
     slack = smallest_slack;
+    inverse = A.inverse_blocks(D, slack, diagonal);
     y.setZero();
     k = conjugate_gradients(normal, jacobi, missing, 1e-6, 2000, y);
   }
