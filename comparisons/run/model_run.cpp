@@ -44,27 +44,14 @@ void add_moduli(const PreparedCase& prepared, const MassSpringModel& model, cons
   out["moduli.affine_youngs_modulus"] = 2.5 * affine_shear_modulus(model.network);
 }
 
-/// A network with its solution.
-struct Solved {
-  EmbeddedModel built;
-  BoundaryConditions conditions;
-  Equilibrium state;
-  RunTimes times;
-  MotionRecord motion;
-};
-
-Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                     const IsotropicMaterial& material, bool in_motion) {
+SolvedModel solve_network(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                          const IsotropicMaterial& material, bool in_motion) {
   const Experiment& e = prepared.experiment;
   const Kinematics kinematics = e.model_kinematics();
-  const Mesh& mesh = *lattice.mesh;
   const double start = cpu_seconds();
-  Solved s{build_on(prepared, lattice, parameters, material, in_motion), {}, {}, {}, {}};
+  SolvedModel s{build_on(prepared, lattice, parameters, material, in_motion), {}, {}, {}, {}};
   const LoadPath path = [&](double factor) {
-    BoundaryConditions bc =
-        transfer(prepared.loads, mesh, s.built.embedding, s.built.model.network, material.density, kinematics, factor);
-    if (parameters.hold_rigid_motions) hold_free_motions(s.built.model.network.X, bc, s.built.model.network.carried);
-    return bc;
+    return conditions_of(prepared, lattice, parameters, s.built, material.density, factor);
   };
   s.conditions = path(1.0);
   const double ready = cpu_seconds();
@@ -78,12 +65,12 @@ Solved solve_network(const PreparedCase& prepared, const Lattice& lattice, const
 }
 
 /// Solves with times that can be compared, and the memory of this run alone.
-Solved solve_and_count(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                       const IsotropicMaterial& material, bool in_motion) {
+SolvedModel solve_and_count(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                            const IsotropicMaterial& material, bool in_motion) {
   if (&lattice == &prepared.lattices.front())
     solve_network(prepared, lattice, parameters, material, in_motion);  // memory retained between runs is not counted
   const MemoryGrowth memory;
-  Solved s = solve_network(prepared, lattice, parameters, material, in_motion);
+  SolvedModel s = solve_network(prepared, lattice, parameters, material, in_motion);
   s.state.memory_MiB = memory.most_MiB();
   if (s.state.ok)
     s.times =
@@ -124,10 +111,27 @@ Stability stability_of(const Equilibrium& state, const Mesh& mesh, const MotionR
 /// One network of the model, solved and measured.
 ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material, bool in_motion) {
+  const auto solve = prepared.experiment.cost ? solve_and_count : solve_network;
+  return measured(prepared, lattice, parameters, solve(prepared, lattice, parameters, material, in_motion), in_motion);
+}
+
+}  // namespace
+
+BoundaryConditions conditions_of(const PreparedCase& prepared, const Lattice& lattice,
+                                 const ModelParameters& parameters, const EmbeddedModel& built, double density,
+                                 double factor) {
+  const Network& network = built.model.network;
+  BoundaryConditions bc = transfer(prepared.loads, *lattice.mesh, built.embedding, network, density,
+                                   prepared.experiment.model_kinematics(), factor);
+  if (parameters.hold_rigid_motions) hold_free_motions(network.X, bc, network.carried);
+  return bc;
+}
+
+ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                     SolvedModel solved, bool in_motion) {
   const Experiment& e = prepared.experiment;
   const auto& mesh = lattice.mesh;
-  const auto solve = e.cost ? solve_and_count : solve_network;
-  auto [built, conditions, state, times, motion] = solve(prepared, lattice, parameters, material, in_motion);
+  auto& [built, conditions, state, times, motion] = solved;
   const Network& network = built.model.network;
   ModelSample sample;
   sample.state = state;
@@ -159,8 +163,6 @@ ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, con
   if (asked(e, "moduli")) add_moduli(prepared, built.model, sample.state.displacement, sample.scalars);
   return sample;
 }
-
-}  // namespace
 
 void add_network(const Network& network, std::map<std::string, double>& out) {
   const NetworkStatistics s = statistics(network);

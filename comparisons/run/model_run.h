@@ -25,6 +25,24 @@ struct ModelSample {
   std::optional<Stability> stability = {};  ///< of a lattice of cells
 };
 
+/// A model of a case on one of its lattices, with what was solved.
+struct SolvedModel {
+  EmbeddedModel built;
+  BoundaryConditions conditions;
+  Equilibrium state;
+  RunTimes times;
+  MotionRecord motion;
+};
+
+/// The loads of a case at a fraction of them, on a model.
+BoundaryConditions conditions_of(const PreparedCase& prepared, const Lattice& lattice,
+                                 const ModelParameters& parameters, const EmbeddedModel& built, double density,
+                                 double factor = 1.0);
+
+/// What is measured of it.
+ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                     SolvedModel solved, bool in_motion);
+
 /// Rows of the measure `network`.
 void add_network(const Network& network, std::map<std::string, double>& out);
 

@@ -1,8 +1,8 @@
 #include "msm/parallel/slab_multigrid.h"
 
-#include <petscksp.h>
-
 #include <stdexcept>
+
+#include "msm/parallel/petsc.h"
 
 namespace springproof {
 namespace {
@@ -13,21 +13,6 @@ constexpr long shared_unknowns = 60000;  // a lattice of so many is replicated o
 template <class Real>
 constexpr MPI_Datatype mpi_type() {
   return sizeof(Real) == 4 ? MPI_FLOAT : MPI_DOUBLE;
-}
-
-int rank_of(MPI_Comm c) {
-  int rank;
-  MPI_Comm_rank(c, &rank);
-  return rank;
-}
-int size_of(MPI_Comm c) {
-  int size;
-  MPI_Comm_size(c, &size);
-  return size;
-}
-
-void check(PetscErrorCode code) {
-  if (code) throw std::runtime_error("PETSc failed");
 }
 
 }  // namespace
@@ -88,7 +73,7 @@ SlabPartition::SlabPartition(const std::array<int, 3>& block_cells, MPI_Comm com
                                 std::to_string(processes) + " processes (allowed: at most " +
                                 std::to_string(along(2, 1)) + ")");
   PetscInt own = PETSC_DECIDE, all = along(2, levels);
-  check(PetscSplitOwnership(communicator, &own, &all));
+  require(PetscSplitOwnership(communicator, &own, &all));
   PetscInt end = 0;
   MPI_Scan(&own, &end, 1, MPIU_INT, MPI_SUM, communicator);
   z_begin = static_cast<int>(end - own);
@@ -225,15 +210,15 @@ struct Shell {
 
   void read(Vec v) {
     const double* values;
-    check(VecGetArrayRead(v, &values));
+    require(VecGetArrayRead(v, &values));
     for_each([&](long at, long n, long from) { std::copy_n(values + from, n, x.data() + at); });
-    check(VecRestoreArrayRead(v, &values));
+    require(VecRestoreArrayRead(v, &values));
   }
   void write(Vec v) {
     double* values;
-    check(VecGetArray(v, &values));
+    require(VecGetArray(v, &values));
     for_each([&](long at, long n, long from) { std::copy_n(y.data() + at, n, values + from); });
-    check(VecRestoreArray(v, &values));
+    require(VecRestoreArray(v, &values));
   }
   template <class Visit>
   void for_each(Visit visit) const {
@@ -268,46 +253,46 @@ KrylovResult SlabMultigrid::solve(const Eigen::VectorXd& b, double tolerance, in
   Shell shell{this, Eigen::VectorXd::Zero(b.size()), b};
   finest().lattice.clear_fixed(shell.y);
   Vec rhs, solution;
-  check(VecCreateMPI(communicator_, static_cast<PetscInt>(3 * finest().own_points()), PETSC_DETERMINE, &rhs));
-  check(VecDuplicate(rhs, &solution));
+  require(VecCreateMPI(communicator_, static_cast<PetscInt>(3 * finest().own_points()), PETSC_DETERMINE, &rhs));
+  require(VecDuplicate(rhs, &solution));
   shell.write(rhs);
   Mat K;
   PetscInt own;
-  check(VecGetLocalSize(rhs, &own));
-  check(MatCreateShell(communicator_, own, own, PETSC_DETERMINE, PETSC_DETERMINE, &shell, &K));
-  check(MatShellSetOperation(K, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_shell)));
+  require(VecGetLocalSize(rhs, &own));
+  require(MatCreateShell(communicator_, own, own, PETSC_DETERMINE, PETSC_DETERMINE, &shell, &K));
+  require(MatShellSetOperation(K, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_shell)));
   KSP ksp;
   PC pc;
-  check(KSPCreate(communicator_, &ksp));
-  check(KSPSetOperators(ksp, K, K));
-  check(KSPSetType(ksp, KSPCG));
-  check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
-  check(KSPGetPC(ksp, &pc));
-  check(PCSetType(pc, PCSHELL));
-  check(PCShellSetContext(pc, &shell));
-  check(PCShellSetApply(pc, precondition_shell));
-  check(KSPSetTolerances(ksp, tolerance, 0, PETSC_DEFAULT, max_iterations));
-  check(KSPSolve(ksp, rhs, solution));
+  require(KSPCreate(communicator_, &ksp));
+  require(KSPSetOperators(ksp, K, K));
+  require(KSPSetType(ksp, KSPCG));
+  require(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
+  require(KSPGetPC(ksp, &pc));
+  require(PCSetType(pc, PCSHELL));
+  require(PCShellSetContext(pc, &shell));
+  require(PCShellSetApply(pc, precondition_shell));
+  require(KSPSetTolerances(ksp, tolerance, 0, PETSC_DEFAULT, max_iterations));
+  require(KSPSolve(ksp, rhs, solution));
   KSPConvergedReason reason;
   PetscInt iterations;
-  check(KSPGetConvergedReason(ksp, &reason));
-  check(KSPGetIterationNumber(ksp, &iterations));
+  require(KSPGetConvergedReason(ksp, &reason));
+  require(KSPGetIterationNumber(ksp, &iterations));
   // Recompute the residual.
   PetscReal scale, residual;
   Vec r;
-  check(VecDuplicate(rhs, &r));
-  check(MatMult(K, solution, r));
-  check(VecAYPX(r, -1, rhs));
-  check(VecNorm(r, NORM_2, &residual));
-  check(VecNorm(rhs, NORM_2, &scale));
+  require(VecDuplicate(rhs, &r));
+  require(MatMult(K, solution, r));
+  require(VecAYPX(r, -1, rhs));
+  require(VecNorm(r, NORM_2, &residual));
+  require(VecNorm(rhs, NORM_2, &scale));
   shell.read(solution);
   u = shell.x;
   exchanges_[0].complete(u.data());
-  check(VecDestroy(&r));
-  check(VecDestroy(&rhs));
-  check(VecDestroy(&solution));
-  check(MatDestroy(&K));
-  check(KSPDestroy(&ksp));
+  require(VecDestroy(&r));
+  require(VecDestroy(&rhs));
+  require(VecDestroy(&solution));
+  require(MatDestroy(&K));
+  require(KSPDestroy(&ksp));
   KrylovResult result;
   result.iterations = static_cast<int>(iterations);
   result.residual = scale > 0 ? residual / scale : 0;

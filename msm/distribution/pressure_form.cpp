@@ -1,0 +1,99 @@
+#include "msm/distribution/pressure_form.h"
+
+#include <cmath>
+
+#include "msm/parameters/calibrate.h"
+
+namespace springproof {
+namespace {
+
+const VolumeCorrection* volume_correction_of(const MassSpringModel& model) {
+  for (const ForceLaw& law : model.laws)
+    if (const auto* volume = std::get_if<VolumeCorrection>(&law)) return volume;
+  return nullptr;
+}
+
+MassSpringModel without_volume_term(const MassSpringModel& model) {
+  MassSpringModel springs{model.network, {}, model.small_displacements_only};
+  for (ForceLaw law : model.laws) {
+    if (auto* averaged = std::get_if<AveragedSprings>(&law)) averaged->lame_lambda = averaged->shear_modulus;
+    if (!std::holds_alternative<VolumeCorrection>(law) && !std::holds_alternative<MomentumDispersion>(law))
+      springs.laws.push_back(law);
+  }
+  return springs;
+}
+
+/// dV/du of a cell at rest [m^2].
+Eigen::Matrix<double, 24, 1> volume_gradient(const MassSpringModel& model, std::size_t cell) {
+  const Network& network = model.network;
+  if (averaged_springs_of(model)) return cell_volume(network, cell, network.X).gradient;
+  Eigen::Matrix<double, 24, 1> gradient;
+  const MeanEdgeVolume volume = mean_edge_volume(network.cells[cell], network.X);
+  for (int n = 0; n < 8; ++n) gradient.segment<3>(3 * n) = volume.gradient.row(n).transpose();
+  return gradient;
+}
+
+void set_pressures_of_cells(const MassSpringModel& model, PressureForm& form) {
+  const Network& network = model.network;
+  const AveragedSprings* averaged = averaged_springs_of(model);
+  const double kappa = averaged ? averaged->lame_lambda - averaged->shear_modulus : volume_correction_of(model)->kappa;
+  const Carriers carriers = carriers_of(network.nodes(), network.carried);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(24 * network.cells.size());
+  form.C.resize(static_cast<Eigen::Index>(network.cells.size()));
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const int row = static_cast<int>(c);
+    const Eigen::Matrix<double, 24, 1> gradient = volume_gradient(model, c);
+    for (int n = 0; n < 8; ++n) {
+      const int corner = network.cells[c][n];
+      const auto hand = [&](int node, double weight) {
+        for (int d = 0; d < 3; ++d) entries.emplace_back(row, 3 * node + d, weight * gradient[3 * n + d]);
+      };
+      if (carriers.empty() || carriers[corner].empty())
+        hand(corner, 1);
+      else
+        for (const auto& [node, weight] : carriers[corner]) hand(node, weight);
+    }
+    const double filled = network.filled.empty() ? 1 : network.filled[c].fraction;
+    form.C[row] = filled * std::pow(network.edge(c), 3) / kappa;
+  }
+  form.B.resize(form.C.size(), 3 * network.nodes());
+  form.B.setFromTriplets(entries.begin(), entries.end());
+}
+
+/// Inflow and outflow of the symmetric form are the same but for a factor per node, which is 1 / C.
+void set_pressures_of_nodes(const MassSpringModel& model, PressureForm& form) {
+  Tangent flow;
+  dispersion_of(model)->add_flow(model.network, model.network.X, flow);
+  form.C = Eigen::VectorXd::Zero(flow.inflow.rows());
+  for (int n = 0; n < flow.inflow.outerSize(); ++n) {
+    double in = 0, out = 0;
+    for (NodalForms::InnerIterator i(flow.inflow, n), o(flow.outflow, n); i; ++i, ++o) {
+      in += i.value() * i.value();
+      out += o.value() * i.value();
+    }
+    if (out > 0) form.C[n] = in / out;
+  }
+  form.B = std::move(flow.inflow);
+}
+
+}  // namespace
+
+bool has_nodal_pressures(const MassSpringModel& model) { return dispersion_of(model) != nullptr; }
+
+double volume_stiffness_ratio(const MassSpringModel& model) {
+  if (const MomentumDispersion* dispersion = dispersion_of(model))
+    return added_lambda(*dispersion, model.network.triangles.empty() ? 3 : 2);
+  if (const AveragedSprings* averaged = averaged_springs_of(model))
+    return averaged->lame_lambda / averaged->shear_modulus - 1;
+  if (const VolumeCorrection* volume = volume_correction_of(model)) return volume->kappa / affine_shear_modulus(model);
+  return 0;
+}
+
+PressureForm pressure_form(const MassSpringModel& model) {
+  PressureForm form{without_volume_term(model), {}, {}};
+  has_nodal_pressures(model) ? set_pressures_of_nodes(model, form) : set_pressures_of_cells(model, form);
+  return form;
+}
+
+}  // namespace springproof

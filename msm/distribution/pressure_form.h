@@ -1,0 +1,26 @@
+// The stiffness of a model at rest as that of its springs and of pressures: what stays well-conditioned as nu -> 1/2.
+#pragma once
+
+#include "msm/distribution/model_part.h"
+
+namespace springproof {
+
+/// K = A + B^T C^-1 B, A the stiffness of `springs`: with a pressure p = C^-1 B u per cell (volume correction, averaged
+/// springs), or per node (momentum dispersion).
+struct PressureForm {
+  MassSpringModel springs;  ///< the model without its volume term
+  NodalForms B;             ///< of cells dV/du [m^2], of nodes dJ/du [N]; places x 3 n, no force on a carried node
+  Eigen::VectorXd C;        ///< one per place [m^3/Pa, N m]; 0: no pressure there
+};
+
+/// lambda that the volume term of a model adds to that of its springs, over their shear modulus; 0: it has none.
+/// Of a whole model, not of a part.
+double volume_stiffness_ratio(const MassSpringModel& model);
+
+/// Of a conservative model, or a part of one, with a volume term that adds to lambda: volume_stiffness_ratio() > 0.
+PressureForm pressure_form(const MassSpringModel& model);
+
+/// Whether its pressures are those of nodes, not of cells.
+bool has_nodal_pressures(const MassSpringModel& model);
+
+}  // namespace springproof

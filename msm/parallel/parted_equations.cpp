@@ -1,0 +1,258 @@
+#include "msm/parallel/parted_equations.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace springproof {
+namespace {
+
+constexpr const char* solver_options =
+    "-displacement_pc_type gamg -displacement_pc_gamg_threshold 0.01 "
+    "-displacement_mg_levels_ksp_type chebyshev -displacement_mg_levels_pc_type jacobi "
+    "-displacement_mg_levels_ksp_max_it 2 "
+    "-mixed_fieldsplit_u_ksp_type preonly -mixed_fieldsplit_u_pc_type gamg -mixed_fieldsplit_u_pc_gamg_threshold 0.01 "
+    "-mixed_fieldsplit_u_mg_levels_ksp_type chebyshev -mixed_fieldsplit_u_mg_levels_pc_type jacobi "
+    "-mixed_fieldsplit_u_mg_levels_ksp_max_it 2 "
+    "-mixed_fieldsplit_p_ksp_type preonly -mixed_fieldsplit_p_pc_type jacobi";
+
+/// Blocks of a tangent row by row: those between coupled nodes, and those of the dispersion's flow.
+class BlockRows {
+ public:
+  BlockRows(const Tangent& K, const Network& network)
+      : K_(K), coupled_(coupled_through(carriers_of(network.nodes(), network.carried), coupled_nodes(network))) {
+    if (K.dispersive()) flow_ = NodalForms(K.outflow.transpose()) * K.inflow;
+  }
+
+  std::vector<int> columns(int node) const {
+    const std::vector<int>&own = coupled_[node], flow = flow_columns(node);
+    std::vector<int> both;
+    std::set_union(own.begin(), own.end(), flow.begin(), flow.end(), std::back_inserter(both));
+    return both;
+  }
+
+  template <class Act>
+  void for_each_block(int node, Act act) const {
+    for (const int other : coupled_[node]) act(other, K_.local.at(node, other));
+    for (const int other : flow_columns(node)) {
+      Blocks block;
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) block(a, b) = flow_.coeff(3 * node + a, 3 * other + b);
+      act(other, block);
+    }
+  }
+
+ private:
+  std::vector<int> flow_columns(int node) const {
+    std::vector<int> columns;
+    if (flow_.rows() > 0)
+      for (NodalForms::InnerIterator e(flow_, 3 * node); e; ++e)
+        if (e.col() % 3 == 0) columns.push_back(static_cast<int>(e.col() / 3));
+    return columns;
+  }
+
+  const Tangent& K_;
+  std::vector<std::vector<int>> coupled_;
+  NodalForms flow_;
+};
+
+void assemble(Mat A) {
+  require(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  require(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+}
+
+/// Entries per row in own columns and in those of other processes.
+struct RowLengths {
+  std::vector<PetscInt> own, others;
+
+  explicit RowLengths(std::size_t rows) : own(rows), others(rows) {}
+  void count(std::size_t row, bool is_own, int entries) { (is_own ? own : others)[row] += entries; }
+};
+
+PetscMatrix sparse_matrix(PetscInt rows, PetscInt columns, int block, const RowLengths& lengths,
+                          MPI_Comm communicator) {
+  PetscMatrix A;
+  require(MatCreate(communicator, &A));
+  require(MatSetSizes(A, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
+  require(MatSetType(A, MATAIJ));
+  require(MatSetBlockSizes(A, block, columns % 3 == 0 && block == 3 ? 3 : 1));
+  require(MatSeqAIJSetPreallocation(A, 0, lengths.own.data()));
+  require(MatMPIAIJSetPreallocation(A, 0, lengths.own.data(), 0, lengths.others.data()));
+  return A;
+}
+
+bool is_own(const EquationNumbers& equations, int number) {
+  return number >= equations.first && number < equations.first + static_cast<int>(equations.own.size());
+}
+
+}  // namespace
+
+EquationNumbers number_equations(const std::vector<int>& owner, const std::vector<int>& of_part,
+                                 MPI_Comm communicator) {
+  const int rank = rank_of(communicator), processes = size_of(communicator);
+  std::vector<int> next(processes + 1), number(owner.size(), -1);
+  for (const int o : owner)
+    if (o >= 0) ++next[o + 1];
+  for (int p = 0; p < processes; ++p) next[p + 1] += next[p];
+  EquationNumbers equations;
+  equations.first = next[rank];
+  for (std::size_t n = 0; n < owner.size(); ++n)
+    if (owner[n] >= 0) number[n] = next[owner[n]]++;
+  for (std::size_t i = 0; i < of_part.size(); ++i) {
+    equations.number.push_back(number[of_part[i]]);
+    if (owner[of_part[i]] == rank) equations.own.push_back(static_cast<int>(i));
+  }
+  return equations;
+}
+
+PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNumbers& nodes,
+                      const std::vector<char>& fixed, MPI_Comm communicator) {
+  const BlockRows rows(K, network);
+  RowLengths lengths(3 * nodes.own.size());
+  for (std::size_t i = 0; i < nodes.own.size(); ++i)
+    for (const int other : rows.columns(nodes.own[i]))
+      if (nodes.number[other] >= 0)
+        for (int d = 0; d < 3; ++d) lengths.count(3 * i + d, is_own(nodes, nodes.number[other]), 3);
+  const auto size = static_cast<PetscInt>(3 * nodes.own.size());
+  PetscMatrix A = sparse_matrix(size, size, 3, lengths, communicator);
+  for (const int node : nodes.own)
+    rows.for_each_block(node, [&](int other, Blocks block) {
+      const PetscInt row = nodes.number[node], column = nodes.number[other];
+      if (column < 0) return;
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
+          if ((fixed[3 * node + a] || fixed[3 * other + b]) && !(node == other && a == b)) block(a, b) = 0;
+      require(MatSetValuesBlocked(A, 1, &row, 1, &column, block.data(), ADD_VALUES));
+    });
+  assemble(A);
+  require(MatSetOption(A, MAT_SPD, PETSC_TRUE));
+  return A;
+}
+
+PetscMatrix matrix_of(const NodalForms& B, double unit, const EquationNumbers& pressures, const EquationNumbers& nodes,
+                      const std::vector<char>& fixed, MPI_Comm communicator) {
+  RowLengths lengths(pressures.own.size());
+  const auto for_each_entry = [&](auto act) {
+    for (std::size_t i = 0; i < pressures.own.size(); ++i)
+      for (NodalForms::InnerIterator e(B, pressures.own[i]); e; ++e)
+        if (const int node = nodes.number[e.col() / 3]; node >= 0 && !fixed[e.col()])
+          act(i, node, 3 * node + static_cast<int>(e.col() % 3), unit * e.value());
+  };
+  for_each_entry([&](std::size_t i, int node, PetscInt, double) { lengths.count(i, is_own(nodes, node), 1); });
+  PetscMatrix matrix = sparse_matrix(static_cast<PetscInt>(pressures.own.size()),
+                                     static_cast<PetscInt>(3 * nodes.own.size()), 1, lengths, communicator);
+  for_each_entry([&](std::size_t i, int, PetscInt column, double value) {
+    require(MatSetValue(matrix, pressures.first + static_cast<PetscInt>(i), column, value, INSERT_VALUES));
+  });
+  assemble(matrix);
+  return matrix;
+}
+
+PetscMatrix diagonal_matrix(const Eigen::VectorXd& values, MPI_Comm communicator) {
+  RowLengths lengths(static_cast<std::size_t>(values.size()));
+  std::fill(lengths.own.begin(), lengths.own.end(), 1);
+  const auto size = static_cast<PetscInt>(values.size());
+  PetscMatrix matrix = sparse_matrix(size, size, 1, lengths, communicator);
+  PetscInt first;
+  require(MatGetOwnershipRange(matrix, &first, nullptr));
+  for (PetscInt i = 0; i < size; ++i) require(MatSetValue(matrix, first + i, first + i, values[i], INSERT_VALUES));
+  assemble(matrix);
+  return matrix;
+}
+
+void set_rigid_motions(Mat A, const NodalVectors& own_positions, MPI_Comm communicator) {
+  const Eigen::VectorXd flat = Eigen::Map<const Eigen::VectorXd>(own_positions.data(), own_positions.size());
+  PetscKernel rigid;
+  require(MatNullSpaceCreateRigidBody(vector_of(flat, 3, communicator), &rigid));
+  require(MatSetNearNullSpace(A, rigid));
+}
+
+PetscVector vector_of(const Eigen::VectorXd& own, int block, MPI_Comm communicator) {
+  PetscVector v;
+  require(VecCreate(communicator, &v));
+  require(VecSetSizes(v, static_cast<PetscInt>(own.size()), PETSC_DETERMINE));
+  require(VecSetBlockSize(v, block));
+  require(VecSetType(v, VECSTANDARD));
+  PetscScalar* data;
+  require(VecGetArray(v, &data));
+  std::copy(own.begin(), own.end(), data);
+  require(VecRestoreArray(v, &data));
+  return v;
+}
+
+Eigen::VectorXd values_of(Vec v) {
+  PetscInt size;
+  const PetscScalar* data;
+  require(VecGetLocalSize(v, &size));
+  require(VecGetArrayRead(v, &data));
+  Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(data, size);
+  require(VecRestoreArrayRead(v, &data));
+  return own;
+}
+
+PetscOutcome solve(KSP solver, Mat A, Vec b, Vec x, double tolerance, int max_iterations) {
+  constexpr int attempts = 3;
+  PetscReal size, residual = 0;
+  PetscVector r;
+  require(VecNorm(b, NORM_2, &size));
+  if (size == 0) return {true, 0, 0};
+  require(VecDuplicate(b, &r));
+  PetscOutcome outcome{false, 0, 1};
+  for (int attempt = 0; attempt < attempts && !outcome.converged; ++attempt) {
+    require(KSPSetTolerances(solver, 1e-50, tolerance * size, PETSC_DEFAULT, max_iterations - outcome.iterations));
+    require(KSPSetInitialGuessNonzero(solver, attempt > 0 ? PETSC_TRUE : PETSC_FALSE));
+    require(KSPSolve(solver, b, x));
+    PetscInt iterations;
+    KSPConvergedReason reason;
+    require(KSPGetIterationNumber(solver, &iterations));
+    require(KSPGetConvergedReason(solver, &reason));
+    require(MatMult(A, x, r));
+    require(VecAYPX(r, -1, b));
+    require(VecNorm(r, NORM_2, &residual));
+    outcome.iterations += static_cast<int>(iterations);
+    outcome.residual = residual / size;
+    outcome.converged = outcome.residual <= 1.01 * tolerance;
+    if (reason < 0) break;
+  }
+  return outcome;
+}
+
+PetscSolver displacement_solver(Mat A, MPI_Comm communicator) {
+  PetscSolver solver;
+  require(KSPCreate(communicator, &solver));
+  require(KSPSetOptionsPrefix(solver, "displacement_"));
+  require(KSPSetOperators(solver, A, A));
+  require(KSPSetType(solver, KSPCG));
+  require(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
+  require(KSPSetFromOptions(solver));
+  return solver;
+}
+
+PetscSolver mixed_solver(Mat system, Mat schur, MPI_Comm communicator) {
+  PetscSolver solver;
+  PC preconditioner;
+  IS fields[2];
+  require(MatNestGetISs(system, fields, nullptr));
+  require(KSPCreate(communicator, &solver));
+  require(KSPSetOptionsPrefix(solver, "mixed_"));
+  require(KSPSetOperators(solver, system, system));
+  require(KSPSetType(solver, KSPGMRES));
+  require(KSPGMRESSetRestart(solver, 60));
+  require(KSPSetPCSide(solver, PC_RIGHT));
+  require(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
+  require(KSPGetPC(solver, &preconditioner));
+  require(PCSetType(preconditioner, PCFIELDSPLIT));
+  require(PCFieldSplitSetIS(preconditioner, "u", fields[0]));
+  require(PCFieldSplitSetIS(preconditioner, "p", fields[1]));
+  require(PCFieldSplitSetType(preconditioner, PC_COMPOSITE_SCHUR));
+  require(PCFieldSplitSetSchurFactType(preconditioner, PC_FIELDSPLIT_SCHUR_FACT_UPPER));
+  require(PCFieldSplitSetSchurPre(preconditioner, PC_FIELDSPLIT_SCHUR_PRE_USER, schur));
+  require(KSPSetFromOptions(solver));
+  return solver;
+}
+
+void set_solver_options() {
+  require(PetscOptionsInsertString(nullptr, solver_options));
+  if (const char* chosen = std::getenv("PETSC_OPTIONS")) require(PetscOptionsInsertString(nullptr, chosen));
+}
+
+}  // namespace springproof

@@ -1,0 +1,208 @@
+#include "msm/parallel/parted_problem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "msm/distribution/pressure_form.h"
+#include "msm/parallel/partition.h"
+#include "problem/system/run_cost.h"
+
+namespace springproof {
+namespace {
+
+/// Values of the part's nodes.
+template <class Values>
+Values of_nodes(const Values& all, const std::vector<int>& nodes) {
+  Values part(3 * nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    for (int d = 0; d < 3; ++d) part[3 * n + d] = all[3 * nodes[n] + d];
+  return part;
+}
+
+/// Process of each place of a pressure: nodes have theirs; a cell belongs to the owner of its first corner, or of the
+/// node that carries that.
+std::vector<int> owners_of_pressures(const MassSpringModel& model, const std::vector<int>& owner) {
+  if (has_nodal_pressures(model)) return owner;
+  const Carriers carriers = carriers_of(model.network.nodes(), model.network.carried);
+  std::vector<int> of_cells;
+  for (const Hexahedron& cell : model.network.cells) {
+    const int corner = cell[0];
+    of_cells.push_back(owner[carriers.empty() || carriers[corner].empty() ? corner : carriers[corner].front().first]);
+  }
+  return of_cells;
+}
+
+/// Mean over all processes of the values, `block` per place, of their own places.
+double mean(const Eigen::VectorXd& values, int block, const std::vector<int>& own, MPI_Comm communicator) {
+  double sum = 0;
+  for (const int place : own) sum += values.segment(block * place, block).sum();
+  const Sum total{communicator};
+  return total(sum) / total(static_cast<double>(block * own.size()));
+}
+
+Eigen::VectorXd row_squares(const NodalForms& B) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(B.rows());
+  for (int row = 0; row < B.outerSize(); ++row)
+    for (NodalForms::InnerIterator e(B, row); e; ++e) squares[row] += e.value() * e.value();
+  return squares;
+}
+
+}  // namespace
+
+PartedProblem::PartedProblem(const MassSpringModel& model, const BoundaryConditions& conditions, MPI_Comm communicator)
+    : communicator_(communicator),
+      kappa_(volume_stiffness_ratio(model)),
+      mixed_(kappa_ > (has_nodal_pressures(model) ? 0 : parted_mixed_above_kappa)),
+      all_prescribed_(conditions.prescribed),
+      all_carried_(model.network.carried) {
+  const std::vector<int> owner = owners_of_nodes(model.network, communicator);
+  agree(communicator, [&] {
+    const int rank = rank_of(communicator);
+    std::vector<char> own(owner.size());
+    std::transform(owner.begin(), owner.end(), own.begin(), [&](int o) { return o == rank; });
+    part_ = part_of(model, own);
+    const std::vector<char> fixed = fixed_or_carried(model.network, conditions.fixed);
+    unknowns_ = std::count(fixed.begin(), fixed.end(), 0);
+    fixed_ = of_nodes(fixed, part_.nodes);
+    prescribed_ = of_nodes<Eigen::VectorXd>(flat(conditions.prescribed), part_.nodes);
+    external_ = of_nodes<Eigen::VectorXd>(flat(conditions.external), part_.nodes);
+    std::vector<int> with_equations = owner;
+    for (std::size_t n = 0; n < owner.size(); ++n)
+      if (fixed[3 * n] && fixed[3 * n + 1] && fixed[3 * n + 2]) with_equations[n] = -1;
+    nodes_ = number_equations(with_equations, part_.nodes, communicator);
+    if (!mixed_) return;
+    const std::vector<int> of_pressures = owners_of_pressures(model, owner);
+    all_pressures_ = static_cast<long>(of_pressures.size());
+    pressures_ = number_equations(of_pressures, has_nodal_pressures(model) ? part_.nodes : part_.cells, communicator);
+  });
+}
+
+Eigen::VectorXd PartedProblem::own_load(const Eigen::VectorXd& internal) const {
+  Eigen::VectorXd load(static_cast<Eigen::Index>(3 * nodes_.own.size()));
+  for (std::size_t i = 0; i < nodes_.own.size(); ++i)
+    for (int d = 0; d < 3; ++d) {
+      const int at = 3 * nodes_.own[i] + d;
+      load[3 * i + d] = fixed_[at] ? 0 : external_[at] - internal[at];
+    }
+  return load;
+}
+
+NodalVectors PartedProblem::own_positions() const { return part_.model.network.X(nodes_.own, Eigen::all); }
+
+PartedProblem::Solution PartedProblem::solve_displacements(double tolerance, int max_iterations) const {
+  PetscMatrix A;
+  PetscVector b;
+  {
+    const Tangent K = tangent(part_.model, part_.model.network.X);
+    Eigen::VectorXd internal;
+    K.multiply(prescribed_, internal);
+    b = vector_of(own_load(internal), 3, communicator_);
+    A = matrix_of(K, part_.model.network, nodes_, fixed_, communicator_);
+  }
+  set_rigid_motions(A, own_positions(), communicator_);
+  const PetscSolver solver = displacement_solver(A, communicator_);
+  PetscVector x;
+  require(VecDuplicate(b, &x));
+  const PetscOutcome outcome = springproof::solve(solver, A, b, x, tolerance, max_iterations);
+  return {values_of(x), {}, outcome, "CG + smoothed aggregation"};
+}
+
+PartedProblem::Solution PartedProblem::solve_mixed(double tolerance, int max_iterations) const {
+  PetscMatrix A, B, minus_C, schur;
+  PetscVector b;
+  double unit;  // of pressure, so that both equations have entries of one size
+  {
+    const PressureForm form = pressure_form(part_.model);
+    const Tangent K = tangent(form.springs, form.springs.network.X);
+    Eigen::VectorXd internal;
+    K.multiply(prescribed_, internal);
+    A = matrix_of(K, form.springs.network, nodes_, fixed_, communicator_);
+    const Eigen::VectorXd diagonal = K.diagonal();
+    const double stiffness = mean(diagonal, 3, nodes_.own, communicator_);
+    unit = stiffness / std::sqrt(mean(row_squares(form.B), 1, pressures_.own, communicator_));
+    B = matrix_of(form.B, unit, pressures_, nodes_, fixed_, communicator_);
+    Eigen::VectorXd C(static_cast<Eigen::Index>(pressures_.own.size()));
+    for (Eigen::Index i = 0; i < C.size(); ++i) {
+      const double own = form.C[pressures_.own[i]];
+      C[i] = own > 0 ? unit * unit * own : stiffness;  // a place without a volume: p = 0
+    }
+    minus_C = diagonal_matrix(-C, communicator_);
+    schur = diagonal_matrix(-(1 + kappa_ / 3) * C, communicator_);
+    const Eigen::VectorXd f = own_load(internal), g = -unit * (form.B * prescribed_)(pressures_.own);
+    Eigen::VectorXd both(f.size() + g.size());
+    both << f, g;
+    b = vector_of(both, 1, communicator_);
+  }
+  set_rigid_motions(A, own_positions(), communicator_);
+  PetscMatrix B_transposed, system;
+  require(MatCreateTranspose(B, &B_transposed));
+  Mat blocks[4] = {A, B_transposed, B, minus_C};
+  require(MatCreateNest(communicator_, 2, nullptr, 2, nullptr, blocks, &system));
+  const PetscSolver solver = mixed_solver(system, schur, communicator_);
+  PetscVector x;
+  require(VecDuplicate(b, &x));
+  const PetscOutcome outcome = springproof::solve(solver, system, b, x, tolerance, max_iterations);
+  const Eigen::VectorXd both = values_of(x);
+  const auto n = static_cast<Eigen::Index>(3 * nodes_.own.size());
+  return {both.head(n), unit * both.tail(both.size() - n), outcome, "GMRES + smoothed aggregation with pressures"};
+}
+
+Equilibrium PartedProblem::solve(double tolerance, int max_iterations) {
+  const double start = cpu_seconds();
+  const Solution s = mixed_ ? solve_mixed(tolerance, max_iterations) : solve_displacements(tolerance, max_iterations);
+  Equilibrium result;
+  result.unknowns = unknowns_;
+  result.solver = s.solver;
+  result.iterations = s.outcome.iterations;
+  result.residual = s.outcome.residual;
+  result.ok = s.outcome.converged;
+  if (!result.ok)
+    result.message = fmt::format("{} did not converge: residual {:.2e} after {} iterations", s.solver, result.residual,
+                                 result.iterations);
+  result.displacement = all_displacements(s.u);
+  result.support = all_support(result.displacement, part_pressures(s.p));
+  result.seconds = cpu_seconds() - start;
+  result.memory_MiB = peak_memory_MiB();
+  return result;
+}
+
+/// Pressures of all places of this process' part.
+Eigen::VectorXd PartedProblem::part_pressures(const Eigen::VectorXd& own) const {
+  const std::vector<int>& places = has_nodal_pressures(part_.model) ? part_.nodes : part_.cells;
+  if (!mixed_) return {};
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(all_pressures_);
+  for (Eigen::Index i = 0; i < own.size(); ++i) all[places[pressures_.own[i]]] = own[i];
+  Sum{communicator_}.all(all.data(), all.size());
+  return all(places);
+}
+
+NodalVectors PartedProblem::all_displacements(const Eigen::VectorXd& own) const {
+  NodalVectors all = NodalVectors::Zero(all_prescribed_.rows(), 3);
+  for (std::size_t i = 0; i < nodes_.own.size(); ++i)
+    for (int d = 0; d < 3; ++d) all(part_.nodes[nodes_.own[i]], d) = own[3 * i + d];
+  Sum{communicator_}.all(all.data(), all.size());
+  all += all_prescribed_;
+  carry(all_carried_, all);
+  return all;
+}
+
+NodalVectors PartedProblem::all_support(const NodalVectors& displacement, const Eigen::VectorXd& pressure) const {
+  NodalVectors all = NodalVectors::Zero(displacement.rows(), 3);
+  Eigen::VectorXd internal;
+  const Eigen::VectorXd u = of_nodes<Eigen::VectorXd>(flat(displacement), part_.nodes);
+  if (mixed_) {
+    const PressureForm form = pressure_form(part_.model);
+    tangent(form.springs, form.springs.network.X).multiply(u, internal);
+    internal += form.B.transpose() * pressure;
+  } else {
+    tangent(part_.model, part_.model.network.X).multiply(u, internal);
+  }
+  for (std::size_t n = 0; n < part_.nodes.size(); ++n)
+    for (int d = 0; d < 3; ++d)
+      if (part_.own[n] && fixed_[3 * n + d]) all(part_.nodes[n], d) = internal[3 * n + d] - external_[3 * n + d];
+  Sum{communicator_}.all(all.data(), all.size());
+  return all;
+}
+
+}  // namespace springproof

@@ -1,0 +1,113 @@
+// Parts of a model, held to the forces of the whole; pressures, held to its tangent.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "msm/distribution/model_part.h"
+#include "msm/distribution/pressure_form.h"
+#include "support/zoo.h"
+
+namespace springproof {
+namespace {
+
+const IsotropicMaterial material{1e4, 0.4, 1000};
+
+Mesh steps() {
+  return test::voxels_of(block_mesh(0.1 * Vec3(5, 4, 6), {5, 4, 6}), [](int i, int, int k) { return i + k < 8; });
+}
+
+MassSpringModel cut(const std::string& name) {
+  MassSpringModel model{test::refined_network(), {AveragedSprings{4000, 16000}, Anchors{}}, false};
+  if (name == "cut cells") {
+    model.network = test::cut_network();
+    model.laws[0] = AveragedSprings{4000, 16000, {1, 0.1, 0.2, 0.1, 0.3}, 0.5, 0.6};
+  }
+  return model;
+}
+
+MassSpringModel whole(const std::string& name) {
+  if (name.ends_with("cells")) return cut(name);
+  if (name == "angular") return {test::bent_triangles(), {Springs{}, AngularSprings{20}}, false};
+  return build_model(test::model(name), steps(), material);
+}
+
+class Parts : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Models, Parts,
+                         testing::Values("hybmss", "hybmss_bt", "hybmss_avg", "emsm", "msm_18", "emsm_random",
+                                         "emsm_patch", "msm_random", "emsm_centred", "cut cells", "refined cells",
+                                         "angular"),
+                         [](const auto& p) {
+                           std::string name = p.param;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+/// Nodes in three groups by their places, and some at random.
+int group_of(const NodalVectors& X, int node) {
+  if (node % 11 == 0) return node % 3;
+  const double low = X.col(0).minCoeff(), span = X.col(0).maxCoeff() - low;
+  return std::min(2, static_cast<int>(3 * (X(node, 0) - low) / span));
+}
+
+Eigen::VectorXd on_part(const Eigen::VectorXd& v, const ModelPart& part) {
+  Eigen::VectorXd of_part(static_cast<Eigen::Index>(3 * part.nodes.size()));
+  for (std::size_t n = 0; n < part.nodes.size(); ++n) of_part.segment<3>(3 * n) = v.segment<3>(3 * part.nodes[n]);
+  return of_part;
+}
+
+TEST_P(Parts, HaveTheRowsOfTheWholeOfTheirOwnNodes) {
+  const MassSpringModel model = whole(GetParam());
+  const Eigen::VectorXd u = flat(test::noise(model.network.nodes(), 1));
+  Eigen::VectorXd Ku, of_part;
+  tangent(model, model.network.X).multiply(u, Ku);
+  int compared = 0;
+  for (int group = 0; group < 3; ++group) {
+    std::vector<char> own(model.network.nodes());
+    for (int n = 0; n < model.network.nodes(); ++n) own[n] = group_of(model.network.X, n) == group;
+    const ModelPart part = part_of(model, own);
+    tangent(part.model, part.model.network.X).multiply(on_part(u, part), of_part);
+    for (std::size_t n = 0; n < part.nodes.size(); ++n)
+      if (part.own[n]) {
+        EXPECT_LE((of_part.segment<3>(3 * n) - Ku.segment<3>(3 * part.nodes[n])).norm(), 1e-12 * Ku.norm());
+        ++compared;
+      }
+  }
+  EXPECT_EQ(compared, model.network.nodes());
+}
+
+TEST_P(Parts, AndPressuresGiveTheStiffnessOfTheWhole) {
+  const MassSpringModel model = whole(GetParam());
+  if (!(volume_stiffness_ratio(model) > 0)) GTEST_SKIP() << "no volume term";
+  const PressureForm form = pressure_form(model);
+  const Eigen::VectorXd u = flat(test::noise(model.network.nodes(), 1));
+  Eigen::VectorXd Ku, mixed;
+  tangent(model, model.network.X).multiply(u, Ku);
+  tangent(form.springs, model.network.X).multiply(u, mixed);
+  Eigen::VectorXd p = form.B * u;
+  for (Eigen::Index i = 0; i < p.size(); ++i) p[i] = form.C[i] > 0 ? p[i] / form.C[i] : 0;
+  mixed += form.B.transpose() * p;
+  EXPECT_LE((mixed - Ku).norm(), 1e-12 * Ku.norm());
+}
+
+TEST(ModelPart, RefusesForcesWithoutAnEnergy) {
+  ModelParameters p = test::model("emsm");
+  p.dispersion = Dispersion::published;
+  const MassSpringModel model = build_model(p, steps(), material);
+  EXPECT_THROW(part_of(model, std::vector<char>(model.network.nodes(), 1)), std::invalid_argument);
+}
+
+TEST(ModelPart, NeighboursAreTheCoupledNodesOfEachRow) {
+  const MassSpringModel model = whole("emsm_random");
+  const auto coupled = coupled_nodes(model.network);
+  const auto rows = neighbours(model.network, 20, 50);
+  ASSERT_EQ(rows.size(), 30u);
+  for (int n = 20; n < 50; ++n) {
+    std::vector<int> others = coupled[n];
+    others.erase(std::find(others.begin(), others.end(), n));
+    EXPECT_EQ(rows[n - 20], others);
+  }
+}
+
+}  // namespace
+}  // namespace springproof
