@@ -15,7 +15,7 @@ packages=(
 
 # A line per tenth of the steps that ninja and ctest number; all of what a failing one prints; ctest's summary.
 progress='
-  function tenth(done, all) { if (int(10 * done / all) > last) { last = int(10 * done / all); printf "  %d of %d\n", done, all; fflush() } }
+  function tenth(done, all) { if (all != of) { of = all; last = 0 }; if (int(10 * done / all) > last) { last = int(10 * done / all); printf "  %d of %d\n", done, all; fflush() } }
   /^Test project/             { testing = 1 }
   !testing && /^\[[0-9]+\/[0-9]+\]/ { failing = 0; split(substr($1, 2), n, /[\/\]]/); tenth(n[1], n[2]); next }
   /^FAILED: /                 { failing = 1 }

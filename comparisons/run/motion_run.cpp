@@ -27,15 +27,15 @@ struct Steps {
   long stride;  ///< from one sample of the history to the next
 };
 
-Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& model, double bound) {
+Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& model, const Viscosity& viscosity,
+                         double bound) {
   if (motion.integrator == "explicit") return Integrator::explicit_euler;
   if (motion.integrator == "implicit_euler") return Integrator::implicit_euler;
   if (motion.integrator == "bdf2") return Integrator::bdf2;
-  if (motion.viscosity > 0) return Integrator::explicit_euler;  // "auto"; others are refused by the reader
   const std::string why = EnergyMomentum::lacks(model);
   if (motion.integrator == "auto") {
     const double wanted = motion.time_step.value_or(motion.duration / std::max(motion.frames, 1));
-    const double ratio = LatticeMotion::suits(model) ? worthwhile_ratio_beside_kernels : worthwhile_ratio;
+    const double ratio = LatticeMotion::suits(model, viscosity) ? worthwhile_ratio_beside_kernels : worthwhile_ratio;
     return why.empty() && wanted > ratio * bound ? Integrator::energy_momentum : Integrator::explicit_euler;
   }
   if (!why.empty())
@@ -47,14 +47,14 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
 }
 
 Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material) {
-  const double bound = viscous_time_step(model, material.density, Viscosity::of(model, material, motion.viscosity),
-                                         safe_time_step(model, material.density));
-  const Integrator integrator = integrator_of(motion, model, bound);
+  const Viscosity viscosity = Viscosity::of(model, material, motion.viscosity);
+  const double safe = safe_time_step(model, material.density),
+               bound = viscous_time_step(model, material.density, viscosity, safe);
+  const Integrator integrator = integrator_of(motion, model, viscosity, bound);
   const bool implicit = integrator != Integrator::explicit_euler, chosen = motion.integrator == "auto";
-  double size =
-      motion.time_step.value_or(!implicit ? 0.95 * bound
-                                : chosen  ? motion.duration / std::max(motion.frames, 1)
-                                          : std::min(implicit_ratio * bound, motion.duration / motion.samples));
+  double size = motion.time_step.value_or(!implicit ? 0.95 * bound
+                                          : chosen  ? motion.duration / std::max(motion.frames, 1)
+                                                   : std::min(implicit_ratio * safe, motion.duration / motion.samples));
   if (chosen && !implicit) size = std::min(size, 0.95 * bound);
   if (size > bound && !implicit)
     throw InputError(

@@ -18,10 +18,10 @@ constexpr double implicit_ratio = 10;  // default step of implicit methods to th
 }  // namespace
 
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
-  const double bound =
-      viscous_time_step(model, density, options.viscosity, safe_time_step(model, density, options.lagged));
+  const double safe = safe_time_step(model, density, options.lagged),
+               bound = viscous_time_step(model, density, options.viscosity, safe);
   const bool implicit = options.integrator != Integrator::explicit_euler;
-  const double dt = options.time_step.value_or((implicit ? implicit_ratio : 0.95) * bound);
+  const double dt = options.time_step.value_or(implicit ? implicit_ratio * safe : 0.95 * bound);
   if (!(dt > 0) || (dt > bound && !implicit))
     throw InputError(
         fmt::format("time_step_s: {:.6g} s is not safe for this model (allowed: 0 < time_step_s <= {:.6g} s, the bound "
@@ -32,7 +32,6 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
       throw InputError("integrator: energy_momentum does not suit this model: " + why);
   if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
   if (implicit && options.contact) throw InputError("integrator: contact with a plane needs the explicit one");
-  if (implicit && options.viscosity.acts()) throw InputError("integrator: viscosity needs the explicit one");
   if (const std::string why = options.viscosity.acts() ? Viscosity::lacks(model) : ""; !why.empty())
     throw InputError("viscosity does not suit this model: " + why);
   if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
@@ -194,8 +193,11 @@ class MotionInLargeSteps : public Motion {
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double dt,
                                     const DynamicsOptions& options) {
   if (options.integrator != Integrator::explicit_euler)
-    return std::make_unique<MotionInLargeSteps>(
-        model, density, ImplicitOptions{.integrator = options.integrator, .time_step = dt, .damping = options.damping});
+    return std::make_unique<MotionInLargeSteps>(model, density,
+                                                ImplicitOptions{.integrator = options.integrator,
+                                                                .time_step = dt,
+                                                                .damping = options.damping,
+                                                                .viscosity = options.viscosity});
   const bool viscous = options.viscosity.acts();
   if (!options.lagged && LatticeMotion::suits(model, options.viscosity))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);

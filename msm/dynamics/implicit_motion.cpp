@@ -84,18 +84,25 @@ void ImplicitMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
 }
 
 ImplicitMotion::Formula ImplicitMotion::formula() const {
-  const double dt = dt_;
-  if (options_.integrator == Integrator::energy_momentum) return {2 / (dt * dt), 1 / dt, 0.5, x_ + dt * v_, x_};
+  const double dt = dt_, retardation = options_.viscosity.time();
+  if (options_.integrator == Integrator::energy_momentum)
+    return {2 / (dt * dt), 1 / dt, 0.5 + retardation / dt, x_ + dt * v_, x_};
   if (options_.integrator == Integrator::implicit_euler || steps_ == 0)
-    return {1 / (dt * dt), 1 / dt, 1, x_ + dt * v_, x_};
+    return {1 / (dt * dt), 1 / dt, 1 + retardation / dt, x_ + dt * v_, x_};
   const double rate = 1.5 / dt;
   const NodalVectors before = (4 * x_ - x_before_) / 3;
-  return {rate * rate, rate, 1, before + (4 * v_ - v_before_) / (3 * rate), before};
+  return {rate * rate, rate, 1 + retardation * rate, before + (4 * v_ - v_before_) / (3 * rate), before};
 }
 
-NodalVectors ImplicitMotion::force(const NodalVectors& x1) const {
-  if (secant_) return secant_->forces(x_, x1) + (external_before_ + conditions_.external) / 2;
-  return springproof::forces(model_, x1) + conditions_.external;
+/// Internal, viscous and external.  Over an energy-momentum step dashpots are those of its middle, where they have no
+/// torque, and take the energy f . (x1 - x0) <= 0.
+NodalVectors ImplicitMotion::force(const Formula& step, const NodalVectors& x1) const {
+  NodalVectors f = secant_ ? NodalVectors(secant_->forces(x_, x1) + (external_before_ + conditions_.external) / 2)
+                           : NodalVectors(springproof::forces(model_, x1) + conditions_.external);
+  if (options_.viscosity.acts())
+    options_.viscosity.add_forces(model_.network, secant_ ? NodalVectors((x_ + x1) / 2) : x1,
+                                  step.rate * (x1 - step.before), f);
+  return f;
 }
 
 /// Makes B for the free unknowns and the mass term of the step, if there is none.
@@ -184,7 +191,7 @@ NodalVectors ImplicitMotion::predicted() const {
 /// f and the unbalanced force at x1.
 ImplicitMotion::Balance ImplicitMotion::balance(const Formula& now, const NodalVectors& x1) {
   ++evaluations_;
-  Balance b{force(x1), {}};
+  Balance b{force(now, x1), {}};
   b.unbalanced = free_part(
       b.force - mass_.asDiagonal() * (now.a * (x1 - now.inertial) + options_.damping * now.rate * (x1 - now.before)));
   return b;
@@ -217,7 +224,7 @@ void ImplicitMotion::newton_step(const Formula& now, double relative, NodalVecto
     const Eigen::Map<const NodalVectors> change(d.data(), x1.rows(), 3);
     const double t = difference * spacing_ / std::max(change.cwiseAbs().maxCoeff(), 1e-300);
     ++evaluations_;
-    y = free_part(of_mass * (mass_.asDiagonal() * change) - (force(x1 + t * change) - b.force) / t);
+    y = free_part(of_mass * (mass_.asDiagonal() * change) - (force(now, x1 + t * change) - b.force) / t);
   };
   const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = correction(r); };
   Eigen::VectorXd d = Eigen::VectorXd::Zero(b.unbalanced.size());

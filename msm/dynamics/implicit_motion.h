@@ -8,6 +8,7 @@
 #include "msm/algebra/krylov.h"
 #include "msm/dynamics/energy_momentum.h"
 #include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/viscosity.h"
 #include "msm/multigrid/multigrid.h"
 
 namespace springproof {
@@ -21,8 +22,9 @@ enum class Integrator {
 
 struct ImplicitOptions {
   Integrator integrator = Integrator::energy_momentum;
-  double time_step = 0;  ///< [s]
-  double damping = 0;    ///< mass-proportional [1/s]
+  double time_step = 0;      ///< [s]
+  double damping = 0;        ///< mass-proportional [1/s]
+  Viscosity viscosity = {};  ///< of the model, which is kept
   /// Largest unbalanced force of a step relative to its inertial and internal forces; round-off where that is more.
   double tolerance = 1e-11;
   int max_iterations = 30;  ///< of Newton's method, per step
@@ -59,7 +61,7 @@ class ImplicitMotion {
   /// A step as m a (x1 - inertial) = force - damping m rate (x1 - before), v = rate (x1 - before).
   struct Formula {
     double a, rate;
-    double of_stiffness;  ///< df/dx1 relative to the tangent stiffness
+    double of_stiffness;  ///< df/dx1 relative to the tangent stiffness, dashpots included
     NodalVectors inertial, before;
   };
   struct Balance {
@@ -75,7 +77,7 @@ class ImplicitMotion {
   void newton_step(const Formula& step, double relative, NodalVectors& x1, Balance& b);
   NodalVectors with_supports(NodalVectors x) const;
   Eigen::VectorXd free_part(NodalVectors v) const;
-  NodalVectors force(const NodalVectors& x1) const;
+  NodalVectors force(const Formula& step, const NodalVectors& x1) const;
   void prepare(const Formula& step);
   void renew(const Formula& step, const NodalVectors& x1);
   Eigen::VectorXd correction(const Eigen::VectorXd& r) const;

@@ -83,9 +83,6 @@ void read_damping(const TomlTable& table, MotionChoice& motion) {
     motion.damping = eta * first * second / (first + second);
     motion.viscosity = eta / (first + second);
   }
-  if (motion.viscosity > 0 && motion.integrator != "explicit" && motion.integrator != "auto")
-    refuse(viscosity ? *viscosity : *loss_factor, fmt::format("does not suit the integrator {}", motion.integrator),
-           "integrator = \"explicit\" or \"auto\"");
 }
 
 }  // namespace

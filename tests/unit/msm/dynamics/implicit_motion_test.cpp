@@ -125,6 +125,37 @@ TEST(EnergyMomentum, HoldsForCutCellsTheirAnchorsAndEveryCurve) {
     }
 }
 
+TEST(ImplicitMotion, DashpotsTakeTheEnergyThatIsLostAndKeepBothMomenta) {
+  for (const auto& [name, nu] :
+       {std::pair("hybmss_avg", 0.25), {"hybmss_avg", 0.45}, {"hybmss", 0.25}, {"emsm", 0.3}, {"msm_18", 0.25}})
+    for (const double ratio : {2.0, 8.0}) {
+      const Bar bar(name, nu);
+      const Viscosity viscosity = Viscosity::of(bar.model, {2.5e5, nu, density}, 2 * bar.safe_step);
+      const double dt = ratio * bar.safe_step;
+      ImplicitMotion motion(bar.model, density, {.time_step = dt, .viscosity = viscosity});
+      motion.set_conditions(bar.free());
+      motion.set_state(bar.x, bar.v);
+      const double E = bar.energy_of(bar.x, bar.v);
+      const Vec3 L = bar.spin_of(bar.x, bar.v);
+      double before = E;
+      for (int s = 0; s < 40; ++s) {
+        const NodalVectors x0 = motion.positions();
+        motion.advance(1);
+        ASSERT_EQ(motion.failure(), "") << name << nu << " " << ratio;
+        const NodalVectors &x1 = motion.positions(), &v1 = motion.velocities();
+        NodalVectors f = NodalVectors::Zero(x0.rows(), 3);
+        viscosity.add_forces(bar.model.network, (x0 + x1) / 2, (x1 - x0) / dt, f);
+        const double work = f.cwiseProduct(x1 - x0).sum(), now = bar.energy_of(x1, v1);
+        EXPECT_LT(work, 0) << name << nu << " " << ratio;
+        EXPECT_NEAR(now - before, work, 1e-9 * E) << name << nu << " " << ratio << " " << s;
+        before = now;
+      }
+      EXPECT_LT(before, 0.99 * E) << name << nu << " " << ratio;
+      EXPECT_LT((bar.spin_of(motion.positions(), motion.velocities()) - L).norm(), 1e-9 * L.norm())
+          << name << nu << " " << ratio;
+    }
+}
+
 TEST(EnergyMomentum, ModelsWithoutItAreRefusedWithTheReason) {
   const auto why = [](const std::string& name, Dispersion form = Dispersion::symmetric) {
     ModelParameters p = test::model(name);

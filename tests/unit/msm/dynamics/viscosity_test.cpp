@@ -132,7 +132,11 @@ TEST(Viscosity, DampsEveryModeByItsShare) {
 
 TEST(Viscosity, AMotionDecaysAsItsModeShould) {
   const double nu = 0.45, ratio = 0.05;
-  for (const char* model : {"hybmss_avg", "emsm"}) {
+  for (const auto& [model, integrator] : {std::pair("hybmss_avg", Integrator::explicit_euler),
+                                          {"hybmss_avg", Integrator::energy_momentum},
+                                          {"hybmss_avg", Integrator::bdf2},
+                                          {"emsm", Integrator::explicit_euler},
+                                          {"emsm", Integrator::energy_momentum}}) {
     const EmbeddedModel body = bar(model, nu);
     const Network& network = body.model.network;
     const std::vector<char> none(3 * network.nodes(), 0);
@@ -140,6 +144,8 @@ TEST(Viscosity, AMotionDecaysAsItsModeShould) {
     ASSERT_TRUE(modes.ok);
     const double w = 2 * std::numbers::pi * modes.frequencies[0];
     DynamicsOptions options;
+    options.integrator = integrator;
+    if (integrator != Integrator::explicit_euler) options.time_step = 0.01 / modes.frequencies[0];
     options.viscosity = Viscosity::of(body.model, {1e4, nu, density}, 2 * ratio / w);
     options.velocity = 1e-6 * modes.shapes[0] / modes.shapes[0].cwiseAbs().maxCoeff();
     options.duration = 4 / modes.frequencies[0];
@@ -162,7 +168,7 @@ TEST(Viscosity, AMotionDecaysAsItsModeShould) {
     // Fastest at rest after three and a half periods.
     const double expected = std::exp(-ratio * w * 3.5 / modes.frequencies[0]);
     EXPECT_NEAR(std::sqrt(largest) / options.velocity.norm(), expected, (model[0] == 'h' ? 0.03 : 0.2) * expected)
-        << model;
+        << model << " " << name_of(integrator);
   }
 }
 
@@ -191,8 +197,6 @@ TEST(Viscosity, ItsStepIsSafeAndALargerOneIsRefused) {
     const DynamicsResult r = run_dynamics(body.model, density, free, options);
     const double start = 0.5 * options.velocity.rowwise().squaredNorm().dot(masses(network, density));
     EXPECT_LT(r.kinetic_energy, 0.9 * start) << model;
-    options.integrator = Integrator::implicit_euler;
-    EXPECT_THROW(checked_time_step(body.model, density, options), InputError);
   }
 }
 

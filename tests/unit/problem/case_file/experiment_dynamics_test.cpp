@@ -110,7 +110,6 @@ TEST(DynamicsTable, MistakesAreExplained) {
   says(message("duration_s = 1\ntime_step_s = 2"), "dynamics.time_step_s: is 2");
   says(message("duration_s = 1\ndamping_1_s = -1"), "dynamics.damping_1_s: is -1");
   says(message("duration_s = 1\nviscosity_s = -1"), "dynamics.viscosity_s: is -1");
-  says(message("duration_s = 1\nviscosity_s = 1\nintegrator = \"bdf2\""), "does not suit the integrator bdf2");
   says(message("duration_s = 1\nloss_factor = 2\nband_Hz = [1, 2]"), "dynamics.loss_factor: is 2");
   says(message("duration_s = 1\nloss_factor = 0.1"), "dynamics.loss_factor: stands without band_Hz");
   says(message("duration_s = 1\nband_Hz = [1, 2]"), "dynamics.band_Hz: stands without loss_factor");
