@@ -27,9 +27,8 @@ nlohmann::json run(const ParallelOptions& options, MPI_Comm communicator) {
                           : no_slabs.empty()
                               ? solve_in_slabs(c, options.tolerance, communicator)
                               : solve_in_parts(c, options.tolerance, options.max_iterations, communicator);
-  int processes;
-  MPI_Comm_size(communicator, &processes);
-  result.update({{"processes", processes}, {"poisson_ratio", c.material.poisson_ratio}, {"model", options.model}});
+  result.update(
+      {{"processes", size_of(communicator)}, {"poisson_ratio", c.material.poisson_ratio}, {"model", options.model}});
   return result;
 }
 
@@ -84,8 +83,7 @@ bool all_fail_alike() {
 }
 
 int parse_and_run(int argc, char** argv) {
-  int rank;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  const int rank = rank_of(PETSC_COMM_WORLD);
   MPI_Comm_dup(PETSC_COMM_WORLD, &failures);
   CLI::App app{
       "One model of a case on the processes of mpirun: linear static equilibrium; of full blocks explicit steps too.",

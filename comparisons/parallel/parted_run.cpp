@@ -35,8 +35,7 @@ WholeModel build_whole(const ParallelCase& c) {
 }  // namespace
 
 nlohmann::json solve_in_parts(const ParallelCase& c, double tolerance, int max_iterations, MPI_Comm communicator) {
-  int rank;
-  MPI_Comm_rank(communicator, &rank);
+  const int rank = rank_of(communicator);
   const Sum sum{communicator};
   const double start = wall_seconds();
   WholeModel whole;

@@ -29,7 +29,7 @@ struct DynamicsOptions {
                           ///< step starts from rest, as published
   double damping = 0;   ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
                         ///< some, or it flutters
-  Viscosity viscosity;  ///< of explicit steps by kernels that of lattices of cells
+  Viscosity viscosity;  ///< by kernels that of lattices of cells
   PlaneContact* contact = nullptr;  ///< a plane that the body may fall on, for explicit steps; nullptr: there is none
   Course course;                    ///< of the loads and supports
   double duration = 10;             ///< [s]

@@ -74,7 +74,7 @@ PetscMatrix sparse_matrix(PetscInt rows, PetscInt columns, int block, const RowL
   require(MatCreate(communicator, &A));
   require(MatSetSizes(A, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
   require(MatSetType(A, MATAIJ));
-  require(MatSetBlockSizes(A, block, columns % 3 == 0 && block == 3 ? 3 : 1));
+  require(MatSetBlockSize(A, block));
   require(MatSeqAIJSetPreallocation(A, 0, lengths.own.data()));
   require(MatMPIAIJSetPreallocation(A, 0, lengths.own.data(), 0, lengths.others.data()));
   return A;

@@ -12,11 +12,10 @@ namespace springproof {
 inline constexpr double parted_mixed_above_kappa = 8;
 
 /// The linear equations of a model, each process with the rows of its own nodes.  Displacement form: conjugate
-/// gradients with smoothed aggregation (PETSc's GAMG), which knows the rigid motions.  With momentum
-/// dispersion above nu = 1/4, and with a volume term that adds more than parted_mixed_above_kappa G to lambda, with
-/// pressures (PressureForm): GMRES with a
-/// block-triangular preconditioner, smoothed aggregation for the springs and C (1 + kappa / 3G) in place of the Schur
-/// complement.
+/// gradients with smoothed aggregation (PETSc's GAMG), which knows the rigid motions.  With momentum dispersion above
+/// nu = 1/4, and with a volume term that adds more than parted_mixed_above_kappa G to lambda, with pressures
+/// (PressureForm): GMRES with a block-triangular preconditioner, smoothed aggregation for the springs and
+/// C (1 + kappa / 3G) in place of the Schur complement.
 class PartedProblem {
  public:
   /// Finds the partition and takes this process' part; the whole model is not needed afterwards.
