@@ -18,10 +18,11 @@ double seconds_of_sample(const Advance& advance, long steps, Clock clock) {
 
 /// Number of steps that fill a sample; also warms up.
 long steps_per_sample(const Advance& advance, const TimerOptions& options) {
-  long steps = 1;
+  long steps = options.least_steps;
   for (double seconds;; steps *= 4) {
     seconds = seconds_of_sample(advance, steps, options.clock);
-    if (seconds > options.sample / 8) return std::max(1L, std::lround(double(steps) * options.sample / seconds));
+    if (seconds > options.sample / 8)
+      return std::max(options.least_steps, std::lround(double(steps) * options.sample / seconds));
   }
 }
 

@@ -18,11 +18,12 @@ struct TimerOptions {
   double sample = 5e-3;  ///< about the length of one sample [s]
   double budget = 0.4;   ///< of all samples of one piece of work [s]
   Clock clock = Clock::thread;
+  long least_steps = 1;  ///< of a sample
 };
 
 /// Seconds per step of each piece of work: the least over many short samples, interleaved, so that a ratio compares
-/// simultaneous runs and disturbances of caches and clock rate by other programs cancel.  A step longer than a sample
-/// counts as one.
+/// simultaneous runs and disturbances of caches and clock rate by other programs cancel.  A sample has at least
+/// `least_steps`, however long they take.
 std::vector<double> least_seconds(const std::vector<Advance>& work, const TimerOptions& options = {});
 
 }  // namespace springproof::bench

@@ -11,8 +11,8 @@ struct ListMotionOptions {
   double time_step = 0;  ///< [s]
   double damping = 0;    ///< [1/s]
   bool lagged = false;   ///< dispersion uses the J of the previous step
-  int threads = 1;  ///< of advance() by several steps; at most one per three layers or so of nodes; momentum dispersion
-                    ///< uses one. Two gain little, if anything (docs/performance.md)
+  int threads = 1;       ///< they take the steps of advance() in turn, so a single step has one; at most one per three
+                         ///< layers or so of nodes; momentum dispersion uses one
   InstructionSet instructions = instruction_set();
 };
 

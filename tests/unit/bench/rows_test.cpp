@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "comparisons/bench/table.h"
+#include "comparisons/bench/timer.h"
 
 namespace springproof::bench {
 namespace {
@@ -35,6 +39,16 @@ TEST(BenchRows, WhatIsNoNumberIsNoResult) {
   EXPECT_EQ(outcome(row(std::nan(""), 0, at_most(13))), Outcome::no_result);
   EXPECT_EQ(outcome(row(0, 10, at_least(5))), Outcome::no_result);
   EXPECT_FALSE(complete({{row(1, 0, {}), row(std::nan(""), 0, {})}, {}, {}}));
+}
+
+TEST(BenchTimer, SamplesHaveTheStepsThatThreadsNeedToTakeThemInTurn) {
+  long least = 1000;
+  const Advance slow = [&](long steps) {
+    least = std::min(least, steps);
+    std::this_thread::sleep_for(steps * std::chrono::milliseconds(1));
+  };
+  least_seconds({slow}, {.sample = 1e-3, .budget = 0.02, .clock = Clock::wall, .least_steps = 8});
+  EXPECT_EQ(least, 8);
 }
 
 TEST(BenchTable, MissedTargetsAreNotHidden) {
