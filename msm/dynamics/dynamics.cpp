@@ -15,11 +15,26 @@ namespace {
 
 constexpr double implicit_ratio = 10;  // default step of implicit methods to the explicit bound
 
+void check_mass(const MassSpringModel& model, const DynamicsOptions& options) {
+  const double theta = options.mass_consistency;
+  if (!(theta >= 0 && theta <= 1))
+    throw InputError(fmt::format("mass_consistency: {:g} is no share of consistent mass (allowed: 0 to 1)", theta));
+  if (theta == 0) return;
+  if (options.integrator != Integrator::explicit_euler)
+    throw InputError("mass_consistency: large steps have lumped mass (allowed beside it: integrator = \"explicit\")");
+  if (options.contact)
+    throw InputError("mass_consistency: impulses of a plane need lumped mass (allowed beside it: no plane)");
+  if (options.lagged) throw InputError("mass_consistency: lagged dispersion needs lumped mass");
+  if (const std::string why = MassAverage::lacks(model.network); !why.empty())
+    throw InputError("mass_consistency: a share of consistent mass does not suit this model: " + why);
+}
+
 }  // namespace
 
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
-  const double safe = safe_time_step(model, density, options.lagged),
-               bound = viscous_time_step(model, density, options.viscosity, safe);
+  check_mass(model, options);
+  const double safe = safe_time_step(model, density, options.lagged, options.mass_consistency),
+               bound = viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
   const bool implicit = options.integrator != Integrator::explicit_euler;
   const double dt = options.time_step.value_or(implicit ? implicit_ratio * safe : 0.95 * bound);
   if (!(dt > 0) || (dt > bound && !implicit))
@@ -56,6 +71,7 @@ class PlainMotion : public Motion {
         dt_(time_step),
         damping_(options.damping),
         viscosity_(options.viscosity),
+        average_(model.network, options.mass_consistency),
         x_(model.network.X),
         v_(NodalVectors::Zero(x_.rows(), 3)),
         of_supports_(v_) {}
@@ -85,22 +101,34 @@ class PlainMotion : public Motion {
  private:
   ForceNorms step() {
     NodalVectors f = forces_at_x();
-    if (viscosity_.acts()) viscosity_.add_forces(model_.network, x_, v_ + of_supports_, f);
+    if (viscosity_.acts()) viscosity_.add_forces(model_.network, x_, moving(), f);
     double unbalanced = 0, support = 0;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
       const double force = f.data()[i] + conditions_.external.data()[i];
       (conditions_.fixed[i] ? support : unbalanced) += force * force;
-      if (conditions_.fixed[i]) continue;
       double& speed = v_.data()[i];
-      speed = (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
-      x_.data()[i] += dt_ * speed;
+      speed = conditions_.fixed[i] ? 0 : (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
     }
-    if (viscosity_.acts())
+    if (viscosity_.acts() || average_.acts())
       for (Eigen::Index i = 0; i < x_.size(); ++i)
         if (conditions_.fixed[i])
           of_supports_.data()[i] = (model_.network.X.data()[i] + conditions_.prescribed.data()[i] - x_.data()[i]) / dt_;
+    const NodalVectors averaged = average_.acts() ? moving() : NodalVectors();
+    const NodalVectors& v = average_.acts() ? averaged : v_;
+    for (Eigen::Index i = 0; i < x_.size(); ++i)
+      if (!conditions_.fixed[i]) x_.data()[i] += dt_ * v.data()[i];
     move_supports();
     return {std::sqrt(unbalanced), std::sqrt(support)};
+  }
+
+  /// Velocities of the nodes, supports included.
+  NodalVectors moving() const {
+    NodalVectors v = v_ + of_supports_;
+    if (!average_.acts()) return v;
+    v = average_.velocities(v);
+    for (Eigen::Index i = 0; i < v.size(); ++i)
+      if (conditions_.fixed[i]) v.data()[i] = of_supports_.data()[i];
+    return v;
   }
 
   /// Internal forces at x_; lagged: with the J of the previous step.
@@ -121,6 +149,7 @@ class PlainMotion : public Motion {
   Eigen::VectorXd inverse_mass_, J_;
   double dt_, damping_;
   Viscosity viscosity_;
+  MassAverage average_;
   NodalVectors x_, v_;
   NodalVectors of_supports_;  ///< velocities of moved unknowns [m/s], zero on free ones
   BoundaryConditions conditions_;
@@ -153,7 +182,10 @@ class MotionOfLattice : public Motion {
  public:
   MotionOfLattice(const MassSpringModel& model, double density, double time_step, const DynamicsOptions& options)
       : motion_(model, density,
-                {.precision = options.precision, .threads = options.threads, .viscosity = options.viscosity}),
+                {.precision = options.precision,
+                 .threads = options.threads,
+                 .viscosity = options.viscosity,
+                 .mass_consistency = options.mass_consistency}),
         dt_(time_step),
         damping_(options.damping) {}
 
@@ -198,11 +230,11 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
                                                                 .time_step = dt,
                                                                 .damping = options.damping,
                                                                 .viscosity = options.viscosity});
-  const bool viscous = options.viscosity.acts();
-  if (!options.lagged && LatticeMotion::suits(model, options.viscosity))
+  const bool plain = options.viscosity.acts() || options.mass_consistency > 0;
+  if (!options.lagged && LatticeMotion::suits(model, options.viscosity, options.mass_consistency))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
-  if (viscous || !ListForces<double>::covers(model))
+  if (plain || !ListForces<double>::covers(model))
     return std::make_unique<PlainMotion>(model, inverse_mass, dt, options);
   const ListMotionOptions of_list{
       .time_step = dt, .damping = options.damping, .lagged = options.lagged, .threads = options.threads};
@@ -236,7 +268,8 @@ double lagged_damping(const MassSpringModel& model, double density, double time_
 
 namespace {
 
-/// The velocity that goes with positions x: of explicit steps half a step before, v - dt a / 2.
+/// The velocity that goes with positions x: of explicit steps half a step before, v - dt a / 2, of momenta if these are
+/// averaged.
 NodalVectors velocity_before(const MassSpringModel& model, double density, const NodalVectors& x,
                              const BoundaryConditions& bc, double dt, const DynamicsOptions& options) {
   NodalVectors v = options.velocity;
@@ -248,12 +281,12 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   NodalVectors f = forces(model, there) + bc.external;
   if (options.viscosity.acts()) options.viscosity.add_forces(model.network, there, v, f);
   const bool explicit_steps = options.integrator == Integrator::explicit_euler;
-  for (Eigen::Index i = 0; i < v.size(); ++i) {
-    if (bc.fixed[i])
-      v.data()[i] = 0;
-    else if (explicit_steps)
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (bc.fixed[i]) v.data()[i] = 0;
+  v = MassAverage(model.network, options.mass_consistency).momenta(v, bc.fixed);
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (!bc.fixed[i] && explicit_steps)
       v.data()[i] -= dt / 2 * (f.data()[i] / mass[i / 3] - options.damping * v.data()[i]);
-  }
   return v;
 }
 
@@ -315,9 +348,11 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
         !changing && options.rest_tolerance > 0 && state.residual < options.rest_tolerance &&
         motion->velocities().norm() * options.damping * dt < options.rest_tolerance * (motion->positions() - X).norm();
   }
-  const NodalVectors x = motion->positions(), v = motion->velocities();
+  const NodalVectors x = motion->positions(), s = motion->velocities();
+  const NodalVectors v = MassAverage(model.network, options.mass_consistency).velocities(s);
   result.time = result.steps * dt;
-  result.kinetic_energy = 0.5 * (v.rowwise().squaredNorm().array() * masses(model.network, density).array()).sum();
+  result.kinetic_energy =
+      0.5 * (v.cwiseProduct(s).rowwise().sum().array() * masses(model.network, density).array()).sum();
   state.ok = options.rest_tolerance == 0 || at_rest;
   if (!state.ok)
     state.message = fmt::format("not at rest after {:.4g} s: unbalanced force {:.2e} of the supports'", result.time,

@@ -8,6 +8,7 @@
 
 #include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/mass_average.h"
 #include "msm/dynamics/plane_contact.h"
 #include "msm/dynamics/viscosity.h"
 #include "msm/statics/equilibrium.h"
@@ -30,6 +31,8 @@ struct DynamicsOptions {
   double damping = 0;   ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
                         ///< some, or it flutters
   Viscosity viscosity;  ///< by kernels that of lattices of cells
+  double mass_consistency = 0;      ///< share of consistent mass of explicit steps, 0 to 1: MassAverage.  With it every
+                                    ///< velocity v of a step, of Motion too, is the momentum over the lumped mass
   PlaneContact* contact = nullptr;  ///< a plane that the body may fall on, for explicit steps; nullptr: there is none
   Course course;                    ///< of the loads and supports
   double duration = 10;             ///< [s]
@@ -92,7 +95,7 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
 /// @param model a model, to which a reference is kept
 /// @param density [kg/m^3]
 /// @param time_step [s], of checked_time_step()
-/// @param options of which integrator, damping, viscosity, precision, threads and lagged are read
+/// @param options of which integrator, damping, viscosity, mass_consistency, precision, threads and lagged are read
 /// @return the motion, at rest
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double time_step,
                                     const DynamicsOptions& options);
@@ -117,8 +120,8 @@ double lagged_damping(const MassSpringModel& model, double density, double time_
 /// @param options integrator, step, duration, what is called after steps
 /// @return the last state
 /// @throws InputError if the explicit time step exceeds safe_time_step() or viscous_time_step(), if the integrator or
-///   viscosity does not suit the model, if the damping is negative, or, lagged, not above lagged_damping(); the bound
-///   is in the message.
+///   viscosity or a share of consistent mass does not suit the model or other options, if the damping is negative, or,
+///   lagged, not above lagged_damping(); the bound is in the message.
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options);
 

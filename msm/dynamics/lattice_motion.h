@@ -19,6 +19,7 @@ struct LatticeMotionOptions {
   int threads = 1;                           ///< at most one per plane of nodes; momentum dispersion uses one
   InstructionSet instructions = instruction_set();
   Viscosity viscosity = {};
+  double mass_consistency = 0;  ///< share of consistent mass: MassAverage
 };
 
 /// Norms of the sum of internal and external forces [N].
@@ -33,12 +34,12 @@ class LatticeMotion {
  public:
   /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without
   /// volume and hourglass correction or momentum dispersion; or of averaged springs in full cells.
-  /// Viscosity: of cells; there is none along springs.
-  static bool suits(const MassSpringModel& model, const Viscosity& viscosity = {});
+  /// Viscosity: of cells; there is none along springs.  A share of consistent mass: of boxes of full cells, undamped or
+  /// damped in proportion to their mass.
+  static bool suits(const MassSpringModel& model, const Viscosity& viscosity = {}, double mass_consistency = 0);
 
   /// At rest at X, nothing fixed, no load.  Keeps a reference to the network.
-  /// @throws std::invalid_argument unless suits(model, options.viscosity), or for an instruction set that is not usable
-  /// here.
+  /// @throws std::invalid_argument unless suits() the options, or for an instruction set that is not usable here.
   LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options = {});
   LatticeMotion(LatticeMotion&&) noexcept;
   LatticeMotion& operator=(LatticeMotion&&) noexcept;
@@ -50,13 +51,14 @@ class LatticeMotion {
   /// Moves the fixed unknowns at once.
   void move_supports();
 
-  void set_state(const NodalVectors& x, const NodalVectors& v);  ///< [m], [m/s]
+  /// [m], [m/s]; all velocities here are momenta over lumped masses if these are averaged.
+  void set_state(const NodalVectors& x, const NodalVectors& v);
 
   /// Displacement [m], then velocity [m/s] of nodes begin <= n < end, six values per node.
   void read(int begin, int end, double* values) const;
   void write(int begin, int end, const double* values);
 
-  /// Steps v = (v + dt f/m) / (1 + damping dt), x += dt v.
+  /// Steps v = (v + dt f/m) / (1 + damping dt), x += dt v, or dt times the velocities of MassAverage.
   /// @return the norms at the beginning of the last step.
   ForceNorms advance(long steps, double time_step, double damping);
 

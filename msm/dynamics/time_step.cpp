@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/eigenvalues.h"
+#include "msm/dynamics/mass_average.h"
 #include "msm/multigrid/cell_stiffness.h"
 
 namespace springproof {
@@ -61,9 +62,21 @@ Eigen::VectorXd checked_masses(const Network& network, double density) {
 
 bool belongs_to_cells(const ForceLaw& law) { return traits(law).reach == Reach::cells; }
 
-double cell_frequency_squared(const MassSpringModel& model, double density) {
-  const CellStiffness s = cell_stiffness(model);
-  return symmetric_eigenvalues(s.total)[23] / (density * s.volume / 8);
+/// Largest squared frequency of a full cell alone, of stiffness K and mass `full`, a share theta of it consistent.
+double cell_frequency_squared(const CellMatrix& K, double full, double theta) {
+  const double lumped = symmetric_eigenvalues(K)[23] / (full / 8);
+  if (theta == 0) return lumped;
+  const double a = 2 * theta / 3, beta = 1 / ((1 + a) * (1 + a)), alpha = (1 + 2 * a) * beta;
+  const Eigen::Matrix<double, 8, 8> A = MassAverage::of_cell();
+  CellMatrix M = CellMatrix::Zero();
+  for (int m = 0; m < 8; ++m)
+    for (int n = 0; n < 8; ++n)
+      M.block<3, 3>(3 * m, 3 * n)
+          .diagonal()
+          .setConstant((m == n ? alpha - beta * theta : 0.0) + beta * theta * A(m, n));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<CellMatrix> eigen(K, full / 8 * M,
+                                                                   Eigen::EigenvaluesOnly | Eigen::Ax_lBx);
+  return std::min(eigen.eigenvalues()[23], MassAverage::largest_gain(theta) * lumped);
 }
 
 /// Averaged springs by cells: no squared frequency is above the largest that a cell has alone, with any shares of its
@@ -145,7 +158,7 @@ double averaged_frequency_squared(const AveragedSprings& law, const Network& net
 
 }  // namespace
 
-double safe_time_step(const MassSpringModel& model, double density, bool lagged) {
+double safe_time_step(const MassSpringModel& model, double density, bool lagged, double theta) {
   const Network& network = model.network;
   require_cells_of_one_size(network, "time step");
   const Eigen::VectorXd mass = checked_masses(network, density);
@@ -167,12 +180,20 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged)
     } else
       std::visit([&](const auto& l) { add_norms(network, mass, l, blocks); }, law);
   }
-  double largest = largest_eigenvalue(blocks) + (cells ? cell_frequency_squared(model, density) : 0);
+  const double gain = MassAverage::largest_gain(theta);
+  double largest = gain * largest_eigenvalue(blocks);
+  if (cells) {
+    const CellStiffness cell = cell_stiffness(model);
+    largest += cell_frequency_squared(cell.total, density * cell.volume, theta);
+  }
   if (averaged) {  // the smaller of two bounds
-    largest += averaged_frequency_squared(*averaged, network, mass);
+    const bool full = theta > 0 && network.filled.empty() && network.anchors.empty();
+    largest += full ? cell_frequency_squared(averaged->cell_matrix(network.cell_edge, FilledPart{}),
+                                             density * network.cell_volume(), theta)
+                    : gain * averaged_frequency_squared(*averaged, network, mass);
     if (!network.anchors.empty()) return 2 / std::sqrt(largest);
     add_norms(network, mass, *averaged, blocks);
-    largest = std::min(largest, largest_eigenvalue(blocks));
+    largest = std::min(largest, gain * largest_eigenvalue(blocks));
   }
   return 2 / std::sqrt(largest);
 }

@@ -16,15 +16,20 @@ namespace springproof {
 ///  with the anchors
 ///    of a cell, whose nodes are taken as held;
 ///  - any other law: the norms of the 3x3 blocks of its stiffness.
-/// A non-conservative form of dispersion can have complex frequencies, whose flutter only damping prevents, no time
-/// step; its bound is that of their real part.
+/// With a share theta of consistent mass (MassAverage) all of it grows by its largest gain, or for full cells the
+/// stiffest one has the mass alpha L - beta theta (L - C), alpha = (1 + 2 a) / (1 + a)^2, beta = 1 / (1 + a)^2,
+/// a = 2 theta / 3: not above W^-1, as the tangent of the convex 1 / (1 + z) at a, and a sum over the cells.  So
+/// uniform strains, the stiffest motions of most cells, have the factor 1 + 2 theta / 3 that they have in an infinite
+/// lattice. A non-conservative form of dispersion can have complex frequencies, whose flutter only damping prevents, no
+/// time step; its bound is that of their real part.
 /// @param model a model
 /// @param density [kg/m^3]
 /// @param lagged dispersion of the J of the previous step (DynamicsOptions::lagged), for which a negative dispersed
 ///   fraction needs a smaller step
+/// @param theta share of consistent mass, 0 to 1
 /// @return [s]
 /// @throws std::invalid_argument if a node has no mass.
-double safe_time_step(const MassSpringModel& model, double density, bool lagged = false);
+double safe_time_step(const MassSpringModel& model, double density, bool lagged = false, double theta = 0);
 
 /// Bound on omega*^2 [1/s^2], the part of the squared frequencies that momentum dispersion adds; 0 if it adds none or
 /// reduces them.

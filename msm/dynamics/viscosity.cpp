@@ -42,10 +42,11 @@ void Viscosity::add_forces(const Network& network, const NodalVectors& x, const 
   }
 }
 
-double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic) {
+double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
+                         double theta) {
   if (!viscosity.acts()) return elastic;
   const MassSpringModel dashpots{model.network, {viscosity.cells()}};
-  const double of_dashpots = viscosity.along_springs() ? elastic : safe_time_step(dashpots, density);
+  const double of_dashpots = viscosity.along_springs() ? elastic : safe_time_step(dashpots, density, false, theta);
   const double frequency = 2 / elastic, rate = viscosity.time() * 4 / (of_dashpots * of_dashpots);
   return 4 / (std::sqrt(rate * rate + 4 * frequency * frequency) + rate);
 }

@@ -47,6 +47,8 @@ class Viscosity {
 /// @param density [kg/m^3]
 /// @param viscosity of the model
 /// @param elastic the step without viscosity, safe_time_step() [s]
-double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic);
+/// @param theta share of consistent mass, 0 to 1
+double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
+                         double theta = 0);
 
 }  // namespace springproof

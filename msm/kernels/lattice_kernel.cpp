@@ -292,6 +292,7 @@ void get(LatticeKernels<Real>& k) {
   k.inflow = inflow<Real>;
   k.sweep = sweep<Real>;
   k.finish_first = finish_first<Real>;
+  k.average = average<Real>;
 }
 
 }  // namespace

@@ -98,6 +98,14 @@ struct LatticeStep {
   Real* force[3];  ///< where forces are stored [N]
 };
 
+/// The correction of a step for a share of consistent mass, on a box of full cells.
+template <class Real>
+struct LatticeAverage {
+  int nodes;    ///< of a row
+  Real factor;  ///< share times time step [s]
+  Real* work;   ///< three planes and two vectors more than a row, all of whole vectors
+};
+
 /// Sums over the nodes of |force|^2 [N^2] at free and at fixed unknowns.
 struct LatticeSums {
   double free, fixed;
@@ -115,6 +123,8 @@ struct LatticeKernels {
   /// Completes and moves the first plane of a slab, once the slab below is swept.
   void (*finish_first)(const LatticeView<Real>&, const LatticeSlab<Real>&, const LatticeSlab<Real>& below,
                        const LatticeStep<Real>&, LatticeSums&);
+  /// u += factor (v - average of v over the cells) on planes begin <= z < end.
+  void (*average)(const LatticeView<Real>&, const LatticeAverage<Real>&, int begin, int end);
 };
 
 namespace portable {

@@ -95,4 +95,8 @@ Real* inverse_lengths(const LatticeView<Real>& l, int y, int z) {
 template <class Real>
 void inflow(const LatticeView<Real>& l, int z);
 
+/// LatticeKernels::average.
+template <class Real>
+void average(const LatticeView<Real>& l, const LatticeAverage<Real>& a, int begin, int end);
+
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

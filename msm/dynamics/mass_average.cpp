@@ -1,0 +1,64 @@
+#include "msm/dynamics/mass_average.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace springproof {
+
+MassAverage::MassAverage(const Network& network, double theta) : theta_(theta), network_(&network) {
+  if (!(theta >= 0 && theta <= 1))
+    throw std::invalid_argument(fmt::format("share of consistent mass {:g} (allowed: 0 to 1)", theta));
+  if (!acts()) return;
+  if (const std::string why = lacks(network); !why.empty())
+    throw std::invalid_argument("a share of consistent mass does not suit this model: " + why);
+  share_ = Eigen::VectorXd::Zero(network.nodes());
+  for (int n = 0; n < network.nodes(); ++n)
+    if (network.volume[n] > 0) share_[n] = network.cell_volume() / 8 / network.volume[n];
+}
+
+std::string MassAverage::lacks(const Network& network) {
+  if (network.cells.empty()) return "its network has no cells";
+  if (!network.carried.empty()) return "its cells are of several sizes";
+  return network.image_of.empty() ? "" : "its network is periodic";
+}
+
+Eigen::Matrix<double, 8, 8> MassAverage::of_cell() {
+  Eigen::Matrix<double, 8, 8> A = Eigen::Matrix<double, 8, 8>::Ones();
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b)
+      for (int d = 0; d < 3; ++d) A(a, b) *= hexahedron_corners[a][d] == hexahedron_corners[b][d] ? 2.0 / 3 : 1.0 / 3;
+  return A;
+}
+
+NodalVectors MassAverage::velocities(const NodalVectors& s) const {
+  if (!acts()) return s;
+  static const Eigen::Matrix<double, 8, 8> A = of_cell();
+  NodalVectors v = s;
+  for (std::size_t c = 0; c < network_->cells.size(); ++c) {
+    const Hexahedron& cell = network_->cells[c];
+    const double part = theta_ * (network_->filled.empty() ? 1 : network_->filled[c].fraction);
+    Eigen::Matrix<double, 8, 3> of_corners;
+    for (int a = 0; a < 8; ++a) of_corners.row(a) = s.row(cell[a]);
+    const Eigen::Matrix<double, 8, 3> less = of_corners - A * of_corners;
+    for (int a = 0; a < 8; ++a) v.row(cell[a]) += part * share_[cell[a]] * less.row(a);
+  }
+  return v;
+}
+
+NodalVectors MassAverage::momenta(const NodalVectors& v, const std::vector<char>& fixed) const {
+  NodalVectors s = v;
+  if (!acts()) return s;
+  constexpr int most = 60;                                   // the error falls to a third or less each time
+  const double relaxation = 2 / (1 + largest_gain(theta_));  // the best for eigenvalues from 1 to there
+  for (int i = 0; i < most; ++i) {
+    NodalVectors change = relaxation * (v - velocities(s));
+    for (Eigen::Index n = 0; n < change.size(); ++n)
+      if (fixed[n]) change.data()[n] = 0;
+    s += change;
+    if (change.norm() <= 1e-16 * s.norm()) break;
+  }
+  return s;
+}
+
+}  // namespace springproof
