@@ -48,8 +48,13 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
 
 Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material) {
   const Viscosity viscosity = Viscosity::of(model, material, motion.viscosity);
-  const double safe = safe_time_step(model, material.density),
-               bound = viscous_time_step(model, material.density, viscosity, safe);
+  const double theta = motion.mass_consistency;
+  if (const std::string why = theta > 0 ? MassAverage::lacks(model.network) : ""; !why.empty())
+    throw InputError(
+        motion.mass_where,
+        fmt::format("dynamics.mass_consistency: does not suit a model of the case: {} (allowed for it: 0)", why));
+  const double safe = safe_time_step(model, material.density, false, theta),
+               bound = viscous_time_step(model, material.density, viscosity, safe, theta);
   const Integrator integrator = integrator_of(motion, model, viscosity, bound);
   const bool implicit = integrator != Integrator::explicit_euler, chosen = motion.integrator == "auto";
   double size = motion.time_step.value_or(!implicit ? 0.95 * bound
@@ -75,31 +80,31 @@ Steps steps_of(const MotionChoice& motion, const MassSpringModel& model, const I
 class Recorder {
  public:
   Recorder(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
-           const IsotropicMaterial& material, const Steps& steps, double damping, const Viscosity& viscosity,
-           PlaneContact* contact, MotionRecord& record)
+           const IsotropicMaterial& material, const Steps& steps, const DynamicsOptions& options, MotionRecord& record)
       : prepared_(prepared),
         lattice_(lattice),
         built_(built),
         mass_(masses(built.model.network, material.density)),
         behind_(steps.integrator == Integrator::explicit_euler ? steps.size / 2 : 0),
-        damping_(damping),
-        viscosity_(viscosity),
-        contact_(contact),
+        damping_(options.damping),
+        viscosity_(options.viscosity),
+        average_(built.model.network, options.mass_consistency),
+        contact_(options.contact),
         cut_(lattice.cut && !built.model.network.filled.empty()),
         record_(record) {}
 
   void operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
                   const BoundaryConditions& conditions) {
-    const NodalVectors v = at_positions(x, of_step, conditions);
+    const NodalVectors s = at_positions(x, of_step, conditions), v = velocities(s, conditions);
     record_.history.time.push_back(time);
     const Field field = field_at(x, v, conditions);
     next_ = 0;
-    add("kinetic_energy", "J", 0.5 * (v.rowwise().squaredNorm().array() * mass_.array()).sum());
+    add("kinetic_energy", "J", 0.5 * (s.cwiseProduct(v).rowwise().sum().array() * mass_.array()).sum());
     if (conservative(built_.model)) add("elastic_energy", "J", energy(built_.model, x));
-    add_vector("linear_momentum", "kg m/s", v.transpose() * mass_);
+    add_vector("linear_momentum", "kg m/s", s.transpose() * mass_);
     Vec3 spin = Vec3::Zero();
     for (Eigen::Index n = 0; n < x.rows(); ++n)
-      spin += mass_[n] * Vec3(x.row(n).transpose()).cross(Vec3(v.row(n).transpose()));
+      spin += mass_[n] * Vec3(x.row(n).transpose()).cross(Vec3(s.row(n).transpose()));
     add_vector("angular_momentum", "kg m^2/s", spin);
     const NodalVectors u = x - built_.model.network.X;
     add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());
@@ -117,10 +122,19 @@ class Recorder {
   }
 
  private:
+  /// Of the nodes, from momenta over lumped masses.
+  NodalVectors velocities(const NodalVectors& s, const BoundaryConditions& conditions) const {
+    if (!average_.acts()) return s;
+    NodalVectors v = average_.velocities(s);
+    for (Eigen::Index i = 0; i < v.size(); ++i)
+      if (conditions.fixed[i]) v.data()[i] = s.data()[i];
+    return v;
+  }
+
   /// The velocity at the time of the positions: that of explicit steps is half a step behind.
   NodalVectors at_positions(const NodalVectors& x, NodalVectors v, const BoundaryConditions& conditions) const {
     if (behind_ == 0) return v;
-    const NodalVectors f = forces(built_.model, x) + viscous_forces(x, v) + conditions.external;
+    const NodalVectors f = forces(built_.model, x) + viscous_forces(x, velocities(v, conditions)) + conditions.external;
     for (Eigen::Index i = 0; i < v.size(); ++i)
       if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] / mass_[i / 3] - damping_ * v.data()[i]);
     for (Eigen::Index n = 0; contact_ && n < x.rows(); ++n) {  // nodes on the plane do not enter it
@@ -173,6 +187,7 @@ class Recorder {
   double behind_;   ///< the velocities of a step [s]
   double damping_;  ///< [1/s]
   Viscosity viscosity_;
+  MassAverage average_;
   PlaneContact* contact_;        ///< nullptr: there is no plane
   Vec3 impulse_ = Vec3::Zero();  ///< of the plane on the body so far [N s]
   bool cut_;                     ///< the network is of cut cells of the lattice
@@ -296,11 +311,11 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   std::optional<PlaneContact> contact;
   if (motion.plane) contact.emplace(*motion.plane, mass, std::max(motion.duration / motion.samples, 5 * steps.size));
   options.contact = contact ? &*contact : nullptr;
-  Recorder recorder(prepared, lattice, built, material, steps, motion.damping, options.viscosity, options.contact,
-                    record);
   options.integrator = steps.integrator;
   options.time_step = steps.size;
   options.damping = motion.damping;
+  options.mass_consistency = motion.mass_consistency;
+  Recorder recorder(prepared, lattice, built, material, steps, options, record);
   options.course = motion.course;
   options.duration = motion.duration;
   options.stride = steps.stride;

@@ -67,6 +67,7 @@ struct MotionChoice {
       time_step;                 ///< [s]; empty: 0.95 of the bound of each model, implicit: a sample's, up to 10 of it
   double damping = 0;            ///< mass-proportional [1/s]
   double viscosity = 0;          ///< time of retardation of a Kelvin-Voigt solid [s]
+  double mass_consistency = 0;   ///< share of consistent mass of the models, 0 to 1
   std::optional<Plane> plane;    ///< that the body may fall on
   Course course;                 ///< of the loads; of a released body's, how they are removed
   Vec3 velocity = Vec3::Zero();  ///< at the start, of the body as a whole [m/s]
@@ -76,6 +77,7 @@ struct MotionChoice {
   int frames = 40;               ///< of the animation; 0: none
   SourceLocation where;          ///< of time_step_s, or of the table
   SourceLocation integrator_where;  ///< of integrator, or of the table
+  SourceLocation mass_where;        ///< of mass_consistency
 };
 
 enum class Source { analytic, extrapolated_fem, published, regression };

@@ -16,6 +16,7 @@ constexpr Key dynamics_schema[] = {{"duration_s", "a finite number > 0"},
                                    {"damping_1_s"},
                                    {"viscosity_s"},
                                    {"loss_factor"},
+                                   {"mass_consistency"},
                                    {"band_Hz"},
                                    {"ramp_s"},
                                    {"pulse_s"},
@@ -45,6 +46,19 @@ void read_plane(const TomlTable& table, const Experiment& experiment, MotionChoi
   plane.normal.normalize();
   if (const auto friction = keys.find("friction")) plane.friction = as_number(*friction, not_negative);
   motion.plane = plane;
+}
+
+/// A share of consistent mass: explicit steps, whose momenta have no impulses of a plane.
+void read_mass(const TomlTable& table, MotionChoice& motion) {
+  const auto value = table.find("mass_consistency");
+  if (!value) return;
+  motion.mass_consistency = as_number(*value, {"a share of consistent mass, 0 to 1", 0, 1, true, true});
+  motion.mass_where = location_of(*value);
+  if (motion.mass_consistency == 0) return;
+  if (motion.integrator != "explicit")
+    refuse(*value, fmt::format("does not suit the integrator {}, which has lumped mass", motion.integrator),
+           "integrator = \"explicit\", or mass_consistency = 0");
+  if (motion.plane) refuse(*value, "stands beside a plane, whose impulses need lumped mass", "one of the two");
 }
 
 /// One course at most, and none but a ramp for a body that is released.
@@ -116,6 +130,7 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
   }
   read_damping(table, motion);
   read_plane(table, experiment, motion);
+  read_mass(table, motion);
   if (const auto ramp = table.find("ramp_s"))
     motion.course.ramp = as_number(*ramp, {"a finite number >= 0, up to duration_s", 0, motion.duration, true, true});
   if (const auto pulse = table.find("pulse_s"))

@@ -70,6 +70,21 @@ TEST(DynamicsTable, HasAPlaneForExplicitSteps) {
             std::string::npos);
 }
 
+TEST(DynamicsTable, HasAShareOfConsistentMassForExplicitSteps) {
+  const std::string moving = "[dynamics]\nduration_s = 2\n", share = "mass_consistency = 0.6\n";
+  EXPECT_EQ(parse_experiment(at_large_strain + moving, "case.toml").dynamics->mass_consistency, 0);
+  EXPECT_EQ(parse_experiment(at_large_strain + moving + share, "case.toml").dynamics->mass_consistency, 0.6);
+  const auto says = [&](const std::string& lines, const std::string& part) {
+    const std::string message = message_of(at_large_strain + moving + lines);
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  says("mass_consistency = 1.2\n", "dynamics.mass_consistency: is 1.2 (allowed: a share of consistent mass, 0 to 1)");
+  says(share + "integrator = \"energy_momentum\"\n",
+       "dynamics.mass_consistency: does not suit the integrator energy_momentum");
+  says(share + "plane = { point_m = [0, 0, -1], normal = [0, 0, 2] }\n",
+       "dynamics.mass_consistency: stands beside a plane");
+}
+
 TEST(DynamicsTable, AsksForFiniteElementsInTime) {
   const std::string probe = "[[probe]]\nname = \"tip\"\nat_m = [1, 1, 1]\n", asked = "[reference]\nin_time = true\n",
                     moving = "[dynamics]\nduration_s = 2\n";
