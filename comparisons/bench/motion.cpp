@@ -66,15 +66,19 @@ Motion new_motion(const std::string& how, const MassSpringModel& model, Precisio
 }
 
 Motion lattice_motion(const MassSpringModel& model, const MotionOptions& options) {
-  const auto kernel = std::make_shared<LatticeMotion>(
-      model, density,
-      LatticeMotionOptions{.precision = options.precision, .threads = options.threads, .viscosity = options.viscosity});
+  const auto kernel =
+      std::make_shared<LatticeMotion>(model, density,
+                                      LatticeMotionOptions{.precision = options.precision,
+                                                           .threads = options.threads,
+                                                           .viscosity = options.viscosity,
+                                                           .mass_consistency = options.mass_consistency});
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
   Motion motion = new_motion(kernel->description(), model, options.precision);
   motion.work.streamed = (options.precision == Precision::float64 ? 96.0 : 48.0) * double(motion.nodes);
   motion.work.kept = kernel->bytes_per_node() * double(motion.nodes);
-  const double dt = 0.5 * viscous_time_step(model, density, options.viscosity, safe_time_step(model, density));
+  const double safe = safe_time_step(model, density, false, options.mass_consistency);
+  const double dt = 0.5 * viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
   motion.advance = [kernel, dt](long steps) { kernel->advance(steps, dt, 0); };
   return motion;
 }
@@ -112,8 +116,8 @@ Motion forces_motion(const MassSpringModel& model) {
 }  // namespace
 
 std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
-  if (LatticeMotion::suits(model, options.viscosity)) return lattice_motion(model, options);
-  if (options.viscosity.acts()) return {};
+  if (LatticeMotion::suits(model, options.viscosity, options.mass_consistency)) return lattice_motion(model, options);
+  if (options.viscosity.acts() || options.mass_consistency > 0) return {};
   if (ListForces<double>::covers(model))
     return options.precision == Precision::float64 ? list_motion<double>(model, options)
                                                    : list_motion<float>(model, options);

@@ -34,6 +34,7 @@ struct MotionOptions {
   int threads = 1;
   Precision precision = Precision::float64;
   Viscosity viscosity = {};
+  double mass_consistency = 0;  ///< share of consistent mass
 };
 
 /// The library's fastest implementation for a model; empty if none supports these options.  The model must outlive it.
