@@ -17,6 +17,13 @@ VtuArray nodal_vectors(const std::string& name, const NodalVectors& values) {
   return {name, 3, {values.data(), values.data() + values.size()}};
 }
 
+void add_cell_data(const NamedNumbers& values, VtuFile& vtu) {
+  for (const auto& [name, numbers] : values) {
+    if (numbers.size() != vtu.types.size()) throw std::invalid_argument("'" + name + "': one number per cell");
+    vtu.cell_data.push_back({name, 1, numbers});
+  }
+}
+
 VtuFile vtu_of(const Field& field, const std::vector<std::pair<std::string, NodalVectors>>& extra) {
   const Mesh& mesh = *field.mesh;
   const Eigen::VectorXd rest = cell_volumes(mesh, mesh.nodes);
@@ -33,13 +40,15 @@ VtuFile vtu_of(const Field& field, const std::vector<std::pair<std::string, Noda
 }  // namespace
 
 void write_vtu(const std::filesystem::path& file, const Field& field,
-               const std::vector<std::pair<std::string, NodalVectors>>& extra, const VtuNotes& notes) {
+               const std::vector<std::pair<std::string, NodalVectors>>& extra, const VtuNotes& notes,
+               const NamedNumbers& of_cells) {
   const Eigen::Index nodes = field.mesh->nodes.rows();
   if (field.displacement.rows() != nodes) throw std::invalid_argument("write_vtu: one displacement per node");
   for (const auto& [name, values] : extra)
     if (values.rows() != nodes) throw std::invalid_argument("write_vtu: '" + name + "': one vector per node");
 
   VtuFile vtu = vtu_of(field, extra);
+  add_cell_data(of_cells, vtu);
   vtu.notes = notes;
   write_file(file, text_of(vtu));
 }
@@ -55,15 +64,11 @@ void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<do
 }
 
 void write_lines_vtu(const std::filesystem::path& file, const NodalVectors& points, const NodalVectors& displacement,
-                     const std::vector<std::array<int, 2>>& lines,
-                     const std::vector<std::pair<std::string, std::vector<double>>>& values) {
+                     const std::vector<std::array<int, 2>>& lines, const NamedNumbers& values) {
   if (displacement.rows() != points.rows()) throw std::invalid_argument("write_lines_vtu: one displacement per point");
   VtuFile vtu{points, {}, {}, {}, {nodal_vectors("displacement", displacement)}, {}, {}};
   for (const std::array<int, 2>& line : lines) vtu.add_cell(line, vtk_line);
-  for (const auto& [name, numbers] : values) {
-    if (numbers.size() != lines.size()) throw std::invalid_argument("write_lines_vtu: one number per line");
-    vtu.cell_data.push_back({name, 1, numbers});
-  }
+  add_cell_data(values, vtu);
   write_file(file, text_of(vtu));
 }
 

@@ -28,11 +28,15 @@ struct Field {
   double volume_change_first_order = 0;  ///< integral of div u / V [1]
 };
 
-/// Writes a VTU (VTK XML, compressed binary): displacement, `extra` nodal vectors (e.g. difference to FEM) and the
-/// relative volume change of each cell.
-/// @throws std::runtime_error if the file cannot be written.
+/// Numbers by name.
+using NamedNumbers = std::vector<std::pair<std::string, std::vector<double>>>;
+
+/// Writes a VTU (VTK XML, compressed binary): displacement, `extra` nodal vectors (e.g. difference to FEM), the
+/// relative volume change of each cell, and `of_cells`, one number per cell.
+/// @throws std::runtime_error if the file cannot be written; std::invalid_argument if the sizes do not fit.
 void write_vtu(const std::filesystem::path& file, const Field& field,
-               const std::vector<std::pair<std::string, NodalVectors>>& extra = {}, const VtuNotes& notes = {});
+               const std::vector<std::pair<std::string, NodalVectors>>& extra = {}, const VtuNotes& notes = {},
+               const NamedNumbers& of_cells = {});
 
 /// Writes a ParaView collection: the time [s], or Poisson's ratio, and the name of each VTU file of a series, beside
 /// which it lies.
@@ -41,7 +45,6 @@ void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<do
 /// Writes lines between points: displacement of the points, one number of each name per line.
 /// @throws std::runtime_error if the file cannot be written; std::invalid_argument if the sizes do not fit.
 void write_lines_vtu(const std::filesystem::path& file, const NodalVectors& points, const NodalVectors& displacement,
-                     const std::vector<std::array<int, 2>>& lines,
-                     const std::vector<std::pair<std::string, std::vector<double>>>& values);
+                     const std::vector<std::array<int, 2>>& lines, const NamedNumbers& values);
 
 }  // namespace springproof

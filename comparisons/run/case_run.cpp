@@ -290,6 +290,10 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
   if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
+  if (!run.vtu.folder.empty())
+    write_cells(run.vtu.folder / (vtu_stem(run.key(label, lattice)) + "_cells.vtu"),
+                *run.prepared.lattices[lattice].cut, samples.front().state.displacement,
+                run.notes(run.key(label, lattice)));
   run.cut_states.push_back(
       {lattice, number, samples.front().state.displacement, samples.front().field.displacement, scalars.front()});
   add_splits_of_cut_cells(run, lattice, number, fields, scalars);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "meshes/field.h"
@@ -28,6 +29,22 @@ VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double young
   return {{{"case", case_name}, {"model", key.model}, {"cells", cells_text(key.cells)}},
           {{"poisson_ratio", key.poisson_ratio}, {"youngs_modulus_Pa", youngs_modulus}},
           single};
+}
+
+void write_cells(const std::filesystem::path& file, const CutBody& cut, const NodalVectors& displacement,
+                 const VtuNotes& notes) {
+  const auto mesh = std::make_shared<Mesh>();
+  mesh->nodes = cut.points;
+  std::vector<double> filled, edge;
+  for (const CutCell& cell : cut.cells) {
+    mesh->hexahedra.push_back(cell.corners);
+    filled.push_back(cell.filled.fraction);
+    edge.push_back(cell.size * cut.grid.edge);
+  }
+  Field field;
+  field.mesh = mesh;
+  field.displacement = displacement.topRows(cut.points.rows());
+  write_vtu(file, field, {}, notes, {{"filled_fraction", filled}, {"edge_m", edge}});
 }
 
 void write_series(const CaseResult& result, const std::filesystem::path& folder) {

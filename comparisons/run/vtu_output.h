@@ -5,6 +5,7 @@
 #include <string>
 
 #include "comparisons/report/results.h"
+#include "meshes/voxels/cut_cells.h"
 #include "meshes/vtu.h"
 
 namespace springproof {
@@ -23,6 +24,13 @@ std::string reference_file(const VtuOutput& vtu, const std::string& element, dou
 
 /// What the file of a run says of itself; `case_name` without its folder, Young's modulus in Pa.
 VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double youngs_modulus, bool single);
+
+/// Writes the cells of a cut body, displaced as their corners are, with the fraction of each that is filled and its
+/// edge.
+/// @param displacement one row per point of the cut body [m]; those of anchored nodes follow
+/// @throws std::runtime_error if the file cannot be written.
+void write_cells(const std::filesystem::path& file, const CutBody& cut, const NodalVectors& displacement,
+                 const VtuNotes& notes);
 
 /// Writes a series over Poisson's ratio of each model and resolution of a case, of the VTU files that lie in `folder`.
 /// @throws std::runtime_error if a file cannot be written.

@@ -4,13 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
 
 #include "comparisons/run/frequencies.h"
 #include "comparisons/run/sampling.h"
 #include "meshes/volume.h"
 #include "msm/embedding/boundary.h"
 #include "msm/models.h"
+#include "problem/system/files.h"
 #include "support/voxel_case.h"
+#include "support/vtu_reader.h"
 
 namespace springproof {
 namespace {
@@ -174,13 +180,31 @@ TEST(VoxelBody, CutCellsHaveALimitFromTwoLatticesAndWholeCubesHaveNone) {
                            [](const Row& row) { return row.model == "hybmss cut=false extrapolated"; }));
 }
 
+/// The file shows cells of more than one size, displaced, which hold the volume of the body.
+void expect_cells_fill_the_body(const std::filesystem::path& file, const CutBody& cut, double body_volume) {
+  const std::string document = text_of_file(file);
+  const std::vector<double> filled = read_array<double>(document, "filled_fraction"),
+                            edge = read_array<double>(document, "edge_m"),
+                            u = read_array<double>(document, "displacement");
+  ASSERT_EQ(filled.size(), cut.cells.size());
+  ASSERT_EQ(edge.size(), cut.cells.size());
+  EXPECT_EQ(u.size(), static_cast<std::size_t>(cut.points.size()));
+  EXPECT_GE(std::set(edge.begin(), edge.end()).size(), 2u);
+  double held = 0;
+  for (std::size_t c = 0; c < filled.size(); ++c) held += filled[c] * std::pow(edge[c], 3);
+  EXPECT_NEAR(held, body_volume, 1e-2 * body_volume);
+  EXPECT_GT(*std::max_element(u.begin(), u.end()), 0);
+}
+
 TEST(VoxelBody, RefinedLatticesKeepTheirPromiseAndHaveALimit) {
   std::string text = ball_case(100, "[[load]]\non = \"high\"\nforce_N = [0, 0, 1]", "\"hybmss_avg\", \"emsm\"",
                                "elements = []\nedge_m = 0.03");
   text.replace(text.find("voxels = 100"), 12, "voxels = 60\naccuracy = [0.15, 0.14, 0.05]");
   const Experiment experiment = parse_experiment(text, "ball.toml");
   const PreparedCase prepared = prepare(experiment);
-  const Part part = run_part(prepared, 0, {});
+  const std::filesystem::path vtu = std::filesystem::path(testing::TempDir()) / "refined_cells";
+  std::filesystem::create_directories(vtu);
+  const Part part = run_part(prepared, 0, {vtu, false});
   const auto value = [&](const std::string& model, const Lattice& on, const std::string& measure) {
     for (const Row& row : part.rows)
       if (row.model == model && row.cells == on.cells && row.measure == measure) return row.value;
@@ -202,6 +226,9 @@ TEST(VoxelBody, RefinedLatticesKeepTheirPromiseAndHaveALimit) {
   const std::string notes = fmt::format("{}", fmt::join(prepared.notes, "\n"));
   EXPECT_NE(notes.find("promise a displacement error of"), std::string::npos) << notes;
   EXPECT_THROW(case_of_modes(experiment, {}), InputError);
+  expect_cells_fill_the_body(vtu / (vtu_stem({"hybmss_avg", 0.3, fine.cells}) + "_cells.vtu"), *fine.cut,
+                             volume(*prepared.tetrahedra.back(), prepared.tetrahedra.back()->nodes));
+  std::filesystem::remove_all(vtu);
 }
 
 TEST(VoxelBody, TorquesMoveToTheTruePatch) {
