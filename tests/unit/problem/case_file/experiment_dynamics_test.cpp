@@ -115,8 +115,8 @@ TEST(DynamicsTable, TheLossFactorHoldsAtBothEndsOfItsBand) {
 
 TEST(DynamicsTable, MistakesAreExplained) {
   const auto message = [](const std::string& lines) { return message_of(at_large_strain + "[dynamics]\n" + lines); };
-  const auto says = [](const std::string& message, const std::string& part) {
-    EXPECT_NE(message.find(part), std::string::npos) << message;
+  const auto says = [](const std::string& said, const std::string& part) {
+    EXPECT_NE(said.find(part), std::string::npos) << said;
   };
   says(message(""), "dynamics.duration_s: is missing");
   says(message("duration_s = 0"), "15:14: dynamics.duration_s: is 0 (allowed: a finite number > 0)");
