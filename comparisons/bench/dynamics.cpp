@@ -124,43 +124,37 @@ void overhead(const Context& c, const std::string& size, const std::string& name
   if (std::none_of(c.findings.points.begin(), c.findings.points.end(), same)) c.findings.points.push_back(point);
 }
 
-/// The same model with dashpots in its cells.
-void viscous_overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
-                      double nu, Target target) {
-  progress(name + " with viscosity", size);
-  const Viscosity viscosity = Viscosity::of(model, {youngs_modulus, nu, density}, 1e-3);
-  const auto viscous = fastest_motion(model, {.viscosity = viscosity}), elastic = fastest_motion(model);
-  const std::vector<double> seconds = least_seconds({viscous->advance, elastic->advance}, c.timer);
-  c.findings.rows.push_back({"dynamics", name + " with viscosity", size, "us per step", 1e6 * seconds[0], "without",
-                             1e6 * seconds[1], target, usage_of(*viscous, seconds[0], c.machine), viscous->how});
-}
-
-/// The same model with half of its mass consistent.
-void average_overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
-                      Target target) {
-  progress(name + " with averaged mass", size);
-  const auto averaged = fastest_motion(model, {.mass_consistency = 0.5}), lumped = fastest_motion(model);
-  const std::vector<double> seconds = least_seconds({averaged->advance, lumped->advance}, c.timer);
-  c.findings.rows.push_back({"dynamics", name + " with averaged mass", size, "us per step", 1e6 * seconds[0], "lumped",
-                             1e6 * seconds[1], target, usage_of(*averaged, seconds[0], c.machine), averaged->how});
+/// The same model with dashpots in its cells, or a share of consistent mass.
+void option_overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
+                     const MotionOptions& options, Target target) {
+  progress(name, size);
+  const auto with = fastest_motion(model, options), without = fastest_motion(model);
+  const std::vector<double> seconds = least_seconds({with->advance, without->advance}, c.timer);
+  c.findings.rows.push_back({"dynamics", name, size, "us per step", 1e6 * seconds[0], "without", 1e6 * seconds[1],
+                             target, usage_of(*with, seconds[0], c.machine), with->how});
 }
 
 void overheads(const Context& c) {
   for (const int n : c.options.quick ? std::vector{10} : std::vector{10, 30}) {
     const std::string size = fmt::format("{}^3", n);
     const auto block = [&](const char* name, double nu) { return lattice(name, {n, n, n}, nu); };
-    const MassSpringModel hybmss = block("hybmss", 0.3), msm = block("msm_18", 0.25);
+    const MassSpringModel hybmss = block("hybmss", 0.3), corrected = block("hybmss_bt", 0.3),
+                          averaged = block("hybmss_avg", 0.3), msm = block("msm_18", 0.25);
     overhead(c, size, "HybMSS", hybmss, "HybMSS-CF", block("hybmss_cf", 0.25), at_most(1.35));
     overhead(c, size, "HybMSS", hybmss, "HybMSS-FD", block("hybmss_fd", 0.3), at_most(1.5));
-    overhead(c, size, "HybMSS, hourglass correction", block("hybmss_bt", 0.3), "HybMSS", hybmss, at_most(1.35));
-    overhead(c, size, "averaged springs", block("hybmss_avg", 0.3), "HybMSS", hybmss, at_most(1.6));
+    overhead(c, size, "HybMSS, hourglass correction", corrected, "HybMSS", hybmss, at_most(1.35));
+    overhead(c, size, "averaged springs", averaged, "HybMSS", hybmss, at_most(1.6));
     overhead(c, size, "averaged springs, neo-Hooke", lattice("hybmss_avg", {n, n, n}, 0.3, {{"curve", "neo_hooke"}}),
              "HybMSS", hybmss, at_most(1.6));
-    viscous_overhead(c, size, "HybMSS", hybmss, 0.3, at_most(2));
-    viscous_overhead(c, size, "averaged springs", block("hybmss_avg", 0.3), 0.3, at_most(2));
-    average_overhead(c, size, "HybMSS", hybmss, at_most(1.6));
-    average_overhead(c, size, "HybMSS, hourglass correction", block("hybmss_bt", 0.3), at_most(1.6));
-    average_overhead(c, size, "averaged springs", block("hybmss_avg", 0.3), at_most(1.6));
+    const auto viscous = [](const MassSpringModel& model) {
+      return MotionOptions{.viscosity = Viscosity::of(model, {youngs_modulus, 0.3, density}, 1e-3)};
+    };
+    option_overhead(c, size, "HybMSS with viscosity", hybmss, viscous(hybmss), at_most(2));
+    option_overhead(c, size, "averaged springs with viscosity", averaged, viscous(averaged), at_most(2));
+    const MotionOptions half{.mass_consistency = 0.5};
+    option_overhead(c, size, "HybMSS with averaged mass", hybmss, half, at_most(1.6));
+    option_overhead(c, size, "HybMSS, hourglass correction, with averaged mass", corrected, half, at_most(1.6));
+    option_overhead(c, size, "averaged springs with averaged mass", averaged, half, at_most(1.6));
     overhead(c, size, "eMSM as published", lattice("emsm", {n, n, n}, 0.3, {{"dispersion", "published"}}),
              "MSM of 18 springs", msm, at_most(1.65));
     overhead(c, size, "eMSM, exact nodal volumes", block("emsm", 0.3), "MSM of 18 springs", msm, at_most(1.65));

@@ -95,7 +95,7 @@ class Recorder {
 
   void operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
                   const BoundaryConditions& conditions) {
-    const NodalVectors s = at_positions(x, of_step, conditions), v = velocities(s, conditions);
+    const NodalVectors s = at_positions(x, of_step, conditions), v = average_.velocities(s, conditions.fixed);
     record_.history.time.push_back(time);
     const Field field = field_at(x, v, conditions);
     next_ = 0;
@@ -122,19 +122,11 @@ class Recorder {
   }
 
  private:
-  /// Of the nodes, from momenta over lumped masses.
-  NodalVectors velocities(const NodalVectors& s, const BoundaryConditions& conditions) const {
-    if (!average_.acts()) return s;
-    NodalVectors v = average_.velocities(s);
-    for (Eigen::Index i = 0; i < v.size(); ++i)
-      if (conditions.fixed[i]) v.data()[i] = s.data()[i];
-    return v;
-  }
-
   /// The velocity at the time of the positions: that of explicit steps is half a step behind.
   NodalVectors at_positions(const NodalVectors& x, NodalVectors v, const BoundaryConditions& conditions) const {
     if (behind_ == 0) return v;
-    const NodalVectors f = forces(built_.model, x) + viscous_forces(x, velocities(v, conditions)) + conditions.external;
+    const NodalVectors f =
+        forces(built_.model, x) + viscous_forces(x, average_.velocities(v, conditions.fixed)) + conditions.external;
     for (Eigen::Index i = 0; i < v.size(); ++i)
       if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] / mass_[i / 3] - damping_ * v.data()[i]);
     for (Eigen::Index n = 0; contact_ && n < x.rows(); ++n) {  // nodes on the plane do not enter it

@@ -122,14 +122,7 @@ class PlainMotion : public Motion {
   }
 
   /// Velocities of the nodes, supports included.
-  NodalVectors moving() const {
-    NodalVectors v = v_ + of_supports_;
-    if (!average_.acts()) return v;
-    v = average_.velocities(v);
-    for (Eigen::Index i = 0; i < v.size(); ++i)
-      if (conditions_.fixed[i]) v.data()[i] = of_supports_.data()[i];
-    return v;
-  }
+  NodalVectors moving() const { return average_.velocities(v_ + of_supports_, conditions_.fixed); }
 
   /// Internal forces at x_; lagged: with the J of the previous step.
   NodalVectors forces_at_x() {

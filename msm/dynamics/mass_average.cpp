@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "msm/dynamics/natural_modes.h"
+
 namespace springproof {
 
 MassAverage::MassAverage(const Network& network, double theta) : theta_(theta), network_(&network) {
@@ -23,15 +25,9 @@ std::string MassAverage::lacks(const Network& network) {
   return network.image_of.empty() ? "" : "its network is periodic";
 }
 
-Eigen::Matrix<double, 8, 8> MassAverage::of_cell() {
-  Eigen::Matrix<double, 8, 8> A = Eigen::Matrix<double, 8, 8>::Ones();
-  for (int a = 0; a < 8; ++a)
-    for (int b = 0; b < 8; ++b)
-      for (int d = 0; d < 3; ++d) A(a, b) *= hexahedron_corners[a][d] == hexahedron_corners[b][d] ? 2.0 / 3 : 1.0 / 3;
-  return A;
-}
+Eigen::Matrix<double, 8, 8> MassAverage::of_cell() { return 8 * consistent_mass(FilledPart{}, 1); }
 
-NodalVectors MassAverage::velocities(const NodalVectors& s) const {
+NodalVectors MassAverage::velocities(const NodalVectors& s, const std::vector<char>& fixed) const {
   if (!acts()) return s;
   static const Eigen::Matrix<double, 8, 8> A = of_cell();
   NodalVectors v = s;
@@ -43,6 +39,8 @@ NodalVectors MassAverage::velocities(const NodalVectors& s) const {
     const Eigen::Matrix<double, 8, 3> less = of_corners - A * of_corners;
     for (int a = 0; a < 8; ++a) v.row(cell[a]) += part * share_[cell[a]] * less.row(a);
   }
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (fixed[i]) v.data()[i] = s.data()[i];
   return v;
 }
 
@@ -52,9 +50,7 @@ NodalVectors MassAverage::momenta(const NodalVectors& v, const std::vector<char>
   constexpr int most = 60;                                   // the error falls to a third or less each time
   const double relaxation = 2 / (1 + largest_gain(theta_));  // the best for eigenvalues from 1 to there
   for (int i = 0; i < most; ++i) {
-    NodalVectors change = relaxation * (v - velocities(s));
-    for (Eigen::Index n = 0; n < change.size(); ++n)
-      if (fixed[n]) change.data()[n] = 0;
+    const NodalVectors change = relaxation * (v - velocities(s, fixed));
     s += change;
     if (change.norm() <= 1e-16 * s.norm()) break;
   }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "msm/topology/network.h"
 
@@ -34,8 +35,9 @@ class MassAverage {
 
   /// Velocities of the nodes.
   /// @param s momenta over lumped masses [m/s], n x 3; of supports their velocities
+  /// @param fixed unknowns, three of each node, whose velocity is s; none: all are free
   /// @return v [m/s], n x 3
-  NodalVectors velocities(const NodalVectors& s) const;
+  NodalVectors velocities(const NodalVectors& s, const std::vector<char>& fixed = {}) const;
 
   /// The momenta over lumped masses that have given velocities, to round-off.
   /// @param v [m/s], n x 3; those of `fixed` unknowns are s too

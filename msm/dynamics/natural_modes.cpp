@@ -49,24 +49,6 @@ void clear(const std::vector<char>& fixed, Eigen::VectorXd& v) {
     if (fixed[i]) v[static_cast<Eigen::Index>(i)] = 0;
 }
 
-/// Integral of rho N_a N_b over the filled part of a cell of mass rho l^3 = `full`, N the corners' trilinear weights:
-/// at the two Gauss points per axis of the part's own mean and variance; of a full cell exact.
-Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
-  Eigen::Matrix<double, 8, 8> C = Eigen::Matrix<double, 8, 8>::Zero();
-  for (int q = 0; q < 8; ++q) {
-    Eigen::Matrix<double, 8, 1> N;
-    for (int a = 0; a < 8; ++a) {
-      N[a] = 1;
-      for (int d = 0; d < 3; ++d) {
-        const double xi = part.mean[d] + (hexahedron_corners[q][d] == 0 ? -1 : 1) * std::sqrt(part.variance[d]);
-        N[a] *= hexahedron_corners[a][d] == 0 ? 0.5 - xi : 0.5 + xi;
-      }
-    }
-    C += full * part.fraction / 8 * N * N.transpose();
-  }
-  return C;
-}
-
 void compute(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta, int count,
              NaturalModes& modes) {
   const Network& network = model.network;
@@ -120,6 +102,22 @@ void compute(const MassSpringModel& model, const std::vector<char>& fixed, doubl
 }
 
 }  // namespace
+
+Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
+  Eigen::Matrix<double, 8, 8> C = Eigen::Matrix<double, 8, 8>::Zero();
+  for (int q = 0; q < 8; ++q) {
+    Eigen::Matrix<double, 8, 1> N;
+    for (int a = 0; a < 8; ++a) {
+      N[a] = 1;
+      for (int d = 0; d < 3; ++d) {
+        const double xi = part.mean[d] + (hexahedron_corners[q][d] == 0 ? -1 : 1) * std::sqrt(part.variance[d]);
+        N[a] *= hexahedron_corners[a][d] == 0 ? 0.5 - xi : 0.5 + xi;
+      }
+    }
+    C += full * part.fraction / 8 * N * N.transpose();
+  }
+  return C;
+}
 
 Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, double theta) {
   if (!(theta >= 0 && theta <= 1))
