@@ -4,7 +4,7 @@
 
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::fem_clamped_cube_test {
 namespace {
 
 // Elastic energy from the force on the moved face, F = 2 W / displacement.
@@ -49,4 +49,4 @@ TEST(FemClampedCube, FormsMeetWherePressureBecomesAnUnknown) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::fem_clamped_cube_test

@@ -5,7 +5,7 @@
 
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::fem_manufactured_test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -119,4 +119,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, FemOrder, testing::ValuesIn(order_cases()), [
 });
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::fem_manufactured_test

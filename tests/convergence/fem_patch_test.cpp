@@ -6,7 +6,7 @@
 #include "support/fem_block.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::fem_patch_test {
 namespace {
 
 struct PatchCase {
@@ -54,4 +54,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, FemPatchTest, testing::ValuesIn(patch_cases()
 });
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::fem_patch_test

@@ -13,7 +13,7 @@
 #include "support/solids.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::msm_cut_cells_test {
 namespace {
 
 using std::numbers::pi;
@@ -292,4 +292,4 @@ TEST(CutCells, ABlockIsNearlyThatOfTheLattice) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::msm_cut_cells_test

@@ -11,7 +11,7 @@
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::msm_emsm_test {
 namespace {
 
 constexpr double density = 1000;
@@ -258,4 +258,4 @@ TEST(EmsmLargeDisplacements, NewtonAgreesWithDynamicsRunToRest) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::msm_emsm_test

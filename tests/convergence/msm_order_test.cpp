@@ -8,7 +8,7 @@
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::msm_order_test {
 namespace {
 
 /// Tip deflection of a 4 x 1 x 1 beam with n cells across.
@@ -44,4 +44,4 @@ TEST(HourglassCorrection, TakesMostOfTheBendingErrorAway) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::msm_order_test

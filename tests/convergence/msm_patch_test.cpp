@@ -7,7 +7,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::msm_patch_test {
 namespace {
 
 Eigen::Matrix3d gradient() {
@@ -80,4 +80,4 @@ TEST(ModuliOfSprings, AreAlwaysThoseOfOneQuarter) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::msm_patch_test

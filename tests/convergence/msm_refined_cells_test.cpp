@@ -16,7 +16,7 @@
 #include "support/solids.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::msm_refined_cells_test {
 namespace {
 
 // Under the traction of its stress on the surface a body of cut and full cells in uniform strain is in equilibrium.
@@ -183,4 +183,4 @@ TEST(RefinedCells, FollowALargeDisplacementWithAndWithoutPressures) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::msm_refined_cells_test

@@ -9,7 +9,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::law_suite_test {
 namespace {
 
 struct Case {
@@ -187,4 +187,4 @@ TEST_P(LawSuite, TangentIsSymmetricIfThereIsAnEnergy) {
 INSTANTIATE_TEST_SUITE_P(Laws, LawSuite, testing::ValuesIn(cases()), [](const auto& i) { return i.param.name; });
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::law_suite_test

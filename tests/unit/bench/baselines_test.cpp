@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace springproof::bench {
+namespace springproof::bench::baselines_test {
 namespace {
 
 TEST(PlainLoop, MovesAsTheForcesSay) {
@@ -93,4 +93,4 @@ TEST(InChild, ReturnsThrowsAndSurvives) {
 }
 
 }  // namespace
-}  // namespace springproof::bench
+}  // namespace springproof::bench::baselines_test

@@ -6,7 +6,7 @@
 
 #include "comparisons/bench/engine_adapter.h"
 
-namespace springproof::bench {
+namespace springproof::bench::engine_regressions_test {
 namespace {
 
 struct Measured {
@@ -67,4 +67,4 @@ INSTANTIATE_TEST_SUITE_P(All, Engines, testing::ValuesIn(measured), [](const aut
 });
 
 }  // namespace
-}  // namespace springproof::bench
+}  // namespace springproof::bench::engine_regressions_test

@@ -7,7 +7,7 @@
 #include "comparisons/bench/engine_motion.h"
 #include "comparisons/bench/engine_ours.h"
 
-namespace springproof::bench {
+namespace springproof::bench::engines_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -126,4 +126,4 @@ TEST(EngineRuler, SpringsSteppedByAnAdapterEndWhereOurSolverSays) {
 }
 
 }  // namespace
-}  // namespace springproof::bench
+}  // namespace springproof::bench::engines_test

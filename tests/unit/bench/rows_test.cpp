@@ -10,7 +10,7 @@
 #include "comparisons/bench/table.h"
 #include "comparisons/bench/timer.h"
 
-namespace springproof::bench {
+namespace springproof::bench::rows_test {
 namespace {
 
 BenchRow row(double value, double baseline, Target target) {
@@ -60,4 +60,4 @@ TEST(BenchTable, MissedTargetsAreNotHidden) {
 }
 
 }  // namespace
-}  // namespace springproof::bench
+}  // namespace springproof::bench::rows_test

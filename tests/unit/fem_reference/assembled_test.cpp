@@ -5,7 +5,7 @@
 #include "fem_reference/cell_equations.h"
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::assembled_test {
 namespace {
 
 fem::GridProblem leaning(int degree, double nu, const std::string& law) {
@@ -163,4 +163,4 @@ TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::assembled_test

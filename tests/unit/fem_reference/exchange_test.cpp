@@ -10,7 +10,7 @@
 
 #include "problem/system/json.h"
 
-namespace springproof {
+namespace springproof::exchange_test {
 namespace {
 
 nlohmann::json through_cbor(const nlohmann::json& json) {
@@ -106,4 +106,4 @@ TEST(FemRequest, ALoadOfNoKindIsRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::exchange_test

@@ -7,7 +7,7 @@
 #include "support/tolerances.h"
 #include "support/uniaxial.h"
 
-namespace springproof {
+namespace springproof::finite_strain_test {
 namespace {
 
 const std::vector<std::string> all_laws = {"hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric",
@@ -185,4 +185,4 @@ TEST(FemFiniteClampedCube, TwistsAsPublished) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::finite_strain_test

@@ -4,7 +4,7 @@
 #include "problem/kelvin.h"
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::kelvin_test {
 namespace {
 
 const Vec3 size(1, 1.2, 0.9), middle = size / 2;
@@ -55,4 +55,4 @@ TEST(FemKelvin, TheSurfaceBearsTheForce) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::kelvin_test

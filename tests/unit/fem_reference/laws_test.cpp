@@ -9,7 +9,7 @@
 #include "support/tolerances.h"
 #include "support/uniaxial.h"
 
-namespace springproof {
+namespace springproof::laws_test {
 namespace {
 
 using fem::Law;
@@ -169,4 +169,4 @@ TEST(FemLaws, AreFoundByName) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::laws_test

@@ -7,7 +7,7 @@
 #include "support/bodies.h"
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::motion_test {
 namespace {
 
 fem::GridProblem block_in_motion(const Vec3& size, const Cells& cells, double nu, const fem::Motion& motion,
@@ -223,4 +223,4 @@ TEST(FemMotion, ViscosityDoesNotBrakeASpin) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::motion_test

@@ -7,7 +7,7 @@
 #include "support/bodies.h"
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::natural_modes_test {
 namespace {
 
 fem::GridProblem modes_of(const Vec3& size, const Cells& cells, int degree, double nu, int modes) {
@@ -92,4 +92,4 @@ TEST(FemNaturalModes, OfTetrahedraAreThoseOfHexahedraUpToPoissonsRatioOf04) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::natural_modes_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace springproof {
+namespace springproof::plain_words_test {
 namespace {
 
 TEST(PlainWords, AreWhatAnExceptionHasToSay) {
@@ -26,4 +26,4 @@ TEST(PlainWords, AreWhatAnExceptionHasToSay) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::plain_words_test

@@ -14,7 +14,7 @@
 #include "fem_reference/solve_grid.h"
 #include "problem/system/child.h"
 
-namespace springproof {
+namespace springproof::reference_test {
 namespace {
 
 std::string squeezed_cube(const std::string& patch) {
@@ -147,4 +147,4 @@ TEST(FemReference, SaysWhyTheProgramFailed) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::reference_test

@@ -10,7 +10,7 @@
 #include "support/solids.h"
 #include "support/vtu_reader.h"
 
-namespace springproof {
+namespace springproof::solution_file_test {
 namespace {
 
 using test::read_array;
@@ -154,4 +154,4 @@ INSTANTIATE_TEST_SUITE_P(Files, SolutionFile,
                                          Elements{false, 2, 0.3, "neo_hooke"}));
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::solution_file_test

@@ -7,7 +7,7 @@
 
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::solve_grid_test {
 namespace {
 
 constexpr double balance = 1e-8;  // of the solver's residual 1e-12, relative to the load, times the grid's 1/h
@@ -179,4 +179,4 @@ TEST(FemSolveGrid, RefusesWhatCannotBeSolved) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::solve_grid_test

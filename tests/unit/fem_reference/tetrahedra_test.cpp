@@ -7,7 +7,7 @@
 #include "meshes/mesher/mesher.h"
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::tetrahedra_test {
 namespace {
 
 /// A cube of tetrahedra, those around its centre flat.
@@ -80,4 +80,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, RaggedBodies,
                          [](const auto& instance) { return instance.param.name; });
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::tetrahedra_test

@@ -6,7 +6,7 @@
 #include "fem_reference/solve_grid.h"
 #include "support/fem_block.h"
 
-namespace springproof {
+namespace springproof::voxel_body_test {
 namespace {
 
 /// An L of cubes, 1,300 of them, held at one end.
@@ -111,4 +111,4 @@ TEST(PointsInTetrahedra, TakeLinearFieldsExactly) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::voxel_body_test

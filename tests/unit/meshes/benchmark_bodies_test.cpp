@@ -9,7 +9,7 @@
 #include "meshes/mesher/mesher.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::benchmark_bodies_test {
 namespace {
 
 using std::numbers::pi;
@@ -122,4 +122,4 @@ TEST(BenchmarkDistortedBlock, NoTwoCellsAreAlikeAndHalvedGridsNest) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::benchmark_bodies_test

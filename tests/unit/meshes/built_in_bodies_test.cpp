@@ -9,7 +9,7 @@
 #include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
 
-namespace springproof {
+namespace springproof::built_in_bodies_test {
 namespace {
 
 using std::numbers::pi;
@@ -97,4 +97,4 @@ INSTANTIATE_TEST_SUITE_P(Geo, BuiltInBodies, testing::ValuesIn(bodies), [](const
 });
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::built_in_bodies_test

@@ -6,7 +6,7 @@
 #include "support/solids.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::cut_cells_test {
 namespace {
 
 Mesh turned_ball(unsigned seed, double edge) {
@@ -164,4 +164,4 @@ TEST(CutBody, RefusesWhatIsOutsideTheGridOrHasNoTetrahedra) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::cut_cells_test

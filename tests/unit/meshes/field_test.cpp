@@ -11,7 +11,7 @@
 #include "support/tolerances.h"
 #include "support/vtu_reader.h"
 
-namespace springproof {
+namespace springproof::field_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -141,4 +141,4 @@ TEST_F(Vtu, WrongShapesAreRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::field_test

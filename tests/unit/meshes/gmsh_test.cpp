@@ -9,7 +9,7 @@
 #include "meshes/volume.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::gmsh_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -263,4 +263,4 @@ TEST_F(Gmsh, CallersFromSeveralThreadsWaitForEachOther) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::gmsh_test

@@ -14,7 +14,7 @@
 #include "support/bodies.h"
 #include "support/surfaces.h"
 
-namespace springproof {
+namespace springproof::imprint_test {
 namespace {
 
 constexpr double pi = M_PI;
@@ -174,4 +174,4 @@ TEST(ImprintCurved, AreaIsThatOfTheFacetsWithinTheRule) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::imprint_test

@@ -7,7 +7,7 @@
 
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::locate_test {
 namespace {
 
 Vec3 position(const Mesh& mesh, const Location& location) {
@@ -162,4 +162,4 @@ TEST(Locator, RefusesWhatHasNoPlace) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::locate_test

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace springproof {
+namespace springproof::mesh_json_test {
 namespace {
 
 TEST(MeshJson, ReadsBackThroughCbor) {
@@ -34,4 +34,4 @@ TEST(MeshJson, RefusesACutOffList) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::mesh_json_test

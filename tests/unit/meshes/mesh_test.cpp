@@ -11,7 +11,7 @@
 #include "meshes/volume.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::mesh_test {
 namespace {
 
 const Vec3 size(2.4, 0.5, 0.3);
@@ -224,4 +224,4 @@ TEST(DetectGrid, ACrackIsNoGrid) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::mesh_test

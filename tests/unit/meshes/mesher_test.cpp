@@ -16,7 +16,7 @@
 #include "problem/system/child.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::mesher_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -345,4 +345,4 @@ TEST_F(Mesher, FileNamesOfAnyBytesAndMeshesBeyondAllMeans) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::mesher_test

@@ -11,7 +11,7 @@
 #include "meshes/locate/facet_tree.h"
 #include "support/bodies.h"
 
-namespace springproof {
+namespace springproof::outer_facets_test {
 namespace {
 
 /// Blocks of hexahedra, of tetrahedra, and both in one mesh (next to each other, apart), their nodes renumbered at
@@ -103,4 +103,4 @@ TEST(FacetTree, FindsTheNearestOfAll) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::outer_facets_test

@@ -11,7 +11,7 @@
 #include "problem/system/child.h"
 #include "support/surfaces.h"
 
-namespace springproof {
+namespace springproof::reference_meshes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,4 +153,4 @@ Physical Volume("body") = {c[1]};
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::reference_meshes_test

@@ -8,7 +8,7 @@
 #include "support/solids.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::refined_cells_test {
 namespace {
 
 Mesh turned_ball(double edge) { return test::mapped(test::ball_of_tetrahedra(8), test::random_placement(3, edge)); }
@@ -124,4 +124,4 @@ TEST(RefinedCells, ArmsInOneCellStayApart) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::refined_cells_test

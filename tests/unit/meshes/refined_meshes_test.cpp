@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace springproof {
+namespace springproof::refined_meshes_test {
 namespace {
 
 OneMesh mesh_of(double count, double edge) {
@@ -147,4 +147,4 @@ TEST(RefinedMeshes, EachKeepsItsNotes) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::refined_meshes_test

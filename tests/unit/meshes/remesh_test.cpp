@@ -9,7 +9,7 @@
 #include "support/surfaces.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::remesh_test {
 namespace {
 
 using namespace test;
@@ -113,4 +113,4 @@ TEST(Remesh, AnEdgeTooLongOrTooShortIsAnError) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::remesh_test

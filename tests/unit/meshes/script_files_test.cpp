@@ -7,7 +7,7 @@
 
 #include "problem/system/child.h"
 
-namespace springproof {
+namespace springproof::script_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,4 +54,4 @@ TEST_F(ScriptFiles, OtherBodiesStandAlone) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::script_files_test

@@ -6,7 +6,7 @@
 
 #include "support/bodies.h"
 
-namespace springproof {
+namespace springproof::select_patches_test {
 namespace {
 
 PatchRule rule(const std::string& name) {
@@ -178,4 +178,4 @@ TEST(SelectPatches, NamesThatAreTakenAreRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::select_patches_test

@@ -12,7 +12,7 @@
 #include "problem/system/input_error.h"
 #include "support/surfaces.h"
 
-namespace springproof {
+namespace springproof::stl_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -203,4 +203,4 @@ TEST_F(Stl, AMillionFacetsTakeSeconds) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::stl_test

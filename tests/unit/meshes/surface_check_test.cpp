@@ -21,7 +21,7 @@
 #include "support/surfaces.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::surface_check_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -319,4 +319,4 @@ TEST(CheckSurface, WhatBoundsNoBody) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::surface_check_test

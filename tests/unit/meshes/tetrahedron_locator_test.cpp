@@ -6,7 +6,7 @@
 
 #include "meshes/mesher/mesher.h"
 
-namespace springproof {
+namespace springproof::tetrahedron_locator_test {
 namespace {
 
 Mesh tetrahedral_block() {
@@ -48,4 +48,4 @@ TEST(TetrahedronLocator, NeedsTetrahedra) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::tetrahedron_locator_test

@@ -8,7 +8,7 @@
 
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::volume_test {
 namespace {
 
 using Corners = Eigen::Matrix<double, 8, 3>;
@@ -199,4 +199,4 @@ TEST(CornerJacobians, AreTheDeterminantsAtTheCorners) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::volume_test

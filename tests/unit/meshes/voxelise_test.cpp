@@ -16,7 +16,7 @@
 #include "meshes/voxels/scan_lines.h"
 #include "support/bodies.h"
 
-namespace springproof {
+namespace springproof::voxelise_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -410,4 +410,4 @@ TEST(Voxelise, RefusesWhatIsNoBodyOfCubes) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::voxelise_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace springproof {
+namespace springproof::exact_field_test {
 namespace {
 
 /// du_i/dx_j by central differences.
@@ -75,4 +75,4 @@ TEST(ExactField, AnUnknownNameIsRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::exact_field_test

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace springproof {
+namespace springproof::kelvin_test {
 namespace {
 
 const KelvinSolution solution{{1, -2, 4}, {0.3, 0.1, -0.2}, {70, 0.31, 1000}};
@@ -74,4 +74,4 @@ TEST(Kelvin, IsRefusedWhereTheForceActs) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::kelvin_test

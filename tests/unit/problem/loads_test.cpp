@@ -8,7 +8,7 @@
 #include "problem/exact_field.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::loads_test {
 namespace {
 
 const Vec3 X(0.3, -0.2, 0.7);
@@ -95,4 +95,4 @@ TEST(Constraints, PatchOfALoad) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::loads_test

@@ -8,7 +8,7 @@
 
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::material_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -124,4 +124,4 @@ TEST(Material, CheckRefusesWhatTheHeaderSays) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::material_test

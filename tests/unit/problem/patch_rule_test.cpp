@@ -6,7 +6,7 @@
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::patch_rule_test {
 namespace {
 
 using test::message_of;
@@ -109,4 +109,4 @@ TEST(PatchRules, MistakesAreExplained) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::patch_rule_test

@@ -5,7 +5,7 @@
 
 #include "problem/loads.h"
 
-namespace springproof {
+namespace springproof::wrench_test {
 namespace {
 
 TEST(Wrench, OfARigidFieldIsTheOneAskedFor) {
@@ -51,4 +51,4 @@ TEST(Wrench, IsCarriedByForcesAlone) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::wrench_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace springproof {
+namespace springproof::advice_test {
 namespace {
 
 /// Blocks of n^3 cells; errors of hybmss_avg fall as 0.1 / n, those of hybmss are 0.001 at n = 4 and 0.08 elsewhere,
@@ -78,4 +78,4 @@ TEST(Advice, ABudgetLimitsTheLattice) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::advice_test

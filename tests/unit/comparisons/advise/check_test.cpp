@@ -12,7 +12,7 @@
 #include "comparisons/run/prepare.h"
 #include "fem_reference/reference.h"
 
-namespace springproof {
+namespace springproof::check_test {
 namespace {
 
 const std::vector<Measurement>& held_out() {
@@ -90,4 +90,4 @@ TEST(HeldOutErrors, AreThoseOfThisProgram) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::check_test

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace springproof {
+namespace springproof::load_shares_test {
 namespace {
 
 constexpr double nu = 0.3;
@@ -41,4 +41,4 @@ TEST(LoadShares, WhatVariesWithinASectionIsLocal) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::load_shares_test

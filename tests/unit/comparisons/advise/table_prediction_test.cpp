@@ -7,7 +7,7 @@
 
 #include "problem/system/input_error.h"
 
-namespace springproof {
+namespace springproof::table_prediction_test {
 namespace {
 
 /// Errors c (1 + nu) n^-order of a model in bending.
@@ -74,4 +74,4 @@ TEST(Measurements, RefuseALineThatIsNone) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::table_prediction_test

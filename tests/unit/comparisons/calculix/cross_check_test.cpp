@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace springproof {
+namespace springproof::cross_check_test {
 namespace {
 
 TEST(SecondOpinion, AgreesWithinTheSumOfBothUncertainties) {
@@ -30,4 +30,4 @@ TEST(CrossCheck, TakesTheCasesOwnPoissonsRatios) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::cross_check_test

@@ -12,7 +12,7 @@
 #include "comparisons/calculix/deck.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::deck_test {
 namespace {
 
 using calculix::Deck;
@@ -292,4 +292,4 @@ TEST(CalculixDeck, RefusesNamesItCannotTellApart) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::deck_test

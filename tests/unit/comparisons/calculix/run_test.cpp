@@ -10,7 +10,7 @@
 #include "support/tolerances.h"
 #include "support/uniaxial.h"
 
-namespace springproof {
+namespace springproof::run_test {
 namespace {
 
 const std::optional<double> is_free;
@@ -119,4 +119,4 @@ TEST_F(Calculix, SaysWhyThereIsNoAnswer) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::run_test

@@ -13,7 +13,7 @@
 #include "meshes/volume.h"
 #include "msm/algebra/eigenvalues.h"
 
-namespace springproof {
+namespace springproof::engine_constants_test {
 namespace {
 
 using Mat3 = Eigen::Matrix3d;
@@ -116,4 +116,4 @@ TEST(EngineFacts, CompliancesAreThoseOfTheSharesOfASpring) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::engine_constants_test

@@ -16,7 +16,7 @@
 #include "msm/dynamics/time_step.h"
 #include "msm/models.h"
 
-namespace springproof {
+namespace springproof::engine_files_test {
 namespace {
 
 SpringsFile springs_of_block(const std::string& model, double nu, const std::array<int, 3>& cells = {4, 2, 3}) {
@@ -159,4 +159,4 @@ TEST(EngineFiles, WhatAnEngineCannotHaveIsRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::engine_files_test

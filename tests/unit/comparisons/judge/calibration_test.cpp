@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-namespace springproof {
+namespace springproof::calibration_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ TEST_F(Calibration, SaysWhatIsWrongWithATable) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::calibration_test

@@ -9,7 +9,7 @@
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
 
-namespace springproof {
+namespace springproof::differences_test {
 namespace {
 
 Row row(const std::string& measure, double value, std::optional<double> reference = {},
@@ -107,4 +107,4 @@ TEST(ResultsFolder, WithoutResultsIsRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::differences_test

@@ -6,7 +6,7 @@
 
 #include "msm/models.h"
 
-namespace springproof {
+namespace springproof::line_measure_test {
 namespace {
 
 const KelvinSolution solution{{0, 3, 0}, {-1, -1, -1}, {100, 0.25, 1000}};
@@ -82,4 +82,4 @@ TEST(LineMeasure, OrdersCompareEachLatticeWithTheNextCoarser) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::line_measure_test

@@ -12,7 +12,7 @@
 #include "meshes/mesh.h"
 #include "support/voxel_case.h"
 
-namespace springproof {
+namespace springproof::measures_test {
 namespace {
 
 using Values = std::map<std::string, double>;
@@ -173,4 +173,4 @@ TEST(Prepare, RefusesTheMeanDisplacementOfNoPatch) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::measures_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace springproof {
+namespace springproof::mode_pairs_test {
 namespace {
 
 constexpr int nodes = 4;
@@ -82,4 +82,4 @@ TEST(ModePairs, UseTheInnerProductOfTheWeights) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::mode_pairs_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace springproof {
+namespace springproof::reference_value_test {
 namespace {
 
 std::vector<double> sequence(double limit, double error, double order) {
@@ -237,4 +237,4 @@ TEST(ReferenceField, GridsThatAreNotRefinedAreNotExtrapolated) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::reference_value_test

@@ -11,7 +11,7 @@
 #include "meshes/patches/rule_region.h"
 #include "msm/embedding/boundary.h"
 
-namespace springproof {
+namespace springproof::rule_patch_test {
 namespace {
 
 struct RuleCase {
@@ -170,4 +170,4 @@ TEST(RulePatchReactions, AreTheRulesForceInLinearAndQuadraticElementsAndOnCubes)
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::rule_patch_test

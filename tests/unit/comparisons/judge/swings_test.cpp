@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace springproof {
+namespace springproof::swings_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -65,4 +65,4 @@ TEST(Swings, TellTheDamping) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::swings_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-namespace springproof {
+namespace springproof::wrinkles_test {
 namespace {
 
 NodalVectors field(const Mesh& mesh, const std::function<Vec3(const Vec3&)>& u) {
@@ -44,4 +44,4 @@ TEST(Wrinkles, TheWaveWithoutEnergyHasMost) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::wrinkles_test

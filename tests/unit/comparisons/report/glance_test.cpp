@@ -2,7 +2,7 @@
 #include "support/sample_case.h"
 #include "unit/comparisons/report/report_page.h"
 
-namespace springproof {
+namespace springproof::glance_test {
 namespace {
 
 // ---- the sentence and the plot
@@ -341,4 +341,4 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Screens, testing::Values("light", "dark"),
                          [](const auto& i) { return std::string(i.param); });
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::glance_test

@@ -7,7 +7,7 @@
 #include "comparisons/report/stability_words.h"
 #include "support/sample_case.h"
 
-namespace springproof {
+namespace springproof::headline_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -506,4 +506,4 @@ TEST(Headline, WhatMayBeLostIsSaidBeforeTheRun) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::headline_test

@@ -8,7 +8,7 @@
 
 #include "comparisons/report/thin_surface.h"
 
-namespace springproof {
+namespace springproof::picture_test {
 namespace {
 
 Field field_on(const Mesh& mesh, const Eigen::Matrix3d& A) {
@@ -134,4 +134,4 @@ TEST(ThinSurface, ManyFacetsBecomeFewerOfTheSameShape) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::picture_test

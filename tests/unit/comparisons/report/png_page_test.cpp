@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-namespace springproof {
+namespace springproof::png_page_test {
 namespace {
 
 TEST(PngPage, PicturesAndFailuresAreReadFromThePage) {
@@ -41,4 +41,4 @@ TEST(DumpDom, AProgramThatHangsIsEnded) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::png_page_test

@@ -7,7 +7,7 @@
 #include "support/sample_case.h"
 #include "unit/comparisons/report/report_page.h"
 
-namespace springproof {
+namespace springproof::report_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -516,4 +516,4 @@ TEST_F(ReportInBrowser, CaseWithoutResultsIsShown) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::report_test

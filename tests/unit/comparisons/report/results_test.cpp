@@ -12,7 +12,7 @@
 #include "problem/system/files.h"
 #include "support/sample_case.h"
 
-namespace springproof {
+namespace springproof::results_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -281,4 +281,4 @@ TEST_F(WriteFile, FailureNamesTheFileAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::results_test

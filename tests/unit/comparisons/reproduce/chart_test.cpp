@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace springproof {
+namespace springproof::chart_test {
 namespace {
 
 std::size_t count_of(const std::string& text, const std::string& part) {
@@ -68,4 +68,4 @@ TEST(ChartSvg, BarsStandOnZero) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::chart_test

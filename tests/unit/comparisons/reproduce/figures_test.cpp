@@ -13,7 +13,7 @@
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
 
-namespace springproof {
+namespace springproof::figures_test {
 namespace {
 
 std::vector<PaperFigure> all_figures() {
@@ -166,4 +166,4 @@ TEST(PaperFigures, AreAllInThePageOfReproducedFigures) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::figures_test

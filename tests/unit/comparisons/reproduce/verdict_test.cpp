@@ -13,7 +13,7 @@
 #include "problem/system/input_error.h"
 #include "support/sample_case.h"
 
-namespace springproof {
+namespace springproof::verdict_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ TEST_F(ReproducedResults, ThePageAndTheFilesAreWritten) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::verdict_test

@@ -16,7 +16,7 @@
 #include "comparisons/run/prepare.h"
 #include "problem/system/child.h"
 
-namespace springproof {
+namespace springproof::case_run_test {
 namespace {
 
 TEST(Measures, DistancesAreWhatTheySay) {
@@ -237,4 +237,4 @@ TEST(FolderLock, IsOneProcessAtATimeAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::case_run_test

@@ -10,7 +10,7 @@
 #include "meshes/mesh.h"
 #include "problem/system/input_error.h"
 
-namespace springproof {
+namespace springproof::external_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ TEST(ScatteredField, PointsInAPlaneSpanNoVolume) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::external_test

@@ -13,7 +13,7 @@
 #include "comparisons/run/prepare.h"
 #include "problem/case_file/measures.h"
 
-namespace springproof {
+namespace springproof::fracture_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ TEST(CrackPicture, DrawsSpringsAndCracksByAge) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::fracture_run_test

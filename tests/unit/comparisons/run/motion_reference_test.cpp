@@ -9,7 +9,7 @@
 #include "comparisons/run/prepare.h"
 #include "fem_reference/reference.h"
 
-namespace springproof {
+namespace springproof::motion_reference_test {
 namespace {
 
 TEST(MotionReference, InterpolatesCubicsExactly) {
@@ -99,4 +99,4 @@ frames = 0
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::motion_reference_test

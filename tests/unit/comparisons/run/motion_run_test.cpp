@@ -12,7 +12,7 @@
 #include "comparisons/run/prepare.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::motion_run_test {
 namespace {
 
 /// A cube held below and pulled above; `more` is the rest of [dynamics].
@@ -224,4 +224,4 @@ TEST(MotionRun, WritesFramesAndTheirSeries) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::motion_run_test

@@ -15,7 +15,7 @@
 #include "problem/exact_field.h"
 #include "problem/system/child.h"
 
-namespace springproof {
+namespace springproof::reference_grids_test {
 namespace {
 
 PreparedCase prepared_block(const std::string& exact) {
@@ -258,4 +258,4 @@ TEST(ReferenceGrids, OneFailedGridLeavesNoReference) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::reference_grids_test

@@ -14,7 +14,7 @@
 #include "comparisons/run/sweep.h"
 #include "problem/system/child.h"
 
-namespace springproof {
+namespace springproof::shard_test {
 namespace {
 
 TEST(Shard, IsReadAsAShareOfAll) {
@@ -155,4 +155,4 @@ TEST(Sweep, PlanThatIsNotWholeIsRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::shard_test

@@ -10,7 +10,7 @@
 #include "comparisons/run/time_left.h"
 #include "meshes/mesh.h"
 
-namespace springproof {
+namespace springproof::status_test {
 namespace {
 
 const Activity solving{"[3/8] beam  nu0.3", "finite elements 2 of 5, q2 on 12 x 12 x 12 cells",
@@ -180,4 +180,4 @@ TEST(ExpectedSeconds, OfVoxelsGrowWithTheirNumberBeforeTheyAreMeshed) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::status_test

@@ -18,7 +18,7 @@
 #include "support/voxel_case.h"
 #include "support/vtu_reader.h"
 
-namespace springproof {
+namespace springproof::voxel_body_test {
 namespace {
 
 using namespace test;
@@ -294,4 +294,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, VoxelMistakes, testing::ValuesIn(mistakes),
                          [](const auto& i) { return std::string(i.param.name); });
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::voxel_body_test

@@ -11,7 +11,7 @@
 #include "problem/system/run_cost.h"
 #include "support/voxel_case.h"
 
-namespace springproof {
+namespace springproof::voxel_reference_test {
 namespace {
 
 using namespace test;
@@ -152,4 +152,4 @@ TEST_F(VoxelReference, AStiffMotionIsTheSameInTetrahedraAndCubes) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::voxel_reference_test

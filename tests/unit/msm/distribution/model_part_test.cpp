@@ -7,7 +7,7 @@
 #include "msm/distribution/pressure_form.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::model_part_test {
 namespace {
 
 const IsotropicMaterial material{1e4, 0.4, 1000};
@@ -110,4 +110,4 @@ TEST(ModelPart, NeighboursAreTheCoupledNodesOfEachRow) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::model_part_test

@@ -7,7 +7,7 @@
 #include "support/solids.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::cut_motion_test {
 namespace {
 
 const IsotropicMaterial material{1e4, 0.4, 1100};
@@ -92,4 +92,4 @@ TEST(CutMotion, IsStableAtTheSafeStep) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::cut_motion_test

@@ -9,7 +9,7 @@
 #include "msm/dynamics/time_step.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::emsm_dynamics_test {
 namespace {
 
 constexpr double density = 1000;
@@ -246,4 +246,4 @@ TEST(EmsmDynamics, FormsWithoutAnEnergyFlutterUndamped) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::emsm_dynamics_test

@@ -12,7 +12,7 @@
 #include "msm/dynamics/time_step.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::implicit_motion_test {
 namespace {
 
 constexpr double density = 1000;
@@ -351,4 +351,4 @@ TEST(ImplicitMotion, SlowRampEndsInTheStaticState) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::implicit_motion_test

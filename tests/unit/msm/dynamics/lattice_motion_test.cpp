@@ -8,7 +8,7 @@
 #include "msm/dynamics/time_step.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::lattice_motion_test {
 namespace {
 
 constexpr double density = 1000, edge = 0.25;
@@ -291,4 +291,4 @@ TEST(LatticeMotion, KeepsFewBytesPerNode) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::lattice_motion_test

@@ -13,7 +13,7 @@
 #include "msm/dynamics/time_step.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::mass_average_test {
 namespace {
 
 constexpr double density = 900;
@@ -360,4 +360,4 @@ TEST(MassAverage, IsRefusedWhereItCanNotBeHad) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::mass_average_test

@@ -11,7 +11,7 @@
 #include "support/solids.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::natural_modes_test {
 namespace {
 
 constexpr double density = 900, youngs_modulus = 1e6;
@@ -209,4 +209,4 @@ TEST(NaturalModes, OfDisorderedNetworksHaveSixRigidMotionsToo) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::natural_modes_test

@@ -8,7 +8,7 @@
 #include "msm/dynamics/dynamics.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::plane_contact_test {
 namespace {
 
 constexpr double density = 1000, E = 1e5, c = 10;  // of sound in a bar [m/s]
@@ -115,4 +115,4 @@ TEST(PlaneContact, LargeStepsHaveNone) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::plane_contact_test

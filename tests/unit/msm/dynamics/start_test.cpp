@@ -7,7 +7,7 @@
 #include "problem/course.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::start_test {
 namespace {
 
 TEST(Course, IsARampAPulseOrAWave) {
@@ -69,4 +69,4 @@ TEST(StartOfMotion, AWaveShakes) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::start_test

@@ -9,7 +9,7 @@
 #include "support/solids.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::time_step_test {
 namespace {
 
 constexpr double density = 900;
@@ -125,4 +125,4 @@ TEST(SafeTimeStep, KnowsAngularSprings) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::time_step_test

@@ -11,7 +11,7 @@
 #include "msm/dynamics/time_step.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::viscosity_test {
 namespace {
 
 constexpr double density = 1000, retardation = 1e-3;
@@ -201,4 +201,4 @@ TEST(Viscosity, ItsStepIsSafeAndALargerOneIsRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::viscosity_test

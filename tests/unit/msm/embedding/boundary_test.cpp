@@ -8,7 +8,7 @@
 
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::boundary_test {
 namespace {
 
 NodalVectors external(const std::vector<Load>& loads, const Mesh& mesh, double factor = 1) {
@@ -81,4 +81,4 @@ TEST(PrescribedExactField, IsHeldAtEveryNodeOfThePatch) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::boundary_test

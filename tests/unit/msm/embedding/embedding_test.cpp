@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace springproof {
+namespace springproof::embedding_test {
 namespace {
 
 /// Two rows of cubes, the second `gap` above the first; springs within each row only.
@@ -43,4 +43,4 @@ TEST(Embedding, CarriesAffineFieldsExactly) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::embedding_test

@@ -6,7 +6,7 @@
 #include "msm/embedding/boundary.h"
 #include "msm/models.h"
 
-namespace springproof {
+namespace springproof::wrench_test {
 namespace {
 
 Wrench of(const NodalVectors& force, const NodalVectors& X, const Vec3& about) {
@@ -63,4 +63,4 @@ TEST(Wrenchless, ALoadWithoutOneIsLeftAlone) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::wrench_test

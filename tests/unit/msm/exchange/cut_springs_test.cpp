@@ -9,7 +9,7 @@
 #include "support/solids.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::cut_springs_test {
 namespace {
 
 const IsotropicMaterial material{1e4, 0.4, 1100};
@@ -155,4 +155,4 @@ TEST(CutSprings, AreRefusedWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::cut_springs_test

@@ -13,7 +13,7 @@
 #include "problem/system/input_error.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::springs_file_test {
 namespace {
 
 const IsotropicMaterial material{1e4, 0.4, 1100};
@@ -226,4 +226,4 @@ TEST(SpringsFile, IsEmbeddedAtTheNodesOfTheMesh) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::springs_file_test

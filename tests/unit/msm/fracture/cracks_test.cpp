@@ -10,7 +10,7 @@
 #include "msm/topology/node_lattice.h"
 #include "msm/topology/random_network.h"
 
-namespace springproof {
+namespace springproof::cracks_test {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
@@ -103,4 +103,4 @@ TEST(Fragments, AreThePartsThatMoveApart) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::cracks_test

@@ -10,7 +10,7 @@
 #include "msm/topology/random_network.h"
 #include "support/bodies.h"
 
-namespace springproof {
+namespace springproof::fracture_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -199,4 +199,4 @@ TEST(Fracture, RefusesWhatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::fracture_test

@@ -7,8 +7,7 @@
 
 #include "msm/kernels/list_forces.h"
 
-using namespace springproof;
-
+namespace springproof::inverse_root_test {
 namespace {
 
 /// 1 / length of springs along x, by the kernel of an instruction set.
@@ -72,3 +71,5 @@ TEST(InverseRoot, IsNotFiniteAtZeroAndOfOverflowingSquaresNotPositive) {
     EXPECT_FALSE(inverse[1] > 0) << name_of(set);
   }
 }
+
+}  // namespace springproof::inverse_root_test

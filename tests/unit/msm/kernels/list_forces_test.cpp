@@ -11,8 +11,9 @@
 #include "msm/topology/random_network.h"
 #include "support/zoo.h"
 
-using namespace springproof;
-using namespace springproof::test;
+namespace springproof::list_forces_test {
+
+using namespace test;
 
 namespace {
 
@@ -289,3 +290,5 @@ TEST(Dynamics, OfANetworkDoesNotDependOnThreads) {
   EXPECT_EQ(one.kinetic_energy, two.kinetic_energy);
   EXPECT_NE(two.state.solver.find("2 threads"), std::string::npos) << two.state.solver;
 }
+
+}  // namespace springproof::list_forces_test

@@ -12,7 +12,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::emsm_weights_test {
 namespace {
 
 const IsotropicMaterial material{1e4, 0.45, 1000};
@@ -193,4 +193,4 @@ TEST(FreeMotions, AreHeldBySixUnknownsWithoutForce) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::emsm_weights_test

@@ -6,7 +6,7 @@
 #include "msm/laws/strain_energy.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::strain_energy_test {
 namespace {
 
 constexpr double G = 3;
@@ -95,4 +95,4 @@ TEST(StrainEnergy, SmallStrainsHaveTheModuliOfSprings) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::strain_energy_test

@@ -12,7 +12,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::local_fields_test {
 namespace {
 
 Eigen::Matrix3d some_gradient() {
@@ -185,4 +185,4 @@ TEST_F(Stretched, BlockGivesTheModuliOfItsLattice) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::local_fields_test

@@ -11,7 +11,7 @@
 #include "support/network_moduli.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::statistics_test {
 namespace {
 
 TEST(Statistics, KnowTheCubicLattice) {
@@ -104,4 +104,4 @@ TEST(CorrectSurface, TreatsPeriodicNetworksAsTheInsideOfABody) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::statistics_test

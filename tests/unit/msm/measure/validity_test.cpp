@@ -9,7 +9,7 @@
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::validity_test {
 namespace {
 
 IsotropicMaterial material(double nu) { return {2 * (1 + nu), nu, 1}; }  // G = 1
@@ -104,4 +104,4 @@ TEST(Validity, AnEquilibriumThatWrinklesTellsTheWaveBeforeItIsLost) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::validity_test

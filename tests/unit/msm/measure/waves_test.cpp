@@ -6,7 +6,7 @@
 #include "msm/measure/waves.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::waves_test {
 namespace {
 
 MassSpringModel lattice(const char* name, double nu = 0.25) {
@@ -72,4 +72,4 @@ TEST(Waves, WithoutFaceDiagonalsOneHasNoEnergy) {
 TEST(Waves, NetworksWithoutCellsAreRefused) { EXPECT_THROW(softest_wave(lattice("emsm"), 1), std::invalid_argument); }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::waves_test

@@ -6,7 +6,7 @@
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::dispersion_multigrid_test {
 namespace {
 
 Mesh cubes(int nx, int ny, int nz) { return block_mesh(0.1 * Vec3(nx, ny, nz), {nx, ny, nz}); }
@@ -134,4 +134,4 @@ TEST(DispersionMultigrid, IsForTheEnergyFormAboveAQuarter) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::dispersion_multigrid_test

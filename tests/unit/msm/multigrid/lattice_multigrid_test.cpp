@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::lattice_multigrid_test {
 namespace {
 
 Mesh cubes(int nx, int ny, int nz) { return block_mesh(0.1 * Vec3(nx, ny, nz), {nx, ny, nz}); }
@@ -255,4 +255,4 @@ TEST(LatticeMultigrid, PlatesAndRodsOfFewCells) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::lattice_multigrid_test

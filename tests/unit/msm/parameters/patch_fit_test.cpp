@@ -12,7 +12,7 @@
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::patch_fit_test {
 namespace {
 
 constexpr double E = 1e4;
@@ -131,4 +131,4 @@ TEST(PatchFit, GivesABarItsModuli) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::patch_fit_test

@@ -11,7 +11,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::homogenise_test {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -149,4 +149,4 @@ TEST(HomogenisePlane, HexagonalLatticeWithAngularSprings) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::homogenise_test

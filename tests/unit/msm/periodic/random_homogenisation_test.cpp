@@ -11,7 +11,7 @@
 #include "msm/topology/random_network.h"
 #include "problem/material.h"
 
-namespace springproof {
+namespace springproof::random_homogenisation_test {
 namespace {
 
 RandomParameters set_a_parameters(double springs_per_node, std::uint64_t seed) {
@@ -146,4 +146,4 @@ TEST(RandomNetworks, GripsOfABlockHideItsSoftness) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::random_homogenisation_test

@@ -11,7 +11,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::equilibrium_test {
 namespace {
 
 const std::optional<double> free_component;
@@ -385,4 +385,4 @@ TEST(MixedNewton, IsTheStateOfTheFormWithoutPressures) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::equilibrium_test

@@ -7,7 +7,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::lattice_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -81,4 +81,4 @@ TEST(Models, RefuseUnknownNamesAndOptions) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::lattice_test

@@ -11,7 +11,7 @@
 #include "support/tolerances.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::planar_and_node_lattice_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -122,4 +122,4 @@ TEST(HexagonalLattice, FillsTheRectangleByWholeRows) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::planar_and_node_lattice_test

@@ -13,7 +13,7 @@
 #include "support/bodies.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::random_network_test {
 namespace {
 
 RandomParameters parameters(double spacing, std::uint64_t seed = 1) {
@@ -300,4 +300,4 @@ TEST(RandomNetwork, RefusesWhatMakesNoNetwork) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::random_network_test

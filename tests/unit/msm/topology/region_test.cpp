@@ -8,7 +8,7 @@
 #include "support/bodies.h"
 #include "support/zoo.h"
 
-namespace springproof {
+namespace springproof::region_test {
 namespace {
 
 TEST(Region, GridAndRaysAgreeOnEveryPointOfALattice) {
@@ -114,4 +114,4 @@ TEST(Region, ClosestPointBeatsEveryPointOfTheTriangle) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::region_test

@@ -4,7 +4,7 @@
 
 #include "msm/topology/repair.h"
 
-namespace springproof {
+namespace springproof::repair_test {
 namespace {
 
 std::vector<Vec3> cube_lattice(int n) {
@@ -87,4 +87,4 @@ TEST(Repair, WhatStaysHasWellSpreadSprings) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::repair_test

@@ -6,7 +6,7 @@
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::body_test {
 namespace {
 
 using test::message_of;
@@ -83,4 +83,4 @@ TEST(VoxelBody, MistakesAreRefused) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::body_test

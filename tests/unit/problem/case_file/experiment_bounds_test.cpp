@@ -6,7 +6,7 @@
 #include "problem/system/shortened.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::experiment_bounds_test {
 namespace {
 
 using test::message_of;
@@ -163,4 +163,4 @@ TEST(Labels, AsFileNamesStayInTheirFolder) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_bounds_test

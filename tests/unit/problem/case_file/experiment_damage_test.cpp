@@ -10,7 +10,7 @@
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::experiment_damage_test {
 namespace {
 
 using test::message_of;
@@ -103,4 +103,4 @@ TEST(CaseFile, BinaryGarbage) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_damage_test

@@ -8,7 +8,7 @@
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::experiment_dynamics_test {
 namespace {
 
 using test::message_of;
@@ -146,4 +146,4 @@ TEST(DynamicsTable, MistakesAreExplained) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_dynamics_test

@@ -4,7 +4,7 @@
 #include "problem/case_file/external.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::experiment_external_test {
 namespace {
 
 using test::message_of;
@@ -59,4 +59,4 @@ TEST(ExternalTable, IsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_external_test

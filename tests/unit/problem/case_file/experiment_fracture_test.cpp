@@ -4,7 +4,7 @@
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::experiment_fracture_test {
 namespace {
 
 using test::message_of;
@@ -108,4 +108,4 @@ TEST(FractureCase, IsNeededByItsMeasure) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_fracture_test

@@ -5,7 +5,7 @@
 #include "problem/case_file/measures.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::experiment_line_test {
 namespace {
 
 using test::message_of;
@@ -114,4 +114,4 @@ TEST(LineCase, KelvinsFieldGoesWithFiniteElementsToo) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_line_test

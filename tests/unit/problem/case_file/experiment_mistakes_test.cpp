@@ -5,7 +5,7 @@
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
-namespace springproof {
+namespace springproof::experiment_mistakes_test {
 namespace {
 
 using test::message_of;
@@ -421,4 +421,4 @@ TEST(Mistake, LoadIsAListOfNumbers) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_mistakes_test

@@ -11,7 +11,7 @@
 #include "support/case_file.h"
 #include "support/tolerances.h"
 
-namespace springproof {
+namespace springproof::experiment_test {
 namespace {
 
 using test::full_case;
@@ -260,4 +260,4 @@ TEST(CheckPatches, NamesTheLoadThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::experiment_test

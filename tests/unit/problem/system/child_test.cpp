@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace springproof {
+namespace springproof::child_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ TEST_F(Temporary, APlaceThatIsNotThereIsNamed) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::child_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace springproof {
+namespace springproof::encoding_test {
 namespace {
 
 std::string encoded(const std::string& text) { return base64(text.data(), text.size()); }
@@ -26,4 +26,4 @@ TEST(Encoding, ReservedCharactersOfXmlAreEscaped) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::encoding_test

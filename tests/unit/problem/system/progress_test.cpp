@@ -7,7 +7,7 @@
 #include <fstream>
 #include <vector>
 
-namespace springproof {
+namespace springproof::progress_test {
 namespace {
 
 using Said = std::vector<std::string>;
@@ -81,4 +81,4 @@ TEST(Progress, IsPassedOnFromAnotherProgramsFile) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::progress_test

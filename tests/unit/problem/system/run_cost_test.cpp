@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace springproof {
+namespace springproof::run_cost_test {
 namespace {
 
 TEST(RunCost, ShortRunsAreRepeatedAndTheLeastCounts) {
@@ -42,4 +42,4 @@ TEST(RunCost, MemoryIsWhatWasAddedAndGivenBack) {
 }
 
 }  // namespace
-}  // namespace springproof
+}  // namespace springproof::run_cost_test
