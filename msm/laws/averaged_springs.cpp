@@ -15,19 +15,12 @@ using CellMatrix = Eigen::Matrix<double, 24, 24>;
 using CellVector = Eigen::Matrix<double, 24, 1>;
 using Row = Eigen::Matrix<double, 1, 24>;
 
-double side(int corner, int axis) { return 2.0 * hexahedron_corners[corner][axis] - 1; }
-
 /// H_pq of a cell, half the sum of s_p s_q u over its corners, as a row per component: d2u / dxi_p dxi_q of the
 /// trilinear field in the middle of the cell.
 Row second_difference(int p, int q, int component) {
   Row row = Row::Zero();
-  for (int n = 0; n < 8; ++n) row[3 * n + component] = side(n, p) * side(n, q) / 2;
+  for (int n = 0; n < 8; ++n) row[3 * n + component] = corner_side(n, p) * corner_side(n, q) / 2;
   return row;
-}
-
-const FilledPart& part_of(const Network& network, std::size_t cell) {
-  static const FilledPart full;
-  return network.filled.empty() ? full : network.filled[cell];
 }
 
 using Pattern = Eigen::Matrix<double, 8, 4>;
@@ -40,7 +33,7 @@ const Pattern& patterns() {
   static const Pattern all = [] {
     Pattern h;
     for (int n = 0; n < 8; ++n) {
-      const double x = side(n, 0), y = side(n, 1), z = side(n, 2);
+      const double x = corner_side(n, 0), y = corner_side(n, 1), z = corner_side(n, 2);
       h.row(n) << y * z / 2, z * x / 2, x * y / 2, x * y * z;
     }
     return h;
@@ -168,7 +161,7 @@ void for_each_cell(const Network& network, const Make& make, const Act& act) {
   std::map<double, decltype(make(1.0, FilledPart{}))> full;
   auto last = full.end();
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart& part = part_of(network, c);
+    const FilledPart& part = filled_part(network, c);
     const double edge = network.edge(c);
     if (part.fraction != 1) {
       act(network.cells[c], make(edge, part));
@@ -190,21 +183,6 @@ template <class Act>
 void for_each_stiffness(const AveragedSprings& law, const Network& network, const Act& act) {
   for_each_cell(
       network, [&](double edge, const FilledPart& part) { return law.cell_matrix(edge, part); }, act);
-}
-
-/// Sum over the corners of a cell of a nodal field times their mean gradients: of positions, F.
-Eigen::Matrix3d mean_gradient(const Hexahedron& cell, const std::array<Vec3, 8>& g, const NodalVectors& field) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (int n = 0; n < 8; ++n) sum += field.row(cell[n]).transpose() * g[n].transpose();
-  return sum;
-}
-
-/// d2V/dx2 = volume [F (g_m x g_n)] as the matrix of a cross product.
-Eigen::Matrix3d volume_curvature(double volume, const Eigen::Matrix3d& F, const Vec3& g_m, const Vec3& g_n) {
-  const Vec3 w = -volume * F * g_m.cross(g_n);
-  Eigen::Matrix3d block;
-  block << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
-  return block;
 }
 
 }  // namespace
@@ -233,24 +211,6 @@ HourglassStiffness HourglassStiffness::of_pattern(double face_to_cube, double nu
     k.twist = k.warping = 0.1;
   }
   return k;
-}
-
-std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part) {
-  std::array<Vec3, 8> g;
-  for (int n = 0; n < 8; ++n)
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      const double sj = side(n, j), sk = side(n, k);
-      g[n][i] = side(n, i) / edge * (0.25 + (sj * part.mean[j] + sk * part.mean[k]) / 2 + sj * sk * part.mixed[i]);
-    }
-  return g;
-}
-
-Eigen::Matrix<double, 24, 1> volume_gradient(double edge, const FilledPart& part) {
-  const std::array<Vec3, 8> g = mean_gradients(edge, part);
-  Eigen::Matrix<double, 24, 1> b;
-  for (int n = 0; n < 8; ++n) b.segment<3>(3 * n) = part.fraction * edge * edge * edge * g[n];
-  return b;
 }
 
 Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(double l, const FilledPart& part) const {
@@ -367,46 +327,6 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
         [&](const Hexahedron& cell, const auto& of) {
           add(cell, tangent_of(of.first, Deformed(*this, of.second, corners_of(cell, x), Derivative::second)));
         });
-}
-
-CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x) {
-  const FilledPart& part = part_of(network, cell);
-  const std::array<Vec3, 8> g = mean_gradients(network.edge(cell), part);
-  const Eigen::Matrix3d F = mean_gradient(network.cells[cell], g, x);
-  Eigen::Matrix3d cofactor;
-  for (int i = 0; i < 3; ++i) cofactor.col(i) = F.col((i + 1) % 3).cross(F.col((i + 2) % 3));
-  const double volume = part.fraction * std::pow(network.edge(cell), 3);
-  CellVolume result{volume * F.determinant(), {}};
-  for (int n = 0; n < 8; ++n) result.gradient.segment<3>(3 * n) = volume * cofactor * g[n];
-  return result;
-}
-
-void add_volume_curvature(const Network& network, std::size_t cell, const NodalVectors& x, double pressure,
-                          BlockMatrix& K) {
-  const FilledPart& part = part_of(network, cell);
-  const Hexahedron& corners = network.cells[cell];
-  const std::array<Vec3, 8> g = mean_gradients(network.edge(cell), part);
-  const Eigen::Matrix3d F = mean_gradient(corners, g, x);
-  const double pressure_on_all = pressure * part.fraction * std::pow(network.edge(cell), 3);
-  for (int m = 0; m < 8; ++m)
-    for (int n = 0; n < 8; ++n) K.add(corners[m], corners[n], volume_curvature(pressure_on_all, F, g[m], g[n]));
-}
-
-VolumeChange volume_change(const Network& network, const NodalVectors& u) {
-  double volume = 0;
-  VolumeChange change{0, 0};
-  const std::array<Vec3, 8> of_full = mean_gradients(network.cell_edge, {});
-  for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart& part = part_of(network, c);
-    const double edge = network.edge(c), own = part.fraction * std::pow(edge / network.cell_edge, 3);
-    const bool known = part.fraction == 1 && edge == network.cell_edge;
-    const std::array<Vec3, 8> g = known ? of_full : mean_gradients(edge, part);
-    const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + mean_gradient(network.cells[c], g, u);
-    volume += own;
-    change.first_order += own * (F.trace() - 3);
-    change.exact += own * (F.determinant() - 1);
-  }
-  return {change.first_order / volume, change.exact / volume};
 }
 
 }  // namespace springproof

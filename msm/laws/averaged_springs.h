@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
+#include "msm/laws/filled_volume.h"
 #include "msm/laws/law_traits.h"
 #include "msm/laws/strain_energy.h"
 #include "msm/topology/network.h"
@@ -86,32 +87,5 @@ CellForm cell_form(const AveragedSprings& law, double edge, const FilledPart& pa
 
 /// The four patterns of corner positions that F does not see: q = (positions of the corners, 3 x 8) times this.
 const Eigen::Matrix<double, 8, 4>& corner_patterns();
-
-/// Mean over the filled part of the gradients of the corners' trilinear weights [1/m].
-std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part);
-
-/// Derivative of the volume of the filled part to the displacement of the corners [m^2]; 3 * corner + axis.
-Eigen::Matrix<double, 24, 1> volume_gradient(double edge, const FilledPart& part);
-
-/// Volume of the filled part by its mean deformation gradient, and its derivatives to the positions of the corners.
-struct CellVolume {
-  double value;                           ///< [m^3]
-  Eigen::Matrix<double, 24, 1> gradient;  ///< [m^2]; 3 * corner + axis
-};
-/// Volume of the filled part of cell number `cell` at positions x [m].
-CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x);
-
-/// K += pressure d2V/dx2 of that volume [N/m].
-void add_volume_curvature(const Network& network, std::size_t cell, const NodalVectors& x, double pressure,
-                          BlockMatrix& K);
-
-/// Relative change of the volume of a network of cells, filled or cut, by the mean deformation gradients of the cells:
-/// to first order in the displacement, and exact.
-struct VolumeChange {
-  double first_order;  ///< trace of the mean strain [1]
-  double exact;        ///< (V' - V)/V [1]
-};
-/// Of displacements [m], n x 3.
-VolumeChange volume_change(const Network& network, const NodalVectors& displacement);
 
 }  // namespace springproof

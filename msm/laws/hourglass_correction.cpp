@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "msm/laws/filled_volume.h"
+
 namespace springproof {
 namespace {
 
@@ -10,8 +12,7 @@ using CellVector = Eigen::Matrix<double, 24, 1>;
 /// Unit displacement of axis `component` in the hourglass pattern xi_p xi_q (xi = +-1 at the corners).
 CellVector hourglass(int component, int p, int q) {
   CellVector h = CellVector::Zero();
-  for (int n = 0; n < 8; ++n)
-    h[3 * n + component] = (2.0 * hexahedron_corners[n][p] - 1) * (2.0 * hexahedron_corners[n][q] - 1) / std::sqrt(8.0);
+  for (int n = 0; n < 8; ++n) h[3 * n + component] = corner_side(n, p) * corner_side(n, q) / std::sqrt(8.0);
   return h;
 }
 

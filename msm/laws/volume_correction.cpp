@@ -5,18 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "msm/laws/filled_volume.h"
+
 namespace springproof {
-namespace {
-
-double sign(int corner, int axis) { return 2.0 * hexahedron_corners[corner][axis] - 1.0; }
-
-Eigen::Matrix3d cross_matrix(const Vec3& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return m;
-}
-
-}  // namespace
 
 VolumeDensity volume_density(VolumeEnergy form, double J) {
   if (form == VolumeEnergy::paper) return {0.5 * (J - 1) * (J - 1), J - 1, 1};
@@ -31,14 +22,14 @@ MeanEdgeVolume mean_edge_volume(const Hexahedron& cell, const NodalVectors& x) {
   v.c.setZero();
   for (int n = 0; n < 8; ++n) {
     const Vec3 p = 0.25 * x.row(cell[n]).transpose();
-    v.a += sign(n, 0) * p;
-    v.b += sign(n, 1) * p;
-    v.c += sign(n, 2) * p;
+    v.a += corner_side(n, 0) * p;
+    v.b += corner_side(n, 1) * p;
+    v.c += corner_side(n, 2) * p;
   }
   const Vec3 bc = v.b.cross(v.c), ca = v.c.cross(v.a), ab = v.a.cross(v.b);
   v.value = v.a.dot(bc);
   for (int n = 0; n < 8; ++n)
-    v.gradient.row(n) = 0.25 * (sign(n, 0) * bc + sign(n, 1) * ca + sign(n, 2) * ab).transpose();
+    v.gradient.row(n) = 0.25 * (corner_side(n, 0) * bc + corner_side(n, 1) * ca + corner_side(n, 2) * ab).transpose();
   return v;
 }
 
@@ -79,9 +70,10 @@ void add_volume_curvature(const Hexahedron& cell, const MeanEdgeVolume& v, doubl
   for (int m = 0; m < 8; ++m)
     for (int n = 0; n < 8; ++n) {
       // From the product rule on b x c, c x a, a x b.
-      const Eigen::Matrix3d curvature = (1.0 / 16) * (sign(m, 0) * (sign(n, 2) * B - sign(n, 1) * C) +
-                                                      sign(m, 1) * (sign(n, 0) * C - sign(n, 2) * A) +
-                                                      sign(m, 2) * (sign(n, 1) * A - sign(n, 0) * B));
+      const Eigen::Matrix3d curvature =
+          (1.0 / 16) * (corner_side(m, 0) * (corner_side(n, 2) * B - corner_side(n, 1) * C) +
+                        corner_side(m, 1) * (corner_side(n, 0) * C - corner_side(n, 2) * A) +
+                        corner_side(m, 2) * (corner_side(n, 1) * A - corner_side(n, 0) * B));
       K.add(cell[m], cell[n], pressure * curvature);
     }
 }

@@ -24,25 +24,15 @@ double energy_density(const AveragedSprings& law, const Eigen::Matrix3d& strain)
   return law.lame_lambda / 2 * strain.trace() * strain.trace() + law.shear_modulus * strain.squaredNorm();
 }
 
-FilledPart part_of(const Network& network, std::size_t cell) {
-  return network.filled.empty() ? FilledPart{} : network.filled[cell];
-}
-
 /// Mean strain of each cell.
 Strains cell_strains(const Network& network, const NodalVectors& u) {
   Strains strains(static_cast<Eigen::Index>(network.cells.size()), 9);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const std::array<Vec3, 8> g = mean_gradients(network.edge(c), part_of(network, c));
-    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-    for (int n = 0; n < 8; ++n) H += u.row(network.cells[c][n]).transpose() * g[n].transpose();
+    const Eigen::Matrix3d H = mean_gradient(network, c, u);
     const Eigen::Matrix3d strain = (H + H.transpose()) / 2;
     strains.row(static_cast<Eigen::Index>(c)) = Eigen::Map<const Eigen::Matrix<double, 1, 9>>(strain.data());
   }
   return strains;
-}
-
-double volume_of(const Network& network, std::size_t cell) {
-  return part_of(network, cell).fraction * std::pow(network.edge(cell), 3);
 }
 
 /// Strain at each node; that of a carried one follows from the others.
@@ -51,8 +41,8 @@ Strains nodal_strains(const Network& network, const Strains& of_cells) {
   Eigen::VectorXd volume = Eigen::VectorXd::Zero(network.nodes());
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     for (const int n : network.cells[c]) {
-      sum.row(n) += volume_of(network, c) * of_cells.row(static_cast<Eigen::Index>(c));
-      volume[n] += volume_of(network, c);
+      sum.row(n) += filled_volume(network, c) * of_cells.row(static_cast<Eigen::Index>(c));
+      volume[n] += filled_volume(network, c);
     }
   for (auto p = network.carried.rbegin(); p != network.carried.rend(); ++p)
     for (const int n : p->by) {
@@ -94,21 +84,21 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
   const Strains of_cells = cell_strains(network, u), of_nodes = nodal_strains(network, of_cells);
   CellEnergies energies;
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart part = part_of(network, c);
+    const FilledPart& part = filled_part(network, c);
     double mean = 0;  // over eight points with the moments of the filled part along each axis
     for (int point = 0; point < 8; ++point) {
       Eigen::Matrix<double, 1, 9> difference = -of_cells.row(static_cast<Eigen::Index>(c));
       for (int n = 0; n < 8; ++n) {
         double weight = 1;
         for (int d = 0; d < 3; ++d) {
-          const double xi = part.mean[d] + (2 * hexahedron_corners[point][d] - 1) * std::sqrt(part.variance[d]);
-          weight *= 0.5 + (2 * hexahedron_corners[n][d] - 1) * xi;
+          const double xi = part.mean[d] + corner_side(point, d) * std::sqrt(part.variance[d]);
+          weight *= 0.5 + corner_side(n, d) * xi;
         }
         difference += weight * of_nodes.row(network.cells[c][n]);
       }
       mean += energy_density(*law, as_matrix(difference)) / 8;
     }
-    energies.error.push_back(volume_of(network, c) * mean);
+    energies.error.push_back(filled_volume(network, c) * mean);
     Eigen::Matrix<double, 24, 1> of_corners;
     for (int n = 0; n < 8; ++n) of_corners.segment<3>(3 * n) = u.row(network.cells[c][n]).transpose();
     energies.elastic += of_corners.dot(law->cell_matrix(network.edge(c), part) * of_corners) / 2;

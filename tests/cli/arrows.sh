@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# problem <- meshes <- {msm, fem_reference} <- comparisons: each module compiles with what lies below it and not with
+# problem <- meshes <- {msm, fem_reference} <- comparisons: each module finds the headers of what lies below it and none of
 # what lies beside or above.   arrows.sh COMPILER BUILD_DIRECTORY EIGEN_INCLUDE
 set -u
 compiler=$1 views=$(readlink -f "$2")/arrows eigen=$3
@@ -20,9 +20,9 @@ for module in "${!below[@]}"; do
     allowed=no
     [[ " ${below[$module]} " == *" $other "* ]] && allowed=yes
     compiles=no
-    echo "#include \"${header[$other]}\"" | "$compiler" -std=c++20 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 "${paths[@]}" -fsyntax-only -x c++ - 2>/dev/null && compiles=yes
+    echo "#include \"${header[$other]}\"" | "$compiler" -std=c++20 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 "${paths[@]}" -M -x c++ - >/dev/null 2>&1 && compiles=yes
     if [ $allowed != $compiles ]; then
-      echo "FAILED: in $module, an include of ${header[$other]} compiles: $compiles, allowed: $allowed"
+      echo "FAILED: in $module, ${header[$other]} is found: $compiles, allowed: $allowed"
       failures=$((failures + 1))
     fi
   done

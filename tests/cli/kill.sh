@@ -22,8 +22,10 @@ displacement_m = [0, 0, 0]
 [[load]]
 on = "z_max"
 displacement_m = [0, 0, 0.01]
+[compare]
+models = ["hybmss"]
 [reference]
-cells = [8, 8, 8]
+cells = [4, 4, 4]
 [[expect]]
 model = "hybmss"
 measure = "displacement_error"

@@ -38,7 +38,9 @@ for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { insi
   cells="4 2 2"
   [[ $model != *hexagonal && $model != kirkwood ]] || cells="4 2 1"
   [[ $model != *patch ]] || cells="8 4 4"  # fewer nodes cannot hold every strain
-  for form in json npz; do
+  forms="json npz"
+  [[ $model != *patch ]] || forms=json  # fitted anew by each export
+  for form in $forms; do
     # shellcheck disable=SC2086
     export_to case.toml --to springs --model "$model" --nu 0.4 --cells $cells --out "$model.$form"  # every constant differs from 0
     if [ -n "$numpy" ]; then

@@ -108,8 +108,9 @@ TEST_P(FemOrder, IsOneMoreThanTheDegree) {
 std::vector<OrderCase> order_cases() {
   std::vector<OrderCase> cases;
   for (int degree : {1, 2})
-    for (double nu : {-0.5, 0.25, 0.499, 0.4999})
-      for (bool distorted : {false, true}) cases.push_back({degree, nu, distorted});
+    for (const auto& [nu, distorted] :
+         std::vector<std::pair<double, bool>>{{-0.5, true}, {0.25, false}, {0.25, true}, {0.4999, true}})
+      cases.push_back({degree, nu, distorted});
   return cases;
 }
 

@@ -120,9 +120,9 @@ TEST(NetworkMultigrid, UnsymmetricFormsTakeFewStepsOverTheSymmetricOne) {
 // An infinite network that the calibration has not seen has the material's moduli; one sample of 1000 nodes varies by 1
 // %.
 TEST(BulkCalibration, HoldsForOtherSamples) {
-  for (double nu : {-0.5, 0.0, 0.25, 0.4, 0.49}) {
+  for (double nu : {-0.5, 0.25, 0.49}) {
     const IsotropicMaterial m{1e4, nu, density};
-    const int seeds = 3;
+    const int seeds = 2;
     double G = 0, ratio = 0;
     for (int seed = 1; seed <= seeds; ++seed) {
       ModelParameters p = test::model("emsm_random");
@@ -146,7 +146,7 @@ ModelParameters random_emsm(double springs_per_node) {
 
 // Springs alone have nu = 0.28 at 10 springs per node: below that q is negative, and exact volumes can be unstable.
 TEST(BulkCalibration, HoldsForEveryNumberOfSpringsRoundTheirOwnPoissonRatio) {
-  for (double springs_per_node : {10.0, 12.0, 14.0})
+  for (double springs_per_node : {10.0, 14.0})
     for (double nu : {0.25, 0.26, 0.29}) {
       const IsotropicMaterial m{1e4, nu, density};
       const ModelParameters p = random_emsm(springs_per_node);

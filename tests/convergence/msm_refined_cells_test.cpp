@@ -107,7 +107,7 @@ TEST(RefinedCells, NeedAtMostTwiceTheIterations) {
   const double l = 0.125;
   const Mesh body = test::mapped(test::cylinder(4, 8, 24), test::random_placement(4, l));
   const VoxelGrid coarse = test::grid_about(body, l);
-  for (double nu : {-0.5, 0.25, 0.45, 0.499}) {
+  for (double nu : {-0.5, 0.25, 0.499}) {
     const Equilibrium uniform = bent(coarse, body, "hybmss_avg", nu);
     const Equilibrium refined = bent(test::halved_at_random(coarse, 2, 30), body, "hybmss_avg", nu);
     RecordProperty("nu" + std::to_string(nu),

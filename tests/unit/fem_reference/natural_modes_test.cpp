@@ -27,7 +27,7 @@ double nearest(const fem::Solution& s, double frequency) {
 TEST(FemNaturalModes, OfAFreeCubeHoldLamesModes) {
   // f = c_s / (sqrt(2) a) at every nu (Lame); order four, from the finest grid's error.
   const double a = 0.5;
-  for (const double nu : {0.0, 0.3, 0.49, 0.4999}) {
+  for (const double nu : {0.0, 0.3, 0.4999}) {
     double before = 0;
     for (const int n : {3, 6}) {
       const fem::GridProblem problem = modes_of({a, a, a}, {n, n, n}, 2, nu, 14);

@@ -66,7 +66,7 @@ TEST_P(RaggedBodies, TakeFewIterationsNearOneHalf) {
   problem.loads = {PrescribedDisplacement{body.held, {0.0, 0.0, 0.0}}, PatchForce{body.pulled, {-0.1, 0, 0}}};
   problem.points = NodalVectors(0, 3);
   problem.tolerance = 1e-8;
-  for (const double nu : {0.45, 0.49, 0.4999}) {
+  for (const double nu : {0.45, 0.4999}) {
     problem.material = {1e4, nu, 1000};
     const fem::Solution s = fem::solve_grid(problem);
     EXPECT_TRUE(s.ok) << s.message;

@@ -163,7 +163,7 @@ TEST(LatticeMotion, StepsAreThoseOfThePlainLoops) {
       const double dt = 0.8 * safe_time_step(model, density), damping = 5;
       const BoundaryConditions bc = conditions_of(model.network);
       const State rest = {X, NodalVectors::Zero(X.rows(), 3), {}, 0};
-      const int steps = body.mesh.hexahedra.size() > 500 ? 20 : 120;
+      const int steps = body.mesh.hexahedra.size() > 500 ? 8 : 24;
       const double scale = bc.external.norm();
       const State plain = plain_steps(model, rest, bc, steps, dt, damping);
       // Three threads wait for each other on two cores; ThreadsDoNotChangeTheMotionAndRepeatIt has them.
@@ -200,7 +200,7 @@ TEST(LatticeMotion, ViscousStepsAreThoseOfThePlainLoops) {
       BoundaryConditions moved = bc;
       moved.prescribed *= 1.2;
       const State rest = {X, NodalVectors::Zero(X.rows(), 3), {}, 0};
-      const int steps = body.mesh.hexahedra.size() > 500 ? 5 : 15;
+      const int steps = body.mesh.hexahedra.size() > 500 ? 3 : 6;
       const State first = plain_steps(model, rest, bc, steps, dt, damping, viscosity);
       const State plain = plain_steps(model, first, moved, steps, dt, damping, viscosity);
       for (LatticeMotionOptions options : every_kernel({1, 2})) {
@@ -231,7 +231,7 @@ TEST(LatticeMotion, ThreadsDoNotChangeTheMotionAndRepeatIt) {
   const auto positions = [&](int threads) {
     LatticeMotion motion(model, density, {Precision::float64, threads});
     motion.set_conditions(conditions_of(model.network));
-    motion.advance(500, dt, 5);
+    motion.advance(100, dt, 5);
     return NodalVectors(motion.positions() - model.network.X);
   };
   const NodalVectors one = positions(1);

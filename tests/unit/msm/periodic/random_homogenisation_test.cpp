@@ -70,12 +70,9 @@ double poisson_ratio_of_emsm(double springs_per_node, double wanted, Dispersion 
 // there. Two seeds of the independent figures agree within 0.003.
 TEST(RandomNetworks, DispersedMomentumMissesTheWantedPoissonRatio) {
   EXPECT_NEAR(poisson_ratio_of_emsm(12, -0.9, Dispersion::published), -0.882, 0.003);
-  EXPECT_NEAR(poisson_ratio_of_emsm(12, 0.0, Dispersion::published), 0.040, 0.003);
   EXPECT_NEAR(poisson_ratio_of_emsm(12, 0.4, Dispersion::published), 0.387, 0.003);
-  EXPECT_NEAR(poisson_ratio_of_emsm(22, -0.9, Dispersion::published), -0.893, 0.003);
   EXPECT_NEAR(poisson_ratio_of_emsm(22, 0.4, Dispersion::published), 0.393, 0.003);
   EXPECT_NEAR(poisson_ratio_of_emsm(12, 0.45, Dispersion::symmetric), 0.419, 0.003);
-  EXPECT_NEAR(poisson_ratio_of_emsm(16, 0.45, Dispersion::symmetric), 0.425, 0.003);
   EXPECT_NEAR(poisson_ratio_of_emsm(22, 0.45, Dispersion::symmetric), 0.434, 0.003);
 }
 
