@@ -131,7 +131,9 @@ Notched notched(const VoxelGrid& grid, const Mesh& body, VoxelGrid* finer = null
   const Equilibrium e = solve_linear(built.model, conditions);
   EXPECT_TRUE(e.ok) << e.message;
   const CellEnergies energies = cell_energies(built.model, e.displacement);
-  if (finer) EXPECT_TRUE(halve_worst_cells(cut, energies.error, *finer));
+  if (finer) {
+    EXPECT_TRUE(halve_worst_cells(cut, energies.error, *finer));
+  }
   return {cut.cells.size(), e.displacement.cwiseProduct(conditions.external).sum(), energies.promised_error()};
 }
 

@@ -29,7 +29,9 @@ TEST(RefinedGrid, NeighboursDifferByAFactorOfTwoAtMost) {
           const std::array<int, 3> beside = plus(cube, n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
           bool inside = true;
           for (int d = 0; d < 3; ++d) inside &= beside[d] >= 0 && beside[d] < grid.cells[d];
-          if (inside) EXPECT_LE(size, 2 * cell_size(grid, beside));
+          if (inside) {
+            EXPECT_LE(size, 2 * cell_size(grid, beside));
+          }
         }
       }
   EXPECT_EQ(sizes, 1 + 2 + 4 + 8);

@@ -111,7 +111,7 @@ TEST_F(GlanceInBrowser, LostEquilibriaAreACurve) {
   CaseResult c;
   c.experiment = sample_experiment();
   c.experiment.kinematics = "hencky";
-  c.experiment.models = {{"hybmss", {}, "hybmss"}, {"hybmss_avg", {}, "hybmss_avg"}};
+  c.experiment.models = {{"hybmss", {}, "hybmss", {}}, {"hybmss_avg", {}, "hybmss_avg", {}}};
   for (const auto& [model, nu, load] :
        {std::tuple("hybmss", 0.0, 0.75), {"hybmss", 0.4, 1.0}, {"hybmss_avg", 0.0, 1.0}}) {
     const Stability stability{load, load < 1 ? "unstable" : "", 0.2, 0.1, {}, 0.05};

@@ -85,8 +85,9 @@ frames = 0
   EXPECT_EQ(part.histories[0].values[0].size(), 73u);
   int found = 0;
   for (const Row& row : part.rows) {
-    if (row.model == "hybmss_avg in motion")
+    if (row.model == "hybmss_avg in motion") {
       EXPECT_NE(row.measure, "displacement_error") << "of the last instant from the equilibrium";
+    }
     const bool arrival = row.measure == "motion.arrival";
     if (!arrival && row.measure != "motion_error") continue;
     ++found;

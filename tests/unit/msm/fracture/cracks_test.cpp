@@ -20,7 +20,8 @@ Mesh plate() { return block_mesh({24, 24, 4}, {24, 24, 4}); }
 Network cubic() { return node_lattice(plate(), isotropic_pattern(std::numeric_limits<double>::infinity())); }
 
 Network disordered() {
-  RandomParameters p{1};
+  RandomParameters p{};
+  p.spacing = 1;
   p.surface_nodes = false;
   return random_network(region_of(plate()), p);
 }

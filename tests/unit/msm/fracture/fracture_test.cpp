@@ -31,7 +31,8 @@ Held held_below(Network network, double depth) {
 Held slab() { return held_below(node_lattice(block_mesh({10, 10, 3}, {10, 10, 3}), isotropic_pattern(infinity)), 1); }
 
 Held disordered_slab(std::uint64_t seed) {
-  RandomParameters p{1};
+  RandomParameters p{};
+  p.spacing = 1;
   p.seed = seed;
   p.surface_nodes = false;
   return held_below(random_network(region_of(block_mesh({10, 10, 3}, {10, 10, 3})), p), 0.8);
@@ -84,8 +85,9 @@ TEST(ShrinkingSprings, ThatCameLooseHaveNoTension) {
   springs.set_amplitude(0.1);
   EXPECT_TRUE(springs.solve(1e-10, 1000).converged);
   for (std::size_t s = 0; s < body.network.springs.size(); ++s)
-    if (body.network.X(body.network.springs[s].i, 2) > 2 && body.network.X(body.network.springs[s].j, 2) > 2)
+    if (body.network.X(body.network.springs[s].i, 2) > 2 && body.network.X(body.network.springs[s].j, 2) > 2) {
       EXPECT_NEAR(springs.stretch(static_cast<int>(s)), 0, 1e-8);
+    }
 }
 
 TEST(Fracture, AChainBreaksOnceAtItsWeakestSpring) {

@@ -72,7 +72,9 @@ TEST(NodeLattice, FillsARegionTurned) {
   for (const Spring& s : turned.springs) {
     const Eigen::RowVector3d d = turned.X.row(s.j) - turned.X.row(s.i);
     EXPECT_NEAR(d.norm(), s.rest_length, 1e-12);
-    if (d[2] == 0 && s.rest_length < 1.1) EXPECT_NEAR(std::abs(d[0]), std::sqrt(0.5), 1e-12);  // edges: diagonal now
+    if (d[2] == 0 && s.rest_length < 1.1) {
+      EXPECT_NEAR(std::abs(d[0]), std::sqrt(0.5), 1e-12);  // edges: diagonal now
+    }
   }
   Region nowhere = region;
   nowhere.inside = [](const Vec3&) { return false; };
