@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "meshes/locate/outer_facets.h"
@@ -132,6 +133,12 @@ CutBody::Place CutBody::place(const Vec3& point) const {
 
 namespace {
 
+/// The cell of a part of a facet of the tetrahedron `owner`; -1: it is left out.
+int cell_of(const TriangleCorners& part, int owner, const BodyParts& parts, const BodyPieces& pieces) {
+  const int p = parts.find(owner, parts.cube_beside(part, owner));
+  return p < 0 ? -1 : pieces.cell[pieces.of_part[p]];
+}
+
 void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pieces, CutBody& out,
                  const std::function<int(const Vec3&)>& nearest) {
   static const std::vector<TrianglePoint> rule = triangle_points();
@@ -148,8 +155,7 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
                             const auto position = [&](const std::array<double, 3>& b) -> Vec3 {
                               return out.grid.origin + l * (b[0] * part[0] + b[1] * part[1] + b[2] * part[2]);
                             };
-                            const int p = parts.find(owner, parts.cube_beside(part, owner));
-                            int cell = p < 0 ? -1 : pieces.cell[pieces.of_part[p]];
+                            int cell = cell_of(part, owner, parts, pieces);
                             if (cell < 0) cell = nearest(position({1.0 / 3, 1.0 / 3, 1.0 / 3}));
                             auto [at, is_new] = in_cell.try_emplace(cell);
                             if (is_new) {
@@ -167,6 +173,78 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
     }
     auto& list = out.patches[patch.name];
     for (auto& [cell, piece] : in_cell) list.push_back(piece);
+  }
+}
+
+/// A corner of parts of the surface in a cell.
+struct SurfaceCorner {
+  int cell;
+  Vec3 at;                      ///< in edges of the cubes
+  Vec3 normals = Vec3::Zero();  ///< sum over the parts
+  int parts = 0;
+  double flatness() const { return normals.norm() / parts; }  ///< 1, less at edges and corners of the body
+};
+
+/// Those that lie farthest in the directions of the faces, edges and corners of a cube.
+std::vector<SurfaceCorner> farthest(const std::vector<SurfaceCorner>& corners) {
+  std::set<std::size_t> chosen;
+  for (int d = 0; d < 27; ++d) {
+    const Vec3 direction(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
+    std::size_t best = 0;
+    for (std::size_t c = 1; c < corners.size(); ++c)
+      if (direction.dot(corners[c].at - corners[best].at) > lattice_tolerance) best = c;
+    if (d != 13) chosen.insert(best);
+  }
+  std::vector<SurfaceCorner> all;
+  for (const std::size_t c : chosen) all.push_back(corners[c]);
+  return all;
+}
+
+/// The corners of the parts of the surface, cell by cell.
+std::map<int, std::vector<SurfaceCorner>> surface_corners(const Mesh& body, const BodyParts& parts,
+                                                          const BodyPieces& pieces, const CutBody& out,
+                                                          const std::function<int(const Vec3&)>& nearest) {
+  std::map<int, std::vector<SurfaceCorner>> in_cell;
+  for (const OuterFacet& f : outer_facets(body)) {
+    const std::array<int, 3> nodes = {f.nodes[0], f.nodes[1], f.nodes[2]};
+    const int owner = parts.owner(nodes);
+    const TriangleCorners facet = parts.triangle(nodes);
+    Vec3 normal = (facet[1] - facet[0]).cross(facet[2] - facet[0]).normalized();
+    if (normal.dot(out.grid.origin + out.grid.edge * facet[0] - f.cell_centre) < 0) normal = -normal;
+    cut_by_cells_beside(facet, out.grid, [&](const std::array<int, 3>&, const TriangleCorners& part) {
+      int cell = cell_of(part, owner, parts, pieces);
+      if (cell < 0) cell = nearest(out.grid.origin + out.grid.edge * (part[0] + part[1] + part[2]) / 3);
+      std::vector<SurfaceCorner>& corners = in_cell[cell];
+      for (const Vec3& x : part) {
+        auto known = std::find_if(corners.begin(), corners.end(), [&](const SurfaceCorner& c) {
+          return (c.at - x).squaredNorm() < lattice_tolerance * lattice_tolerance * 100;
+        });
+        if (known == corners.end()) known = corners.insert(corners.end(), {cell, x});
+        known->normals += normal;
+        ++known->parts;
+      }
+    });
+  }
+  return in_cell;
+}
+
+/// Points of the surface that are `apart` from each other, in parts that are connected; edges and corners first.
+void add_surface(const Mesh& body, const BodyParts& parts, const BodyPieces& pieces, CutBody& out,
+                 const std::function<int(const Vec3&)>& nearest) {
+  constexpr double apart = 0.3;
+  std::vector<SurfaceCorner> all;
+  for (const auto& [cell, corners] : surface_corners(body, parts, pieces, out, nearest))
+    for (const SurfaceCorner& c : farthest(corners)) all.push_back(c);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.flatness() < b.flatness(); });
+  std::map<int, std::vector<Vec3>> at_corner;  // of the cells, the points kept
+  for (const SurfaceCorner& c : all) {
+    const Hexahedron& corners = out.cells[c.cell].corners;
+    const auto is_near = [&](const Vec3& x) { return (x - c.at).norm() < apart * out.cells[c.cell].size; };
+    if (std::any_of(corners.begin(), corners.end(),
+                    [&](int n) { return std::any_of(at_corner[n].begin(), at_corner[n].end(), is_near); }))
+      continue;
+    for (const int n : corners) at_corner[n].push_back(c.at);
+    out.surface.push_back({c.cell, out.grid.origin + out.grid.edge * c.at});
   }
 }
 
@@ -240,7 +318,9 @@ CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
   out.part_begin_ = parts.begin;
   for (std::size_t p = 0; p < parts.cube.size(); ++p)
     out.part_.emplace_back(parts.cube[p], pieces.cell[pieces.of_part[p]]);
-  add_patches(body, parts, pieces, out, [&](const Vec3& x) { return out.nearest_cell(x); });
+  const auto nearest = [&](const Vec3& x) { return out.nearest_cell(x); };
+  add_patches(body, parts, pieces, out, nearest);
+  add_surface(body, parts, pieces, out, nearest);
   if (left_out > noted_loss)
     out.notes.push_back(
         fmt::format("{:.2g} % of the body, in parts of less than 1/1000 of a cube of {:.4g} m or "

@@ -33,6 +33,12 @@ struct PatchInCell {
   double total_area() const;  ///< [m^2]
 };
 
+/// A point of the body's surface.
+struct SurfacePoint {
+  int cell;       ///< that it belongs to
+  Vec3 position;  ///< [m]
+};
+
 /// A body in cells, with the parts of its patches in them.
 class CutBody {
  public:
@@ -41,7 +47,11 @@ class CutBody {
   std::vector<CarriedPoint> carried;                        ///< those in edges and faces of larger cells
   std::vector<CutCell> cells;                               ///< by layers: x fastest, then y, then z
   std::map<std::string, std::vector<PatchInCell>> patches;  ///< by name
-  std::vector<std::string> notes;                           ///< what was left out or is too thin, for the user
+  /// Corners of the body, and where it meets edges of the lattice: of the parts of the surface in each cell the corners
+  /// that lie farthest out, as seen along the faces, edges and corners of a cube, but for those that are less than 0.3
+  /// of an edge from another.
+  std::vector<SurfacePoint> surface;
+  std::vector<std::string> notes;  ///< what was left out or is too thin, for the user
 
   /// A point by the corners of the cell that holds it; a point outside the body by those of a cell near to it,
   /// continued.

@@ -8,6 +8,21 @@ namespace {
 
 constexpr double least_weight = 1e-12;
 
+/// The points of the surface as means of the nodes.
+Eigen::SparseMatrix<double, Eigen::RowMajor> surface_weights(const CutBody& body, Eigen::Index nodes) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const int points = static_cast<int>(body.surface.size());
+  for (int p = 0; p < points; ++p) {
+    const auto& [cell, position] = body.surface[p];
+    const std::array<double, 8> weights = body.weights(cell, position);
+    for (int n = 0; n < 8; ++n)
+      if (std::abs(weights[n]) > least_weight) entries.emplace_back(p, body.cells[cell].corners[n], weights[n]);
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> all(points, nodes);
+  all.setFromTriplets(entries.begin(), entries.end());
+  return all;
+}
+
 /// Integral of a corner's trilinear weight over the filled part, in units of the volume of the cube; the moment of
 /// third order is left out, so that force and moment of a uniform body force are exact.
 double weight_of_corner(const FilledPart& part, int corner) {
@@ -85,6 +100,7 @@ Embedding embed(const CutBody& body, const std::vector<std::string>& held, const
   e.weights.resize(mesh.nodes.rows(), network.X.rows());
   e.weights.setFromTriplets(entries.begin(), entries.end());
 
+  e.surface = surface_weights(body, network.X.rows());
   e.volumes = Eigen::VectorXd::Zero(network.X.rows());
   for (const CutCell& cell : body.cells) {
     const double volume = std::pow(body.grid.edge * cell.size, 3);
