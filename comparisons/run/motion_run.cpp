@@ -110,7 +110,7 @@ class Recorder {
     add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());
     add("volume_change", "1", cut_ ? volume_change(built_.model.network, u).exact : field.volume_change);
     for (const PatchReaction& r : field.reactions) add_vector("force." + r.patch, "N", r.force);
-    if (contact_) add_vector("contact_impulse", "N s", impulse_ += contact_->take_impulse());
+    if (contact_) add_impulse(contact_->take_impulse());
     const std::vector<Probe>& probes = prepared_.experiment.probes;
     const NodalVectors at_points = cut_ ? displacement_at(*lattice_.cut, u, measured_points(prepared_))
                                         : at_measured_points(prepared_, lattice_, field.displacement);
@@ -129,12 +129,7 @@ class Recorder {
         forces(built_.model, x) + viscous_forces(x, average_.velocities(v, conditions.fixed)) + conditions.external;
     for (Eigen::Index i = 0; i < v.size(); ++i)
       if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] / mass_[i / 3] - damping_ * v.data()[i]);
-    for (Eigen::Index n = 0; contact_ && n < x.rows(); ++n) {  // nodes on the plane do not enter it
-      const Vec3 normal = contact_->plane().normal;
-      const double into = normal.dot(Vec3(v.row(n).transpose()));
-      if (into < 0 && contact_->plane().distance(x.row(n).transpose()) <= 0) v.row(n) -= into * normal.transpose();
-    }
-    return v;
+    return contact_ ? contact_->stopped(conditions.fixed, v) : v;
   }
 
   NodalVectors viscous_forces(const NodalVectors& x, const NodalVectors& v) const {
@@ -172,6 +167,11 @@ class Recorder {
     for (int axis = 0; axis < 3; ++axis) add(fmt::format("{}.{}", name, "xyz"[axis]), unit, v[axis]);
   }
 
+  void add_impulse(const ContactImpulse& further) {
+    add_vector("contact_impulse", "N s", impulse_.linear += further.linear);
+    add_vector("contact_angular_impulse", "N m s", impulse_.angular += further.angular);
+  }
+
   const PreparedCase& prepared_;
   const Lattice& lattice_;
   const EmbeddedModel& built_;
@@ -180,9 +180,9 @@ class Recorder {
   double damping_;  ///< [1/s]
   Viscosity viscosity_;
   MassAverage average_;
-  PlaneContact* contact_;        ///< nullptr: there is no plane
-  Vec3 impulse_ = Vec3::Zero();  ///< of the plane on the body so far [N s]
-  bool cut_;                     ///< the network is of cut cells of the lattice
+  PlaneContact* contact_;   ///< nullptr: there is no plane
+  ContactImpulse impulse_;  ///< of the plane on the body so far
+  bool cut_;                ///< the network is of cut cells of the lattice
   MotionRecord& record_;
   std::size_t next_ = 0;  ///< quantity
 };
@@ -301,7 +301,9 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   options.viscosity = Viscosity::of(built.model, material, motion.viscosity);
   const Eigen::VectorXd mass = masses(built.model.network, material.density);
   std::optional<PlaneContact> contact;
-  if (motion.plane) contact.emplace(*motion.plane, mass, std::max(motion.duration / motion.samples, 5 * steps.size));
+  if (motion.plane)
+    contact.emplace(*motion.plane, mass, std::max(motion.duration / motion.samples, 5 * steps.size),
+                    built.embedding.surface);
   options.contact = contact ? &*contact : nullptr;
   options.integrator = steps.integrator;
   options.time_step = steps.size;

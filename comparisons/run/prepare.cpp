@@ -52,7 +52,6 @@ void choose_cut_cells(PreparedCase& prepared) {
                          : !e.body.is_voxels()                                   ? "the body is a block"
                          : e.fracture                                            ? "the body breaks"
                          : e.models[m].in_motion && !p.has(Extension::averaging) ? "it is to move in time"
-                         : e.dynamics && e.dynamics->plane                       ? "it is to fall on a plane"
                          : e.model_kinematics() != Kinematics::linear && !p.has(Extension::averaging)
                              ? "the displacements are large"
                              : nullptr;
@@ -149,9 +148,15 @@ void sample_patches(PreparedCase& prepared) {
       samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
 }
 
-/// @throws InputError for a body that starts behind the plane that it is to fall on.
-void check_plane(const Experiment& e, const Mesh& mesh) {
+/// @throws InputError for a body that starts behind the plane that it is to fall on: the true one if all models that
+///   move are of cut cells.
+void check_plane(const PreparedCase& prepared, const Lattice& lattice) {
+  const Experiment& e = prepared.experiment;
   if (!e.dynamics || !e.dynamics->plane) return;
+  bool all_cut = true;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    all_cut = all_cut && (!e.models[m].in_motion || *prepared.models[m].cut);
+  const Mesh& mesh = all_cut ? *prepared.tetrahedra.back() : *lattice.mesh;
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n)
     nearest = std::min(nearest, e.dynamics->plane->distance(mesh.nodes.row(n).transpose()));
@@ -172,7 +177,7 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   for (const Patch& p : mesh.patches) patches.push_back(p.name);
   check_patches(e, patches);
   check_mean_displacements(e, patches);
-  check_plane(e, mesh);
+  check_plane(prepared, lattice);
   prepared.sharing = patches_sharing_supports(prepared.loads, mesh, e.model_kinematics());
   if ((needs_supports(e) || !e.reference.elements.empty()) &&
       std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))

@@ -35,6 +35,7 @@ EmbeddedModel build_cut_in_motion(const PreparedCase& prepared, const ModelParam
   auto anchor = built.model.network.anchors.begin();
   for (const std::string& name : anchored)
     for (const PatchInCell& p : body.patches.at(name)) anchor++->stiffness *= body.cells[p.cell].filled.fraction;
+  if (held.empty()) built.embedding.volumes = built.model.network.volume;  // in flight all nodes fall alike
   for (const std::string& name : held)
     if (!built.embedding.held.contains(name)) built.embedding.held[name] = nodes_at_patch(body, name);
   return built;
@@ -50,7 +51,11 @@ EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelPa
       throw InputError(
           fmt::format("/loads, /patches or /anchors: has no patch '{}', on which the case has a load", *on));
   auto [model, embedding] = anchored(file, in_motion ? std::set<std::string>{} : held, *lattice.mesh);
-  if (in_motion) embedding.held = file.patches;
+  if (in_motion) {
+    embedding.held = file.patches;
+    embedding.surface = file.surface.weights;
+    if (held.empty()) embedding.volumes = model.network.volume;
+  }
   return {std::move(model), std::move(embedding)};
 } catch (const InputError& e) {
   throw InputError(fmt::format("{}: {}", parameters.row.name, e.what()));

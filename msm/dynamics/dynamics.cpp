@@ -284,9 +284,11 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
 }
 
 /// Contact with the plane at the end of a step.
-void touch(Motion& motion, PlaneContact& contact, double time, double dt, const BoundaryConditions& bc) {
+void touch(Motion& motion, PlaneContact& contact, double time, double dt, double damping,
+           const BoundaryConditions& bc) {
   NodalVectors x = motion.positions(), v = motion.velocities();
-  if (contact.correct(time, dt, bc.fixed, x, v)) motion.set_state(x, v);
+  if (contact.correct(dt, damping, bc.fixed, x, v)) motion.set_state(x, v);
+  contact.observe(time, v);
 }
 
 }  // namespace
@@ -306,6 +308,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
     motion->set_state(x, velocity_before(model, density, x, bc, dt, options));
   }
   motion->move_supports();
+  if (options.contact) options.contact->observe(0, motion->velocities());
   // The explicit method takes loads and supports of the beginning of a step, implicit ones those of its end.
   const long ahead = options.integrator == Integrator::explicit_euler ? 0 : 1;
   const long last = static_cast<long>(std::ceil(options.duration / dt));
@@ -328,7 +331,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       return result;
     }
     result.steps += steps;
-    if (options.contact) touch(*motion, *options.contact, result.steps * dt, dt, bc);
+    if (options.contact) touch(*motion, *options.contact, result.steps * dt, dt, options.damping, bc);
     if (options.after_step && (result.steps % options.stride == 0 || result.steps == last))
       options.after_step(result.steps * dt, motion->positions(), motion->velocities(), bc);
     const double scale = std::max(norms.support, bc.external.norm());

@@ -1,6 +1,7 @@
-// Contact of a moving network with a rigid plane, by impulses on its nodes.
+// Contact of a moving network with a rigid plane, by impulses on points that its nodes carry.
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <optional>
 #include <vector>
 
@@ -15,38 +16,80 @@ struct Bounce {
   double velocity_before = 0, velocity_after = 0;  ///< of the centre of mass along the normal [m/s]
 };
 
-/// After an explicit step every free node that has passed the plane is put onto it, by the impulse along the normal
-/// that gives it the velocity to arrive there (Carpenter et al. 1991: a Lagrange multiplier of the position at the end
-/// of the step).  Friction takes an impulse of up to the coefficient times that from its motion along the plane.  A
-/// node that lands loses its velocity along the normal, so that an elastic body loses the kinetic energy of one layer
-/// of nodes: less on finer lattices.  The plane has the opposite impulse; the time step is bounded as without it.
+/// What the plane gave the body.
+struct ContactImpulse {
+  Vec3 linear = Vec3::Zero();   ///< [N s]
+  Vec3 angular = Vec3::Zero();  ///< about the origin [N m s]
+};
+
+/// Points that nodes carry, x_p = sum_n w_pn x_n: points x nodes, rows sum to 1.
+using PointWeights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// After an explicit step every point of the body that has passed the plane is put onto it or before it, by impulses
+/// that give it the velocity to arrive there (Carpenter et al. 1991: Lagrange multipliers of the positions at the end
+/// of the step).  The points are nodes, or carried by nodes, which take the impulse by the same weights: momenta change
+/// by exactly what the plane gives.  Points that share nodes couple: with the operator G = W M^-1 W^T of the points and
+/// the velocity g = -distance/dt that each lacks along the normal,
+///   0 <= p,  0 <= G p - g,  p . (G p - g) = 0,
+/// by projected Gauss-Seidel, which for nodes, where G is diagonal, is exact at once.  Friction takes an impulse of up
+/// to the coefficient times p from the point's motion along the plane.  A node that lands loses its velocity along the
+/// normal, so that an elastic body loses the kinetic energy of one layer of nodes: less on finer lattices.  The time
+/// step is bounded as without the plane.
 class PlaneContact {
  public:
   /// @param plane that the body stays on one side of
   /// @param mass of each node [kg]
   /// @param pause contacts that are this far apart belong to two bounces [s]
-  PlaneContact(const Plane& plane, const Eigen::VectorXd& mass, double pause);
+  /// @param points of the body's surface; empty: the nodes
+  PlaneContact(const Plane& plane, const Eigen::VectorXd& mass, double pause, PointWeights points = {});
 
   const Plane& plane() const { return plane_; }
 
-  /// Corrects the state at the end of a step of dt at `time`.
-  /// @param fixed unknowns, three of each node: a node with any is left alone
+  /// Corrects the state at the end of a step of dt.
+  /// @param damping of the step, (1 + damping dt) v1 = v0 + dt f/m, which takes its part of the impulses [1/s]
+  /// @param fixed unknowns, three of each node: a node with any takes no impulse
   /// @return whether anything was changed
-  bool correct(double time, double dt, const std::vector<char>& fixed, NodalVectors& x, NodalVectors& v);
+  bool correct(double dt, double damping, const std::vector<char>& fixed, NodalVectors& x, NodalVectors& v);
 
-  /// Impulse on the body since the last call [N s].
-  Vec3 take_impulse();
+  /// Counts an impulse [N s] on the body at a point.
+  void count(const Vec3& impulse, const Vec3& at);
+
+  /// To be called at the start and after every step, for the bounce.
+  /// @param v velocities of the nodes [m/s]
+  void observe(double time, const NodalVectors& v);
+
+  /// Velocities with which no point that touched the plane at the end of the last step enters it.
+  NodalVectors stopped(const std::vector<char>& fixed, NodalVectors v) const;
+
+  /// What the body got since the last call.
+  ContactImpulse take_impulse();
 
   /// The first one; empty: it has not begun, or has not ended.
   std::optional<Bounce> bounce() const;
 
  private:
-  double velocity_of_centre(const NodalVectors& v) const;
+  /// A point that touches the plane.
+  struct Touch {
+    int point;
+    double mobility;  ///< G_pp [1/kg]
+    double velocity;  ///< along the normal, that it is to have or exceed [m/s]
+    Vec3 impulse;     ///< [N s]
+  };
+  using Touching = std::vector<Touch>;
+  Eigen::VectorXd mobilities(const std::vector<char>& fixed) const;
+  Vec3 at(int point, const NodalVectors& of_nodes) const;
+  void push(int point, const Vec3& impulse, const Eigen::VectorXd& inverse_mass, NodalVectors& v) const;
+  void add(int point, double velocity, const Eigen::VectorXd& inverse_mass, Touching& touching) const;
+  void solve(double friction, const Eigen::VectorXd& inverse_mass, Touching& touching, NodalVectors& v) const;
 
   Plane plane_;
   Eigen::VectorXd mass_;
   double pause_;
-  Vec3 impulse_ = Vec3::Zero();
+  PointWeights points_;
+  NodalVectors latest_;  ///< impulse on each point at the end of the last step [N s]
+  ContactImpulse impulse_;
+  bool touches_ = false;  ///< since observe()
+  double velocity_ = 0;   ///< of the centre of mass then, along the normal [m/s]
   std::optional<Bounce> first_;
   bool ended_ = false;
 };
