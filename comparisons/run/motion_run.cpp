@@ -29,7 +29,15 @@ struct Steps {
 
 Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& model, const Viscosity& viscosity,
                          double bound) {
-  if (motion.integrator == "explicit") return Integrator::explicit_euler;
+  const bool cut = !model.network.filled.empty(), only_explicit = motion.plane && (cut || motion.plane->friction > 0);
+  if (motion.integrator == "explicit" || (only_explicit && motion.integrator == "auto"))
+    return Integrator::explicit_euler;
+  if (only_explicit)
+    throw InputError(
+        motion.integrator_where,
+        fmt::format("dynamics.integrator: {} has a plane for nodes, not for the surface of the cut cells of "
+                    "a model of the case (allowed for it: explicit, auto; or cut = false)",
+                    motion.integrator));
   if (motion.integrator == "implicit_euler") return Integrator::implicit_euler;
   if (motion.integrator == "bdf2") return Integrator::bdf2;
   const std::string why = EnergyMomentum::lacks(model);

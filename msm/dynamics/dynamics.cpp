@@ -46,7 +46,12 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
     if (const std::string why = EnergyMomentum::lacks(model); !why.empty())
       throw InputError("integrator: energy_momentum does not suit this model: " + why);
   if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
-  if (implicit && options.contact) throw InputError("integrator: contact with a plane needs the explicit one");
+  if (implicit && options.contact && options.contact->plane().friction > 0)
+    throw InputError("integrator: large steps have a plane without friction (allowed: friction = 0, or explicit)");
+  if (implicit && options.contact && !options.contact->of_nodes())
+    throw InputError(
+        "integrator: large steps have contact of nodes, not of the surface of cut cells (allowed: cut = false, or "
+        "explicit)");
   if (const std::string why = options.viscosity.acts() ? Viscosity::lacks(model) : ""; !why.empty())
     throw InputError("viscosity does not suit this model: " + why);
   if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
@@ -222,7 +227,8 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
                                                 ImplicitOptions{.integrator = options.integrator,
                                                                 .time_step = dt,
                                                                 .damping = options.damping,
-                                                                .viscosity = options.viscosity});
+                                                                .viscosity = options.viscosity,
+                                                                .contact = options.contact});
   const bool plain = options.viscosity.acts() || options.mass_consistency > 0;
   if (!options.lagged && LatticeMotion::suits(model, options.viscosity, options.mass_consistency))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
@@ -283,12 +289,10 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   return v;
 }
 
-/// Contact with the plane at the end of a step.
-void touch(Motion& motion, PlaneContact& contact, double time, double dt, double damping,
-           const BoundaryConditions& bc) {
+/// Contact with the plane at the end of an explicit step.
+void touch(Motion& motion, PlaneContact& contact, double dt, double damping, const BoundaryConditions& bc) {
   NodalVectors x = motion.positions(), v = motion.velocities();
   if (contact.correct(dt, damping, bc.fixed, x, v)) motion.set_state(x, v);
-  contact.observe(time, v);
 }
 
 }  // namespace
@@ -331,7 +335,8 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
       return result;
     }
     result.steps += steps;
-    if (options.contact) touch(*motion, *options.contact, result.steps * dt, dt, options.damping, bc);
+    if (options.contact && ahead == 0) touch(*motion, *options.contact, dt, options.damping, bc);
+    if (options.contact) options.contact->observe(result.steps * dt, motion->velocities());
     if (options.after_step && (result.steps % options.stride == 0 || result.steps == last))
       options.after_step(result.steps * dt, motion->positions(), motion->velocities(), bc);
     const double scale = std::max(norms.support, bc.external.norm());

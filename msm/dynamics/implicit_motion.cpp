@@ -16,6 +16,7 @@ namespace {
 
 constexpr int slow = 8;  // iterations after which the factors are renewed
 constexpr int most_halvings = 6;
+constexpr int most_contacts = 40;  // sets of nodes on a plane that are tried for a step
 constexpr int anderson_depth = 15, most_simple_iterations = 30;
 constexpr double difference = 1e-7;  // of directional derivatives, relative to the size of a cell
 
@@ -64,6 +65,7 @@ ImplicitMotion::ImplicitMotion(const MassSpringModel& model, double density, con
       x_(model.network.X),
       v_(NodalVectors::Zero(x_.rows(), 3)) {
   if (options.integrator == Integrator::energy_momentum) secant_ = std::make_unique<EnergyMomentum>(model);
+  if (options.contact) plane_.emplace(options.contact->plane(), x_.rows(), spacing_);
 }
 
 void ImplicitMotion::set_conditions(const BoundaryConditions& conditions) {
@@ -133,32 +135,38 @@ void ImplicitMotion::renew(const Formula& step, const NodalVectors& x1) {
   scale_ = step.of_stiffness;
   const double a = prepared_for_ / scale_;
   for (int n = 0; n < model_.network.nodes(); ++n) K_.local.add(n, n, a * mass_[n] * Eigen::Matrix3d::Identity());
+  if (plane_) plane_->stiffen(K_.local);
   factors_->factor(K_, conditions_.fixed);
 }
 
 Eigen::VectorXd ImplicitMotion::correction(const Eigen::VectorXd& r) const {
   Eigen::VectorXd d;
+  const auto allowed = [&](const Eigen::VectorXd& change) {
+    return plane_ ? free_part(Eigen::Map<const NodalVectors>(change.data(), change.size() / 3, 3)) : change;
+  };
   if (factored()) {
     factors_->solve(r, d);
-    return d / scale_;
+    return allowed(d / scale_);
   }
   using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   const Eigen::Index n = r.size() / 3;
   const Columns turned = turn_.transpose() * Eigen::Map<const Columns>(r.data(), 3, n);
   cycle_->apply(Eigen::Map<const Eigen::VectorXd>(turned.data(), r.size()), d);
   const Columns back = turn_ * Eigen::Map<const Columns>(d.data(), 3, n);
-  return Eigen::Map<const Eigen::VectorXd>(back.data(), r.size());
+  return allowed(Eigen::Map<const Eigen::VectorXd>(back.data(), r.size()));
 }
 
 NodalVectors ImplicitMotion::with_supports(NodalVectors x) const {
   for (Eigen::Index i = 0; i < x.size(); ++i)
     if (conditions_.fixed[i]) x.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
+  if (plane_) plane_->put(x);
   return x;
 }
 
 Eigen::VectorXd ImplicitMotion::free_part(NodalVectors v) const {
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (conditions_.fixed[i]) v.data()[i] = 0;
+  if (plane_) plane_->project(v);
   return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
 }
 
@@ -191,9 +199,10 @@ NodalVectors ImplicitMotion::predicted() const {
 /// f and the unbalanced force at x1.
 ImplicitMotion::Balance ImplicitMotion::balance(const Formula& now, const NodalVectors& x1) {
   ++evaluations_;
-  Balance b{force(now, x1), {}};
-  b.unbalanced = free_part(
-      b.force - mass_.asDiagonal() * (now.a * (x1 - now.inertial) + options_.damping * now.rate * (x1 - now.before)));
+  Balance b{force(now, x1), {}, {}};
+  b.whole =
+      b.force - mass_.asDiagonal() * (now.a * (x1 - now.inertial) + options_.damping * now.rate * (x1 - now.before));
+  b.unbalanced = free_part(b.whole);
   return b;
 }
 
@@ -261,16 +270,15 @@ bool ImplicitMotion::step(double dt, int halvings) {
   return both;
 }
 
-bool ImplicitMotion::solve_step() {
-  const Formula now = formula();
-  prepare(now);
+/// Solves a step from x1 with the nodes on the plane as they are.
+bool ImplicitMotion::solve(const Formula& now, NodalVectors& x1, Balance& b) {
   const double stiffest = 4 / (safe_step_ * safe_step_);
   const double round_off = 4 * std::numeric_limits<double>::epsilon() * mass_.norm() *
                            (now.a + options_.damping * now.rate + now.of_stiffness * stiffest) *
                            x_.cwiseAbs().maxCoeff();
   const double inertia = (mass_.asDiagonal() * v_).norm() / dt_;
-  NodalVectors x1 = predicted();
-  Balance b = balance(now, x1);
+  x1 = with_supports(x1);
+  b = balance(now, x1);
   if (!b.unbalanced.allFinite()) {  // a cell turned inside out
     x1 = with_supports(x_);
     b = balance(now, x1);
@@ -293,6 +301,41 @@ bool ImplicitMotion::solve_step() {
     failure_ = "a cell is turned inside out: a smaller time_step_s or load helps";
     return false;
   }
+  return true;
+}
+
+/// Nodes on the plane stop; counts what the plane gave.  A reaction r changes the momentum by r rate / a, of BDF2 by a
+/// third of what it did in the last step besides.
+void ImplicitMotion::land(const Formula& now, const NodalVectors& x1, const Balance& b, NodalVectors& v1) {
+  ContactImpulse given;
+  if (options_.integrator == Integrator::bdf2 && steps_ > 0) given = {of_plane_.linear / 3, of_plane_.angular / 3};
+  const Vec3& normal = plane_->normal();
+  for (const int n : plane_->held()) {
+    const Vec3 end = x1.row(n).transpose(), middle = (x_.row(n) + x1.row(n)).transpose() / 2;
+    const double reaction = -normal.dot(Vec3(b.whole.row(n).transpose()));
+    const double speed = normal.dot(Vec3(v1.row(n).transpose()));
+    given.add(now.rate / now.a * reaction * (secant_ ? 2 : 1) * normal, secant_ ? middle : end);
+    given.add(-mass_[n] * speed * normal, end);
+    v1.row(n) -= speed * normal.transpose();
+  }
+  options_.contact->count(given, !plane_->held().empty());
+  of_plane_ = given;
+}
+
+bool ImplicitMotion::solve_step() {
+  const Formula now = formula();
+  prepare(now);
+  NodalVectors x1 = predicted();
+  Balance b;
+  for (int sets = 1;; ++sets) {
+    if (!solve(now, x1, b)) return false;
+    if (!plane_ || !plane_->revise(x_, x1, b.whole, b.force.norm(), conditions_.fixed)) break;
+    renewed_ = false;
+    if (sets == most_contacts) {
+      failure_ = fmt::format("a step of {:.3g} s finds no nodes to end on the plane: a smaller time_step_s helps", dt_);
+      return false;
+    }
+  }
   double unbalanced = 0, support = 0;
   for (Eigen::Index i = 0; i < x1.size(); ++i)
     (conditions_.fixed[i] ? support : unbalanced) += b.force.data()[i] * b.force.data()[i];
@@ -301,6 +344,7 @@ bool ImplicitMotion::solve_step() {
   if (secant_)
     for (Eigen::Index i = 0; i < v1.size(); ++i)
       if (!conditions_.fixed[i]) v1.data()[i] = 2 * v1.data()[i] - v_.data()[i];
+  if (plane_) land(now, x1, b, v1);
   x_before_ = std::exchange(x_, x1);
   v_before_ = std::exchange(v_, v1);
   external_before_ = conditions_.external;

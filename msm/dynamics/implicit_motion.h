@@ -3,11 +3,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "msm/algebra/direct_solver.h"
 #include "msm/algebra/krylov.h"
 #include "msm/dynamics/energy_momentum.h"
 #include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/plane_constraint.h"
+#include "msm/dynamics/plane_contact.h"
 #include "msm/dynamics/viscosity.h"
 #include "msm/multigrid/multigrid.h"
 
@@ -25,6 +28,8 @@ struct ImplicitOptions {
   double time_step = 0;      ///< [s]
   double damping = 0;        ///< mass-proportional [1/s]
   Viscosity viscosity = {};  ///< of the model, which is kept
+  /// A plane without friction that nodes may end a step on, which counts the impulses; nullptr: there is none.
+  PlaneContact* contact = nullptr;
   /// Largest unbalanced force of a step relative to its inertial and internal forces; round-off where that is more.
   double tolerance = 1e-11;
   int max_iterations = 30;  ///< of Newton's method, per step
@@ -34,6 +39,10 @@ struct ImplicitOptions {
 /// derivative is not symmetric).  Preconditioner: the factors of mass and tangent stiffness of an earlier state,
 /// renewed when GMRES is slow; on lattices of full cells of more than `cholesky_limit` unknowns one multigrid cycle of
 /// the rest state, turned with a body that is not held.
+///
+/// Nodes that end a step on a plane (PlaneConstraint) have lost their velocity along its normal then, as in explicit
+/// steps.  The reactions at the end of the step do no work on nodes that stay, and take some from those that land, so
+/// that the energy does not grow; momentum changes by what the plane gives.
 class ImplicitMotion {
  public:
   /// At rest at X.  Keeps a reference to the model.
@@ -65,12 +74,16 @@ class ImplicitMotion {
     NodalVectors inertial, before;
   };
   struct Balance {
-    NodalVectors force;          ///< internal and external [N]
-    Eigen::VectorXd unbalanced;  ///< with inertia and damping, zero on fixed unknowns [N]
+    NodalVectors force;  ///< internal and external [N]
+    NodalVectors whole;  ///< with inertia and damping, which reactions balance [N]
+    Eigen::VectorXd
+        unbalanced;  ///< the same, zero on fixed unknowns and along the normal of a plane on nodes on it [N]
   };
   Formula formula() const;
   bool step(double dt, int halvings);
   bool solve_step();
+  bool solve(const Formula& step, NodalVectors& x1, Balance& b);
+  void land(const Formula& step, const NodalVectors& x1, const Balance& b, NodalVectors& v1);
   NodalVectors predicted() const;
   Balance balance(const Formula& step, const NodalVectors& x1);
   void iterate(const Formula& step, double enough, NodalVectors& x1, Balance& b);
@@ -96,6 +109,8 @@ class ImplicitMotion {
   double dt_ = 0;   ///< of the present step [s]
   long steps_ = 0;  ///< of equal size so far
   long advanced_ = 0, halved_ = 0, evaluations_ = 0, factorisations_ = 0;
+  std::optional<PlaneConstraint> plane_;
+  ContactImpulse of_plane_;  ///< over the last step
   std::string failure_;
   ForceNorms norms_;
 

@@ -8,7 +8,7 @@
 namespace springproof {
 namespace {
 
-constexpr int most_sweeps = 200;
+constexpr int most_sweeps = 200;     // what they leave is corrected at the end of the next step
 constexpr double tolerance = 1e-7;  // of the last sweep's change of velocity, relative to the largest that is asked for
 
 PointWeights each_of(Eigen::Index nodes) {
@@ -19,10 +19,16 @@ PointWeights each_of(Eigen::Index nodes) {
 
 }  // namespace
 
+void ContactImpulse::add(const Vec3& impulse, const Vec3& at) {
+  linear += impulse;
+  angular += at.cross(impulse);
+}
+
 PlaneContact::PlaneContact(const Plane& plane, const Eigen::VectorXd& mass, double pause, PointWeights points)
     : plane_(plane),
       mass_(mass),
       pause_(pause),
+      of_nodes_(points.rows() == 0),
       points_(points.rows() > 0 ? std::move(points) : each_of(mass.size())),
       latest_(NodalVectors::Zero(points_.rows(), 3)) {}
 
@@ -92,17 +98,18 @@ bool PlaneContact::correct(double dt, double damping, const std::vector<char>& f
   const NodalVectors without = v;
   solve(plane_.friction, inverse_mass, touching, v);
   for (const Touch& t : touching) {
-    count((1 + damping * dt) * t.impulse, at(t.point, x) - dt * at(t.point, without));
+    impulse_.add((1 + damping * dt) * t.impulse, at(t.point, x) - dt * at(t.point, without));
     latest_.row(t.point) = t.impulse.transpose();
   }
   x += dt * (v - without);
+  touches_ = true;
   return true;
 }
 
-void PlaneContact::count(const Vec3& impulse, const Vec3& at) {
-  touches_ = true;
-  impulse_.linear += impulse;
-  impulse_.angular += at.cross(impulse);
+void PlaneContact::count(const ContactImpulse& further, bool touches) {
+  touches_ |= touches;
+  impulse_.linear += further.linear;
+  impulse_.angular += further.angular;
 }
 
 void PlaneContact::observe(double time, const NodalVectors& v) {

@@ -20,6 +20,9 @@ struct Bounce {
 struct ContactImpulse {
   Vec3 linear = Vec3::Zero();   ///< [N s]
   Vec3 angular = Vec3::Zero();  ///< about the origin [N m s]
+
+  /// Adds an impulse [N s] at a point.
+  void add(const Vec3& impulse, const Vec3& at);
 };
 
 /// Points that nodes carry, x_p = sum_n w_pn x_n: points x nodes, rows sum to 1.
@@ -44,6 +47,7 @@ class PlaneContact {
   PlaneContact(const Plane& plane, const Eigen::VectorXd& mass, double pause, PointWeights points = {});
 
   const Plane& plane() const { return plane_; }
+  bool of_nodes() const { return of_nodes_; }  ///< the points are the nodes
 
   /// Corrects the state at the end of a step of dt.
   /// @param damping of the step, (1 + damping dt) v1 = v0 + dt f/m, which takes its part of the impulses [1/s]
@@ -51,8 +55,9 @@ class PlaneContact {
   /// @return whether anything was changed
   bool correct(double dt, double damping, const std::vector<char>& fixed, NodalVectors& x, NodalVectors& v);
 
-  /// Counts an impulse [N s] on the body at a point.
-  void count(const Vec3& impulse, const Vec3& at);
+  /// Counts an impulse that the body got otherwise, in a large step.
+  /// @param touches false: it lags behind the contact, as those of BDF2 do
+  void count(const ContactImpulse& further, bool touches);
 
   /// To be called at the start and after every step, for the bounce.
   /// @param v velocities of the nodes [m/s]
@@ -85,6 +90,7 @@ class PlaneContact {
   Plane plane_;
   Eigen::VectorXd mass_;
   double pause_;
+  bool of_nodes_;
   PointWeights points_;
   NodalVectors latest_;  ///< impulse on each point at the end of the last step [N s]
   ContactImpulse impulse_;

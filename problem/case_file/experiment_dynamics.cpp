@@ -31,12 +31,10 @@ constexpr Key dynamics_schema[] = {{"duration_s", "a finite number > 0"},
 constexpr Key plane_schema[] = {
     {"point_m", "a point in the plane [m]"}, {"normal", "its normal, towards the body"}, {"friction"}};
 
-/// A plane that the body falls on: explicit steps, of models alone.
+/// A plane that the body falls on: of models alone, in large steps without friction.
 void read_plane(const TomlTable& table, const Experiment& experiment, MotionChoice& motion) {
   const auto value = table.find("plane");
   if (!value) return;
-  if (motion.integrator != "explicit")
-    refuse(*value, fmt::format("does not suit the integrator {}", motion.integrator), "integrator = \"explicit\"");
   if (experiment.reference.in_time) refuse(*value, "has no finite elements in time", "no in_time in [reference]");
   const TomlTable keys(*value, plane_schema);
   Plane plane;
@@ -44,7 +42,12 @@ void read_plane(const TomlTable& table, const Experiment& experiment, MotionChoi
   plane.normal = as_vector(keys.at("normal"));
   if (!(plane.normal.norm() > 0)) refuse(keys.at("normal"), "has no length", "a vector other than 0");
   plane.normal.normalize();
-  if (const auto friction = keys.find("friction")) plane.friction = as_number(*friction, not_negative);
+  if (const auto friction = keys.find("friction")) {
+    plane.friction = as_number(*friction, not_negative);
+    if (plane.friction > 0 && motion.integrator != "explicit" && motion.integrator != "auto")
+      refuse(*friction, fmt::format("does not suit the large steps of {}", motion.integrator),
+             "friction = 0, or integrator = \"explicit\"");
+  }
   motion.plane = plane;
 }
 

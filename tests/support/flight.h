@@ -28,6 +28,7 @@ struct Flight {
   ContactImpulse impulse;
   std::optional<Bounce> bounce;
   Eigen::VectorXd mass;
+  double most_energy = 0;                  ///< at any time, of large steps [J]
   double energy = 0, energy_at_start = 0;  ///< kinetic and elastic, and that of the weight [J]
   double deepest = 0;                      ///< of its points behind the plane, at any time [m]
   double largest_step = 0;                 ///< of a point [m]
@@ -64,6 +65,7 @@ inline Flight fly(const MassSpringModel& model, double density, const FlightPlan
   options.after_step = [&](double, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions&) {
     flight.x = x;
     flight.v = v;
+    flight.most_energy = std::max(flight.most_energy, energy_of(x, v));
     flight.largest_step = std::max(flight.largest_step, flight.step * v.rowwise().norm().maxCoeff());
     const NodalVectors at = plan.points.rows() > 0 ? NodalVectors(plan.points * x) : x;
     for (const auto& p : at.rowwise())

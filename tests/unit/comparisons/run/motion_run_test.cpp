@@ -124,6 +124,61 @@ damping_1_s = 15
   }
 }
 
+/// A ball of cut cells falls 5 mm; `more` is the rest of [dynamics].
+Experiment falling_ball(const std::string& more) {
+  return parse_experiment(R"(kinematics = "hencky"
+[body]
+geo = "sphere.geo"
+size_m = [0.2, 0.2, 0.2]
+voxels = 200
+[material]
+youngs_modulus_Pa = 1e5
+poisson_ratio = 0.3
+density_kg_m3 = 1000
+[[load]]
+gravity_m_s2 = [0, 0, -9.81]
+[compare]
+models = ["hybmss_avg"]
+measures = ["motion"]
+[reference]
+elements = []
+[dynamics]
+equilibrium = false
+plane = { point_m = [0, 0, -0.005], normal = [0, 0, 1] }
+)" + more,
+                          "ball.toml");
+}
+
+// Until it lands nothing strains or turns it, and then the plane has it by its true surface.
+TEST(MotionRun, ABallOfCutCellsFallsOnAPlane) {
+  const Part part = run_of(falling_ball("duration_s = 0.2\nsamples = 200\n"));
+  const HistoryRecord& h = history(part);
+  const double mass = 4.0 / 3 * 3.14159265 * 1e-3 * 1000, lands = std::sqrt(2 * 0.005 / 9.81);
+  double most = 0;
+  for (std::size_t i = 0; i < h.time.size(); ++i) {
+    const double p = values_of(h, "linear_momentum.z")[i], impulse = values_of(h, "contact_impulse.z")[i];
+    if (h.time[i] < 0.95 * lands) {
+      EXPECT_NEAR(p, -mass * 9.81 * h.time[i], 0.01 * mass * 9.81 * lands);
+      EXPECT_LT(values_of(h, "elastic_energy")[i], 1e-15);
+      EXPECT_EQ(impulse, 0);
+    }
+    most = std::max(most, impulse);
+  }
+  EXPECT_NEAR(most, 2 * mass * 9.81 * lands, 0.5 * mass * 9.81 * lands) << "it bounces";
+  EXPECT_LT(h.measured.at("restitution"), 1);
+  EXPECT_GT(h.measured.at("restitution"), 0.6);
+}
+
+TEST(MotionRun, APlaneUnderCutCellsInLargeStepsIsRefused) {
+  try {
+    prepare(falling_ball("duration_s = 0.2\nintegrator = \"energy_momentum\"\n"));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("dynamics.integrator: energy_momentum has a plane for nodes"), std::string::npos) << message;
+  }
+}
+
 /// Largest error of the energy of an undamped motion from `from` to `to` [s], in steps of `step` [s].
 double energy_error(const std::string& step, double from, double to) {
   const Part part = run_of(

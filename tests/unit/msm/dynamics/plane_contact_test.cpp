@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "msm/dynamics/time_step.h"
 #include "support/flight.h"
 
 namespace springproof::plane_contact_test {
@@ -71,13 +72,64 @@ TEST(PlaneContact, TheImpulseIsTheChangeOfMomentumAndEnergyIsNotGained) {
   }
 }
 
-TEST(PlaneContact, LargeStepsHaveNone) {
+const Integrator large_steps[] = {Integrator::energy_momentum, Integrator::implicit_euler, Integrator::bdf2};
+
+TEST(PlaneContact, InLargeStepsMomentaAreTheImpulsesAndEnergyIsNotGained) {
+  const MassSpringModel model =
+      build_model(test::model("hybmss_avg"), block_mesh({0.4, 0.4, 0.4}, {4, 4, 4}), {E, 0.25, density});
+  for (const Integrator integrator : large_steps) {
+    FlightPlan plan{.duration = 0.3, .velocity = {0.05, 0.02, -0.1}};
+    plan.plane.normal = Vec3(0.3, -0.2, 1).normalized();
+    plan.plane.point = -(0.2 * 0.4 + 1e-3) / Vec3(0.3, -0.2, 1).norm() * plan.plane.normal;
+    plan.options.integrator = integrator;
+    plan.options.time_step = 4 * safe_time_step(model, density);
+    const Flight f = fly(model, density, plan);
+    const Vec3 change = f.momentum() - f.mass.sum() * plan.velocity, turned = f.spin() - f.spin_at_start;
+    EXPECT_EQ(f.message, "") << name_of(integrator);
+    EXPECT_LT((change - f.impulse.linear).norm(), 1e-8 * change.norm());
+    EXPECT_LT((change - plan.plane.normal.dot(change) * plan.plane.normal).norm(), 1e-8 * change.norm());
+    EXPECT_GT(plan.plane.normal.dot(change), 0);
+    if (integrator == Integrator::energy_momentum) {
+      EXPECT_LT((turned - f.impulse.angular).norm(), 1e-7 * turned.norm());
+    }
+    EXPECT_LT(f.most_energy, (1 + 1e-9) * f.energy_at_start) << name_of(integrator);
+    EXPECT_LT(f.deepest, 1e-8 * 0.1);
+  }
+}
+
+TEST(PlaneContact, InLargeStepsAnElasticBarLeavesAWall) {
+  for (const double ratio : {1.0, 4.0}) {
+    const MassSpringModel model = bar("hybmss_avg", 20);
+    FlightPlan plan{.duration = 0.3, .velocity = {-0.01, 0, 0}};
+    plan.plane.point = {-1e-4, 0, 0};
+    plan.plane.normal = Vec3::UnitX();
+    plan.options.integrator = Integrator::energy_momentum;
+    plan.options.time_step = ratio * safe_time_step(model, density);
+    const Flight f = fly(model, density, plan);
+    ASSERT_TRUE(f.bounce) << ratio;
+    EXPECT_NEAR(f.bounce->end - f.bounce->begin, 2 / c, 0.1 * 2 / c);
+    EXPECT_NEAR(-f.bounce->velocity_after / f.bounce->velocity_before, 1, ratio > 1 ? 0.2 : 0.1);
+  }
+}
+
+TEST(PlaneContact, WhatLargeStepsDoNotHaveIsRefused) {
   const MassSpringModel model = bar("hybmss_avg", 10);
-  PlaneContact contact({}, masses(model.network, density), 1);
+  const Eigen::VectorXd mass = masses(model.network, density);
+  Plane rough;
+  rough.friction = 0.1;
+  PointWeights middle(1, mass.size());
+  middle.insert(0, 0) = middle.insert(0, 1) = 0.5;
+  PlaneContact with_friction(rough, mass, 1), of_points({}, mass, 1, middle), smooth({}, mass, 1);
   DynamicsOptions options;
-  options.contact = &contact;
-  options.integrator = Integrator::energy_momentum;
-  EXPECT_THROW(checked_time_step(model, density, options), InputError);
+  for (const Integrator integrator : large_steps) {
+    options.integrator = integrator;
+    for (PlaneContact* contact : {&with_friction, &of_points}) {
+      options.contact = contact;
+      EXPECT_THROW(checked_time_step(model, density, options), InputError);
+    }
+    options.contact = &smooth;
+    EXPECT_NO_THROW(checked_time_step(model, density, options));
+  }
 }
 
 }  // namespace
