@@ -112,6 +112,24 @@ TEST(PlaneContact, InLargeStepsAnElasticBarLeavesAWall) {
   }
 }
 
+TEST(PlaneContact, InLargeStepsARestingBlockHasItsWeight) {
+  const MassSpringModel model =
+      build_model(test::model("hybmss_avg"), block_mesh({0.4, 0.3, 0.2}, {4, 3, 2}), {E, 0.25, density});
+  FlightPlan plan{.duration = 2, .acceleration = {0, 0, -9.81}};
+  plan.plane.point = {0, 0, -1e-3};
+  plan.options.integrator = Integrator::implicit_euler;
+  plan.options.time_step = 4 * safe_time_step(model, density);
+  const Flight first = fly(model, density, plan);
+  plan.duration = 3;
+  const Flight second = fly(model, density, plan);
+  EXPECT_EQ(second.message, "");
+  const double weight = 9.81 * first.mass.sum() * (second.duration - first.duration);
+  EXPECT_NEAR(second.impulse.linear[2] - first.impulse.linear[2], weight, 1e-6 * weight);
+  const Vec3 turning = second.impulse.angular - first.impulse.angular;
+  EXPECT_NEAR(turning[0], 0.15 * weight, 1e-6 * weight);
+  EXPECT_NEAR(turning[1], -0.2 * weight, 1e-6 * weight);
+}
+
 TEST(PlaneContact, WhatLargeStepsDoNotHaveIsRefused) {
   const MassSpringModel model = bar("hybmss_avg", 10);
   const Eigen::VectorXd mass = masses(model.network, density);
