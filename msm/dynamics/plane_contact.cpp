@@ -8,7 +8,7 @@
 namespace springproof {
 namespace {
 
-constexpr int most_sweeps = 200;     // what they leave is corrected at the end of the next step
+constexpr int most_sweeps = 200;    // what they leave is corrected at the end of the next step
 constexpr double tolerance = 1e-7;  // of the last sweep's change of velocity, relative to the largest that is asked for
 
 PointWeights each_of(Eigen::Index nodes) {
