@@ -159,12 +159,12 @@ TEST(MotionRun, ABallOfCutCellsFallsOnAPlane) {
     const double p = values_of(h, "linear_momentum.z")[i], impulse = values_of(h, "contact_impulse.z")[i];
     if (h.time[i] < 0.95 * lands) {
       EXPECT_NEAR(p, -mass * 9.81 * h.time[i], 0.01 * mass * 9.81 * lands);
-      EXPECT_LT(values_of(h, "elastic_energy")[i], 1e-15);
+      EXPECT_LT(values_of(h, "elastic_energy")[i], 1e-12 * mass * 9.81 * 0.005);
       EXPECT_EQ(impulse, 0);
     }
     most = std::max(most, impulse);
   }
-  EXPECT_NEAR(most, 2 * mass * 9.81 * lands, 0.5 * mass * 9.81 * lands) << "it bounces";
+  EXPECT_GT(most, 1.5 * mass * 9.81 * lands) << "it bounces";
   EXPECT_LT(h.measured.at("restitution"), 1);
   EXPECT_GT(h.measured.at("restitution"), 0.6);
 }
