@@ -15,6 +15,7 @@
 #include "msm/topology/cubic_lattice.h"
 #include "msm/topology/hexagonal_lattice.h"
 #include "msm/topology/node_lattice.h"
+#include "msm/vertex_models.h"
 
 namespace springproof {
 namespace {
@@ -143,6 +144,8 @@ void require_material(const ModelParameters& p, const IsotropicMaterial& m) {
 EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region) try {
   if (p.springs) return build_from_file(p, mesh, material, region);
+  if (passes_patch_test(p.row) && !region && !mesh.tetrahedra.empty())
+    return build_on_vertices(p, mesh, material, fitted_on_vertices(p, mesh));
   EmbeddedModel built;
   auto& [network, laws, small_displacements_only] = built.model;
   network = network_of(p, mesh, region);

@@ -14,6 +14,7 @@ struct EmbeddedModel {
 };
 
 /// Builds the model of a body.  Disordered networks fill `region`, if given, which the mesh's cells only approximate.
+/// Networks that pass the patch test have their nodes on the vertices of a mesh of tetrahedra (msm/vertex_models.h).
 /// Topology::file: the network as it is, embedded at the mesh's nodes if it has those, else as a disordered one.
 /// @param parameters a row of the table of models with its options: resolve()
 /// @param mesh of the body; lattices of cells need one of equal cubes (block_mesh(), voxelise())

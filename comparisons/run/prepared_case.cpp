@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "msm/exchange/anchored_springs.h"
+#include "msm/vertex_models.h"
 
 namespace springproof {
 
@@ -61,7 +62,24 @@ EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelPa
   throw InputError(fmt::format("{}: {}", parameters.row.name, e.what()));
 }
 
+/// On the vertices of the lattice's tetrahedra, with results at the nodes of its cubes.
+EmbeddedModel build_on_tetrahedra(const Lattice& lattice, const ModelParameters& parameters,
+                                  const IsotropicMaterial& material) {
+  const Mesh& tetrahedra = *lattice.tetrahedra;
+  EmbeddedModel built = build_on_vertices(parameters, tetrahedra, material, lattice.fits->of(parameters, tetrahedra));
+  built.embedding.weights = embed(*lattice.mesh, built.model.network, 0).weights;
+  return built;
+}
+
 }  // namespace
+
+const Network& FittedNetworks::of(const ModelParameters& parameters, const Mesh& tetrahedra) {
+  const std::scoped_lock lock(one_at_a_time_);
+  const double key = parameters.random.springs_per_node;
+  const auto known = by_springs_per_node_.find(key);
+  if (known != by_springs_per_node_.end()) return known->second;
+  return by_springs_per_node_.emplace(key, fitted_on_vertices(parameters, tetrahedra)).first->second;
+}
 
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material, bool in_motion) {
@@ -72,6 +90,8 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
     require_material(parameters, material);
     return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
   }
+  if (passes_patch_test(parameters.row) && lattice.tetrahedra)
+    return build_on_tetrahedra(lattice, parameters, material);
   if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
   if (in_motion) return build_cut_in_motion(prepared, parameters, lattice, held, material);
   return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,6 +19,18 @@
 
 namespace springproof {
 
+/// Networks on the vertices of one mesh whose springs pass the patch test: each is fitted once, for all materials.
+class FittedNetworks {
+ public:
+  /// Thread-safe.
+  /// @throws as fitted_on_vertices()
+  const Network& of(const ModelParameters& parameters, const Mesh& tetrahedra);
+
+ private:
+  std::mutex one_at_a_time_;
+  std::map<double, Network> by_springs_per_node_;
+};
+
 /// The body at one resolution of the case.
 struct Lattice {
   Cells cells;  ///< of a block; for a body of voxels those of its bounding box
@@ -24,10 +38,11 @@ struct Lattice {
   double voxel_edge = 0;                        ///< [m]; 0: a block
   std::shared_ptr<const Region> region = {};    ///< the true body if cubes represent it, else empty
   std::shared_ptr<const Mesh> tetrahedra = {};  ///< for a body of voxels, with edges as long as the cubes', if
-                                                ///< elements on them are compared, else empty
-  std::shared_ptr<const CutBody> cut = {};      ///< of a body of voxels, if a model takes cut cells, else empty
-  double promised = 0;                          ///< error of a refined lattice; 0: its cells are of one size
-  Eigen::Index first_node = 0;                  ///< first row of its nodes in fem::Solution::displacement
+                                                ///< elements or networks on them are compared, else empty
+  std::shared_ptr<FittedNetworks> fits = std::make_shared<FittedNetworks>();  ///< on the vertices of `tetrahedra`
+  std::shared_ptr<const CutBody> cut = {};  ///< of a body of voxels, if a model takes cut cells, else empty
+  double promised = 0;                      ///< error of a refined lattice; 0: its cells are of one size
+  Eigen::Index first_node = 0;              ///< first row of its nodes in fem::Solution::displacement
 
   /// What errors of cut cells are proportional to: the edge of the cells, or the promised error of those of several
   /// sizes.

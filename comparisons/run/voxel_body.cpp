@@ -95,10 +95,11 @@ void compare_volumes(double cubes, double edge, double body, std::vector<std::st
   if (std::abs(share - 1) > 0.1) notes.push_back(says + ": its thin parts are not resolved");
 }
 
-/// Tetrahedral meshes as fine as the lattices, for elements compared with the models.
+/// Tetrahedral meshes as fine as the lattices, for elements compared with the models and networks on their vertices.
 void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
-  if (elements_of(e, 'p').empty()) return;
+  const auto on_vertices = [](const ModelParameters& p) { return passes_patch_test(p.row); };
+  if (elements_of(e, 'p').empty() && std::none_of(prepared.models.begin(), prepared.models.end(), on_vertices)) return;
   for (Lattice& lattice : prepared.lattices) {
     request.edge = lattice.voxel_edge;
     Mesh mesh = mesh_body(request).mesh;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "msm/algebra/krylov.h"
 
@@ -17,6 +18,7 @@ namespace {
 constexpr int per_node = 9;
 constexpr double smallest_slack = 1e-3;
 constexpr double largest_residual = 0.2;
+constexpr double near_exponent = 4;
 constexpr double largest_lean =
     0.3;  // |sum k d| / sum k |d| of a node: 0 in the middle of a lattice, some 0.5 on its faces
 using Block = Eigen::Matrix<double, per_node, per_node>;
@@ -29,9 +31,9 @@ struct Conditions {
   double unit;
   std::vector<Vec3> direction;  ///< of each spring, i to j
 
-  explicit Conditions(const Network& n)
+  Conditions(const Network& n, std::vector<int> groups)
       : network(n),
-        group(volume_groups(n)),
+        group(std::move(groups)),
         unit(std::cbrt(n.volume.sum() / std::max<double>(1, static_cast<double>((n.volume.array() > 0).count())))) {
     for (const Spring& s : n.springs) direction.push_back((n.X.row(s.j) - n.X.row(s.i)).transpose().normalized());
   }
@@ -146,17 +148,22 @@ std::vector<double> edge_weights(const Network& network, double unit) {
   return w;
 }
 
-/// Weights k L, scaled at each node to its volume: trace of sum w L n n^T = d V_n.
-std::vector<double> stiffness_weights(const Conditions& A, const Eigen::VectorXd& target, int dimensions) {
+/// Weights k L, or those of near springs, scaled at each node to its volume: trace of sum w L n n^T = d V_n.
+std::vector<double> first_weights(const Conditions& A, WeightStart start, const Eigen::VectorXd& target,
+                                  int dimensions) {
   const auto& springs = A.network.springs;
+  const auto unscaled = [&](std::size_t s) {
+    return start == WeightStart::near_springs ? std::pow(A.length(s), -near_exponent)
+                                              : springs[s].stiffness * A.length(s);
+  };
   Eigen::VectorXd share = Eigen::VectorXd::Zero(A.network.nodes());
   for (std::size_t s = 0; s < springs.size(); ++s)
-    for (int side = 0; side < 2; ++side) share[A.sink(s, side)] += springs[s].stiffness * A.length(s) * A.length(s);
+    for (int side = 0; side < 2; ++side) share[A.sink(s, side)] += unscaled(s) * A.length(s);
   std::vector<double> w;
   for (std::size_t s = 0; s < springs.size(); ++s)
     for (int side = 0; side < 2; ++side) {
       const int n = A.sink(s, side);
-      w.push_back(dimensions * target[per_node * n] / share[n] * springs[s].stiffness * A.length(s));
+      w.push_back(dimensions * target[per_node * n] / share[n] * unscaled(s));
     }
   return w;
 }
@@ -198,6 +205,13 @@ int correct(const Conditions& A, const Eigen::VectorXd& target, std::vector<doub
   return k.iterations;
 }
 
+/// Each node for itself.
+std::vector<int> own_groups(const Network& network) {
+  std::vector<int> group(network.nodes());
+  for (int n = 0; n < network.nodes(); ++n) group[n] = network.master(n);
+  return group;
+}
+
 }  // namespace
 
 std::vector<int> volume_groups(const Network& network) {
@@ -211,9 +225,8 @@ std::vector<int> volume_groups(const Network& network) {
     springs[network.master(s.j)] += pull.norm();
   }
   const auto one_sided = [&](int n) { return lean.row(n).norm() > largest_lean * springs[n]; };
-  std::vector<int> group(network.nodes());
+  std::vector<int> group = own_groups(network);
   std::vector<double> shortest(network.nodes(), std::numeric_limits<double>::infinity());
-  for (int n = 0; n < network.nodes(); ++n) group[n] = network.master(n);
   const auto join = [&](int n, int other, double length) {
     if (!one_sided(n) || one_sided(other) || length >= shortest[n]) return;
     shortest[n] = length;
@@ -226,8 +239,9 @@ std::vector<int> volume_groups(const Network& network) {
   return group;
 }
 
-DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus) {
-  const Conditions A(network);
+DispersionWeights volume_weights(const Network& network, const NodalVectors& volume_gradient, double shear_modulus,
+                                 WeightStart start) {
+  const Conditions A(network, start == WeightStart::near_springs ? own_groups(network) : volume_groups(network));
   const int dimensions = network.triangles.empty() ? 3 : 2;
   const Eigen::VectorXd target = A.target(volume_gradient, dimensions);
   DispersionWeights result;
@@ -235,7 +249,7 @@ DispersionWeights volume_weights(const Network& network, const NodalVectors& vol
   result.weight = edge_weights(network, A.unit);
   result.residual = A.residual(result.weight, target);
   if (!(result.residual < 1e-9)) {
-    result.weight = stiffness_weights(A, target, dimensions);
+    result.weight = first_weights(A, start, target, dimensions);
     result.iterations = correct(A, target, result.weight);
     result.residual = A.residual(result.weight, target);
   }

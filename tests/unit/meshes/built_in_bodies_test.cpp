@@ -30,6 +30,7 @@ const double fillet = 0.04 * (1 - pi / 4);  // fifths of both sides
 
 const BuiltIn bodies[] = {
     {"sphere.geo", {2, 2, 2}, 0.1, pi / 6, 0.01, 0.005, {"surface"}},
+    {"bar.geo", {0.4, 0.1, 0.08}, 0.02, 1, 1e-9, 1e-9, {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}},
     {"cylinder.geo", {0.1, 0.08, 0.2}, 0.01, pi / 4, 0.03, 0.02, {"bottom", "top", "side"}},
     {"l_bracket.geo",
      {0.1, 0.05, 0.12},

@@ -1,0 +1,24 @@
+// Models whose springs pass the patch test, on the vertices of a body's tetrahedra.
+#pragma once
+
+#include "msm/models.h"
+
+namespace springproof {
+
+/// The network of such a model for G = 1 Pa.  It depends on the body and on the option `springs_per_node` alone: one
+/// serves all materials.
+/// @param parameters of a model that passes_patch_test()
+/// @param tetrahedra of the body
+/// @throws std::runtime_error as fit_patch()
+Network fitted_on_vertices(const ModelParameters& parameters, const Mesh& tetrahedra);
+
+/// The model of a material on such a network, embedded at the tetrahedra's vertices.  Exact nodal volumes from nu = 1/4
+/// on; from 0 to 1/4 those of near springs; below, weights k L, where only these are stable.
+/// @param parameters of the model
+/// @param tetrahedra of the body
+/// @param material of the body
+/// @param fitted fitted_on_vertices(parameters, tetrahedra)
+EmbeddedModel build_on_vertices(const ModelParameters& parameters, const Mesh& tetrahedra,
+                                const IsotropicMaterial& material, const Network& fitted);
+
+}  // namespace springproof
