@@ -41,8 +41,8 @@ EmbeddedModel build_on_vertices(const ModelParameters& p, const Mesh& tetrahedra
   network = fitted;
   for (Spring& s : network.springs) s.stiffness *= calibration.spring_shear_modulus;
   built.model.laws = laws_of(p, network, material, calibration, gradient);
-  const double nu = material.poisson_ratio;
-  if (p.dispersion == Dispersion::symmetric && !p.exact_volumes && nu >= 0 && !exact_volumes(p, material)) {
+  if (p.dispersion == Dispersion::symmetric && p.exact_volumes.value_or(false) &&
+      material.poisson_ratio < springs_poisson_ratio(p)) {
     DispersionWeights near =
         volume_weights(network, gradient, calibration.spring_shear_modulus, WeightStart::near_springs);
     auto& law = std::get<MomentumDispersion>(built.model.laws.back());

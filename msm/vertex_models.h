@@ -13,7 +13,7 @@ namespace springproof {
 Network fitted_on_vertices(const ModelParameters& parameters, const Mesh& tetrahedra);
 
 /// The model of a material on such a network, embedded at the tetrahedra's vertices.  Exact nodal volumes from nu = 1/4
-/// on; from 0 to 1/4 those of near springs; below, weights k L, where only these are stable.
+/// on; below, weights k L, where only these are stable in any body, and exact volumes of near springs on demand.
 /// @param parameters of the model
 /// @param tetrahedra of the body
 /// @param material of the body

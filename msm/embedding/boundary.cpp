@@ -152,8 +152,8 @@ std::optional<NodalVectors> true_forces(const Load& load, const Embedding& e, co
   }
   if (const auto* g = std::get_if<Gravity>(&load)) force = factor * density * e.volumes * g->acceleration.transpose();
   if (force.rows() == 0) return {};
-  if (const auto* wrench = wrench_of(load); wrench && *wrench && patch_of(load))
-    complete(*wrench, factor, X, e.patches.at(*patch_of(load)).area, force);
+  if (const auto* wrench = wrench_of(load); wrench && *wrench)
+    complete(*wrench, factor, X, patch_of(load) ? e.patches.at(*patch_of(load)).area : e.volumes, force);
   return force;
 }
 

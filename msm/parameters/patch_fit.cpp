@@ -17,7 +17,7 @@ namespace {
 
 // As fractions of the diagonal, one after the other: it bounds the dual where conditions contradict each other.
 constexpr std::array slacks = {1e-2, 1e-3, 1e-4, 1e-5};
-constexpr double contradiction = 0.03;  // unmet with a slack of 1e-3, of the condition of a plane face
+constexpr double contradiction = 0.03;  // unmet with a slack of 1e-4, of the condition of a plane face
 constexpr double barrier = 0.3;         // mu
 constexpr double met = 1e-6, largest_unmet = 0.03;
 constexpr int most_steps = 60, most_iterations = 3000;
@@ -176,7 +176,7 @@ Eigen::VectorXd fitted(PatchDual& dual, PatchFit& fit) {
     fit.contradictory = 0;
     const Eigen::VectorXd unmet = dual.weight().cwiseProduct(y);
     for (int n = 0; n < dual.network.nodes(); ++n)
-      if (slack < 1e-3 && at(unmet, n).norm() > contradiction * of_face)
+      if (slack < 1e-4 && at(unmet, n).norm() > contradiction * of_face)
         ++fit.contradictory;
       else
         dual.slack[n] = slack;

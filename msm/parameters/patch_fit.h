@@ -28,7 +28,7 @@ struct PatchFit {
 ///   for periodic networks; sum A_n = 0 and sum A_n x_n^T = V 1, or no constants exist.
 /// At corners and in thin parts conditions can contradict each other (all springs at a corner lead inwards, but the
 /// component xyz must vanish); a slack of 1e-5 spreads what is left over the node's conditions.  Nodes that are off by
-/// 3 % of the condition of a plane face with a slack of 1e-3 keep that.
+/// 3 % of the condition of a plane face with a slack of 1e-4 keep that.
 /// @throws std::runtime_error if the mean residual exceeds 0.03: too few springs at some nodes.
 PatchFit fit_patch(const NodalVectors& area, double shear_modulus, Network& network);
 
