@@ -18,7 +18,7 @@ set(tested_ratios  # a regular expression of cases, their ratios
 
 # Minutes of all cores, for a look; bodies/rabbit, kot_2014/fig_15 and golec_2019 are the same in fewer cubes, kot_2015/fig_13
 # is the hand of hand_pressed.
-set(not_tested "bodies/(rabbit_5000|hand_pressed)|cost/(rabbit|compression|torsion)|kot_2014/fig_15_fine")
+set(not_tested "bodies/(rabbit_5000|rabbit_networks|hand_pressed)|cost/(rabbit|compression|torsion)|kot_2014/fig_15_fine")
 
 file(GLOB_RECURSE cases CONFIGURE_DEPENDS RELATIVE ${experiments} ${experiments}/*.toml)
 list(TRANSFORM cases REPLACE "\\.toml$" "")
