@@ -12,6 +12,12 @@ namespace springproof {
 
 namespace {
 
+/// In flight all nodes fall alike.
+void fall_freely(const Network& network, Embedding& embedding) {
+  embedding.volumes = network.volume;
+  embedding.free_fall = true;
+}
+
 /// Whether the loads prescribe all components on a patch.
 bool holds_wholly(const std::vector<Load>& loads, const std::string& patch) {
   std::array<bool, 3> held{};
@@ -36,7 +42,7 @@ EmbeddedModel build_cut_in_motion(const PreparedCase& prepared, const ModelParam
   auto anchor = built.model.network.anchors.begin();
   for (const std::string& name : anchored)
     for (const PatchInCell& p : body.patches.at(name)) anchor++->stiffness *= body.cells[p.cell].filled.fraction;
-  if (held.empty()) built.embedding.volumes = built.model.network.volume;  // in flight all nodes fall alike
+  if (held.empty()) fall_freely(built.model.network, built.embedding);
   for (const std::string& name : held)
     if (!built.embedding.held.contains(name)) built.embedding.held[name] = nodes_at_patch(body, name);
   return built;
@@ -55,7 +61,7 @@ EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelPa
   if (in_motion) {
     embedding.held = file.patches;
     embedding.surface = file.surface.weights;
-    if (held.empty()) embedding.volumes = model.network.volume;
+    if (held.empty()) fall_freely(model.network, embedding);
   }
   return {std::move(model), std::move(embedding)};
 } catch (const InputError& e) {

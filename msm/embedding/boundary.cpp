@@ -122,7 +122,7 @@ NodalVectors forces_of(const Load& load, const Mesh& mesh, double density, doubl
     force += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
   else if (const auto* p = std::get_if<PointForce>(&load))
     add_point_force({p->at, factor * p->force}, mesh, force);
-  if (const auto* wrench = wrench_of(load); wrench && *wrench)
+  if (const auto* wrench = wrench_of(load); wrench && *wrench && (patch_of(load) || !e.free_fall))
     complete(*wrench, factor, mesh.nodes,
              patch_of(load) ? nodal_areas(mesh, patch(mesh, *patch_of(load))) : nodal_volumes(mesh), force);
   return force;
@@ -152,7 +152,7 @@ std::optional<NodalVectors> true_forces(const Load& load, const Embedding& e, co
   }
   if (const auto* g = std::get_if<Gravity>(&load)) force = factor * density * e.volumes * g->acceleration.transpose();
   if (force.rows() == 0) return {};
-  if (const auto* wrench = wrench_of(load); wrench && *wrench)
+  if (const auto* wrench = wrench_of(load); wrench && *wrench && (patch_of(load) || !e.free_fall))
     complete(*wrench, factor, X, patch_of(load) ? e.patches.at(*patch_of(load)).area : e.volumes, force);
   return force;
 }
