@@ -122,7 +122,7 @@ NodalVectors forces_of(const Load& load, const Mesh& mesh, double density, doubl
     force += factor * density * nodal_volumes(mesh) * g->acceleration.transpose();
   else if (const auto* p = std::get_if<PointForce>(&load))
     add_point_force({p->at, factor * p->force}, mesh, force);
-  if (const auto* wrench = wrench_of(load); wrench && *wrench && (patch_of(load) || !e.free_fall))
+  if (const auto* wrench = wrench_of(load); wrench && *wrench)
     complete(*wrench, factor, mesh.nodes,
              patch_of(load) ? nodal_areas(mesh, patch(mesh, *patch_of(load))) : nodal_volumes(mesh), force);
   return force;
