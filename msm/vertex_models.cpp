@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "meshes/volume.h"
-#include "msm/laws/dispersion_weights.h"
 #include "msm/parameters/patch_fit.h"
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/vertex_network.h"
@@ -40,15 +39,9 @@ EmbeddedModel build_on_vertices(const ModelParameters& p, const Mesh& tetrahedra
   Network& network = built.model.network;
   network = fitted;
   for (Spring& s : network.springs) s.stiffness *= calibration.spring_shear_modulus;
-  built.model.laws = laws_of(p, network, material, calibration, gradient);
-  if (p.dispersion == Dispersion::symmetric && p.exact_volumes.value_or(false) &&
-      material.poisson_ratio < springs_poisson_ratio(p)) {
-    DispersionWeights near =
-        volume_weights(network, gradient, calibration.spring_shear_modulus, WeightStart::near_springs);
-    auto& law = std::get<MomentumDispersion>(built.model.laws.back());
-    law.weight = std::move(near.weight);
-    law.group = std::move(near.group);
-  }
+  const bool below = material.poisson_ratio < springs_poisson_ratio(p);
+  built.model.laws =
+      laws_of(p, network, material, calibration, gradient, below ? WeightStart::near_springs : WeightStart::stiffness);
   return built;
 }
 

@@ -33,10 +33,11 @@ enum class WeightStart {
 /// With w = k L the first fails at edges and corners and on disordered nodes, the second on disordered nodes, where the
 /// network relaxes the pressure.
 /// Superposed cells meet both with w = k c on their edges and none on their diagonals, in any body: each cell gives an
-/// eighth of its volume to each corner by the three edges there.  Other networks get the weights nearest to `start`, k
-/// L or another w_0, in the sum of (w - w_0)^2 / w_0. Planar networks: J_n = V_n (the in-plane divergence), the factor
-/// is 8 G. Nodes at the surface of a disordered network may have too few springs to meet all conditions, which are then
-/// met approximately, with a slack of 1e-3.
+/// eighth of its volume to each corner by the three edges there.  Other networks get the weights nearest to `start`,
+/// w_0, in the sum of (w - w_0)^2 / w_0.
+/// Planar networks: J_n = V_n (the in-plane divergence), the factor is 8 G.
+/// Nodes at the surface of a disordered network may have too few springs to meet all conditions, which are then met
+/// approximately, with a slack of 1e-3.
 /// @param network of the springs
 /// @param volume_gradient dV/dx of the body at the nodes [m^2], n x 3; zero for periodic networks
 /// @param shear_modulus G [Pa]

@@ -107,8 +107,8 @@ struct PatchDual {
     return block;
   }
 
-  /// Solves (B W B^T + slack D) d = r, W = dt / d(B^T y).  Returns the number of iterations.
-  int solve(const Eigen::VectorXd& t, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& d) {
+  /// Solves (B W B^T + slack D) d = r, W = dt / d(B^T y).
+  void solve(const Eigen::VectorXd& t, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& d) {
     const Eigen::VectorXd W = t.array().square() / (t.array().square() + barrier * barrier), D = weight();
     std::vector<MomentBlock> inverse = blocks(W);
     for (int n = 0; n < network.nodes(); ++n) {
@@ -131,29 +131,27 @@ struct PatchDual {
       smooth.add(in, out);
     };
     d = Eigen::VectorXd::Zero(r.size());
-    return conjugate_gradients(normal, precondition, r, tolerance, most_iterations, d).iterations;
+    conjugate_gradients(normal, precondition, r, tolerance, most_iterations, d);
   }
 };
 
 const double of_face = patch_traction(Vec3::UnitZ()).norm();
 
-/// Largest and mean unmet condition of a node, of that of a plane face.
-void measure_patch(const PatchDual& dual, const Eigen::VectorXd& t, PatchFit& fit) {
-  const Eigen::VectorXd r = dual.sum(t) - dual.b;
-  fit.mean_residual = r.norm() / std::sqrt(dual.network.nodes()) / of_face;
-  for (int n = 0; n < dual.network.nodes(); ++n) fit.residual = std::max(fit.residual, at(r, n).norm() / of_face);
+/// Root mean square over the nodes of the unmet condition, of that of a plane face.
+double mean_residual(const PatchDual& dual, const Eigen::VectorXd& t) {
+  return (dual.sum(t) - dual.b).norm() / std::sqrt(dual.network.nodes()) / of_face;
 }
 
 /// Newton's method with the present slack.
-void minimise(PatchDual& dual, double tolerance, Eigen::VectorXd& y, Eigen::VectorXd& t, PatchFit& fit) {
+void minimise(PatchDual& dual, double tolerance, Eigen::VectorXd& y, Eigen::VectorXd& t) {
   double value = dual.objective(y, t);
   Eigen::VectorXd d;
-  for (int steps = 0; steps < most_steps; ++steps, ++fit.steps) {
+  for (int steps = 0; steps < most_steps; ++steps) {
     const Eigen::VectorXd gradient = dual.gradient(y, t);
     const double size = gradient.norm() / of_face / std::sqrt(dual.network.nodes());
     progress::detail(fmt::format("fitting the springs' constants: {:.0e} of the conditions unmet", size));
     if (size < tolerance) return;
-    fit.iterations += dual.solve(t, -gradient, std::clamp(size, 1e-3, 1e-1), d);
+    dual.solve(t, -gradient, std::clamp(size, 1e-3, 1e-1), d);
     const double slope = gradient.dot(d);
     bool lower = false;
     for (double step = 1; step > 1e-4 && !lower; step /= 2) {
@@ -170,37 +168,30 @@ void minimise(PatchDual& dual, double tolerance, Eigen::VectorXd& y, Eigen::Vect
 }
 
 /// Lowers the slack, but not where conditions contradict each other.
-Eigen::VectorXd fitted(PatchDual& dual, PatchFit& fit) {
+Eigen::VectorXd fitted(PatchDual& dual) {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(dual.b.size()), t = dual.factors(y);
   for (const double slack : slacks) {
-    fit.contradictory = 0;
     const Eigen::VectorXd unmet = dual.weight().cwiseProduct(y);
     for (int n = 0; n < dual.network.nodes(); ++n)
-      if (slack < 1e-4 && at(unmet, n).norm() > contradiction * of_face)
-        ++fit.contradictory;
-      else
-        dual.slack[n] = slack;
-    minimise(dual, std::max(met, slack / 10), y, t, fit);
+      if (slack >= 1e-4 || at(unmet, n).norm() <= contradiction * of_face) dual.slack[n] = slack;
+    minimise(dual, std::max(met, slack / 10), y, t);
   }
   return t;
 }
 
 }  // namespace
 
-PatchFit fit_patch(const NodalVectors& area, double shear_modulus, Network& network) {
+void fit_patch(const NodalVectors& area, double shear_modulus, Network& network) {
   PatchDual dual(network, area);
-  PatchFit fit;
-  const Eigen::VectorXd t = fitted(dual, fit);
-  measure_patch(dual, t, fit);
-  fit.largest_factor = t.maxCoeff();
-  if (!(fit.mean_residual < largest_unmet))
+  const Eigen::VectorXd t = fitted(dual);
+  const double unmet = mean_residual(dual, t);
+  if (!(unmet < largest_unmet))
     throw std::runtime_error(
         fmt::format("springs_per_node: no spring constants hold every affine strain in equilibrium at the nodes "
                     "(mean residual {:.1e}, allowed: {:g}); choose more springs per node or more nodes",
-                    fit.mean_residual, largest_unmet));
+                    unmet, largest_unmet));
   for (std::size_t s = 0; s < network.springs.size(); ++s)
     network.springs[s].stiffness = shear_modulus * dual.guess(s) * t[static_cast<Eigen::Index>(s)];
-  return fit;
 }
 
 }  // namespace springproof

@@ -5,16 +5,6 @@
 
 namespace springproof {
 
-/// How well a fit met its conditions.
-struct PatchFit {
-  double residual = 0;  ///< largest over the nodes: |unmet condition| / |condition of the area l^2 of a plane face|
-  double mean_residual = 0;   ///< root mean square of the same
-  double largest_factor = 0;  ///< largest k / k_0
-  int contradictory = 0;      ///< nodes whose conditions contradict each other, which are met less closely
-  int steps = 0;              ///< of Newton's method
-  int iterations = 0;         ///< of conjugate gradients, in all
-};
-
 /// Replaces the spring constants by k = t k_0, k_0 = c / L^2, t > 0, that fulfil at each node n the ten conditions
 ///   sum_s k L n_i n_j n_k = -G (d_ij A_k + d_jk A_i + d_ki A_j)   (unit vectors n from the node, d Kronecker's
 ///   symbol)
@@ -30,6 +20,6 @@ struct PatchFit {
 /// component xyz must vanish); a slack of 1e-5 spreads what is left over the node's conditions.  Nodes that are off by
 /// 3 % of the condition of a plane face with a slack of 1e-4 keep that.
 /// @throws std::runtime_error if the mean residual exceeds 0.03: too few springs at some nodes.
-PatchFit fit_patch(const NodalVectors& area, double shear_modulus, Network& network);
+void fit_patch(const NodalVectors& area, double shear_modulus, Network& network);
 
 }  // namespace springproof

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "msm/laws/dispersion_weights.h"
-
 namespace springproof {
 namespace {
 
@@ -17,12 +15,12 @@ AngularSprings angular(const Network& network, const IsotropicMaterial& material
 }  // namespace
 
 MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,
-                                  const NodalVectors& volume_gradient) {
+                                  const NodalVectors& volume_gradient, WeightStart start) {
   MomentumDispersion law{calibration.q, p.dispersion, {}};
   if (p.dispersion == Dispersion::share_weighted && p.row.topology == Topology::cells)
     law.weight = spring_shares(network);
   if (p.dispersion == Dispersion::symmetric && p.exact_volumes.value_or(false)) {
-    DispersionWeights exact = volume_weights(network, volume_gradient, calibration.spring_shear_modulus);
+    DispersionWeights exact = volume_weights(network, volume_gradient, calibration.spring_shear_modulus, start);
     law.weight = std::move(exact.weight);
     law.group = std::move(exact.group);
   }
@@ -44,7 +42,7 @@ AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& 
 
 std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& network,
                               const IsotropicMaterial& material, const BulkCalibration& calibration,
-                              const NodalVectors& volume_gradient) {
+                              const NodalVectors& volume_gradient, WeightStart start) {
   using enum Extension;
   ModelParameters p = parameters;
   if (p.has(averaging)) return {averaged_law(p, material)};
@@ -52,7 +50,7 @@ std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& 
   if (p.has(volume_correction)) laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   if (p.has(momentum_dispersion)) {
     if (p.dispersion == Dispersion::symmetric) p.exact_volumes = exact_volumes(p, material);
-    laws.push_back(dispersion_law(p, network, calibration, volume_gradient));
+    laws.push_back(dispersion_law(p, network, calibration, volume_gradient, start));
   }
   if (p.has(angular_springs)) laws.push_back(angular(network, material));
   if (p.row.bending_correction)

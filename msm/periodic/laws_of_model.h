@@ -1,21 +1,23 @@
 // Force laws of a row of the model table, for bodies and for periodic cells.
 #pragma once
 
+#include "msm/laws/dispersion_weights.h"
 #include "msm/periodic/bulk_calibration.h"
 
 namespace springproof {
 
 /// The laws of a calibrated network.  `volume_gradient`: derivative of the body's volume with respect to the positions
-/// of the nodes [m^2]; zero without a surface.
+/// of the nodes [m^2]; zero without a surface.  `start`: what exact weights of momentum dispersion are nearest to.
 /// @throws as bulk_calibration() if the model has momentum dispersion.
 std::vector<ForceLaw> laws_of(const ModelParameters& p, const Network& network, const IsotropicMaterial& material,
-                              const BulkCalibration& calibration, const NodalVectors& volume_gradient);
+                              const BulkCalibration& calibration, const NodalVectors& volume_gradient,
+                              WeightStart start = WeightStart::stiffness);
 
 /// The springs of a model averaged over its cells, which for small strains have its moduli.
 AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material);
 
 /// Momentum dispersion of eMSM; symmetric dispersion with p.exact_volumes resolved (empty: k L).
 MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,
-                                  const NodalVectors& volume_gradient);
+                                  const NodalVectors& volume_gradient, WeightStart start = WeightStart::stiffness);
 
 }  // namespace springproof

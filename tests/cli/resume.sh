@@ -26,7 +26,7 @@ cells = [4, 4, 4]
 model = "hybmss"
 measure = "displacement_error"
 source = "extrapolated FEM"
-within = 10
+within = 0.5
 TOML
 fail() {
   echo "FAILED: $1"

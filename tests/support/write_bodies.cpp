@@ -14,7 +14,6 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder / "broken");
-  write_stl_binary(folder / "torus.stl", torus(2, 0.6, 80, 30));
   write_stl_binary(folder / "trefoil.stl", trefoil(0.45, 240, 16));
   write_stl_ascii(folder / "noisy_sphere.stl", noisy_sphere(1, 4, 0.02, 7));
   write_stl_ascii(folder / "scan.stl", scan(4, 0.005, 3));
