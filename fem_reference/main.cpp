@@ -9,56 +9,25 @@
 #include "fem_reference/case_request.h"
 #include "fem_reference/element.h"
 #include "fem_reference/exchange.h"
+#include "fem_reference/grid_meshes.h"
 #include "fem_reference/plain_words.h"
 #include "fem_reference/processes.h"
 #include "fem_reference/solve_grid.h"
-#include "meshes/mesher/mesher.h"
+#include "problem/system/fork_server.h"
 #include "problem/system/progress.h"
 
 namespace springproof::fem {
 namespace {
 
-// Halves the cells as long as all counts are even, down to the coarsest level of the multigrid; returns how often.
-int halve(Cells& cells) {
-  int times = 0;
-  const auto can_be_halved = [](int n) { return n % 2 == 0; };
-  while (std::all_of(cells.begin(), cells.end(), can_be_halved)) {
-    for (int& n : cells) n /= 2;
-    ++times;
-  }
-  return times;
-}
-
-// Blocks are meshed with few cells and refined, as geometric multigrid requires.  Other bodies are meshed at the
-// requested resolution, hexahedra with second-order edges, so that curved surfaces stay curved.
-void mesh_into(GridProblem& problem, const Request& request, const Discretisation& grid) {
-  const Element element = element_named(grid.element);
-  problem.degree = element.degree;
-  if (grid.mesh >= 0) {
-    problem.coarse = *request.meshes.at(grid.mesh);
-    problem.refinements = grid.refinements;
-    return;
-  }
-  if (element.tetrahedra) {
-    problem.coarse = mesh_geo(request.geo, request.size, grid.cells, {.tetrahedra = true});
-    return;
-  }
-  Cells coarse = grid.cells;
-  problem.refinements = halve(coarse);
-  problem.coarse = mesh_geo(request.geo, request.size, coarse);
-  if (problem.coarse.grid) {
-    problem.place =
-        graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(), grid.grading);
-    return;
-  }
-  problem.refinements = 0;
-  problem.coarse = mesh_geo(request.geo, request.size, grid.cells, {.second_order = true});
-}
-
 Solution solve_one(const Request& request, const Discretisation& grid, Method method) {
   GridProblem problem;
   problem.method = method;
-  mesh_into(problem, request, grid);
+  problem.degree = element_named(grid.element).degree;
+  problem.coarse = *request.meshes.at(grid.mesh);
+  problem.refinements = grid.refinements;
+  if (problem.coarse.grid)
+    problem.place =
+        graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(), grid.grading);
   problem.law = request.law;
   problem.material = request.material;
   problem.loads = request.loads;
@@ -188,6 +157,7 @@ bool solve_case(const Options& options) {
     request.grids = {grid};
     request.points = request.stress_points = points;
     request.tolerance = options.tolerance;
+    mesh_grids(request);
     fmt::print("{}, Poisson's ratio {}: ", experiment.name, material.poisson_ratio);
     for (const Solution& s : solve_all(request, options.method)) {
       print(experiment.probes, s, options.digits);
@@ -285,4 +255,8 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace springproof::fem
 
-int main(int argc, char** argv) { return springproof::fem::run(argc, argv); }
+int main(int argc, char** argv) {
+  if (argc == 2 && std::string_view(argv[1]) == springproof::fork_server_argument)
+    return springproof::serve_forks(springproof::fem::run);
+  return springproof::fem::run(argc, argv);
+}

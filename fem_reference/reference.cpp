@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/exchange.h"
+#include "fem_reference/grid_meshes.h"
 #include "fem_reference/plain_words.h"
 #include "problem/system/child.h"
+#include "problem/system/fork_server.h"
 #include "problem/system/progress.h"
 
 namespace springproof::fem {
@@ -19,7 +22,9 @@ namespace fs = std::filesystem;
 
 constexpr int exit_status_input_error = 2;
 
-fs::path program() { return find_program("springproof-fem", "SPRINGPROOF_FEM_PROGRAM"); }
+constexpr const char* program_variable = "SPRINGPROOF_FEM_PROGRAM";
+
+fs::path program() { return find_program("springproof-fem", program_variable); }
 
 fs::path program_or_throw() {
   const fs::path file = program();
@@ -28,6 +33,14 @@ fs::path program_or_throw() {
         "the program springproof-fem is neither beside this one nor named by "
         "SPRINGPROOF_FEM_PROGRAM");
   return file;
+}
+
+/// Runs the program, whose standard output is not read.  One that is ours is started once and forks; what
+/// $SPRINGPROOF_FEM_PROGRAM names may be any program.
+ChildEnd run(const std::vector<std::string>& arguments, const fs::path& output, const fs::path& errors) {
+  const fs::path file = program_or_throw();
+  if (std::getenv(program_variable)) return run_child({file, arguments, {}, output, errors});
+  return run_forked(file, arguments, output, errors);
 }
 
 /// Whether the results match the request: a solution per grid, a row per point, the same patches on every grid.
@@ -77,8 +90,10 @@ std::vector<Solution> read_answer(const fs::path& answer, const Request& request
 
 }  // namespace
 
-std::vector<Solution> solve(const Request& request) {
-  const fs::path file = program_or_throw();
+std::vector<Solution> solve(const Request& asked) {
+  program_or_throw();
+  Request request = asked;
+  mesh_grids(request);  // here, where a mesh serves all of Poisson's ratios
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor",
                  errors = folder.path / "errors", progress = folder.path / "progress";
@@ -90,11 +105,8 @@ std::vector<Solution> solve(const Request& request) {
   progress::phase("finite elements");
   const progress::Relay relay(progress);
   const ChildEnd end =
-      run_child({file,
-                 {"--request", question.string(), "--answer", answer.string(), "--progress", progress.string()},
-                 {},
-                 folder.path / "output",
-                 errors});
+      run({"--request", question.string(), "--answer", answer.string(), "--progress", progress.string()},
+          folder.path / "output", errors);
   if (!end.ok()) folder.require_room();
   const std::string last_words = plain_words(text_of_file(errors));
   if (end.kind == ChildEnd::exited && end.status == exit_status_input_error) throw InputError(last_words);
@@ -102,7 +114,10 @@ std::vector<Solution> solve(const Request& request) {
     throw std::runtime_error(fmt::format("{}: springproof-fem {}{}{}", request.name, words_for(end),
                                          last_words.empty() ? "" : ": ", last_words));
   std::vector<Solution> solutions = read_answer(answer, request);
-  for (Solution& s : solutions) s.message = plain_words(s.message);
+  for (std::size_t g = 0; g < solutions.size(); ++g) {
+    solutions[g].grid = asked.grids[g];
+    solutions[g].message = plain_words(solutions[g].message);
+  }
   return solutions;
 }
 
@@ -116,6 +131,11 @@ void interrupt() { interrupt_children(); }
 
 bool available() { return !program().empty(); }
 
-std::string version() { return version_of(program()); }
+std::string version() {
+  if (!available()) return {};
+  const TemporaryFolder folder;
+  const fs::path output = folder.path / "output";
+  return run({"--version"}, output, folder.path / "errors").ok() ? trimmed(text_of_file(output)) : std::string();
+}
 
 }  // namespace springproof::fem

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <mutex>
 
 #include "meshes/mesher/mesher_exchange.h"
 #include "problem/system/child.h"
@@ -166,7 +168,17 @@ Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKin
   if (!fs::is_regular_file(geo, ignored)) refuse(geo, "no such file");
   if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
   if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
-  return mesh_body({.file = geo, .size = size, .cells = cells, .kind = kind}).mesh;
+  const MeshRequest request{.file = geo, .size = size, .cells = cells, .kind = kind};
+  static std::mutex mutex;
+  static std::map<std::string, Mesh> made;
+  const std::string key = to_cbor(request);
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto before = made.find(key); before != made.end()) return before->second;
+  }
+  Mesh mesh = mesh_body(request).mesh;
+  const std::lock_guard lock(mutex);
+  return made.emplace(key, std::move(mesh)).first->second;
 }
 
 }  // namespace springproof

@@ -67,7 +67,7 @@ const std::vector<std::string>& mesh_file_extensions();
 MeshedBody mesh_body(const MeshRequest& request);
 
 /// Meshes a .geo with the parameters size_x size_y size_z [m], nx ny nz and tetrahedra (0 or 1); physical surfaces name
-/// the patches.  The grid is detected.
+/// the patches.  The grid is detected.  A process meshes the same but once, and keeps the mesh.  Thread-safe.
 /// @throws as mesh_body
 Mesh mesh_geo(const std::filesystem::path& geo, const Vec3& size, const Cells& cells, MeshKind kind = {});
 

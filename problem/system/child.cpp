@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,6 +19,8 @@
 #include <mutex>
 #include <sstream>
 #include <thread>
+
+#include "problem/system/child_process.h"
 
 namespace springproof {
 namespace {
@@ -45,22 +46,10 @@ std::atomic<pid_t>& slot_for(pid_t child) {
   }
 }
 
-class ChildSlot {
- public:
-  explicit ChildSlot(pid_t child) : slot_(slot_for(child)) {}
-  ~ChildSlot() { slot_ = 0; }
-  ChildSlot(const ChildSlot&) = delete;
-  ChildSlot& operator=(const ChildSlot&) = delete;
-
- private:
-  std::atomic<pid_t>& slot_;
-};
-
 // Between fork and exec only async-signal-safe calls: other threads may hold any lock.
 [[noreturn]] void become(const Child& child, char** argv, pid_t parent) {
   if (child.group) setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // the child ends with its caller
-  if (getppid() != parent) _exit(not_started);
+  end_with_parent(parent);
   const auto redirect = [](const fs::path& to, int stream) {
     if (!to.empty()) dup2(open(to.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), stream);
   };
@@ -187,6 +176,24 @@ void TemporaryFolder::require_room() const {
   fs::remove(trial, ignored);
 }
 
+ChildSlot::ChildSlot(pid_t child) : slot_(slot_for(child)) {}
+
+unsigned interrupt_count() { return interrupts; }
+
+void end_with_parent(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(not_started);
+}
+
+ChildEnd end_of(int status, const rusage& used) {
+  ChildEnd end;
+  end.kind = WIFSIGNALED(status) ? ChildEnd::killed : ChildEnd::exited;
+  end.status = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+  end.seconds = double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  return end;
+}
+
 ChildEnd run_child(const Child& child) {
   const unsigned before = interrupts;
   const pid_t pid = start(child);
@@ -201,11 +208,8 @@ ChildEnd run_child(const Child& child) {
   while (wait4(pid, &status, 0, &used) < 0)
     if (errno != EINTR)
       throw std::runtime_error(fmt::format("lost {}: {}", child.program.string(), std::strerror(errno)));
-  ChildEnd end;
-  end.kind = !in_time ? ChildEnd::out_of_time : WIFSIGNALED(status) ? ChildEnd::killed : ChildEnd::exited;
-  end.status = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
-  end.seconds = double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-                1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  ChildEnd end = end_of(status, used);
+  if (!in_time) end.kind = ChildEnd::out_of_time;
   return end;
 }
 
