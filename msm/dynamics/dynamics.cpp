@@ -222,12 +222,7 @@ class MotionInLargeSteps : public Motion {
   ImplicitMotion motion_;
 };
 
-}  // namespace
-
-namespace {
-
-/// Forces of the kernels for lists of springs and of cells; nullptr: they do not have the model, or the motion is not
-/// theirs.
+/// Forces of the kernels for lists of springs and of cells; nullptr: these lack the model or an option.
 template <class Real>
 std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, const DynamicsOptions& options) {
   if (options.mass_consistency > 0) return nullptr;
@@ -238,16 +233,14 @@ std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, co
   return nullptr;
 }
 
-/// nullptr: not by these kernels.
+/// By these kernels, or nullptr.
 template <class Real>
 std::unique_ptr<Motion> motion_by_lists(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double dt,
                                         const DynamicsOptions& options) {
   std::unique_ptr<BlockForces<Real>> forces = block_forces<Real>(model, options);
   if (!forces) return nullptr;
-  return std::make_unique<MotionOfList<Real>>(
-      std::move(forces), model.network.X, inverse_mass,
-      ListMotionOptions{
-          .time_step = dt, .damping = options.damping, .lagged = options.lagged, .threads = options.threads});
+  const ListMotionOptions of_list{dt, options.damping, options.lagged, options.threads};
+  return std::make_unique<MotionOfList<Real>>(std::move(forces), model.network.X, inverse_mass, of_list);
 }
 
 }  // namespace
