@@ -10,6 +10,7 @@
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/kernels/list_forces.h"
 
 namespace springproof::bench {
 namespace {
@@ -89,7 +90,8 @@ Motion list_motion(const MassSpringModel& model, const MotionOptions& options) {
   const double dt = 0.5 * safe_time_step(model, density);
   const Eigen::VectorXd mass = masses(model.network, density);
   const auto kernel = std::make_shared<ListMotion<Real>>(
-      model, mass.cwiseInverse(), ListMotionOptions{.time_step = dt, .threads = options.threads});
+      std::make_unique<ListForces<Real>>(model), model.network.X, mass.cwiseInverse(),
+      ListMotionOptions{.time_step = dt, .threads = options.threads});
   kernel->load(clamped_bottom(model.network, 0.5 * edge));
   const int threads = kernel->threads();
   Motion motion = new_motion(fmt::format("list kernel, {}{}", name_of(instruction_set()),

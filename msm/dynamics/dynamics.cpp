@@ -8,6 +8,8 @@
 
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/kernels/cell_forces.h"
+#include "msm/kernels/list_forces.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
@@ -153,12 +155,13 @@ class PlainMotion : public Motion {
   BoundaryConditions conditions_;
 };
 
-/// Networks of springs, with or without momentum dispersion.
+/// Networks of springs, with or without momentum dispersion, and bodies of cut cells.
 template <class Real>
 class MotionOfList : public Motion {
  public:
-  MotionOfList(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options)
-      : motion_(model, inverse_mass, options) {}
+  MotionOfList(std::unique_ptr<BlockForces<Real>> forces, const NodalVectors& X, const Eigen::VectorXd& inverse_mass,
+               const ListMotionOptions& options)
+      : motion_(std::move(forces), X, inverse_mass, options) {}
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
   void move_supports() override { motion_.place_prescribed(); }
@@ -167,7 +170,8 @@ class MotionOfList : public Motion {
   NodalVectors positions() const override { return motion_.positions(); }
   NodalVectors velocities() const override { return motion_.velocities(); }
   std::string description() const override {
-    return fmt::format("list kernel, {}, {}, {}", sizeof(Real) == 4 ? "FP32" : "FP64", name_of(instruction_set()),
+    return fmt::format("{}, {}, {}, {}", motion_.kernel(), sizeof(Real) == 4 ? "FP32" : "FP64",
+                       name_of(instruction_set()),
                        motion_.threads() == 1 ? "1 thread" : fmt::format("{} threads", motion_.threads()));
   }
 
@@ -218,6 +222,27 @@ class MotionInLargeSteps : public Motion {
   ImplicitMotion motion_;
 };
 
+/// Forces of the kernels for lists of springs and of cells; nullptr: these lack the model or an option.
+template <class Real>
+std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, const DynamicsOptions& options) {
+  if (options.mass_consistency > 0) return nullptr;
+  const AveragedSprings& dashpots = options.viscosity.cells();
+  if (CellForces<Real>::covers(model) && !options.viscosity.along_springs() && dashpots.shift == 0)
+    return std::make_unique<CellForces<Real>>(model, instruction_set(), dashpots, options.viscosity.time());
+  if (ListForces<Real>::covers(model) && !options.viscosity.acts()) return std::make_unique<ListForces<Real>>(model);
+  return nullptr;
+}
+
+/// By these kernels, or nullptr.
+template <class Real>
+std::unique_ptr<Motion> motion_by_lists(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double dt,
+                                        const DynamicsOptions& options) {
+  std::unique_ptr<BlockForces<Real>> forces = block_forces<Real>(model, options);
+  if (!forces) return nullptr;
+  const ListMotionOptions of_list{dt, options.damping, options.lagged, options.threads};
+  return std::make_unique<MotionOfList<Real>>(std::move(forces), model.network.X, inverse_mass, of_list);
+}
+
 }  // namespace
 
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double dt,
@@ -229,17 +254,14 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
                                                                 .damping = options.damping,
                                                                 .viscosity = options.viscosity,
                                                                 .contact = options.contact});
-  const bool plain = options.viscosity.acts() || options.mass_consistency > 0;
   if (!options.lagged && LatticeMotion::suits(model, options.viscosity, options.mass_consistency))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
   const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
-  if (plain || !ListForces<double>::covers(model))
-    return std::make_unique<PlainMotion>(model, inverse_mass, dt, options);
-  const ListMotionOptions of_list{
-      .time_step = dt, .damping = options.damping, .lagged = options.lagged, .threads = options.threads};
-  if (options.precision == Precision::float32)
-    return std::make_unique<MotionOfList<float>>(model, inverse_mass, of_list);
-  return std::make_unique<MotionOfList<double>>(model, inverse_mass, of_list);
+  std::unique_ptr<Motion> motion = options.precision == Precision::float32
+                                       ? motion_by_lists<float>(model, inverse_mass, dt, options)
+                                       : motion_by_lists<double>(model, inverse_mass, dt, options);
+  if (!motion) motion = std::make_unique<PlainMotion>(model, inverse_mass, dt, options);
+  return motion;
 }
 
 const char* name_of(Integrator integrator) {

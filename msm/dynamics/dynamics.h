@@ -30,7 +30,7 @@ struct DynamicsOptions {
                           ///< step starts from rest, as published
   double damping = 0;   ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion needs
                         ///< some, or it flutters
-  Viscosity viscosity;  ///< by kernels that of lattices of cells
+  Viscosity viscosity;  ///< by kernels that of cells
   double mass_consistency = 0;      ///< share of consistent mass of explicit steps, 0 to 1: MassAverage.  With it every
                                     ///< velocity v of a step, of Motion too, is the momentum over the lumped mass
   PlaneContact* contact = nullptr;  ///< a plane that the body may fall on, for explicit steps; nullptr: there is none
@@ -113,7 +113,7 @@ double lagged_damping(const MassSpringModel& model, double density, double time_
 
 /// Integrates v += dt (f/m - damping v), x += dt v (the damping implicit) with prescribed unknowns on their path, or by
 /// an implicit method (ImplicitMotion).
-/// Models that have a kernel (LatticeMotion, ListMotion) use it, but for viscosity.  Rest is checked every few steps.
+/// Models that have a kernel (make_motion()) use it.  Rest is checked every few steps.
 /// @param model a model
 /// @param density [kg/m^3]
 /// @param load_path conditions at a fraction of the loads, which DynamicsOptions::course gives in time

@@ -16,32 +16,35 @@ int useful_threads(const Wavefront& wavefront, int wanted) {
 }  // namespace
 
 template <class Real>
-ListMotion<Real>::ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass,
-                             const ListMotionOptions& options)
-    : forces_(model, options.instructions),
-      wavefront_(forces_.blocks()),
-      workers_(std::make_unique<Workers>(forces_.disperses() ? 1 : useful_threads(wavefront_, options.threads))),
-      X_(model.network.X),
+ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const NodalVectors& X,
+                             const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options)
+    : forces_(std::move(forces)),
+      order_(forces_->plan().order),
+      wavefront_(forces_->plan()),
+      workers_(std::make_unique<Workers>(forces_->disperses() ? 1 : useful_threads(wavefront_, options.threads))),
+      X_(X),
+      origin_(forces_->origin()),
       options_(options),
       decay_(1 / (1 + options.time_step * options.damping)) {
-  const std::vector<int>& order = forces_.blocks().order;
-  x_ = s_ = f_ = external_ = std::vector<Padded<Real>>(order.size(), Padded<Real>{});
-  for (std::size_t p = 0; p < order.size(); ++p) {
-    for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(X_(order[p], d));
-    external_[p].v[gain] = static_cast<Real>(options_.time_step * inverse_mass[order[p]] * decay_);
+  x_ = s_ = f_ = external_ = std::vector<Padded<Real>>(order_.size(), Padded<Real>{});
+  for (std::size_t p = 0; p < order_.size(); ++p) {
+    const int n = order_[p];
+    for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(X_(n, d) - origin_(n, d));
+    if (std::isfinite(inverse_mass[n]))
+      external_[p].v[gain] = static_cast<Real>(options_.time_step * inverse_mass[n] * decay_);
+    if (forces_->viscous()) x_[p].v[3] = external_[p].v[gain] / static_cast<Real>(decay_);
   }
 }
 
 template <class Real>
 void ListMotion<Real>::load(const BoundaryConditions& conditions) {
-  const std::vector<int>& order = forces_.blocks().order;
   held_.clear();
-  for (int p = 0; p < static_cast<int>(order.size()); ++p)
+  for (int p = 0; p < static_cast<int>(order_.size()); ++p)
     for (int d = 0; d < 3; ++d) {
-      const int n = order[p];
+      const int n = order_[p];
       external_[p].v[d] = static_cast<Real>(conditions.external(n, d));
       if (conditions.fixed[3 * n + d])
-        held_.push_back({p, d, static_cast<Real>(X_(n, d) + conditions.prescribed(n, d))});
+        held_.push_back({p, d, static_cast<Real>(X_(n, d) - origin_(n, d) + conditions.prescribed(n, d))});
     }
   moved_ = true;
 }
@@ -52,31 +55,45 @@ void ListMotion<Real>::place_prescribed() {
   moved_ = false;
 }
 
+/// The same; dashpots see the speeds in the next step.
 template <class Real>
-void ListMotion<Real>::set_state(const NodalVectors& x, const NodalVectors& v) {
-  for (std::size_t p = 0; p < x_.size(); ++p)
-    for (int d = 0; d < 3; ++d) {
-      const int n = forces_.blocks().order[p];
-      x_[p].v[d] = static_cast<Real>(x(n, d));
-      s_[p].v[d] = static_cast<Real>(v(n, d) * decay_ / external_[p].v[gain]);  // as velocities() reads it
-    }
-  for (const Held& h : held_) s_[h.place].v[h.component] = 0;
+void ListMotion<Real>::move_prescribed() {
+  if (forces_->viscous())
+    for (const Held& h : held_)
+      if (const Real per_s = x_[h.place].v[3] * static_cast<Real>(options_.time_step); per_s > 0)
+        s_[h.place].v[h.component] = (h.x - x_[h.place].v[h.component]) / per_s;
+  place_prescribed();
 }
 
-/// Moves the nodes begin <= n < end, whose forces are complete.  The total force on fixed unknowns is set to 0 first,
-/// so that they stay.
 template <class Real>
-typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bool last) {
+void ListMotion<Real>::set_state(const NodalVectors& x, const NodalVectors& v) {
+  auto held = held_.begin();
+  for (int p = 0; p < static_cast<int>(order_.size()); ++p)
+    for (int d = 0; d < 3; ++d) {
+      const int n = order_[p];
+      const Real per_s = external_[p].v[gain] / static_cast<Real>(decay_);  // as velocities() reads it
+      x_[p].v[d] = static_cast<Real>(x(n, d) - origin_(n, d));
+      if (held != held_.end() && held->place == p && held->component == d)
+        ++held;  // it keeps the speed of move_prescribed()
+      else
+        s_[p].v[d] = per_s > 0 ? static_cast<Real>(v(n, d)) / per_s : 0;
+    }
+}
+
+/// Moves the nodes begin <= n < end, whose forces are complete, and `apart` in f_.  The total force on fixed unknowns
+/// is set to 0 first, so that they stay.
+template <class Real>
+typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bool apart) {
   Squares sum;
   const auto below = [](const Held& h, int place) { return h.place < place; };
   for (auto h = std::lower_bound(held_.begin(), held_.end(), begin, below); h != held_.end() && h->place < end; ++h) {
     const Real external = external_[h->place].v[h->component];
     Real& f = f_[h->place].v[h->component];
-    if (last) {
+    if (apart) {
       sum.support += double(f + external) * double(f + external);
       f = -external;
     }
-    s_[h->place].v[h->component] = last ? 0 : -external;
+    s_[h->place].v[h->component] = apart ? 0 : -external;
   }
   ListStep<Real> s;
   s.nodes = end - begin;
@@ -85,28 +102,29 @@ typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bo
   s.external = external_.data() + begin;
   s.x = x_.data() + begin;
   s.s = s_.data() + begin;
-  s.f = last ? f_.data() + begin : nullptr;
-  sum.unbalanced = forces_.kernels().step(s);
+  s.f = apart ? f_.data() + begin : nullptr;
+  sum.unbalanced = forces_->kernels().step(s);
   return sum;
 }
 
 template <class Real>
 typename ListMotion<Real>::Squares ListMotion<Real>::dispersed_step() {
-  forces_.add(x_.data(), f_.data(), options_.lagged);
-  return move(0, forces_.blocks().nodes(), true);
+  forces_->add(x_.data(), f_.data(), options_.lagged);
+  return move(0, static_cast<int>(order_.size()), true);
 }
 
 template <class Real>
 typename ListMotion<Real>::Squares ListMotion<Real>::run(long steps) {
   Squares sum;
-  if (forces_.disperses()) {
+  if (forces_->disperses()) {
     for (; steps > 0; --steps) sum = dispersed_step();
     return sum;
   }
   run_steps(wavefront_, steps, *workers_, [&](long step, long piece) {
-    const bool last = step == steps - 1;
-    forces_.add_springs(wavefront_.begin[piece], wavefront_.begin[piece + 1], x_.data(), last ? f_.data() : s_.data());
-    const Squares more = move(wavefront_.complete[piece], wavefront_.complete[piece + 1], last);
+    const bool last = step == steps - 1, apart = last || forces_->viscous();
+    forces_->add_blocks(wavefront_.begin[piece], wavefront_.begin[piece + 1], x_.data(), s_.data(),
+                        apart ? f_.data() : s_.data());
+    const Squares more = move(wavefront_.complete[piece], wavefront_.complete[piece + 1], apart);
     if (!last) return;  // one thread computes all pieces of a step
     sum.unbalanced += more.unbalanced;
     sum.support += more.support;
@@ -119,7 +137,7 @@ ForceNorms ListMotion<Real>::advance(long steps) {
   Squares sum;
   if (steps > 0 && moved_) {
     sum = run(1);
-    place_prescribed();
+    move_prescribed();
     --steps;
   }
   if (steps > 0) sum = run(steps);
@@ -130,18 +148,19 @@ template <class Real>
 NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>& v) const {
   NodalVectors out(X_.rows(), 3);
   for (std::size_t p = 0; p < v.size(); ++p)
-    for (int d = 0; d < 3; ++d) out(forces_.blocks().order[p], d) = v[p].v[d];
+    for (int d = 0; d < 3; ++d) out(order_[p], d) = v[p].v[d];
   return out;
 }
 
 template <class Real>
 NodalVectors ListMotion<Real>::positions() const {
-  return in_network_order(x_);
+  return origin_ + in_network_order(x_);
 }
 
 template <class Real>
 NodalVectors ListMotion<Real>::velocities() const {
   std::vector<Padded<Real>> v = s_;
+  for (const Held& h : held_) v[h.place].v[h.component] = 0;
   for (std::size_t p = 0; p < v.size(); ++p)
     for (int d = 0; d < 3; ++d) v[p].v[d] *= external_[p].v[gain] / static_cast<Real>(decay_);
   return in_network_order(v);

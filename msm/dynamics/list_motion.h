@@ -1,9 +1,9 @@
-// Explicit dynamics of networks without a lattice, by the list kernels.
+// Explicit dynamics by the list kernels: networks without a lattice, and cells that the body may fill in part.
 #pragma once
 
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/wavefront.h"
-#include "msm/kernels/list_forces.h"
+#include "msm/kernels/block_forces.h"
 
 namespace springproof {
 
@@ -13,16 +13,16 @@ struct ListMotionOptions {
   bool lagged = false;   ///< dispersion uses the J of the previous step
   int threads = 1;       ///< they take the steps of advance() in turn, so a single step has one; at most one per three
                          ///< layers or so of nodes; momentum dispersion uses one
-  InstructionSet instructions = instruction_set();
 };
 
-/// Time integration of a model: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the kernels'
-/// order.  A node moves as soon as its forces are complete, and the next step starts before the first is finished
-/// (run_steps()).
+/// Time integration: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the kernels' order.  A node
+/// moves as soon as its forces are complete, and the next step starts before the first is finished (run_steps()).
 template <class Real>
 class ListMotion {
  public:
-  ListMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options);
+  /// At rest at X [m].  Nodes without mass [1/kg] must be held.
+  ListMotion(std::unique_ptr<BlockForces<Real>> forces, const NodalVectors& X, const Eigen::VectorXd& inverse_mass,
+             const ListMotionOptions& options);
 
   /// Sets the loads of the following steps; prescribed unknowns are moved at the end of the next step.
   void load(const BoundaryConditions& conditions);
@@ -33,11 +33,12 @@ class ListMotion {
   NodalVectors positions() const;   ///< [m]
   NodalVectors velocities() const;  ///< [m/s]
   int threads() const { return workers_->count(); }
+  std::string kernel() const { return forces_->name(); }
 
  private:
   struct Held {
     int place, component;
-    Real x;  ///< prescribed [m]
+    Real x;  ///< prescribed place [m]
   };
   struct Squares {
     double unbalanced = 0, support = 0;  ///< [N^2]
@@ -45,13 +46,15 @@ class ListMotion {
 
   Squares run(long steps);
   Squares dispersed_step();
-  Squares move(int begin, int end, bool last);
+  Squares move(int begin, int end, bool apart);
+  void move_prescribed();
   NodalVectors in_network_order(const std::vector<Padded<Real>>& v) const;
 
-  ListForces<Real> forces_;
+  std::unique_ptr<BlockForces<Real>> forces_;
+  std::vector<int> order_;  ///< node at each place
   Wavefront wavefront_;
   std::unique_ptr<Workers> workers_;
-  NodalVectors X_;
+  NodalVectors X_, origin_;  ///< [m]; x_ is counted from the second
   ListMotionOptions options_;
   double decay_;
   bool moved_ = false;

@@ -5,39 +5,22 @@
 namespace springproof {
 namespace {
 
-constexpr long blocks_of_piece = 256;  // some 150 nodes, a few microseconds
-
 /// Number of pieces that a worker has completed in all its steps; read by the worker of the following step.
 struct alignas(64) PiecesDone {
   std::atomic<long> value = 0;
 };
 
-/// Last piece that touches each node.
-std::vector<long> last_pieces(const SpringBlocks& blocks) {
-  std::vector<long> last(blocks.order.size(), 0);
-  for (std::size_t e = 0; e < blocks.entries(); ++e) {
-    const long piece = static_cast<long>(e / block_springs) / blocks_of_piece;
-    last[blocks.i[e / block_springs]] = last[blocks.j[e]] = piece;
-  }
-  return last;
-}
-
 }  // namespace
 
-Wavefront::Wavefront(const SpringBlocks& blocks) : complete{0} {
-  const long all = static_cast<long>(blocks.i.size());
-  for (long b = 0; b == 0 || b < all; b += blocks_of_piece) begin.push_back(b);  // nodes without springs move as well
-  begin.push_back(all);
-  const std::vector<long> last = last_pieces(blocks);
-  std::vector<long> when(last.size());  // nodes are moved in their order
-  std::size_t node = 0;
+Wavefront::Wavefront(const BlockPlan& plan) : complete{0} {
+  for (long b = 0; b == 0 || b < plan.blocks; b += plan.blocks_of_piece)
+    begin.push_back(b);  // nodes that no block touches move as well
+  begin.push_back(plan.blocks);
+  std::size_t node = 0;  // they are moved in their order
   for (long piece = 0; piece < pieces(); ++piece) {
-    while (node < last.size() && last[node] <= piece) when[node++] = piece;
+    for (; node < plan.touched.size() && plan.touched[node].last / plan.blocks_of_piece <= piece; ++node)
+      lag = std::max(lag, piece - plan.touched[node].first / plan.blocks_of_piece + 1);
     complete.push_back(static_cast<int>(node));
-  }
-  for (std::size_t e = 0; e < blocks.entries(); ++e) {
-    const long piece = static_cast<long>(e / block_springs) / blocks_of_piece;
-    lag = std::max({lag, when[blocks.i[e / block_springs]] - piece + 1, when[blocks.j[e]] - piece + 1});
   }
 }
 

@@ -4,12 +4,12 @@
 
 #include <functional>
 
-#include "msm/kernels/spring_blocks.h"
+#include "msm/kernels/block_forces.h"
 #include "msm/kernels/workers.h"
 
 namespace springproof {
 
-/// Partition of the spring blocks into pieces, in their order.  A node is complete when all its springs have been
+/// Partition of the blocks into pieces, in their order.  A node is complete when all blocks that touch it have been
 /// computed; a piece of the next step may be computed as soon as all nodes it touches are complete, which is `lag`
 /// pieces later.
 struct Wavefront {
@@ -17,12 +17,12 @@ struct Wavefront {
   std::vector<int> complete;  ///< nodes below are complete before the piece; one more: all nodes
   long lag = 1;               ///< [pieces] a step has computed piece c + lag - 1 before the next computes piece c
 
-  explicit Wavefront(const SpringBlocks& blocks);
+  explicit Wavefront(const BlockPlan& plan);
 
   long pieces() const { return static_cast<long>(begin.size()) - 1; }
 };
 
-/// Computes one piece of one step, its springs first and then the nodes that it completes.  Must not throw.
+/// Computes one piece of one step, its blocks first and then the nodes that it completes.  Must not throw.
 using PieceOfStep = std::function<void(long step, long piece)>;
 
 /// Computes all pieces of steps 0, 1, ...: one thread computes two steps at a time, so that the second finds in the

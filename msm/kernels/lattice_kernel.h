@@ -41,7 +41,7 @@ struct LatticeHourglass {
 /// The strain curves of msm/laws/strain_energy.h that the kernels have.
 enum class LatticeCurve { none, hencky, neo_hooke, neo_hooke_isochoric };
 
-/// Averaged springs: moduli, and AveragedSprings::hourglass times G / 8, all times edge^2 [N].
+/// Averaged springs: moduli, and AveragedSprings::hourglass times G / 8; in a lattice all times edge^2 [N].
 template <class Real>
 struct LatticeAveraged {
   LatticeCurve curve;

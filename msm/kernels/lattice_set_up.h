@@ -37,17 +37,22 @@ LatticeHourglass<Real> lattice_constants(const HourglassCorrection::Stiffness& k
   return {real(k.bending), real(k.coupling), real(k.torsion), real(k.torsion_coupling)};
 }
 
+/// Of averaged springs, the moduli and the hourglass stiffness times these factors.
+template <class Real>
+LatticeAveraged<Real> averaged_constants(const AveragedSprings& law, double of_moduli, double of_hourglass) {
+  const double G = of_moduli * law.shear_modulus, lambda = of_moduli * law.lame_lambda;
+  const HourglassStiffness& h = law.hourglass;
+  const auto stiffness = [&](double value) { return static_cast<Real>(of_hourglass * law.shear_modulus / 8 * value); };
+  return {
+      lattice_curve(law.curve), static_cast<Real>(G),  static_cast<Real>(lambda), static_cast<Real>(lambda + 2 * G / 3),
+      stiffness(h.bending),     stiffness(h.coupling), stiffness(h.torsion),      stiffness(h.twist),
+      stiffness(h.warping)};
+}
+
 /// Of averaged springs in cells of this edge [m]; of dashpots, times their time of retardation [s].
 template <class Real>
 LatticeAveraged<Real> lattice_constants(const AveragedSprings& law, double edge, double time = 1) {
-  const double area = time * edge * edge, G = law.shear_modulus;
-  const auto real = [&](double value) { return static_cast<Real>(value * area); };
-  const HourglassStiffness& h = law.hourglass;
-  return {lattice_curve(law.curve), real(G),
-          real(law.lame_lambda),    real(law.lame_lambda + 2 * G / 3),
-          real(G / 8 * h.bending),  real(G / 8 * h.coupling),
-          real(G / 8 * h.torsion),  real(G / 8 * h.twist),
-          real(G / 8 * h.warping)};
+  return averaged_constants<Real>(law, time * edge * edge, time * edge * edge);
 }
 
 }  // namespace springproof

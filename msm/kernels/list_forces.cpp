@@ -124,7 +124,8 @@ void ListForces<Real>::add(const Padded<Real>* x, Padded<Real>* f, bool lagged) 
 }
 
 template <class Real>
-void ListForces<Real>::add_springs(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const {
+void ListForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>*,
+                                  Padded<Real>* f) const {
   kernels_->spring_forces(blocks_.pattern(begin, end),
                           {k_.data() + block_springs * begin, kL_.data() + block_springs * begin, nullptr}, x, f);
 }
@@ -133,7 +134,7 @@ template <class Real>
 void ListForces<Real>::at(const NodalVectors& x, NodalVectors& f) {
   by_place(blocks_, x, x_);
   std::fill(f_.begin(), f_.end(), Padded<Real>{});
-  add(x_.data(), f_.data());
+  add(x_.data(), f_.data(), false);
   f.resize(x.rows(), 3);
   for (int p = 0; p < blocks_.nodes(); ++p)
     for (int d = 0; d < 3; ++d) f(blocks_.order[p], d) = f_[p].v[d];

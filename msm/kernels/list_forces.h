@@ -32,7 +32,7 @@ struct ListDispersionData {
 /// Real = double: equal to forces() (msm/laws/laws.h) to 1e-12 of the largest force; float: 1e-5 at strains of a few
 /// percent.
 template <class Real>
-class ListForces {
+class ListForces : public BlockForces<Real> {
  public:
   /// Whether the model has these laws only.  Periodic images are treated as nodes, whose inflows are summed.
   static bool covers(const MassSpringModel& model);
@@ -43,15 +43,13 @@ class ListForces {
   /// f = internal forces [N] at x [m], in the network's order.
   void at(const NodalVectors& x, NodalVectors& f);
 
-  /// f += internal forces, by place.  `lagged`: dispersion uses the J of the previous call.
-  void add(const Padded<Real>* x, Padded<Real>* f, bool lagged = false);
-
-  /// f += forces of the springs of blocks begin <= b < end, by place, without dispersion.
-  void add_springs(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
-
-  bool disperses() const { return !dispersion_.empty(); }
-  const SpringBlocks& blocks() const { return blocks_; }
-  const ListKernels<Real>& kernels() const { return *kernels_; }
+  std::string name() const override { return "list kernel"; }
+  BlockPlan plan() const override { return blocks_.plan(); }
+  const ListKernels<Real>& kernels() const override { return *kernels_; }
+  NodalVectors origin() const override { return NodalVectors::Zero(blocks_.nodes(), 3); }
+  void add(const Padded<Real>* x, Padded<Real>* f, bool lagged) override;
+  void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const override;
+  bool disperses() const override { return !dispersion_.empty(); }
 
  private:
   const ListKernels<Real>* kernels_;

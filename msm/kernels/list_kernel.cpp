@@ -2,47 +2,10 @@
 // their roots are computed in full registers, and each tension multiplies its own difference again: no transposes, and
 // whole nodes are loaded and stored, so that two lanes may share a node.
 #include "msm/kernels/list_kernels.h"
-#include "msm/kernels/simd_math.h"
+#include "msm/kernels/padded_nodes.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
-
-template <class Real, int n>
-struct VectorOf {
-  typedef Real type __attribute__((vector_size(n * sizeof(Real)), aligned(sizeof(Real)), may_alias));
-};
-template <class Real>
-struct FourOf {
-  typedef Real type __attribute__((vector_size(4 * sizeof(Real)), may_alias));
-};
-template <class Real>
-using Four = typename FourOf<Real>::type;  // at an aligned address
-
-// Number of blocks whose roots fill a register.
-template <class Real>
-constexpr int group = Lanes<Real>::size() < 4 ? 1 : static_cast<int>(Lanes<Real>::size()) / 4;
-template <class Real>
-using Wide = typename VectorOf<Real, 4 * group<Real>>::type;
-
-template <class Real>
-inline Four<Real> four(const Padded<Real>* p, int n) {
-  return *reinterpret_cast<const Four<Real>*>(p + n);
-}
-
-template <class Real>
-inline Four<Real>& four(Padded<Real>* p, int n) {
-  return *reinterpret_cast<Four<Real>*>(p + n);
-}
-
-template <class Real>
-inline Four<Real> all(Real s) {
-  return Four<Real>{s, s, s, s};
-}
-
-template <class Real>
-inline Wide<Real> wide(const Real* p) {
-  return *reinterpret_cast<const Wide<Real>*>(p);
-}
 
 template <class Real>
 inline Wide<Real> inverse_roots(Wide<Real> squares) {
@@ -58,18 +21,6 @@ inline V sums(const V& a, const V& b, const V& c, const V& d) {
   const V ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const V cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
   return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-}
-
-template <class Real>
-inline Wide<Real> join(const Four<Real>* parts) {
-  if constexpr (group<Real> == 1)
-    return parts[0];
-  else if constexpr (group<Real> == 2)
-    return __builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7);
-  else
-    return __builtin_shufflevector(__builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7),
-                                   __builtin_shufflevector(parts[2], parts[3], 0, 1, 2, 3, 4, 5, 6, 7), 0, 1, 2, 3, 4,
-                                   5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
 /// Nodes and difference vectors of one group of blocks.

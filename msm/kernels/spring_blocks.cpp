@@ -11,13 +11,6 @@ namespace {
 // through the springs is the nodes of three layers, that in the first-level cache the nodes of three strips.
 constexpr double thickness[3] = {1.33, 3.3, 0.33};
 
-/// The axes of the body, the longest first.
-std::array<int, 3> by_extent(const Eigen::RowVector3d& extent) {
-  std::array<int, 3> axes = {2, 1, 0};
-  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return extent[a] > extent[b]; });
-  return axes;
-}
-
 /// Node order: layer by layer along the longest axis, in a layer strip by strip.
 std::vector<int> spatial_order(const Network& network) {
   std::vector<int> order(network.nodes());
@@ -26,7 +19,7 @@ std::vector<int> spatial_order(const Network& network) {
   double edge = 0;
   for (const Spring& s : network.springs) edge += s.rest_length / static_cast<double>(network.springs.size());
   const Eigen::RowVector3d lower = network.X.colwise().minCoeff();
-  const std::array<int, 3> axes = by_extent(network.X.colwise().maxCoeff() - lower);
+  const std::array<int, 3> axes = axes_by_extent(network.X);
   std::vector<std::array<long, 3>> key(order.size());
   for (int n = 0; n < network.nodes(); ++n)
     for (int d = 0; d < 3; ++d)
@@ -66,6 +59,13 @@ struct Adjacency {
 
 }  // namespace
 
+std::array<int, 3> axes_by_extent(const NodalVectors& X) {
+  const Eigen::RowVector3d extent = X.colwise().maxCoeff() - X.colwise().minCoeff();
+  std::array<int, 3> axes = {2, 1, 0};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return extent[a] > extent[b]; });
+  return axes;
+}
+
 SpringBlocks::SpringBlocks(const Network& network) : order(spatial_order(network)) {
   std::vector<int> place(order.size());
   for (int p = 0; p < nodes(); ++p) place[order[p]] = p;
@@ -97,6 +97,20 @@ SpringBlocks::SpringBlocks(const Network& network) : order(spatial_order(network
       spring.push_back(-1);
     }
   }
+}
+
+BlockPlan SpringBlocks::plan() const {
+  BlockPlan plan{order, {}, static_cast<long>(i.size()), blocks_of_piece};
+  plan.touched.assign(order.size(), {plan.blocks, -1});
+  const auto touch = [&](int place, long block) {
+    plan.touched[place].first = std::min(plan.touched[place].first, block);
+    plan.touched[place].last = block;
+  };
+  for (long b = 0; b < plan.blocks; ++b) {
+    touch(i[b], b);
+    for (int lane = 0; lane < block_springs; ++lane) touch(j[block_springs * b + lane], b);
+  }
+  return plan;
 }
 
 }  // namespace springproof

@@ -1,12 +1,15 @@
 // Order of the nodes and springs of a network for the list kernels.
 #pragma once
 
+#include <array>
 #include <vector>
 
-#include "msm/kernels/list_kernels.h"
-#include "msm/topology/network.h"
+#include "msm/kernels/block_forces.h"
 
 namespace springproof {
+
+/// The axes of a body, the longest first.
+std::array<int, 3> axes_by_extent(const NodalVectors& X);
 
 /// Nodes are ordered in layers across the longest axis of the body and in strips of a layer, so that neighbours are
 /// close in memory and a sweep completes a layer two layers later; springs are in blocks of four that share their first
@@ -18,7 +21,10 @@ struct SpringBlocks {
 
   explicit SpringBlocks(const Network& network);
 
+  static constexpr long blocks_of_piece = 256;  ///< some 150 nodes
+
   int nodes() const { return static_cast<int>(order.size()); }
+  BlockPlan plan() const;
   std::size_t entries() const { return j.size(); }
   ListPattern pattern() const { return pattern(0, static_cast<long>(i.size())); }
   ListPattern pattern(long begin, long end) const {

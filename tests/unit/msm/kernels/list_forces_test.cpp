@@ -7,6 +7,7 @@
 
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/kernels/list_forces.h"
 #include "msm/kernels/list_stiffness.h"
 #include "msm/topology/random_network.h"
 #include "support/zoo.h"
@@ -237,9 +238,9 @@ TEST(ListMotion, StepsThatFollowEachOtherAreThePlainStepsOnAnyNumberOfThreads) {
   const ForceNorms expected = plain_norms(model, before, bc);
   for (const InstructionSet set : usable_instruction_sets())
     for (const int threads : {1, 2, 3}) {
-      ListMotion<double> motion(
-          model, masses(network, 1).cwiseInverse(),
-          {.time_step = *o.time_step, .damping = o.damping, .threads = threads, .instructions = set});
+      ListMotion<double> motion(std::make_unique<ListForces<double>>(model, set), network.X,
+                                masses(network, 1).cwiseInverse(),
+                                {.time_step = *o.time_step, .damping = o.damping, .threads = threads});
       motion.load(bc);
       motion.place_prescribed();
       for (const long steps : {7, 1, 2}) motion.advance(steps);
@@ -262,7 +263,7 @@ TEST(ListMotion, StepsThatFollowEachOtherAreThePlainStepsOnAnyNumberOfThreads) {
 TEST(Wavefront, FollowsAFewLayersBehind) {
   const Network network = random_network(region_of(block_mesh({10, 50, 10}, {10, 50, 10})), spacing_one());
   const SpringBlocks blocks(network);
-  const Wavefront w(blocks);
+  const Wavefront w(blocks.plan());
   ASSERT_EQ(w.complete.size(), w.begin.size());
   EXPECT_EQ(w.complete.front(), 0);
   EXPECT_EQ(w.complete.back(), network.nodes());

@@ -1,0 +1,49 @@
+// What the list kernels have in common: forces on nodes in an order of their own, in blocks that follow each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "msm/kernels/list_kernels.h"
+#include "msm/topology/network.h"
+
+namespace springproof {
+
+/// The blocks that touch a node; first > last: none.
+struct BlockRange {
+  long first, last;
+};
+
+/// Order of the nodes, and which blocks need which of them.
+struct BlockPlan {
+  std::vector<int> order;           ///< node of the network at each place
+  std::vector<BlockRange> touched;  ///< per place
+  long blocks = 0;
+  long blocks_of_piece = 1;  ///< that take some microseconds together
+};
+
+/// Internal forces of a model on nodes at their places.
+template <class Real>
+class BlockForces {
+ public:
+  virtual ~BlockForces() = default;
+  virtual std::string name() const = 0;  ///< "list kernel"
+  virtual BlockPlan plan() const = 0;
+  virtual const ListKernels<Real>& kernels() const = 0;  ///< of the same instruction set
+
+  /// The positions [m] that `x` of the functions below is counted from.
+  virtual NodalVectors origin() const = 0;
+
+  /// f += forces of blocks begin <= b < end.  s: ListStep::s, from which dashpots have velocities.
+  virtual void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s,
+                          Padded<Real>* f) const = 0;
+  /// There are dashpots: the fourth number of x is velocity / s.
+  virtual bool viscous() const { return false; }
+
+  /// There is momentum dispersion: forces are not sums over blocks, but those of add().
+  virtual bool disperses() const { return false; }
+  /// f += all internal forces, where disperses().  `lagged`: dispersion uses the J of the previous call.
+  virtual void add(const Padded<Real>*, Padded<Real>*, bool) {}
+};
+
+}  // namespace springproof

@@ -1,0 +1,165 @@
+#include "msm/kernels/cell_forces.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <type_traits>
+
+#include "msm/kernels/lattice_set_up.h"
+#include "msm/kernels/list_forces.h"
+
+namespace springproof {
+namespace {
+
+/// Corner of a hexahedron at x + 2 y + 4 z.
+int corner_at(int place) {
+  for (int n = 0; n < 8; ++n)
+    if (hexahedron_corners[n][0] + 2 * hexahedron_corners[n][1] + 4 * hexahedron_corners[n][2] == place) return n;
+  return -1;
+}
+
+}  // namespace
+
+template <class Real>
+const CellListKernels<Real>& cell_list_kernels(InstructionSet set) {
+  constexpr bool is_double = std::is_same_v<Real, double>;
+#define SPRINGPROOF_KERNELS_OF(instruction_set) \
+  if constexpr (is_double)                      \
+    return instruction_set::cell_list_double;   \
+  else                                          \
+    return instruction_set::cell_list_float
+#ifdef SPRINGPROOF_X86_KERNELS
+  if (set == InstructionSet::avx2) {
+    SPRINGPROOF_KERNELS_OF(avx2);
+  }
+  if (set == InstructionSet::avx512) {
+    SPRINGPROOF_KERNELS_OF(avx512);
+  }
+#endif
+  SPRINGPROOF_KERNELS_OF(portable);
+#undef SPRINGPROOF_KERNELS_OF
+}
+
+template const CellListKernels<double>& cell_list_kernels<double>(InstructionSet set);
+template const CellListKernels<float>& cell_list_kernels<float>(InstructionSet set);
+
+template <class Real>
+bool CellForces<Real>::covers(const MassSpringModel& model) {
+  int averaged = 0, anchors = 0;
+  for (const ForceLaw& law : model.laws) {
+    averaged += std::holds_alternative<AveragedSprings>(law);
+    anchors += std::holds_alternative<Anchors>(law);
+  }
+  const Network& network = model.network;
+  if (averaged != 1 || anchors > 1 || averaged + anchors != static_cast<int>(model.laws.size())) return false;
+  const AveragedSprings& law = *averaged_springs_of(model);
+  return !network.cells.empty() && network.cell_edges.empty() && network.image_of.empty() && law.shift == 0 &&
+         lattice_curve(law.curve) != LatticeCurve::none;
+}
+
+template <class Real>
+CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, const AveragedSprings& dashpots,
+                             double time)
+    : kernels_(&cell_list_kernels<Real>(set)),
+      steps_(&list_kernels<Real>(set)),
+      X_(model.network.X),
+      viscous_(time > 0),
+      order_(model.network, kernels_->cells) {
+  if (!covers(model) || (viscous_ && dashpots.shift > 0))
+    throw std::invalid_argument("cell forces are of averaged springs in cells of one size, without shift");
+  const double edge = model.network.cell_edge, per_area = 1 / (edge * edge);
+  list_.edge = static_cast<Real>(edge);
+  list_.springs = averaged_constants<Real>(*averaged_springs_of(model), 1, per_area);
+  list_.dashpots = averaged_constants<Real>(dashpots, time, time * per_area);
+  store_cells(model.network);
+  if (std::any_of(model.laws.begin(), model.laws.end(),
+                  [](const ForceLaw& law) { return std::holds_alternative<Anchors>(law); }))
+    store_anchors(model.network);
+}
+
+template <class Real>
+void CellForces<Real>::store_cells(const Network& network) {
+  const long cells = kernels_->cells, count = static_cast<long>(order_.cells.size());
+  const double l = network.cell_edge;
+  list_.blocks = order_.plan.blocks;
+  corners_.resize(8 * cells * list_.blocks);
+  numbers_.resize(cell_number::count * cells * list_.blocks);
+  for (long at = 0; at < cells * list_.blocks; ++at) {
+    const int cell = order_.cells[std::min(at, count - 1)];
+    const FilledPart& part = filled_part(network, cell);
+    for (int n = 0; n < 8; ++n)
+      corners_[8 * cells * (at / cells) + n * cells + at % cells] = order_.place[network.cells[cell][corner_at(n)]];
+    const auto set = [&](int number, double value) {
+      numbers_[cell_number::count * cells * (at / cells) + number * cells + at % cells] = static_cast<Real>(value);
+    };
+    set(cell_number::volume, at < count ? part.fraction * l * l * l : 0);
+    for (int i = 0; i < 3; ++i) {
+      set(cell_number::mean + i, part.mean[i] / (2 * l));
+      set(cell_number::mixed + i, part.mixed[i] / l);
+      set(cell_number::variance + i, std::max(12 * part.variance[i], AveragedSprings::least_variance));
+    }
+  }
+}
+
+template <class Real>
+void CellForces<Real>::store_anchors(const Network& network) {
+  for (const int number : order_.anchors) {
+    const Anchor& a = network.anchors[number];
+    Held held;
+    Eigen::RowVector3d stretch = -network.X.row(a.node);
+    for (int n = 0; n < 8; ++n) {
+      held.corners[n] = order_.place[a.corners[n]];
+      held.weights[n] = static_cast<Real>(a.weights[n]);
+      stretch += a.weights[n] * network.X.row(a.corners[n]);
+    }
+    held.node = order_.place[a.node];
+    held.stiffness = static_cast<Real>(a.stiffness);
+    for (int d = 0; d < 3; ++d) held.stretch[d] = static_cast<Real>(stretch[d]);
+    anchors_.push_back(held);
+  }
+}
+
+template <class Real>
+void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s,
+                                  Padded<Real>* f) const {
+  CellList<Real> list = list_;
+  list.blocks = end - begin;
+  list.corners = corners_.data() + 8 * kernels_->cells * begin;
+  list.numbers = numbers_.data() + cell_number::count * kernels_->cells * begin;
+  if (viscous_)
+    kernels_->viscous_forces(list, x, s, f);
+  else
+    kernels_->forces(list, x, f);
+  if (anchors_.empty()) return;
+  for (int number = order_.first_anchor[begin]; number < order_.first_anchor[end]; ++number) {
+    const Held& a = anchors_[number];
+    for (int d = 0; d < 3; ++d) {
+      Real stretch = a.stretch[d] - x[a.node].v[d];
+      for (int n = 0; n < 8; ++n) stretch += a.weights[n] * x[a.corners[n]].v[d];
+      const Real force = a.stiffness * stretch;
+      f[a.node].v[d] += force;
+      for (int n = 0; n < 8; ++n) f[a.corners[n]].v[d] -= a.weights[n] * force;
+    }
+  }
+}
+
+template <class Real>
+void CellForces<Real>::at(const NodalVectors& x, const NodalVectors& v, NodalVectors& f) {
+  const std::vector<int>& order = order_.plan.order;
+  std::vector<Padded<Real>> u(order.size()), s(order.size()), on(order.size(), Padded<Real>{});
+  for (std::size_t p = 0; p < order.size(); ++p) {
+    for (int d = 0; d < 3; ++d) {
+      u[p].v[d] = static_cast<Real>(x(order[p], d) - X_(order[p], d));
+      s[p].v[d] = static_cast<Real>(v(order[p], d));
+    }
+    u[p].v[3] = 1;
+  }
+  add_blocks(0, order_.plan.blocks, u.data(), s.data(), on.data());
+  f.resize(x.rows(), 3);
+  for (std::size_t p = 0; p < order.size(); ++p)
+    for (int d = 0; d < 3; ++d) f(order[p], d) = on[p].v[d];
+}
+
+template class CellForces<double>;
+template class CellForces<float>;
+
+}  // namespace springproof

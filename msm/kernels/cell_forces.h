@@ -1,0 +1,65 @@
+// Forces of averaged springs in cells that the body may fill in part, by the kernels for lists of cells.
+#pragma once
+
+#include "msm/kernels/cell_list_kernels.h"
+#include "msm/kernels/cell_order.h"
+#include "msm/kernels/instruction_set.h"
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+/// The kernels of an instruction set.
+template <class Real>
+const CellListKernels<Real>& cell_list_kernels(InstructionSet set);
+
+/// Internal forces of a model of averaged springs, with anchors or without; keeps no reference to the model.  `x` are
+/// displacements.
+/// Real = double: equal to forces() (msm/laws/laws.h) to 1e-12 of the largest force; float: 1e-5.
+template <class Real>
+class CellForces : public BlockForces<Real> {
+ public:
+  /// Whether the model has these laws only, at any displacement, with a curve that the kernels have, in cells of one
+  /// size.
+  static bool covers(const MassSpringModel& model);
+
+  /// @param dashpots stiffness at rest of what AveragedSprings::add_viscous_forces() adds, where `time` > 0
+  /// @param time of retardation [s]
+  /// @throws std::invalid_argument if covers() is false.
+  explicit CellForces(const MassSpringModel& model, InstructionSet set = instruction_set(),
+                      const AveragedSprings& dashpots = {}, double time = 0);
+
+  /// f = internal forces [N] at x [m] of nodes with velocities v [m/s], in the network's order.
+  void at(const NodalVectors& x, const NodalVectors& v, NodalVectors& f);
+
+  std::string name() const override { return "cell kernel"; }
+  BlockPlan plan() const override { return order_.plan; }
+  const ListKernels<Real>& kernels() const override { return *steps_; }
+  NodalVectors origin() const override { return X_; }
+  void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const override;
+  bool viscous() const override { return viscous_; }
+
+ private:
+  /// At places, with what its spring is stretched by at rest.
+  struct Held {
+    int corners[8], node;
+    Real weights[8], stiffness, stretch[3];  ///< [1], [N/m], [m]
+  };
+
+  void store_cells(const Network& network);
+  void store_anchors(const Network& network);
+
+  const CellListKernels<Real>* kernels_;
+  const ListKernels<Real>* steps_;
+  NodalVectors X_;
+  bool viscous_;
+  CellOrder order_;
+  std::vector<int> corners_;
+  std::vector<Real> numbers_;
+  CellList<Real> list_;
+  std::vector<Held> anchors_;
+};
+
+extern template class CellForces<double>;
+extern template class CellForces<float>;
+
+}  // namespace springproof

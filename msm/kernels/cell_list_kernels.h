@@ -1,0 +1,47 @@
+// Interface of the kernels for lists of cells, which the body may fill in part, on plain arrays; cell_list_kernel.cpp
+// defines them once per instruction set.
+#pragma once
+
+#include "msm/kernels/lattice_kernel.h"
+#include "msm/kernels/list_kernels.h"
+
+namespace springproof {
+
+/// What is stored of a cell of edge l, of FilledPart: alpha l^3 [m^3], c / (2 l) and p / l [1/m], and rho [1]
+/// (AveragedSprings).
+namespace cell_number {
+constexpr int volume = 0, mean = 1, mixed = 4, variance = 7, count = 10;
+}  // namespace cell_number
+
+/// Cells in blocks of as many as a kernel computes together; an unused place of the last block repeats a cell without
+/// volume.
+template <class Real>
+struct CellList {
+  long blocks = 0;
+  const int* corners = nullptr;         ///< places; per block those of each corner x + 2 y + 4 z in turn
+  const Real* numbers = nullptr;        ///< per block each of cell_number in turn
+  Real edge = 1;                        ///< l [m]
+  LatticeAveraged<Real> springs = {};   ///< moduli [Pa], hourglass stiffness times G / (8 l^2) [Pa/m^2]
+  LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
+};
+
+template <class Real>
+struct CellListKernels {
+  int cells;  ///< of a block
+  /// f += forces of the cells at displacements u [m].
+  void (*forces)(const CellList<Real>&, const Padded<Real>* u, Padded<Real>* f);
+  /// f += forces of springs and dashpots.  Velocities are s times the fourth number of u.
+  void (*viscous_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
+};
+
+#define SPRINGPROOF_CELL_LIST_KERNELS(instruction_set)   \
+  namespace instruction_set {                            \
+  extern const CellListKernels<double> cell_list_double; \
+  extern const CellListKernels<float> cell_list_float;   \
+  }
+SPRINGPROOF_CELL_LIST_KERNELS(portable)
+SPRINGPROOF_CELL_LIST_KERNELS(avx2)
+SPRINGPROOF_CELL_LIST_KERNELS(avx512)
+#undef SPRINGPROOF_CELL_LIST_KERNELS
+
+}  // namespace springproof

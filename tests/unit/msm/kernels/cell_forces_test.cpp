@@ -1,0 +1,243 @@
+// The kernels for lists of cells against the plain loops of the laws.
+#include "msm/kernels/cell_forces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/list_motion.h"
+#include "msm/dynamics/time_step.h"
+#include "support/solids.h"
+#include "support/zoo.h"
+
+namespace springproof::cell_forces_test {
+namespace {
+
+constexpr double edge = 0.5, retardation = 1e-3;
+
+/// A round bar of two cells and more across, lying anyhow in its lattice, with slivers; held at one end.
+MassSpringModel bar(const ModelParameters& parameters, double poisson_ratio = 0.3, double length = 5) {
+  const Mesh body =
+      test::mapped(test::cylinder(length, 8, static_cast<int>(4 * length)), test::random_placement(2, edge));
+  return build_cut(parameters, cut_body(test::grid_about(body, edge), body), {"z_min"}, Mesh{},
+                   {1e4, poisson_ratio, 1000})
+      .model;
+}
+
+std::vector<MassSpringModel> models() {
+  std::vector<MassSpringModel> all;
+  for (const double nu : {-0.5, 0.3, 0.499})
+    for (const StrainCurve curve : {StrainCurve::hencky, StrainCurve::neo_hooke, StrainCurve::neo_hooke_isochoric}) {
+      ModelParameters parameters = test::model("hybmss_avg");
+      parameters.curve = curve;
+      parameters.slender = curve == StrainCurve::neo_hooke;
+      all.push_back(bar(parameters, nu));
+      all.push_back({test::cut_network(), all.back().laws});  // less than a vector of cells
+    }
+  all.push_back({all.back().network, {*averaged_springs_of(all.back())}});  // without its anchors
+  return all;
+}
+
+NodalVectors disturbed(const Network& network, double size = 0.1) {
+  return network.X + test::noise(network.nodes(), size * network.cell_edge);
+}
+
+double worst(const NodalVectors& a, const NodalVectors& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+template <class Real>
+void expect_plain_forces(double tolerance) {
+  for (const MassSpringModel& model : models()) {
+    const NodalVectors x = disturbed(model.network), v = test::noise(model.network.nodes(), 10, 2),
+                       expected = forces(model, x);
+    NodalVectors f, damped = expected;
+    ASSERT_TRUE(expected.allFinite());
+    const AveragedSprings& law = *averaged_springs_of(model);
+    law.add_viscous_forces(model.network, x, v, retardation, damped);
+    ASSERT_GT(worst(damped, expected), 0.01);
+    for (const InstructionSet set : usable_instruction_sets()) {
+      CellForces<Real>(model, set).at(x, v, f);
+      EXPECT_LE(worst(f, expected), tolerance) << name_of(set) << ", curve " << static_cast<int>(law.curve);
+      CellForces<Real>(model, set, law, retardation).at(x, v, f);
+      EXPECT_LE(worst(f, damped), tolerance) << name_of(set) << ", with dashpots";
+    }
+  }
+}
+
+}  // namespace
+
+TEST(CellForces, DoubleIsThePlainLoop) {
+  double least = 1;
+  for (const FilledPart& part : bar(test::model("hybmss_avg")).network.filled) least = std::min(least, part.fraction);
+  EXPECT_LT(least, 0.02);  // slivers
+  expect_plain_forces<double>(1e-12);
+}
+
+TEST(CellForces, FloatIsThePlainLoopToSinglePrecision) { expect_plain_forces<float>(1e-5); }
+
+TEST(CellForces, OfAnInvertedCellAreNoNumbers) {
+  for (const MassSpringModel& model : models()) {
+    NodalVectors x = model.network.X, f;
+    x.col(0) *= -1;
+    CellForces<double>(model).at(x, x, f);
+    EXPECT_FALSE(f.allFinite());
+  }
+}
+
+TEST(CellForces, CoverAveragedSpringsOfOneSizeWithoutShift) {
+  const MassSpringModel model = bar(test::model("hybmss_avg"));
+  const auto covers = [&](auto change) {
+    MassSpringModel changed = model;
+    change(changed, std::get<AveragedSprings>(changed.laws[0]));
+    return CellForces<double>::covers(changed);
+  };
+  EXPECT_TRUE(covers([](MassSpringModel&, AveragedSprings&) {}));
+  EXPECT_FALSE(covers([](MassSpringModel&, AveragedSprings& law) { law.shift = 0.4; }));
+  EXPECT_FALSE(covers([](MassSpringModel&, AveragedSprings& law) { law.curve = StrainCurve::springs_hencky; }));
+  EXPECT_FALSE(covers([](MassSpringModel& m, AveragedSprings& law) { m.laws.emplace_back(law); }));
+  EXPECT_FALSE(covers([](MassSpringModel& m, AveragedSprings&) { m.laws.emplace_back(Springs{}); }));
+  const MassSpringModel refined{test::refined_network(), model.laws};
+  EXPECT_FALSE(CellForces<double>::covers(refined));
+  EXPECT_THROW(CellForces<double>{refined}, std::invalid_argument);
+}
+
+TEST(CellOrder, CompletesNodesALayerLater) {
+  const Network network = bar(test::model("hybmss_avg"), 0.3, 60).network;
+  const CellOrder order(network, 8);
+  std::vector<int> seen(network.cells.size(), 0);
+  for (const int cell : order.cells) ++seen[cell];
+  EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+  const Wavefront w(order.plan);
+  EXPECT_EQ(w.complete.back(), network.nodes());
+  EXPECT_LE(w.lag, std::max(2L, w.pieces() / 8));
+  const auto expect_between = [&](int node, long block) {
+    const long piece = block / order.plan.blocks_of_piece;
+    EXPECT_GE(order.place[node], w.complete[piece]);                                // not moved before its last cell
+    EXPECT_LT(order.place[node], w.complete[std::min(piece + w.lag, w.pieces())]);  // moved before its next one
+  };
+  for (std::size_t c = 0; c < order.cells.size(); ++c)
+    for (const int node : network.cells[order.cells[c]]) expect_between(node, static_cast<long>(c) / 8);
+  ASSERT_GT(network.anchors.size(), 3u);
+  ASSERT_EQ(order.first_anchor.back(), static_cast<int>(network.anchors.size()));
+  for (long block = 0; block < order.plan.blocks; ++block)
+    for (int a = order.first_anchor[block]; a < order.first_anchor[block + 1]; ++a) {
+      const Anchor& anchor = network.anchors[order.anchors[a]];
+      expect_between(anchor.node, block);
+      for (const int node : anchor.corners) expect_between(node, block);
+    }
+}
+
+namespace {
+
+/// The anchored end moves to where it is held; a load on every node, and one unknown held apart from them.
+BoundaryConditions pulled(const Network& network) {
+  BoundaryConditions bc;
+  bc.fixed.assign(3 * network.nodes(), 0);
+  bc.prescribed = NodalVectors::Zero(network.nodes(), 3);
+  bc.external = test::noise(network.nodes(), 0.5, 4);
+  for (const Anchor& a : network.anchors) {
+    for (int d = 0; d < 3; ++d) bc.fixed[3 * a.node + d] = 1;
+    bc.prescribed.row(a.node) << 0.1, 0, -0.05;
+  }
+  bc.fixed[3 * network.cells.back()[0] + 1] = 1;
+  bc.prescribed(network.cells.back()[0], 1) = 0.02;
+  return bc;
+}
+
+struct State {
+  NodalVectors x, v, of_supports;
+  ForceNorms norms;
+};
+
+/// The steps of run_dynamics(), written out; supports move at the end of the first.
+State plain_steps(const MassSpringModel& model, const BoundaryConditions& bc, double dt, double damping, double time,
+                  int steps) {
+  const Eigen::VectorXd mass = masses(model.network, 1000);
+  State s{model.network.X, NodalVectors::Zero(mass.size(), 3), NodalVectors::Zero(mass.size(), 3), {}};
+  for (; steps > 0; --steps) {
+    NodalVectors f = forces(model, s.x);
+    averaged_springs_of(model)->add_viscous_forces(model.network, s.x, s.v + s.of_supports, time, f);
+    f += bc.external;
+    ForceNorms squares;
+    for (Eigen::Index i = 0; i < f.size(); ++i) {
+      const double force = f.data()[i];
+      (bc.fixed[i] ? squares.support : squares.unbalanced) += force * force;
+      if (bc.fixed[i]) {
+        const double to = model.network.X.data()[i] + bc.prescribed.data()[i];
+        s.of_supports.data()[i] = (to - s.x.data()[i]) / dt;
+        s.x.data()[i] = to;
+      } else {
+        s.v.data()[i] = (s.v.data()[i] + dt * force / mass[i / 3]) / (1 + dt * damping);
+        s.x.data()[i] += dt * s.v.data()[i];
+      }
+    }
+    s.norms = {std::sqrt(squares.unbalanced), std::sqrt(squares.support)};
+  }
+  return s;
+}
+
+template <class Real>
+void expect_plain_steps(double tolerance) {
+  const MassSpringModel model = bar(test::model("hybmss_avg"), 0.3, 60);
+  const Network& network = model.network;
+  const BoundaryConditions bc = pulled(network);
+  const double dt = 0.2 * safe_time_step(model, 1000), damping = 0.3;
+  for (const double time : {0.0, 0.1 * dt}) {
+    const State expected = plain_steps(model, bc, dt, damping, time, 41);
+    for (const InstructionSet set : usable_instruction_sets()) {
+      NodalVectors first_x, first_v;
+      for (const int threads : {1, 2, 3}) {
+        ListMotion<Real> motion(std::make_unique<CellForces<Real>>(model, set, *averaged_springs_of(model), time),
+                                network.X, masses(network, 1000).cwiseInverse(),
+                                {.time_step = dt, .damping = damping, .threads = threads});
+        motion.load(bc);
+        for (const long steps : {7, 1, 2}) motion.advance(steps);
+        motion.set_state(motion.positions(), motion.velocities());
+        const ForceNorms norms = motion.advance(31);
+        EXPECT_EQ(motion.threads(), threads);
+        const NodalVectors x = motion.positions(), v = motion.velocities();
+        EXPECT_LE(worst(x - network.X, expected.x - network.X), tolerance) << name_of(set) << ", " << time << " s";
+        EXPECT_LE(worst(v, expected.v), tolerance) << name_of(set) << ", " << time << " s";
+        EXPECT_NEAR(norms.unbalanced, expected.norms.unbalanced, 10 * tolerance * expected.norms.unbalanced);
+        EXPECT_NEAR(norms.support, expected.norms.support, 10 * tolerance * expected.norms.support);
+        if (threads == 1) {
+          first_x = x;
+          first_v = v;
+        } else if (sizeof(Real) == 8) {
+          EXPECT_TRUE(x == first_x && v == first_v) << threads << " threads, " << name_of(set);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST(CellMotion, IsThePlainMotionOnAnyNumberOfThreads) { expect_plain_steps<double>(1e-11); }
+
+TEST(CellMotion, OfSinglePrecisionIsNearIt) { expect_plain_steps<float>(1e-4); }
+
+TEST(CellMotion, IsChosenWhereTheKernelsHaveTheModel) {
+  const auto how = [](const MassSpringModel& model, const DynamicsOptions& options) {
+    return make_motion(model, 1000, 1e-6, options)->description();
+  };
+  const ModelParameters averaged = test::model("hybmss_avg");
+  MassSpringModel model = bar(averaged);
+  const std::string kernel = "cell kernel, FP64, " + name_of(instruction_set()) + ", 1 thread";
+  EXPECT_EQ(how(model, {}), kernel);
+  DynamicsOptions options;
+  options.viscosity = Viscosity::of(model, {1e4, 0.3, 1000}, retardation);
+  EXPECT_EQ(how(model, options), kernel);
+  options.precision = Precision::float32;
+  EXPECT_NE(how(model, options).find("cell kernel, FP32"), std::string::npos);
+  options.mass_consistency = 0.5;
+  EXPECT_EQ(how(model, options), "plain loops");
+  EXPECT_NE(how(build_model(averaged, test::notched_block(), {1e4, 0.3, 1000}), {}).find("lattice kernel"),
+            std::string::npos);
+  std::get<AveragedSprings>(model.laws[0]).shift = 0.4;
+  EXPECT_EQ(how(model, {}), "plain loops");
+}
+
+}  // namespace springproof::cell_forces_test
