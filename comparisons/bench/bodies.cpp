@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "meshes/mesher/mesher.h"
+#include "meshes/voxels/cut_cells.h"
+#include "meshes/voxels/voxelise.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/topology/random_network.h"
@@ -25,6 +29,17 @@ MassSpringModel random_springs(int nodes) {
   calibrate(0.4 * youngs_modulus, model.network);
   model.laws = {Springs{}};
   return model;
+}
+
+MassSpringModel cut_ball(double cells, double poisson_ratio) {
+  const double diameter = edge * std::cbrt(6 * cells / std::numbers::pi);
+  Body sphere;
+  sphere.geo = "sphere.geo";
+  const MeshRequest request{.file = find_geo(sphere, {}), .size = Vec3::Constant(diameter), .edge = diameter / 24};
+  const Mesh ball = mesh_body(request).mesh;
+  return build_cut(resolve({"hybmss_avg", {}, "hybmss_avg", {}}), cut_body(voxel_grid(ball, edge), ball), {}, Mesh{},
+                   {youngs_modulus, poisson_ratio, density})
+      .model;
 }
 
 NodalVectors moved(const Network& network) {

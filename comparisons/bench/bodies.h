@@ -19,6 +19,10 @@ MassSpringModel lattice(const std::string& name, const std::array<int, 3>& cells
 /// A cubic random network of about `nodes` nodes, <S> = 15, nu = 1/4.
 MassSpringModel random_springs(int nodes);
 
+/// A ball of about `cells` cells of averaged springs, cut along its surface, at a Poisson's ratio.
+/// @throws as mesh_body()
+MassSpringModel cut_ball(double cells, double poisson_ratio);
+
 /// The rest positions, each moved by a hundredth of an edge at most: smooth and reproducible.
 NodalVectors moved(const Network& network);
 

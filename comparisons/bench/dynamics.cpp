@@ -161,6 +161,29 @@ void overheads(const Context& c) {
   }
 }
 
+std::vector<int> balls(const BenchOptions& options) {
+  return options.quick ? std::vector{500} : std::vector{10000, 100000};
+}
+
+void cut_cells(const Context& c) {
+  for (const int cells : balls(c.options)) {
+    const MassSpringModel model = cut_ball(cells, 0.3);
+    const std::string size = fmt::format("{} cells", model.network.cells.size());
+    progress("averaged springs in cut cells", size);
+    const auto ours = fastest_motion(model), fp32 = fastest_motion(model, {.precision = Precision::float32});
+    const Motion loops = motion_by_forces(model);
+    const std::vector<double> seconds = least_seconds({ours->advance, loops.advance, fp32->advance}, c.timer);
+    const double to_ns = 1e9 / double(model.network.cells.size());
+    const auto row = [&](const char* what, const char* baseline, const Motion& motion, double own, double other) {
+      c.findings.rows.push_back({"dynamics", what, size, "ns per cell and step", to_ns * own, baseline, to_ns * other,
+                                 at_least(baseline == std::string("FP64") ? 1.5 : 6), usage_of(motion, own, c.machine),
+                                 motion.how});
+    };
+    row("averaged springs in cut cells", "loops of the law", *ours, seconds[0], seconds[1]);
+    row("FP32 over FP64, averaged springs in cut cells", "FP64", *fp32, seconds[2], seconds[0]);
+  }
+}
+
 void single_precision(const Context& c, int n) {
   const std::string size = fmt::format("{}^3", n);
   const MassSpringModel model = lattice("hybmss_cf", {n, n, n}, 0.25);
@@ -208,6 +231,8 @@ void threads(const Context& c) {
                     n <= 10   ? 1.3
                     : n <= 20 ? 1.8
                               : 1.9);
+  for (const int cells : balls(c.options))
+    several_threads(c, "averaged springs in cut cells", fmt::format("{} cells", cells), cut_ball(cells, 0.3), 1.8);
   for (const int nodes : c.options.quick ? std::vector{1000} : std::vector{30000, 300000})
     several_threads(c, "random network", fmt::format("{} nodes", nodes), random_springs(nodes), 1.8);
 }
@@ -279,6 +304,7 @@ void bench_dynamics(const BenchOptions& options, const Machine& machine, Finding
   springs_of_lattices(c);
   overheads(c);
   random_networks(c);
+  cut_cells(c);
   single_precision(c, quick ? 10 : 30);
   threads(c);
   headline(c);

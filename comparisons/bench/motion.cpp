@@ -10,6 +10,7 @@
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/kernels/cell_forces.h"
 #include "msm/kernels/list_forces.h"
 
 namespace springproof::bench {
@@ -84,6 +85,24 @@ Motion lattice_motion(const MassSpringModel& model, const MotionOptions& options
   return motion;
 }
 
+template <class Real>
+Motion motion_of_cells(const MassSpringModel& model, const MotionOptions& options) {
+  const double dt = 0.5 * safe_time_step(model, density);
+  const auto kernel = std::make_shared<ListMotion<Real>>(
+      std::make_unique<CellForces<Real>>(model), model.network.X, masses(model.network, density).cwiseInverse(),
+      ListMotionOptions{.time_step = dt, .threads = options.threads});
+  const NodalVectors x = moved(model.network);
+  kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
+  Motion motion = new_motion(fmt::format("{}, {}{}", kernel->kernel(), name_of(instruction_set()),
+                                         kernel->threads() == 1 ? "" : fmt::format(", {} threads", kernel->threads())),
+                             model, options.precision);
+  const double c = double(model.network.cells.size()), n = double(motion.nodes), real = sizeof(Real);
+  motion.work.streamed = (10 * real + 32) * c + 20 * real * n;
+  motion.work.kept = (10 * real + 32) * c + (24 * real + 28) * n;
+  motion.advance = [kernel](long steps) { kernel->advance(steps); };
+  return motion;
+}
+
 /// Entries of the kernel are nearly as many as springs.
 template <class Real>
 Motion list_motion(const MassSpringModel& model, const MotionOptions& options) {
@@ -105,7 +124,9 @@ Motion list_motion(const MassSpringModel& model, const MotionOptions& options) {
   return motion;
 }
 
-Motion forces_motion(const MassSpringModel& model) {
+}  // namespace
+
+Motion motion_by_forces(const MassSpringModel& model) {
   Motion motion = new_motion("forces()", model, Precision::float64);
   const double m = double(motion.springs), n = double(motion.nodes);
   motion.work.streamed = 24 * m + 216 * n;
@@ -115,16 +136,17 @@ Motion forces_motion(const MassSpringModel& model) {
   return motion;
 }
 
-}  // namespace
-
 std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
   if (LatticeMotion::suits(model, options.viscosity, options.mass_consistency)) return lattice_motion(model, options);
   if (options.viscosity.acts() || options.mass_consistency > 0) return {};
   if (ListForces<double>::covers(model))
     return options.precision == Precision::float64 ? list_motion<double>(model, options)
                                                    : list_motion<float>(model, options);
+  if (CellForces<double>::covers(model))
+    return options.precision == Precision::float64 ? motion_of_cells<double>(model, options)
+                                                   : motion_of_cells<float>(model, options);
   if (options.threads > 1 || options.precision != Precision::float64) return {};
-  return forces_motion(model);
+  return motion_by_forces(model);
 }
 
 Motion plain_motion(const Network& network) {

@@ -44,6 +44,9 @@ std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionO
 /// for this processor.
 Motion plain_motion(const Network& network);
 
+/// Steps with forces(), by the loops that define the model's laws.  The model must outlive it.
+Motion motion_by_forces(const MassSpringModel& model);
+
 /// How well a motion that takes `seconds` per step uses one core.
 Usage usage_of(const Motion& motion, double seconds, const Machine& machine);
 RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,

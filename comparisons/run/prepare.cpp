@@ -73,6 +73,21 @@ void choose_cut_cells(PreparedCase& prepared) {
         "or [fracture], and one such model)");
 }
 
+/// @throws InputError at options of nodes at random, for a network whose nodes are the vertices of a mesh.
+void check_vertex_options(const PreparedCase& prepared) {
+  if (!prepared.experiment.body.is_voxels()) return;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+    const ModelChoice& choice = prepared.experiment.models[m];
+    if (!passes_patch_test(prepared.models[m].row)) continue;
+    for (const char* option : {"min_length", "max_length", "nodes_per_m3", "seed", "seeds"})
+      if (choice.options.contains(option))
+        throw InputError(choice.where,
+                         fmt::format("compare.models: {}: {}: the nodes of this network are the vertices of a mesh in "
+                                     "any body but a block (allowed: springs_per_node; the cells' edge sets the mesh)",
+                                     choice.name, option));
+  }
+}
+
 /// Averaged springs follow the material law of the case.
 void choose_curve(const Experiment& e, ModelParameters& p) {
   if (!p.has(Extension::averaging) || p.curve) return;
@@ -233,6 +248,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     check_kinematics(experiment, prepared.models);
     check_fracture_models(experiment, prepared.models);
     choose_cut_cells(prepared);
+    check_vertex_options(prepared);
     prepared.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);

@@ -273,6 +273,8 @@ TEST_P(VoxelMistakes, AreRefusedWithTheirPlace) {
 }
 
 const Mistake mistakes[] = {
+    {"seed_of_a_network_on_vertices", "\"emsm_random\"", "{ model = \"emsm_patch\", seed = 2 }",
+     "ball.toml:*emsm_patch: seed: the nodes of this network are the vertices of a mesh"},
     {"unknown_patch", "on = \"high\"", "on = \"hihg\"", "ball.toml:18:1: load.on: *'hihg'"},
     {"rule_selects_nothing", "[0.1, 0.1, 0.15]", "[0.1, 0.1, 0.35]", "ball.toml:8:*selects no facet"},
     {"rule_with_a_name_that_is_taken", "name = \"high\"", "name = \"surface\"", "ball.toml:8:*surface"},
