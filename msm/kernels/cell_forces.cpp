@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "msm/kernels/kernels_of_set.h"
 #include "msm/kernels/lattice_set_up.h"
 #include "msm/kernels/list_forces.h"
 
@@ -21,22 +22,10 @@ int corner_at(int place) {
 
 template <class Real>
 const CellListKernels<Real>& cell_list_kernels(InstructionSet set) {
-  constexpr bool is_double = std::is_same_v<Real, double>;
-#define SPRINGPROOF_KERNELS_OF(instruction_set) \
-  if constexpr (is_double)                      \
-    return instruction_set::cell_list_double;   \
-  else                                          \
-    return instruction_set::cell_list_float
-#ifdef SPRINGPROOF_X86_KERNELS
-  if (set == InstructionSet::avx2) {
-    SPRINGPROOF_KERNELS_OF(avx2);
-  }
-  if (set == InstructionSet::avx512) {
-    SPRINGPROOF_KERNELS_OF(avx512);
-  }
-#endif
-  SPRINGPROOF_KERNELS_OF(portable);
-#undef SPRINGPROOF_KERNELS_OF
+  if constexpr (std::is_same_v<Real, double>)
+    return SPRINGPROOF_KERNELS_OF(set, cell_list_double);
+  else
+    return SPRINGPROOF_KERNELS_OF(set, cell_list_float);
 }
 
 template const CellListKernels<double>& cell_list_kernels<double>(InstructionSet set);

@@ -1,7 +1,6 @@
 // Order of the cells and nodes of a network for the kernels of lists of cells.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "msm/kernels/block_forces.h"

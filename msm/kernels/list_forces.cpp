@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "msm/kernels/kernels_of_set.h"
+
 namespace springproof {
 namespace {
 
@@ -22,22 +24,10 @@ void by_place(const SpringBlocks& blocks, const NodalVectors& v, std::vector<Pad
 
 template <class Real>
 const ListKernels<Real>& list_kernels(InstructionSet set) {
-  constexpr bool is_double = std::is_same_v<Real, double>;
-#define SPRINGPROOF_KERNELS_OF(instruction_set) \
-  if constexpr (is_double)                      \
-    return instruction_set::list_double;        \
-  else                                          \
-    return instruction_set::list_float
-#ifdef SPRINGPROOF_X86_KERNELS
-  if (set == InstructionSet::avx2) {
-    SPRINGPROOF_KERNELS_OF(avx2);
-  }
-  if (set == InstructionSet::avx512) {
-    SPRINGPROOF_KERNELS_OF(avx512);
-  }
-#endif
-  SPRINGPROOF_KERNELS_OF(portable);
-#undef SPRINGPROOF_KERNELS_OF
+  if constexpr (std::is_same_v<Real, double>)
+    return SPRINGPROOF_KERNELS_OF(set, list_double);
+  else
+    return SPRINGPROOF_KERNELS_OF(set, list_float);
 }
 
 template const ListKernels<double>& list_kernels<double>(InstructionSet set);
