@@ -65,8 +65,8 @@ std::string dump_dom(const fs::path& chromium, const fs::path& page, const std::
   const ChildEnd end =
       run_child({chromium,
                  {"--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-                  "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking",
-                  "--disable-component-update", "--disable-sync",
+                  "--disable-gpu-compositing", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+                  "--disable-background-networking", "--disable-component-update", "--disable-sync",
                   "--user-data-dir=" + (folder.path / "profile").string(), "--dump-dom", url_of(page) + fragment},
                  {},
                  output,

@@ -16,8 +16,8 @@
 namespace springproof {
 namespace {
 
-// Elements (Q2) of the finest grid of a block: what a direct solver factors in some ten seconds.
-constexpr double mode_elements = 1728;
+// Elements (Q2) of the finest grid of a block at most: what a direct solver factors in some ten seconds.
+constexpr double most_mode_elements = 1728;
 constexpr int modes_beside = 6;         // computed beside those compared, as partners and for whole multiplets
 constexpr double eigenvalue_order = 4;  // of frequencies with quadratic elements in smooth solutions
 
@@ -37,7 +37,10 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   request.points.resize(prepared.nodes(), 3);
   for (const Lattice& lattice : prepared.lattices)
     request.points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
-  const Cells fine = divisible_cells(e.body.size, mode_elements);
+  double elements = 1;  // as the case says, if it does
+  for (const int n : e.reference.cells) elements *= n;
+  const Cells fine =
+      divisible_cells(e.body.size, elements > 0 ? std::min(elements, most_mode_elements) : most_mode_elements);
   for (const int divisor : {4, 2, 1})
     request.grids.push_back({divided(fine, divisor), "q2", e.loads.empty() ? 1.0 : e.reference.grading});
   return request;

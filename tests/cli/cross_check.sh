@@ -45,14 +45,14 @@ status=$?
 agree() {
   "$program" cross-check "$1" --poisson-ratio "$2" --cells $3 >"$work/out" 2>"$work/err" || { cat "$work/out"; fail "$1, nu = $2" "$work/err"; }
 }
-agree golec_2019/compression 0.25 "8 8 8"
-agree golec_2019/compression -0.5 "8 8 8"
+agree golec_2019/compression 0.25 "4 4 4"
+agree golec_2019/compression -0.5 "4 4 4"
 agree golec_2019/compression 0.499 "8 8 8"
 agree golec_2019/bending 0.25 "24 4 4"
-agree golec_2019/torsion 0.25 "8 8 8"
+agree golec_2019/torsion 0.25 "4 4 4"
 for law in st_venant_kirchhoff neo_hooke_isochoric; do
-  agree cross_check/compression_$law 0.25 "8 8 8"
-  agree cross_check/torsion_$law 0.25 "8 8 8"
+  agree cross_check/compression_$law 0.25 "4 4 4"
+  agree cross_check/torsion_$law 0.25 "4 4 4"
 done
 
 # A CalculiX with another material must be found out.

@@ -24,6 +24,8 @@ on = "z_max"
 force_N = [0, 0, -1]
 [compare]
 models = ["hybmss_bt"]
+[reference]
+cells = [8, 8, 8]
 TOML
 
 # check NAME PYTHON-EXPRESSION: of the tables in frequencies.json

@@ -78,8 +78,8 @@ check() {
 
 make_case block linear
 make_case hencky hencky
-check block --cells 8 8 16
-check block --cells 8 8 16 --poisson-ratio 0.499
+check block --cells 6 6 12
+check block --cells 6 6 12 --poisson-ratio 0.499
 check block --cells 6 6 8 --grading 1.5 --element q1
 check hencky --cells 4 4 8
 check hencky --cells 4 4 8 --poisson-ratio 0.499
@@ -87,7 +87,6 @@ check block --cells 4 4 8 --element p2
 check block --cells 4 4 8 --element p2 --poisson-ratio 0.499
 check hencky --cells 3 3 4 --element p2
 check block --cells 4 4 8 --solver assembled
-check cylinder
 check cylinder --poisson-ratio 0.499
 
 # What one process alone can see is told to all: one message, exit status 2.

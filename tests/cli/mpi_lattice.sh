@@ -53,7 +53,7 @@ check() {
 check block
 check block --cells 9 9 18
 check block --cells 16 16 32 --poisson-ratio 0.4
-check block --cells 23 23 46 --poisson-ratio -0.5 --model msm_18
+check block --cells 15 15 30 --poisson-ratio -0.5 --model msm_18
 check block --cells 20 20 40 --poisson-ratio 0.3 --model hybmss_bt
 check standing --cells 8 8 16 --poisson-ratio 0.3 --steps 500 --damping 2
 check standing --cells 6 6 12 --poisson-ratio 0.3 --model hybmss_bt --steps 300 --damping 2

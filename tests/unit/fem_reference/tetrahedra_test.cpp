@@ -61,7 +61,7 @@ TEST_P(RaggedBodies, TakeFewIterationsNearOneHalf) {
   fem::GridProblem problem;
   problem.coarse =
       mesh_body(
-          {.file = find_geo({body.name + ".geo", {}, {}, {}}, "case.toml"), .size = body.size, .tetrahedra = 6000})
+          {.file = find_geo({body.name + ".geo", {}, {}, {}}, "case.toml"), .size = body.size, .tetrahedra = 3000})
           .mesh;
   problem.loads = {PrescribedDisplacement{body.held, {0.0, 0.0, 0.0}}, PatchForce{body.pulled, {-0.1, 0, 0}}};
   problem.points = NodalVectors(0, 3);

@@ -94,11 +94,11 @@ class ReportInBrowser : public Report {
   std::string visit(const std::filesystem::path& page, const std::string& fragment = "",
                     const std::string& options = whole_page) {
     const std::string command =
-        "timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+        "timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader --disable-gpu-compositing "
         "--enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking "
         "--disable-component-update --disable-sync --enable-logging=stderr " +
         options + " --user-data-dir='" + profile.string() + "' --dump-dom 'file://" + page.string() + fragment +
-        "' 2>&1";
+        "' 2>&1 | grep -v 'GL Driver Message'";  // on the speed of reading pixels back
     std::string out;
     if (FILE* pipe = popen(command.c_str(), "r")) {
       char buffer[4096];

@@ -114,7 +114,7 @@ TEST(PatchFit, RefusesNetworksOfTooFewSprings) {
 
 // With weights k L, below nu = 1/4, the inflow of a node is its volume change only on average.
 TEST(PatchFit, GivesABarItsModuli) {
-  for (const double nu : {-0.5, 0.0, 0.25, 0.4, 0.49}) {
+  for (const double nu : {-0.5, 0.25, 0.49}) {
     const EmbeddedModel built = patch_bar(nu);
     const std::optional<double> free;
     const std::vector<Load> loads = {PrescribedDisplacement{"x_min", {0.0, free, free}}, Traction{"x_max", {1, 0, 0}}};
