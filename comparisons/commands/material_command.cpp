@@ -48,7 +48,9 @@ const char* name_of(Dispersion form) {
 
 /// A body for the row's safe time step: one cube where it bounds all meshes, else a block, or a sheet.
 Mesh sample_mesh(const ModelRow& row, double l) {
-  const int n = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion ? 1 : 5;
+  const int n = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion ? 1
+                : row.topology == Topology::macro_cells                                            ? 2
+                                                                                                   : 5;
   const int layers = row.topology == Topology::hexagonal ? 1 : n;
   return block_mesh(l * Vec3(n, n, layers), {n, n, layers});
 }
@@ -130,7 +132,9 @@ struct MaterialFacts {
                  : StrainLimits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   std::vector<StressAtStretch> stresses = has_limits ? stress_curve(p, m) : std::vector<StressAtStretch>{};
   DispersionFacts dispersion = facts_of(p, m, model, l);
-  double correction = p.has(Extension::volume_correction) || p.has(Extension::averaging) ? kappa(m) : 0.0;
+  double correction =
+      p.has(Extension::volume_correction) || p.has(Extension::averaging) || p.has(Extension::volume_modes) ? kappa(m)
+                                                                                                           : 0.0;
 
   double corner_mass() const { return m.density * l * l * l / 8; }
   EngineFacts for_engines() const {
