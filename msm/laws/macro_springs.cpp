@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "msm/laws/macro_pressures.h"
+
 namespace springproof {
 namespace {
 
@@ -106,6 +108,38 @@ void add_point(const Matrix9& T, const Nodes& gradient, Eigen::Matrix<double, 81
   }
 }
 
+/// Second derivatives with the pressure(q) [Pa] of each point.
+template <class Pressure>
+MacroTangent tangent_of(const MacroSprings& law, const Deformed& s, const Pressure& pressure) {
+  MacroTangent K;
+  K.springs.setConstant(s.inverted ? std::numeric_limits<double>::quiet_NaN() : 0);
+  K.gradient.setZero();
+  K.curvature.setZero();
+  for (int q = 0; q < points && !s.inverted; ++q) {
+    const Point& p = gauss_points()[q];
+    const Matrix9 T = distortion_energy(law.curve, law.shear_modulus, s.F[q], Derivative::second).tangent +
+                      pressure(q) * curvature_of_volume(s.F[q]);
+    add_point(s.volume * p.share * T, p.gradient / s.edge, K.springs);
+    const Nodes of_volume = p.share / s.edge * s.cofactors(q) * p.gradient;
+    K.gradient += p.modes * Eigen::Map<const Eigen::Matrix<double, 1, 81>>(of_volume.data());
+    K.curvature += s.volume * p.share * s.U[q].curvature * p.modes * p.modes.transpose();
+  }
+  return K;
+}
+
+/// dE/dx of the nodes [N], likewise.
+template <class Pressure>
+Nodes gradient_of(const MacroSprings& law, const Deformed& s, const Pressure& pressure) {
+  Nodes gradient = Nodes::Constant(s.inverted ? std::numeric_limits<double>::quiet_NaN() : 0);
+  for (int q = 0; q < points && !s.inverted; ++q) {
+    const Point& p = gauss_points()[q];
+    const Eigen::Matrix3d P = distortion_energy(law.curve, law.shear_modulus, s.F[q], Derivative::first).stress +
+                              pressure(q) * s.cofactors(q);
+    gradient += s.volume * p.share / s.edge * P * p.gradient;
+  }
+  return gradient;
+}
+
 }  // namespace
 
 double MacroSprings::energy(const Network& network, const NodalVectors& x) const {
@@ -124,32 +158,14 @@ double MacroSprings::energy(const Network& network, const NodalVectors& x) const
 void MacroSprings::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
   for (const MacroCell& cell : network.macro_cells) {
     const Deformed s(*this, network, cell, x);
-    Nodes gradient = Nodes::Constant(s.inverted ? std::numeric_limits<double>::quiet_NaN() : 0);
-    for (int q = 0; q < points && !s.inverted; ++q) {
-      const Eigen::Matrix3d P = distortion_energy(curve, shear_modulus, s.F[q], Derivative::first).stress +
-                                volume_modulus() * s.pressure[q] * s.cofactors(q);
-      gradient += s.volume * gauss_points()[q].share / s.edge * P * gauss_points()[q].gradient;
-    }
+    const Nodes gradient = gradient_of(*this, s, [&](int q) { return volume_modulus() * s.pressure[q]; });
     for (int n = 0; n < 27; ++n) f.row(cell[n]) -= gradient.col(n).transpose();
   }
 }
 
 MacroTangent MacroSprings::tangent(const Network& network, const MacroCell& cell, const NodalVectors& x) const {
   const Deformed s(*this, network, cell, x);
-  MacroTangent K;
-  K.springs.setConstant(s.inverted ? std::numeric_limits<double>::quiet_NaN() : 0);
-  K.gradient.setZero();
-  K.curvature.setZero();
-  for (int q = 0; q < points && !s.inverted; ++q) {
-    const Point& p = gauss_points()[q];
-    const Matrix9 T = distortion_energy(curve, shear_modulus, s.F[q], Derivative::second).tangent +
-                      volume_modulus() * s.pressure[q] * curvature_of_volume(s.F[q]);
-    add_point(s.volume * p.share * T, p.gradient / s.edge, K.springs);
-    const Nodes of_volume = p.share / s.edge * s.cofactors(q) * p.gradient;
-    K.gradient += p.modes * Eigen::Map<const Eigen::Matrix<double, 1, 81>>(of_volume.data());
-    K.curvature += s.volume * p.share * s.U[q].curvature * p.modes * p.modes.transpose();
-  }
-  return K;
+  return tangent_of(*this, s, [&](int q) { return volume_modulus() * s.pressure[q]; });
 }
 
 void MacroSprings::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
@@ -158,6 +174,23 @@ void MacroSprings::add_tangent(const Network& network, const NodalVectors& x, Bl
     of_cell.springs += volume_modulus() * of_cell.gradient.transpose() * of_cell.curvature * of_cell.gradient;
     add_to(K, cell, of_cell.springs);
   }
+}
+
+MacroPressureForm pressure_form(const MacroSprings& law, const Network& network, const MacroCell& cell,
+                                const NodalVectors& x, const Eigen::Vector4d& pressures) {
+  const Deformed s(law, network, cell, x);
+  const double of_springs = springs_volume_modulus(law.curve, law.shear_modulus);
+  const auto pressure = [&](int q) {
+    return of_springs * s.pressure[q] + pressures.dot(gauss_points()[q].modes) / s.volume;
+  };
+  MacroPressureForm form{tangent_of(law, s, pressure), {}, Eigen::Vector4d::Zero()};
+  MacroTangent& K = form.tangent;
+  K.springs += of_springs * K.gradient.transpose() * K.curvature * K.gradient;
+  const Nodes gradient = gradient_of(law, s, pressure);
+  form.gradient = Eigen::Map<const Eigen::Matrix<double, 81, 1>>(gradient.data());
+  for (int q = 0; q < points && !s.inverted; ++q)
+    form.slope += s.volume * gauss_points()[q].share * s.U[q].slope * gauss_points()[q].modes;
+  return form;
 }
 
 void add_to(BlockMatrix& K, const MacroCell& cell, const Eigen::Matrix<double, 81, 81>& matrix) {

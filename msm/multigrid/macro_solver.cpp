@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "msm/laws/macro_pressures.h"
 #include "msm/multigrid/cell_stiffness.h"
 #include "msm/multigrid/mixed_multigrid.h"
 
@@ -90,11 +91,50 @@ Eigen::VectorXd MacroSolver::diagonal() const {
 
 void MacroSolver::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const { lattice_->apply(r, z); }
 
+MacroSolver::State MacroSolver::take(const NodalVectors& x, const Eigen::VectorXd& pressures) {
+  A_.set_zero();
+  State state{Eigen::VectorXd::Zero(x.size()), Eigen::VectorXd(pressures.size())};
+  for (std::size_t c = 0; c < volumes_.size(); ++c) {
+    const MacroCell& cell = network_.macro_cells[c];
+    const auto i = 4 * static_cast<Eigen::Index>(c);
+    const MacroPressureForm form = pressure_form(law_, network_, cell, x, pressures.segment<4>(i));
+    add_to(A_, cell, form.tangent.springs);
+    volumes_[c] = {form.tangent.gradient, form.tangent.curvature};
+    state.slope.segment<4>(i) = form.slope;
+    for (int n = 0; n < 27; ++n) state.gradient.segment<3>(3 * cell[n]) += form.gradient.segment<3>(3 * n);
+  }
+  return state;
+}
+
+Eigen::VectorXd MacroSolver::over_curvature(const Eigen::VectorXd& v) const {
+  Eigen::VectorXd w(v.size());
+  for (std::size_t c = 0; c < volumes_.size(); ++c) {
+    const auto i = 4 * static_cast<Eigen::Index>(c);
+    w.segment<4>(i) = volumes_[c].curvature.inverse() * v.segment<4>(i);
+  }
+  return w;
+}
+
+void MacroSolver::subtract(const Eigen::VectorXd& u, Eigen::VectorXd& f, Eigen::VectorXd& g) const {
+  Eigen::VectorXd Au;
+  A_.multiply(u, Au);
+  f -= Au;
+  for (std::size_t c = 0; c < volumes_.size(); ++c)
+    g.segment<4>(4 * static_cast<Eigen::Index>(c)) -= volumes_[c].gradient * gathered(c, u);
+}
+
 KrylovResult MacroSolver::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations,
                                 Eigen::VectorXd& u) const {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(4 * static_cast<Eigen::Index>(volumes_.size()));
+  Eigen::VectorXd p;
+  return solve(b, none, tolerance, max_iterations, u, p);
+}
+
+KrylovResult MacroSolver::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance,
+                                int max_iterations, Eigen::VectorXd& u, Eigen::VectorXd& p) const {
   // In units of G and l both equations have entries of order one.
   const double G = law_.shear_modulus, l = network_.cell_edge, cube = l * l * l;
-  const Eigen::Index n = b.size(), cells = static_cast<Eigen::Index>(volumes_.size()), m = 4 * cells;
+  const Eigen::Index n = f.size(), cells = static_cast<Eigen::Index>(volumes_.size()), m = 4 * cells;
   Eigen::VectorXd part(n), product;
   const Operator apply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
     y.resize(n + m);
@@ -102,9 +142,10 @@ KrylovResult MacroSolver::solve(const Eigen::VectorXd& b, double tolerance, int 
     A_.multiply(part, product);
     for (Eigen::Index c = 0; c < cells; ++c) {
       const auto i = static_cast<std::size_t>(c);
-      const Eigen::Vector4d p = x.segment<4>(n + 4 * c) * (G * cube);
-      scatter(i, p, product);
-      y.segment<4>(n + 4 * c) = volumes_[i].gradient * gathered(i, part) - volumes_[i].curvature.inverse() * p / kappa_;
+      const Eigen::Vector4d of_cell = x.segment<4>(n + 4 * c) * (G * cube);
+      scatter(i, of_cell, product);
+      y.segment<4>(n + 4 * c) =
+          volumes_[i].gradient * gathered(i, part) - volumes_[i].curvature.inverse() * of_cell / kappa_;
     }
     clear_fixed(product);
     y.head(n) = product / (G * l * l);
@@ -115,20 +156,21 @@ KrylovResult MacroSolver::solve(const Eigen::VectorXd& b, double tolerance, int 
     part = x.head(n) * (G * l * l);
     for (Eigen::Index c = 0; c < cells; ++c) {
       const auto i = static_cast<std::size_t>(c);
-      const Eigen::Vector4d p = -schur * volumes_[i].curvature * x.segment<4>(n + 4 * c);
-      scatter(i, -p, part);
-      z.segment<4>(n + 4 * c) = p / (G * cube);
+      const Eigen::Vector4d of_cell = -schur * volumes_[i].curvature * x.segment<4>(n + 4 * c);
+      scatter(i, -of_cell, part);
+      z.segment<4>(n + 4 * c) = of_cell / (G * cube);
     }
     clear_fixed(part);
     lattice_->apply(part, product);
     z.head(n) = product / l;
   };
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n + m), x = right;
-  part = b / (G * l * l);
+  part = f / (G * l * l);
   clear_fixed(part);
-  right.head(n) = part;
+  right << part, g;
   const KrylovResult result = gmres(apply, condition, right, tolerance, max_iterations, 60, x);
   u = x.head(n) * l;
+  p = x.tail(m) * (G * cube);
   return result;
 }
 

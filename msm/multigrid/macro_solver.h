@@ -32,6 +32,22 @@ class MacroSolver {
   /// u = K^-1 b on the free unknowns, 0 on the fixed, with pressures as unknowns.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) const;
 
+  /// Of the form with given pressures, four per cell: dE/dx, and V d<U>/dtheta.
+  struct State {
+    Eigen::VectorXd gradient;  ///< [N]
+    Eigen::VectorXd slope;     ///< [m^3]
+  };
+  /// The tangent of that form at x (msm/laws/macro_pressures.h).
+  State take(const NodalVectors& x, const Eigen::VectorXd& pressures);
+  double kappa() const { return kappa_; }
+  /// C^-1 v, cell by cell.
+  Eigen::VectorXd over_curvature(const Eigen::VectorXd& v) const;
+  /// f -= A u and g -= D u.
+  void subtract(const Eigen::VectorXd& u, Eigen::VectorXd& f, Eigen::VectorXd& g) const;
+  /// (u, p) of the equations above, u = 0 on fixed unknowns.
+  KrylovResult solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
+                     Eigen::VectorXd& u, Eigen::VectorXd& p) const;
+
  private:
   /// Of a cell: modes of the volume, and their curvature.
   struct Volume {
