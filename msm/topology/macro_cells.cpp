@@ -11,11 +11,11 @@ namespace springproof {
 std::vector<MacroCell> macro_cells_of(const Mesh& mesh) {
   if (!mesh.grid) throw std::invalid_argument("macro-cells need a mesh of equal cubes");
   const auto [nx, ny, nz] = mesh.grid->cells;
+  if (mesh.hexahedra.size() != static_cast<std::size_t>(nx) * ny * nz)
+    throw std::invalid_argument("macro-cells fill blocks only (allowed: a body of `cells`; hybmss_avg takes any body)");
   if (nx % 2 != 0 || ny % 2 != 0 || nz % 2 != 0)
     throw std::invalid_argument(fmt::format(
         "body.cells: [{}, {}, {}]: a macro-cell is two cubes along each axis (allowed: even numbers)", nx, ny, nz));
-  if (mesh.hexahedra.size() != static_cast<std::size_t>(nx) * ny * nz)
-    throw std::invalid_argument("macro-cells fill blocks only (allowed: a body of `cells`; hybmss_avg takes any body)");
   std::vector<MacroCell> cells(mesh.hexahedra.size() / 8);
   for (std::size_t c = 0; c < mesh.hexahedra.size(); ++c) {
     const auto [i, j, k] = mesh.grid->cell_index[c];
