@@ -101,6 +101,34 @@ TEST(MacroSprings, OnlyRigidMotionsHaveNoEnergy) {
   }
 }
 
+// Their strain is linear, so that two Gauss points along each axis of the block integrate its energy.
+TEST(MacroSprings, QuadraticDisplacementsHaveTheEnergyOfTheSolid) {
+  for (const double nu : nus) {
+    const EmbeddedModel built = block({4, 2, 2}, nu);
+    const NodalVectors& X = built.model.network.X;
+    const NodalVectors random = test::noise(9, 1);
+    const auto square = [&](int i) -> Eigen::Matrix3d { return random.middleRows<3>(3 * i); };
+    NodalVectors u(X.rows(), 3);
+    for (int n = 0; n < X.rows(); ++n)
+      for (int i = 0; i < 3; ++i) u(n, i) = X.row(n).dot(square(i) * X.row(n).transpose());
+    double energy = 0;
+    for (int q = 0; q < 8; ++q) {
+      const auto at = [&](int axis) { return 0.5 + (q >> axis & 1 ? 1 : -1) * std::sqrt(1.0 / 12); };
+      const Vec3 x(2 * at(0), at(1), at(2));
+      Eigen::Matrix3d strain;
+      for (int i = 0; i < 3; ++i) strain.row(i) = ((square(i) + square(i).transpose()) * x).transpose();
+      strain = (strain + strain.transpose()).eval() / 2;
+      energy += 2.0 / 8 *
+                (lame_lambda(material(nu)) / 2 * strain.trace() * strain.trace() +
+                 shear_modulus(material(nu)) * strain.squaredNorm());
+    }
+    Eigen::VectorXd f;
+    const Eigen::Map<const Eigen::VectorXd> flat_u(u.data(), u.size());
+    tangent(built.model, X).multiply(flat_u, f);
+    EXPECT_NEAR(flat_u.dot(f) / 2 / energy, 1, 1e-11) << nu;
+  }
+}
+
 // u of pure bending is quadratic: all nodes inside and on the free sides are in equilibrium.
 TEST(MacroSprings, PureBendingIsExact) {
   for (const double nu : nus) {
