@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "meshes/volume.h"
+#include "msm/embedding/macro_shares.h"
 #include "msm/embedding/surface_shares.h"
 #include "msm/exchange/springs_file.h"
 #include "msm/parameters/calibrate.h"
@@ -14,6 +15,7 @@
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
 #include "msm/topology/hexagonal_lattice.h"
+#include "msm/topology/macro_cells.h"
 #include "msm/topology/node_lattice.h"
 #include "msm/vertex_models.h"
 
@@ -32,6 +34,12 @@ Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* reg
   switch (p.row.topology) {
     case cells:
       return cubic_lattice(mesh, p.has(Extension::averaging) ? CubicPattern{} : isotropic_pattern(p.face_to_cube));
+    case macro_cells: {
+      Network network = cubic_lattice(mesh, CubicPattern{});
+      network.macro_cells = macro_cells_of(mesh);
+      network.volume = nodes_of_macro_cells(mesh, network).volumes;
+      return network;
+    }
     case centres:
       return p.turned == 0 ? node_lattice(mesh, isotropic_pattern(p.face_to_cube))
                            : node_lattice(region ? *region : region_of(mesh), cube_edge(mesh), p.turned,
@@ -150,7 +158,9 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   auto& [network, laws, small_displacements_only] = built.model;
   network = network_of(p, mesh, region);
   const Region* filled = p.row.topology == random ? region : nullptr;
-  built.embedding = p.row.topology == cells ? nodes_of_mesh(mesh) : embed(mesh, network, grip_of(p, mesh), filled);
+  built.embedding = p.row.topology == cells         ? nodes_of_mesh(mesh)
+                    : p.row.topology == macro_cells ? nodes_of_macro_cells(mesh, network)
+                                                    : embed(mesh, network, grip_of(p, mesh), filled);
   network.volume *= (filled ? filled->volume : volume(mesh, mesh.nodes)) / network.volume.sum();
   const BulkCalibration calibration = bulk_calibration(p, material);
   NodalVectors gradient;

@@ -90,7 +90,7 @@ void check_vertex_options(const PreparedCase& prepared) {
 
 /// Averaged springs follow the material law of the case.
 void choose_curve(const Experiment& e, ModelParameters& p) {
-  if (!p.has(Extension::averaging) || p.curve) return;
+  if (!(p.has(Extension::averaging) || p.has(Extension::volume_modes)) || p.curve) return;
   p.curve = e.kinematics == "neo_hooke"             ? StrainCurve::neo_hooke
             : e.kinematics == "neo_hooke_isochoric" ? StrainCurve::neo_hooke_isochoric
                                                     : StrainCurve::hencky;
@@ -203,8 +203,9 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
       throw InputError(fmt::format("{}, or leave out the equilibrium: elements = [] in [reference]", error.what()));
     }
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    if (const Topology t = prepared.models[m].row.topology;
-        t == Topology::cells || t == Topology::file || &lattice == &prepared.lattices.front())
+    if (const Topology t = prepared.models[m].row.topology; t == Topology::cells || t == Topology::macro_cells ||
+                                                            t == Topology::file ||
+                                                            &lattice == &prepared.lattices.front())
       try_model(prepared, lattice, m);
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);

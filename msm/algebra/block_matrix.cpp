@@ -123,6 +123,8 @@ std::vector<std::vector<int>> coupled_nodes(int nodes, const std::vector<Hexahed
 
 std::vector<std::vector<int>> coupled_nodes(const Network& network) {
   auto coupled = coupled_nodes(network.nodes(), network.cells);
+  for (const MacroCell& cell : network.macro_cells)
+    for (int a : cell) coupled[a].insert(coupled[a].end(), cell.begin(), cell.end());
   for (const Spring& s : network.springs) {
     coupled[s.i].push_back(s.j);
     coupled[s.j].push_back(s.i);

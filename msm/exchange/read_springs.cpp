@@ -174,6 +174,7 @@ void require_its_parts(const ForceLaw& law, const Network& network, const JsonPl
     place.refuse("has no cells to act on", "beside cells");
   if (traits(law).reach == Reach::cells && !network.filled.empty() && !std::holds_alternative<AveragedSprings>(law))
     place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
+  if (std::holds_alternative<MacroSprings>(law)) place.refuse("has no macro-cells to act on", "averaged_springs");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
 }

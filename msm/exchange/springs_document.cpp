@@ -7,6 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "msm/topology/macro_cells.h"
+
 namespace springproof {
 namespace {
 
@@ -232,6 +234,7 @@ SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
   require_cells_of_one_size(network, "springs file");
+  require_no_macro_cells(network, "springs file");
   out.document.head = {{"format", springs_format},
                        {"version", network.filled.empty() ? springs_version : springs_version_of_cut_cells}};
   out.at({"origin"}) = origin_json(springs.origin);

@@ -179,15 +179,15 @@ VolumeDensity volume_term(StrainCurve curve, double J) {
   return {0.5 * e * e, e / J, (1 - e) / (J * J)};
 }
 
-StrainEnergy springs_energy(StrainCurve curve, double G, const Mat3& F, Derivative up_to) {
+double springs_volume_modulus(StrainCurve curve, double G) { return curve == StrainCurve::neo_hooke ? G : 5 * G / 3; }
+
+StrainEnergy distortion_energy(StrainCurve curve, double G, const Mat3& F, Derivative up_to) {
   const Strain strain(F, up_to);
   StrainEnergy W;
   if (curve == StrainCurve::neo_hooke) {
     const Scalar lengths = strain.lengths(), J = strain.power_of_J(1);
     strain.add(G / 2 * (lengths.value - 3), G / 2, 0, lengths, W);
     strain.add(-G * std::log(J.value), -G / J.value, G / (J.value * J.value), J, W);
-    strain.add_volume(curve, G, W);
-    return W;
   }
   if (curve == StrainCurve::hencky) add_lengths_and_areas(G, strain, W);
   if (curve == StrainCurve::springs_hencky) add_springs(as_hencky, G, strain, W);
@@ -196,7 +196,12 @@ StrainEnergy springs_energy(StrainCurve curve, double G, const Mat3& F, Derivati
     const Scalar lengths = strain.product(strain.power_of_J(-2.0 / 3), strain.lengths());
     strain.add(G / 2 * (lengths.value - 3), G / 2, 0, lengths, W);
   }
-  strain.add_volume(curve, 5 * G / 3, W);
+  return W;
+}
+
+StrainEnergy springs_energy(StrainCurve curve, double G, const Mat3& F, Derivative up_to) {
+  StrainEnergy W = distortion_energy(curve, G, F, up_to);
+  add_volume_term(curve, springs_volume_modulus(curve, G), F, up_to, W);
   return W;
 }
 

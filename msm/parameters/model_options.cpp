@@ -113,14 +113,15 @@ std::vector<Option> options_of(const ModelRow& row) {
   std::vector<Option> options = {flag("paper_e_form", [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
   if ((row.topology == Topology::cells || row.topology == Topology::centres) && row.extension != Extension::averaging)
     options.push_back({"face_to_cube", set_face_to_cube});
-  if (row.extension == Extension::averaging)
+  if (row.extension == Extension::averaging || row.extension == Extension::volume_modes)
     options = {choice<std::optional<StrainCurve>>("curve", &ModelParameters::curve,
                                                   {{"hencky", StrainCurve::hencky},
                                                    {"neo_hooke", StrainCurve::neo_hooke},
                                                    {"neo_hooke_isochoric", StrainCurve::neo_hooke_isochoric},
                                                    {"springs_hencky", StrainCurve::springs_hencky},
-                                                   {"springs_neo_hooke", StrainCurve::springs_neo_hooke}}),
-               choice<bool>("torsion", &ModelParameters::slender, {{"exact", false}, {"slender", true}})};
+                                                   {"springs_neo_hooke", StrainCurve::springs_neo_hooke}})};
+  if (row.extension == Extension::averaging)
+    options.push_back(choice<bool>("torsion", &ModelParameters::slender, {{"exact", false}, {"slender", true}}));
   if (row.topology == Topology::random) options = random_options();
   if (passes_patch_test(row))  // needs nodes on the surface, and chooses the springs' constants itself
     std::erase_if(options, [](const Option& o) {
@@ -134,7 +135,7 @@ std::vector<Option> options_of(const ModelRow& row) {
     options.push_back(flag("cut", [](bool on, ModelParameters& p) { p.cut = on; }));
     options.push_back(number("shift", 0, 1, [](double v, ModelParameters& p) { p.shift = v; }));
   }
-  if (row.topology != Topology::cells) options.push_back(grip_option());
+  if (row.topology != Topology::cells && row.topology != Topology::macro_cells) options.push_back(grip_option());
   if (row.extension == Extension::volume_correction)
     options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
                                            {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));

@@ -46,6 +46,8 @@ std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& 
   using enum Extension;
   ModelParameters p = parameters;
   if (p.has(averaging)) return {averaged_law(p, material)};
+  if (p.has(volume_modes))
+    return {MacroSprings{shear_modulus(material), lame_lambda(material), p.curve.value_or(StrainCurve::hencky)}};
   std::vector<ForceLaw> laws = {Springs{}};
   if (p.has(volume_correction)) laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   if (p.has(momentum_dispersion)) {

@@ -5,6 +5,7 @@
 
 #include "meshes/volume.h"
 #include "msm/statics/equilibrium.h"
+#include "msm/statics/macro_newton.h"
 #include "msm/statics/mixed_newton.h"
 #include "msm/statics/softest_motion.h"
 #include "msm/statics/tangent_solver.h"
@@ -31,9 +32,9 @@ struct Newton {
   const LoadPath& path;
   const NewtonOptions& options;
   const std::vector<char> fixed;
-  TangentSolver K;                     ///< tangent at the state of the last take()
-  std::unique_ptr<MixedNewton> mixed;  ///< near nu = 1/2; null: the form without pressures
-  double stiffness = 0;                ///< largest diagonal entry at rest [N/m]
+  TangentSolver K;                        ///< tangent at the state of the last take()
+  std::unique_ptr<PressureNewton> mixed;  ///< near nu = 1/2; null: the form without pressures
+  double stiffness = 0;                   ///< largest diagonal entry at rest [N/m]
   int iterations = 0;
 
   Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
@@ -44,6 +45,8 @@ struct Newton {
         K(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit) {
     if (K.unknowns() > cholesky_limit && MixedNewton::suits(m))
       mixed = std::make_unique<MixedNewton>(m, fixed_unknowns);
+    if (K.unknowns() > cholesky_limit && MacroNewton::suits(m))
+      mixed = std::make_unique<MacroNewton>(m, fixed_unknowns);
   }
 
   /// Unbalanced force on free unknowns, relative to the reactions and external forces (or, for motions that need almost
@@ -199,7 +202,8 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.displacement = x - model.network.X;
   carry(model.network.carried, result.displacement);
   result.support = support_forces(model, x, reached);
-  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K.name(),
+  result.solver = fmt::format("Newton + {}, {} load step{}",
+                              newton.mixed && !macro_springs_of(model) ? "GMRES + mixed multigrid" : newton.K.name(),
                               steps, steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
   result.unknowns = newton.K.unknowns();

@@ -29,16 +29,20 @@ struct Anchor {
   double stiffness;               ///< k [N/m]
 };
 
+/// The 27 nodes of a macro-cell, two cubes along each axis: node x + 3 y + 9 z at (x, y, z) cube edges.
+using MacroCell = std::array<int, 27>;
+
 /// Nodes, springs and cells of a body; laws (msm/laws/laws.h) say what forces they have.
 struct Network {
-  NodalVectors X;                    ///< rest positions [m], n x 3
-  std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
-  std::vector<Hexahedron> cells;     ///< cubic cells, empty for networks without
-  double cell_edge = 0;              ///< l [m] of the cells; of several sizes, of the smallest
-  std::vector<double> cell_edges;    ///< [m] of cells of several sizes, one per cell; empty: all are equal
-  std::vector<FilledPart> filled;    ///< of cut cells, one per cell; empty: all cells are full
-  std::vector<Anchor> anchors;       ///< of the supports of cut cells
-  std::vector<Spring> cell_springs;  ///< contribution of one cell: springs between its corners 0..7
+  NodalVectors X;                      ///< rest positions [m], n x 3
+  std::vector<Spring> springs;         ///< each pair once, sorted by (i, j)
+  std::vector<Hexahedron> cells;       ///< cubic cells, empty for networks without
+  double cell_edge = 0;                ///< l [m] of the cells; of several sizes, of the smallest
+  std::vector<double> cell_edges;      ///< [m] of cells of several sizes, one per cell; empty: all are equal
+  std::vector<FilledPart> filled;      ///< of cut cells, one per cell; empty: all cells are full
+  std::vector<MacroCell> macro_cells;  ///< of cubes, eight each; empty for networks without
+  std::vector<Anchor> anchors;         ///< of the supports of cut cells
+  std::vector<Spring> cell_springs;    ///< contribution of one cell: springs between its corners 0..7
   /// Nodes on edges and faces of larger cells.  They are no unknowns: they follow the others, to which the forces on
   /// them are handed back.
   std::vector<CarriedPoint> carried;

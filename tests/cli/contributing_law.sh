@@ -30,7 +30,7 @@ insert_after() {  # FILE PATTERN LINE
 }
 insert_after msm/laws/laws.h '#include "msm/laws/springs.h"' '#include "msm/laws/stiffening_springs.h"'
 sed -i 's/Anchors>;/Anchors, StiffeningSprings>;/' msm/laws/laws.h
-sed -i 's/angular_springs };/angular_springs, stiffening_springs };/' msm/parameters/model_table.h
+insert_after msm/parameters/model_table.h '  angular_springs,' '  stiffening_springs,'
 insert_after msm/parameters/model_table.cpp 'const std::vector<ModelRow> table = {' "$(line '{"msm_stiffening"')"
 insert_after msm/periodic/laws_of_model.cpp 'if (p.has(angular_springs))' "$(line 'StiffeningSprings{10});' | grep has)"
 insert_after tests/laws/law_suite_test.cpp 'all.push_back({"SpringsOfASheet"' "$(line 'all.push_back({"Stiffening"')"

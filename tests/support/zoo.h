@@ -52,6 +52,11 @@ inline NodalVectors noise(Eigen::Index nodes, double size, unsigned seed = 1) {
   return v;
 }
 
+/// Two macro-cells with a common face.
+inline Network macro_network(double edge = 0.5) {
+  return build_model(model("hybmss_macro"), block_mesh(edge * Vec3(4, 2, 2), {4, 2, 2}), {1, 0.25}).network;
+}
+
 /// Two by two by one cells that a body fills in part, with moments at random, one of them full, and two anchors.
 inline Network cut_network(double edge = 0.5) {
   const Mesh mesh = block_mesh(edge * Vec3(2, 2, 1), {2, 2, 1});

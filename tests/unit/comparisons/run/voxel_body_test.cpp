@@ -93,7 +93,8 @@ TEST_P(LoadsOfTheBall, AreThoseOfTheBodyOnVoxels) {
 
 TEST_P(LoadsOfTheBall, AreThoseOfTheBodyInEveryModel) {
   for (const ModelRow& row : model_table()) {
-    if (row.topology == Topology::hexagonal) continue;  // planar
+    if (row.topology == Topology::hexagonal) continue;    // planar
+    if (row.topology == Topology::macro_cells) continue;  // blocks only
     SCOPED_TRACE(row.name);
     ModelChoice choice;
     choice.name = row.name;

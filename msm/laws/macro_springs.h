@@ -1,0 +1,58 @@
+// Force law: springs at the points of a macro-cell of 27 nodes, and four modes of its volume.
+#pragma once
+
+#include <vector>
+
+#include "msm/algebra/block_matrix.h"
+#include "msm/laws/law_traits.h"
+#include "msm/laws/strain_energy.h"
+#include "msm/topology/network.h"
+
+namespace springproof {
+
+/// Second derivatives of the energy of a macro-cell: K = springs + modulus * gradient^T curvature gradient, of unknown
+/// 3 * node + axis.
+struct MacroTangent {
+  Eigen::Matrix<double, 81, 81> springs;  ///< at constant dU/dtheta [N/m]
+  Eigen::Matrix<double, 4, 81> gradient;  ///< dtheta_m/dx [1/m]
+  Eigen::Matrix4d curvature;              ///< V d2U/dtheta_m dtheta_n, the mean of U over the cell [m^3]
+};
+
+/// Springs in the thirteen directions of a lattice at each of the 27 Gauss points of a macro-cell, where they see the
+/// deformation gradient F of the triquadratic displacement of the nodes.  They act on lengths divided by J^(1/3), so
+/// that they know the distortion alone.  The change of volume enters by its projection on {1, x, y, z} of the cell,
+/// theta: energy V <w(F) + K U(theta)>, means over the points, V the cell's volume.  Objective; homogeneous strain and,
+/// at small strain, all quadratic displacements are exact; the only motions without energy are rigid.  At small strain
+/// these are finite elements of quadratic displacement and linear, discontinuous pressure (Q2-P1) whose pressure
+/// carries all of K, not lambda alone (docs/decisions/msm.md).  Cells: Network::macro_cells.
+struct MacroSprings {
+  /// What solvers, kernels and the time step use of this law.
+  static constexpr LawTraits traits = {"macro-cell springs", Reach::second_neighbours};
+
+  double shear_modulus = 0;                 ///< G [Pa]
+  double lame_lambda = 0;                   ///< [Pa]
+  StrainCurve curve = StrainCurve::hencky;  ///< the law at large strain
+
+  /// Names the parameters, for springs files (law_traits.h).
+  template <class Fields>
+  void fields(Fields& f) {
+    f.number("shear_modulus_Pa", shear_modulus);
+    f.number("lame_lambda_Pa", lame_lambda);
+    f.choice("curve", curve, {"hencky", "neo_hooke", "neo_hooke_isochoric", "springs_hencky", "springs_neo_hooke"});
+  }
+
+  /// Stiffness of U(theta) [Pa]: K; lambda in neo_hooke, whose springs know the volume.
+  double volume_modulus() const { return lame_lambda - shear_modulus + springs_volume_modulus(curve, shear_modulus); }
+
+  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if a cell is inverted at a point
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
+
+  /// Second derivatives of the energy of one cell, for solvers.
+  MacroTangent tangent(const Network& network, const MacroCell& cell, const NodalVectors& x) const;
+};
+
+/// K += the matrix of a macro-cell, of unknown 3 * node + axis.
+void add_to(BlockMatrix& K, const MacroCell& cell, const Eigen::Matrix<double, 81, 81>& matrix);
+
+}  // namespace springproof
