@@ -13,6 +13,7 @@
 #include "comparisons/bench/fem.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/page.h"
+#include "comparisons/bench/parallel.h"
 #include "comparisons/bench/statics.h"
 #include "comparisons/bench/table.h"
 #include "comparisons/report/results.h"
@@ -31,10 +32,10 @@ void add_options(CLI::App& app, BenchOptions& options) {
                  "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
                  "damped dynamics), "
                  "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
-                 "cases), all of these; "
+                 "cases), parallel (springproof-lattice on several processes against one), all of these; "
                  "engines (real-time engines and our springs by the same measures; some 15 minutes)")
       ->required()
-      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "engines", "all"}));
+      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "parallel", "engines", "all"}));
   app.add_option("--json", options.json, "write the figures to this file too");
   app.add_option("--out", options.out, "folder for bench.html, with the roofline, and bench.json");
   app.add_flag("--quick", options.quick, "small sizes: a look at the table in half a minute, no measurement");
@@ -83,6 +84,7 @@ void measure(const BenchOptions& options, Measured& m) {
     fem = bench_fem(options, findings);
     if (!fem.is_null()) bench_calculix(options, findings);
   }
+  if (wants(options, "parallel")) bench_parallel(options, findings);
   if (options.what == "engines") {
     if (options.install) install_packages();
     bench_engines(options, findings, engines);
