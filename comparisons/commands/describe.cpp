@@ -82,6 +82,8 @@ struct Variable {
 
 constexpr std::array environment = {
     Variable{"SPRINGPROOF_FEM_PROGRAM", "the finite element program, instead of springproof-fem beside springproof"},
+    Variable{"SPRINGPROOF_LATTICE_PROGRAM",
+             "the program of springproof bench parallel, instead of springproof-lattice beside it"},
     Variable{"SPRINGPROOF_MESH_PROGRAM", "the mesher, instead of springproof-mesh beside springproof"},
     Variable{"SPRINGPROOF_BENCH_PROGRAM", "the bench, instead of springproof-bench beside springproof"},
     Variable{"SPRINGPROOF_PROGRAM", "the springproof that the bench measures, instead of the one beside it"},

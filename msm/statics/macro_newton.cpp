@@ -11,8 +11,8 @@
 namespace springproof {
 namespace {
 
-constexpr double pressure_tolerance = 1e-8;
-constexpr int most_krylov_steps = 400;
+constexpr double macro_pressure_tolerance = 1e-8;
+constexpr int most_macro_krylov_steps = 400;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ bool MacroNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
                  relative = scale > 0 ? std::sqrt(on_free) / scale : 0;
     if (!std::isfinite(relative)) return false;
     const Eigen::VectorXd mismatch = p_ / solver_.kappa() - at.slope;
-    if (k > 0 && relative <= tolerance && solver_.kappa() * mismatch.norm() <= pressure_tolerance * p_.norm())
+    if (k > 0 && relative <= tolerance && solver_.kappa() * mismatch.norm() <= macro_pressure_tolerance * p_.norm())
       return true;
     if (k == max_iterations) return false;
     ++iterations_;
@@ -50,7 +50,7 @@ bool MacroNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
     });
     Eigen::VectorXd h = solver_.over_curvature(mismatch), correction;
     if (k == 0) solver_.subtract(du, r, h);  // the displacements of the supports are known
-    solver_.solve(r, h, std::clamp(1e-2 * relative, 1e-8, 1e-3), most_krylov_steps, correction, dp);
+    solver_.solve(r, h, std::clamp(1e-2 * relative, 1e-8, 1e-3), most_macro_krylov_steps, correction, dp);
     if (k == 0) correction += du;
     x += Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
     p_ += dp;

@@ -93,7 +93,7 @@ report || fail "the report of shards at once"
 same "shards at once"
 
 # Killed at work: meanwhile it is in nobody's way but its own; started again, it keeps what it finished.
-write_case slow '[0.0, 0.1, 0.2, 0.3]' 16
+write_case slow '[0.0, 0.1, 0.15, 0.2, 0.25, 0.3]' 16  # it must be at work yet when others come
 out=killed
 "$program" compare "$work/slow.toml" --shard 1/2 --jobs 1 --out "$work/killed" >/dev/null 2>&1 &
 pid=$!
