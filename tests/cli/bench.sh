@@ -17,7 +17,7 @@ for what in $benches; do
   awk -F ': ' -v what=$what '
     /^ *"judged"/ { sub(/,$/, "", $2); n++; if (!($2 + 0 > 0 && $2 + 0 < 1e12)) { print "no good ratio: " $0; bad = 1 } }
     /"ok": false/ { print "a row without a result"; bad = 1 }
-    END { if (n < 4) { print n " rows"; bad = 1 } exit bad }' "$work/$what.json" || fail "$what: figures"
+    END { if (n < 5) { print n " rows"; bad = 1 } exit bad }' "$work/$what.json" || fail "$what: figures"
   grep -q "targets met" "$work/$what.txt" || fail "$what: no count of targets"
   cmp -s "$work/$what.json" "$work/$what/bench.json" || fail "$what: two JSON files differ"
   grep -q 'id="results-data">{' "$work/$what/bench.html" || fail "$what: no data in the page"
