@@ -17,6 +17,7 @@ class MacroNewton : public PressureNewton {
   bool step(const BoundaryConditions& conditions, double tolerance, int max_iterations, NodalVectors& x) override;
   void accept() override { accepted_p_ = p_; }
   int iterations() const override { return iterations_; }
+  std::string name() const override { return "GMRES + multigrid of averaged springs, with pressures"; }
 
  private:
   const Network& network_;

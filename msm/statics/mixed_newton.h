@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "msm/embedding/boundary.h"
 #include "msm/laws/laws.h"
@@ -17,8 +18,9 @@ class PressureNewton {
   /// Moves x, from the pressures of the step accepted last, to equilibrium under the conditions.
   /// @return false if it is not reached in max_iterations.
   virtual bool step(const BoundaryConditions& conditions, double tolerance, int max_iterations, NodalVectors& x) = 0;
-  virtual void accept() = 0;           ///< accepts the last step
-  virtual int iterations() const = 0;  ///< so far
+  virtual void accept() = 0;             ///< accepts the last step
+  virtual int iterations() const = 0;    ///< so far
+  virtual std::string name() const = 0;  ///< of the solver of a step, for reports
 };
 
 /// Finds x and p of   f_springs(x) + sum_c p_c dV_c/dx = external,   psi'(V_c/V) = p_c / kappa,  psi the volume term of
@@ -35,6 +37,7 @@ class MixedNewton : public PressureNewton {
   bool step(const BoundaryConditions& conditions, double tolerance, int max_iterations, NodalVectors& x) override;
   void accept() override { accepted_p_ = p_; }
   int iterations() const override { return iterations_; }
+  std::string name() const override { return "GMRES + mixed multigrid"; }
 
  private:
   struct Linearised;

@@ -202,8 +202,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.displacement = x - model.network.X;
   carry(model.network.carried, result.displacement);
   result.support = support_forces(model, x, reached);
-  result.solver = fmt::format("Newton + {}, {} load step{}",
-                              newton.mixed && !macro_springs_of(model) ? "GMRES + mixed multigrid" : newton.K.name(),
+  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? newton.mixed->name() : newton.K.name(),
                               steps, steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
   result.unknowns = newton.K.unknowns();
