@@ -4,7 +4,7 @@ set -u
 program=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-write_case() {  # NAME POISSON-RATIOS [REFERENCE-CELLS]
+write_case() {  # NAME POISSON-RATIOS
   cat >"$work/$1.toml" <<TOML
 [body]
 geo = "block.geo"
@@ -22,7 +22,7 @@ displacement_m = [0, 0, 0.01]
 [compare]
 models = ["hybmss"]
 [reference]
-cells = [${3:-4}, ${3:-4}, ${3:-4}]
+cells = [4, 4, 4]
 [[expect]]
 model = "hybmss"
 measure = "volume_change"
@@ -93,12 +93,13 @@ report || fail "the report of shards at once"
 same "shards at once"
 
 # Killed at work: meanwhile it is in nobody's way but its own; started again, it keeps what it finished.
-write_case slow '[0.0, 0.1, 0.15, 0.2, 0.25, 0.3]' 16  # it must be at work yet when others come
+write_case slow '[0.0, 0.1, 0.15, 0.2, 0.25, 0.3]'
 out=killed
-"$program" compare "$work/slow.toml" --shard 1/2 --jobs 1 --out "$work/killed" >/dev/null 2>&1 &
+FOLDER=$work/killed FEM=$(dirname "$program")/springproof-fem SPRINGPROOF_FEM_PROGRAM=$(dirname "$0")/one_part_fem \
+  "$program" compare "$work/slow.toml" --shard 1/2 --jobs 1 --out "$work/killed" >/dev/null 2>&1 &
 pid=$!
-for _ in $(seq 600); do
-  ls "$work"/killed/parts/*nu*.cbor >/dev/null 2>&1 && break
+until compgen -G "$work/killed/parts/*nu*.cbor" >/dev/null; do
+  kill -0 $pid 2>/dev/null || fail "a shard ended before its first part"
   sleep 0.05
 done
 shard 1/2 "$work/slow.toml"; refused "the same shard twice" "--shard: 1/2 is at work in .*killed already"
@@ -109,7 +110,7 @@ kill -KILL $pid
 wait $pid 2>/dev/null
 kept=$(ls "$work/killed/parts" | grep -c 'nu.*cbor$')
 shard 1/2 "$work/slow.toml" || fail "a killed shard started again"
-[ "$(grep -c 'kept from before' "$work/log")" -eq "$kept" ] || fail "not all $kept parts are kept"
+[ "$kept" -eq 1 ] && [ "$(grep -c 'kept from before' "$work/log")" -eq 1 ] || fail "not all $kept parts are kept"
 
 # A damaged part is named, and computed anew by its shard.
 shard 2/2 "$work/slow.toml" || fail "shard 2/2"
