@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "msm/algebra/dense.h"
+
 namespace springproof {
 namespace {
 
@@ -55,7 +57,7 @@ LoadShares section_energies(const std::vector<CellStrain>& cells, int axis, cons
   out.axial = E / 2 * mean[0] * mean[0] * count;
   out.shear = G / 2 * (mean[1] * mean[1] + mean[2] * mean[2]) * count;
   if (polar > 0) out.torsion = G / 2 * turn * turn / polar;
-  const Eigen::Vector2d tilt = second.completeOrthogonalDecomposition().solve(first);
+  const Eigen::Vector2d tilt = least_squares(second, first).X;
   out.bending = E / 2 * tilt.dot(second * tilt);
   return out;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "comparisons/run/status.h"
+#include "msm/algebra/dense.h"
 #include "msm/measure/statistics.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
@@ -74,9 +75,7 @@ std::vector<Sample> measure_seeds(const ModelParameters& p, const IsotropicMater
   return samples;
 }
 
-bool stable(const Homogenised& h) {
-  return Eigen::LLT<Eigen::Matrix<double, 6, 6>>(h.C + h.C.transpose()).info() == Eigen::Success;
-}
+bool stable(const Homogenised& h) { return symmetric_eigenvalues(h.C + h.C.transpose())[0] > 0; }
 
 /// The value that the calibration aims at.
 double wanted(const Quantity& quantity, const ModelParameters& p, const IsotropicMaterial& m) {

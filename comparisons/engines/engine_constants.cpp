@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "comparisons/engines/five_tetrahedra.h"
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 
 namespace springproof {
 

@@ -65,13 +65,13 @@ struct Limits {
   }
 };
 
-const std::vector<Vec3>& places(const BodyPanel& panel) {
+const std::vector<Vec3>& places_of(const BodyPanel& panel) {
   return panel.undeformed ? panel.shape->rest : panel.shape->displaced;
 }
 
 Limits limits_of(const BodyPanel& panel, const Projection& to) {
   Limits limits;
-  for (const Vec3& p : places(panel))
+  for (const Vec3& p : places_of(panel))
     if (p.allFinite()) limits.include(to.x(p), to.y(p));
   return limits;
 }
@@ -84,7 +84,7 @@ struct Visible {
 
 std::string facets_svg(const BodyPanel& panel, const Projection& to, double scale, double x0, double y0,
                        double largest) {
-  const std::vector<Vec3>& at = places(panel);
+  const std::vector<Vec3>& at = places_of(panel);
   std::vector<Visible> visible;
   for (const auto& f : panel.shape->facets) {
     const Vec3 normal = (at[f[2]] - at[f[0]]).cross(at[f[3]] == at[f[2]] ? at[f[1]] - at[f[0]] : at[f[3]] - at[f[1]]);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 
 namespace springproof {
 namespace {
@@ -35,7 +35,7 @@ std::optional<Vec3> affine_value(const NodalVectors& X, const NodalVectors& u, c
   const Eigen::MatrixXd moments = basis.transpose() * bell.asDiagonal() * basis;
   const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(moments);
   if (eigenvalues[0] < 1e-3 * eigenvalues[3]) return {};
-  const Eigen::VectorXd weights = bell.cwiseProduct(basis * moments.ldlt().solve(Eigen::VectorXd::Unit(4, 0)));
+  const Eigen::VectorXd weights = bell.cwiseProduct(basis * symmetric_solve(moments, Eigen::VectorXd::Unit(4, 0)));
   Vec3 value = Vec3::Zero();
   for (Eigen::Index i = 0; i < count; ++i) value += weights[i] * u.row(nodes[i]).transpose();
   return value;

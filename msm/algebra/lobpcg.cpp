@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 
 namespace springproof {
 namespace {

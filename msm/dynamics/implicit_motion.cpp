@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "msm/algebra/dense.h"
 #include "msm/dynamics/time_step.h"
 
 namespace springproof {
@@ -34,7 +35,7 @@ class Anderson {
       dx_.swap(of_x);
     }
     d_ = change_ = d;
-    if (dd_.cols() > 0) change_ -= (dx_ + dd_) * Eigen::VectorXd(dd_.colPivHouseholderQr().solve(d));
+    if (dd_.cols() > 0) change_ -= (dx_ + dd_) * least_squares(dd_, d).X;
     return change_;
   }
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 #include "msm/dynamics/mass_average.h"
 #include "msm/multigrid/cell_stiffness.h"
 
@@ -74,9 +74,7 @@ double cell_frequency_squared(const CellMatrix& K, double full, double theta) {
       M.block<3, 3>(3 * m, 3 * n)
           .diagonal()
           .setConstant((m == n ? alpha - beta * theta : 0.0) + beta * theta * A(m, n));
-  const Eigen::GeneralizedSelfAdjointEigenSolver<CellMatrix> eigen(K, full / 8 * M,
-                                                                   Eigen::EigenvaluesOnly | Eigen::Ax_lBx);
-  return std::min(eigen.eigenvalues()[23], MassAverage::largest_gain(theta) * lumped);
+  return std::min(symmetric_eigenvalues(K, full / 8 * M)[23], MassAverage::largest_gain(theta) * lumped);
 }
 
 /// Averaged springs by cells: no squared frequency is above the largest that a cell has alone, with any shares of its
@@ -139,8 +137,7 @@ class CellFrequencies {
   double alone(std::size_t cell, const std::array<double, 8>& share) const {
     CellVector scale;
     for (int n = 0; n < 8; ++n) scale.segment<3>(3 * n).setConstant(1 / std::sqrt(share[n]));
-    const CellMatrix K = scale.asDiagonal() * stiffness(cell) * scale.asDiagonal();
-    return Eigen::SelfAdjointEigenSolver<CellMatrix>(K, Eigen::EigenvaluesOnly).eigenvalues()[23];
+    return symmetric_eigenvalues(scale.asDiagonal() * stiffness(cell) * scale.asDiagonal())[23];
   }
 
   const AveragedSprings& law_;

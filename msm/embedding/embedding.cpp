@@ -9,7 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 #include "msm/topology/point_cells.h"
 
 namespace springproof {
@@ -86,7 +86,7 @@ std::optional<Eigen::VectorXd> least_squares(const NodalVectors& X, const std::v
   const Eigen::MatrixXd moments = basis.transpose() * bell.asDiagonal() * basis;
   const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(moments);
   if (eigenvalues[0] < 1e-3 * eigenvalues[terms - 1]) return {};
-  return bell.cwiseProduct(basis * moments.ldlt().solve(Eigen::VectorXd::Unit(terms, 0)));
+  return bell.cwiseProduct(basis * symmetric_solve(moments, Eigen::VectorXd::Unit(terms, 0)));
 }
 
 /// Distance from p to the triangle a b c.

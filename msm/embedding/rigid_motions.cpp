@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 
 namespace springproof {
 namespace {

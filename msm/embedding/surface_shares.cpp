@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "msm/algebra/dense.h"
 #include "msm/topology/point_cells.h"
 
 namespace springproof {
@@ -161,7 +162,7 @@ void meet_gauss(const NodalVectors& X, double volume, NodalVectors& A) {
   for (int d = 0; d < 3; ++d) missing(d, d) += volume / size;
   const Eigen::VectorXd share = A.rowwise().norm();
   const Eigen::Matrix4d moments = linear.transpose() * share.asDiagonal() * linear;
-  A += share.asDiagonal() * linear * moments.ldlt().solve(missing);
+  A += share.asDiagonal() * linear * symmetric_solve(moments, missing);
 }
 
 }  // namespace

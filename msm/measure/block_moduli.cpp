@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "msm/algebra/dense.h"
+
 namespace springproof {
 namespace {
 
@@ -18,10 +20,9 @@ Eigen::Matrix3d central_gradient(const Network& network, const NodalVectors& u, 
   Eigen::MatrixXd basis(nodes.size(), 4);
   basis << Eigen::VectorXd::Ones(static_cast<Eigen::Index>(nodes.size())),
       (network.X(nodes, Eigen::all).rowwise() - middle.transpose());
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(basis);
-  if (nodes.size() < 4 || fit.rank() < 4)
-    throw std::invalid_argument("too few nodes in the central region of the block");
-  return fit.solve(Eigen::MatrixXd(u(nodes, Eigen::all))).bottomRows(3).transpose();
+  const LeastSquares fit = least_squares(basis, u(nodes, Eigen::all));
+  if (fit.rank < 4) throw std::invalid_argument("too few nodes in the central region of the block");
+  return fit.X.bottomRows(3).transpose();
 }
 
 }  // namespace

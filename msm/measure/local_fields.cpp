@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "msm/algebra/dense.h"
+
 namespace springproof {
 namespace {
 
@@ -72,13 +74,13 @@ Eigen::Matrix3d displacement_gradient(const Network& network, const NodalVectors
     basis.row(row).tail(directions) = root_weight * r.head(directions).transpose();
     value.row(row) = root_weight * u.row(near[m]);
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(basis);
-  if (static_cast<int>(near.size()) <= directions || fit.rank() <= directions)
+  const LeastSquares fit = least_squares(basis, value);
+  if (fit.rank <= directions)
     throw std::invalid_argument(
         fmt::format("{} nodes within {} m of ({}, {}, {}) do not determine a gradient; take a larger radius",
                     near.size(), radius, point[0], point[1], point[2]));
   Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
-  gradient.leftCols(directions) = fit.solve(value).bottomRows(directions).transpose() / radius;
+  gradient.leftCols(directions) = fit.X.bottomRows(directions).transpose() / radius;
   return gradient;
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 #include "msm/models.h"
 #include "msm/periodic/bulk_calibration.h"
 

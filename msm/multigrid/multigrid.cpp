@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 
 namespace springproof {
 namespace {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "msm/algebra/dense.h"
+
 namespace springproof {
 namespace {
 
@@ -83,10 +85,10 @@ KillingSpace::KillingSpace(const NodalVectors& X, double spacing) : box_(X.rows(
       const auto tensors = killing_tensors((X.row(n).transpose() - middle) / width);
       squares += tensors.transpose() * tensors;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(squares);
-    const auto kept = (eigen.eigenvalues().array() > independent * eigen.eigenvalues()[products - 1]).count();
+    const Eigenpairs eigen = symmetric_eigenpairs(squares);
+    const auto kept = (eigen.values.array() > independent * eigen.values[products - 1]).count();
     const Eigen::MatrixXd combined =
-        eigen.eigenvectors().rightCols(kept) * eigen.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+        eigen.vectors.rightCols(kept) * eigen.values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
     for (const int n : nodes) {
       box_[n] = static_cast<int>(p);
       basis_[n] = killing_tensors((X.row(n).transpose() - middle) / width) * combined;

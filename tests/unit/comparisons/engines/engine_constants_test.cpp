@@ -11,7 +11,7 @@
 #include "comparisons/engines/engine_facts.h"
 #include "comparisons/engines/five_tetrahedra.h"
 #include "meshes/volume.h"
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 
 namespace springproof::engine_constants_test {
 namespace {

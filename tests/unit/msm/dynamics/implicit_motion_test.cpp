@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/time_step.h"
 #include "support/zoo.h"

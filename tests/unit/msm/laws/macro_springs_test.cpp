@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "msm/algebra/eigenvalues.h"
+#include "msm/algebra/dense.h"
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/exchange/springs_file.h"
