@@ -13,12 +13,10 @@ constexpr int sweeps_of_cut_cells = 3;    // before and after the coarser lattic
 constexpr double anchors_of_cycle = 0.3;  // of the anchors' stiffness: point smoothers cope badly with all of it
 constexpr double relaxed = 1.8;           // largest eigenvalue of the damped D K_s
 
-/// The model without its volume term, in units of G and the cells' edge.
-MassSpringModel springs_alone(const MassSpringModel& model) {
-  MassSpringModel springs = model;
-  for (ForceLaw& law : springs.laws)
-    if (auto* averaged = std::get_if<AveragedSprings>(&law)) averaged->lame_lambda = averaged->shear_modulus;
-  return springs;
+/// Without the volume term.
+AveragedSprings springs_alone(AveragedSprings law) {
+  law.lame_lambda = law.shear_modulus;
+  return law;
 }
 
 }  // namespace
@@ -26,15 +24,15 @@ MassSpringModel springs_alone(const MassSpringModel& model) {
 CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : nodes_(model.network, fixed),
       scaled_nodes_(nodes_),
-      springs_(springs_alone(model)),
+      network_(model.network),
       lattice_(cut_levels(model.network, nodes_)) {
   const AveragedSprings& law = *averaged_springs_of(model);
+  const AveragedSprings springs = springs_alone(law);
   const Network& network = model.network;
   const double l = network.cell_edge, kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
   unit_ = law.shear_modulus * l;
   for (Anchor& a : scaled_nodes_.anchors) a.stiffness /= unit_;
   chebyshev_steps_ = kappa > 1000 ? 12 : 6;
-  K_ = tangent(springs_, network.X);
   gradient_.resize(24, static_cast<Eigen::Index>(network.cells.size()));
   compliance_.resize(gradient_.cols());
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
@@ -46,12 +44,14 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
   for (CutLevel& level : lattice_)
     for (Anchor& a : level.anchors) a.stiffness *= anchors_of_cycle;
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
-    const bool coarsest = i + 1 == lattice_.size();
-    if (coarsest) {  // the pressure is eliminated there
-      assemble(law, unit_, i == 0 ? nodes_.fixed : std::vector<char>{}, lattice_[i]);
-      coarsest_.factor(sparse(lattice_[i].A));
+    const std::vector<char> fixed_here = i == 0 ? nodes_.fixed_corners() : std::vector<char>{};
+    if (i + 1 == lattice_.size()) {  // the pressure is eliminated there
+      take_matrix(CutMatrix<double>(law, unit_, lattice_[i], fixed_here), unit_, fixed_here, lattice_[i]);
+      coarsest_.factor(lattice_[i].A.sparse());
     }
-    assemble(*averaged_springs_of(springs_), unit_, i == 0 ? nodes_.fixed : std::vector<char>{}, lattice_[i]);
+    CutMatrix<double> of_cells(springs, unit_, lattice_[i], fixed_here);
+    take_matrix(of_cells, unit_, fixed_here, lattice_[i]);
+    if (i == 0) K_ = std::move(of_cells);
     set_up(i, kappa);
   }
 }
@@ -64,7 +64,7 @@ void CutMixedMultigrid::set_up(std::size_t l, double kappa) {
   level.f = level.u = level.d = Eigen::VectorXf::Zero(lattice.unknowns());
   level.compliance = level.inverse_schur = level.g = level.p = level.Bu = level.r = level.z = level.q =
       Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
-  level.D.assign(lattice.A.inverse_diagonal.begin(), lattice.A.inverse_diagonal.end());
+  level.D = lattice.D;
   const auto omega = static_cast<float>(damping(l) / relaxed);
   for (float& value : level.D) value /= omega;
   level.gradient.resize(24 * cells);
@@ -97,17 +97,16 @@ void CutMixedMultigrid::set_up(std::size_t l, double kappa) {
 
 /// Largest eigenvalue of diag(K)^-1 K, by power iteration with a margin.
 double CutMixedMultigrid::damping(std::size_t l) const {
-  const FloatBlocks& A = lattice_[l].A;
-  Eigen::VectorXf v(3 * A.rows()), y(3 * A.rows());
+  const CutMatrix<float>& A = lattice_[l].A;
+  Eigen::VectorXf v(3 * A.rows()), y(3 * A.rows()), residuals(3 * A.rows());
   const Eigen::VectorXf zero = Eigen::VectorXf::Zero(v.size());
   for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = static_cast<float>((i * 7919) % 13 - 6) / 6.0f;
   double bound = 1;
   for (int k = 0; k < 15; ++k) {
     v.normalize();
+    A.residual(zero.data(), v.data(), residuals.data());
     for (int i = 0; i < A.rows(); ++i) {
-      float r[3];
-      A.residual(zero.data(), v.data(), i, r);
-      const float* D = &A.inverse_diagonal[9 * static_cast<std::size_t>(i)];
+      const float *r = &residuals[3 * i], *D = &lattice_[l].D[9 * static_cast<std::size_t>(i)];
       for (int a = 0; a < 3; ++a) y[3 * i + a] = -(D[3 * a] * r[0] + D[3 * a + 1] * r[1] + D[3 * a + 2] * r[2]);
     }
     bound = 1.1 * y.norm();
@@ -180,14 +179,13 @@ void CutMixedMultigrid::bound_schur(std::size_t l) {
 /// d = f - K u - B^T p, Bu = B u.
 void CutMixedMultigrid::residual(std::size_t l) {
   Level& level = levels_[l];
-  const FloatBlocks& A = lattice_[l].A;
   Eigen::VectorXf load = level.f;
   const Eigen::VectorXf minus_p = -level.p;
   add_gradient(l, minus_p, load);
   if (l == 0)
     for (Eigen::Index i = 0; i < load.size(); ++i)
       if (nodes_.fixed[i]) load[i] = 0;
-  for (int i = 0; i < A.rows(); ++i) A.residual(load.data(), level.u.data(), i, &level.d[3 * i]);
+  lattice_[l].A.residual(load.data(), level.u.data(), level.d.data());
   divergence(l, level.u, level.Bu);
 }
 
@@ -251,22 +249,19 @@ void CutMixedMultigrid::cycle(std::size_t l) {
 
 Eigen::VectorXd CutMixedMultigrid::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) const {
   Eigen::VectorXd y;
-  K_.multiply(u, y);
-  y /= unit_;
+  scaled_nodes_.multiply(K_, 1, u, y);
   for (Eigen::Index c = 0; c < p.size(); ++c)
-    for (int n = 0; n < 8; ++n)
-      y.segment<3>(3 * springs_.network.cells[c][n]) += p[c] * gradient_.col(c).segment<3>(3 * n);
-  hand_back(springs_.network.carried, y);
+    for (int n = 0; n < 8; ++n) y.segment<3>(3 * network_.cells[c][n]) += p[c] * gradient_.col(c).segment<3>(3 * n);
+  hand_back(network_.carried, y);
   return y;
 }
 
 Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& displacement) const {
   Eigen::VectorXd u = displacement;
-  carry(springs_.network.carried, u);
+  carry(network_.carried, u);
   Eigen::VectorXd J = Eigen::VectorXd::Zero(gradient_.cols());
   for (Eigen::Index c = 0; c < J.size(); ++c)
-    for (int n = 0; n < 8; ++n)
-      J[c] += gradient_.col(c).segment<3>(3 * n).dot(u.segment<3>(3 * springs_.network.cells[c][n]));
+    for (int n = 0; n < 8; ++n) J[c] += gradient_.col(c).segment<3>(3 * n).dot(u.segment<3>(3 * network_.cells[c][n]));
   return J;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "msm/algebra/krylov.h"
-#include "msm/algebra/tangent.h"
 #include "msm/multigrid/cut_levels.h"
 
 namespace springproof {
@@ -54,8 +53,8 @@ class CutMixedMultigrid {
 
   AnchoredNodes nodes_, scaled_nodes_;  ///< anchors in N/m, and in units
   double unit_;                         ///< of stiffness [N/m]
-  MassSpringModel springs_;
-  Tangent K_;                 ///< of the network, in units
+  const Network& network_;
+  CutMatrix<double> K_;       ///< of the cells, in units
   Eigen::MatrixXd gradient_;  ///< 24 x cells
   Eigen::VectorXd compliance_;
   std::vector<CutLevel> lattice_;
