@@ -136,54 +136,6 @@ CutLevel coarsen(CutLevel& fine) {
   return coarse;
 }
 
-void add_stiffness(const CutLevel& level, const AveragedSprings& law, BlockMatrix& K) {
-  const auto full = law.cell_matrix(level.edge, {});
-  for (std::size_t c = 0; c < level.corners.size(); ++c) {
-    const FilledPart& part = level.filled[c];
-    const Eigen::Matrix<double, 24, 24> own =
-        part.fraction == 1 ? (full * level.cubes[c].size).eval() : law.cell_matrix(level.cell_edge(c), part);
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) K.add(level.corners[c][m], level.corners[c][n], own.block<3, 3>(3 * m, 3 * n));
-  }
-  for (const Anchor& a : level.anchors) {
-    const Vec3 held(a.node & 1, a.node >> 1 & 1, a.node >> 2 & 1);
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n)
-        K.add(a.corners[m], a.corners[n], (a.stiffness * a.weights[m] * a.weights[n] * held).asDiagonal());
-  }
-}
-
-/// In units of `unit`, without the rows and columns of fixed unknowns (empty: none).
-FloatBlocks float_blocks(const BlockMatrix& K, const std::vector<std::vector<int>>& pattern, double unit,
-                         const std::vector<char>& fixed) {
-  FloatBlocks out;
-  out.begin = {0};
-  out.inverse_diagonal.resize(9 * pattern.size());
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    for (const int j : pattern[i]) {
-      Eigen::Matrix3d block = K.at(static_cast<int>(i), j) / unit;
-      if (!fixed.empty())
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b)
-            if (fixed[3 * i + a] || fixed[3 * j + b]) block(a, b) = 0;
-      out.column.push_back(j);
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) out.block.push_back(static_cast<float>(block(a, b)));
-      if (j != static_cast<int>(i)) continue;
-      for (int a = 0; a < 3; ++a)
-        if (!fixed.empty() && fixed[3 * i + a]) block(a, a) = 1;
-      Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
-      if (!block.isZero(0)) inverse = block.inverse();  // else carried
-      for (int a = 0; a < 3; ++a)
-        if (!fixed.empty() && fixed[3 * i + a]) inverse(a, a) = 0;
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) out.inverse_diagonal[9 * i + 3 * a + b] = static_cast<float>(inverse(a, b));
-    }
-    out.begin.push_back(static_cast<int>(out.column.size()));
-  }
-  return out;
-}
-
 }  // namespace
 
 void CutLevel::invert_anchored() {
@@ -207,11 +159,8 @@ void CutLevel::invert_anchored() {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * size, 3 * size);
     for (Eigen::Index m = 0; m < size; ++m)
       for (Eigen::Index n = 0; n < size; ++n) {
-        const int i = points[m];
-        const auto row = A.column.begin() + A.begin[i], end = A.column.begin() + A.begin[i + 1];
-        const auto at = std::lower_bound(row, end, points[n]);
-        if (at == end || *at != points[n]) continue;
-        const float* block = &A.block[9 * static_cast<std::size_t>(at - A.column.begin())];
+        const float* block = A.block(points[m], points[n]);
+        if (!block) continue;
         for (int a = 0; a < 3; ++a)
           for (int b = 0; b < 3; ++b) K(3 * m + a, 3 * n + b) = block[3 * a + b];
       }
@@ -228,27 +177,6 @@ void CutLevel::relax_anchored(std::size_t c, const float* b, float* x) const {
   const Eigen::VectorXf d = anchored_inverse[c] * r;
   for (std::size_t n = 0; n < points.size(); ++n)
     for (int a = 0; a < 3; ++a) x[3 * points[n] + a] += d[static_cast<Eigen::Index>(3 * n) + a];
-}
-
-void FloatBlocks::residual(const float* b, const float* x, int i, float* r) const {
-  float s0 = b[3 * i], s1 = b[3 * i + 1], s2 = b[3 * i + 2];
-  const float* m = block.data() + 9 * static_cast<std::size_t>(begin[i]);
-  for (int e = begin[i]; e < begin[i + 1]; ++e, m += 9) {
-    const float* v = x + 3 * column[e];
-    s0 -= m[0] * v[0] + m[1] * v[1] + m[2] * v[2];
-    s1 -= m[3] * v[0] + m[4] * v[1] + m[5] * v[2];
-    s2 -= m[6] * v[0] + m[7] * v[1] + m[8] * v[2];
-  }
-  r[0] = s0;
-  r[1] = s1;
-  r[2] = s2;
-}
-
-void FloatBlocks::relax(const float* b, int i, float* x) const {
-  float r[3];
-  residual(b, x, i, r);
-  const float* d = inverse_diagonal.data() + 9 * static_cast<std::size_t>(i);
-  for (int a = 0; a < 3; ++a) x[3 * i + a] += d[3 * a] * r[0] + d[3 * a + 1] * r[1] + d[3 * a + 2] * r[2];
 }
 
 void CutLevel::restrict_to(const Eigen::VectorXf& r, const CutLevel& next, Eigen::VectorXf& out) const {
@@ -272,6 +200,13 @@ AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unk
       fixed(std::move(fixed_unknowns)),
       corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
 
+std::vector<char> AnchoredNodes::fixed_corners() const {
+  std::vector<char> corner(fixed.begin(), fixed.begin() + 3 * corners), own = corner;
+  for (const CarriedPoint& p : carried) std::fill_n(own.begin() + 3 * p.point, 3, 0);
+  if (std::count(own.begin(), own.end(), 0) == 3 * corners) return {};
+  return corner;
+}
+
 Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
   Eigen::VectorXd b = r.head(3 * corners);
   for (const Anchor& a : anchors)  // k (u_node - sum w u) = r_node
@@ -282,6 +217,27 @@ Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
   for (int i = 0; i < 3 * corners; ++i)
     if (fixed[i]) b[i] = 0;
   return b;
+}
+
+void AnchoredNodes::multiply(const CutMatrix<double>& of_cells, double unit, const Eigen::VectorXd& x,
+                             Eigen::VectorXd& y) const {
+  y.setZero(x.size());
+  of_cells.multiply(x.data(), y.data());
+  y *= unit;
+  if (anchors.empty()) return;
+  Eigen::VectorXd u = x, f = Eigen::VectorXd::Zero(carried.empty() ? 0 : x.size());
+  carry(carried, u);
+  Eigen::VectorXd& on_corners = carried.empty() ? y : f;
+  for (const Anchor& a : anchors) {
+    Vec3 force = -u.segment<3>(3 * a.node);
+    for (int n = 0; n < 8; ++n) force += a.weights[n] * u.segment<3>(3 * a.corners[n]);
+    force *= a.stiffness;
+    y.segment<3>(3 * a.node) -= force;
+    for (int n = 0; n < 8; ++n) on_corners.segment<3>(3 * a.corners[n]) += a.weights[n] * force;
+  }
+  if (carried.empty()) return;
+  hand_back(carried, f);
+  y += f;
 }
 
 void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of_corners, Eigen::VectorXd& z) const {
@@ -325,26 +281,11 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
   return levels;
 }
 
-void assemble(const AveragedSprings& law, double unit, const std::vector<char>& fixed, CutLevel& level) {
-  const int points = static_cast<int>(level.point.size());
-  const Carriers carriers = carriers_of(points, level.carried);
-  const auto pattern = coupled_through(carriers, coupled_nodes(points, level.corners));
-  BlockMatrix K(pattern, carriers);
-  add_stiffness(level, law, K);
-  level.A = float_blocks(K, pattern, unit, fixed);
-}
-
-Eigen::SparseMatrix<double> sparse(const FloatBlocks& A) {
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(A.block.size());
-  for (int i = 0; i < A.rows(); ++i)
-    for (int e = A.begin[i]; e < A.begin[i + 1]; ++e)
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b)
-          entries.emplace_back(3 * i + a, 3 * A.column[e] + b, A.block[9 * static_cast<std::size_t>(e) + 3 * a + b]);
-  Eigen::SparseMatrix<double> K(3 * A.rows(), 3 * A.rows());
-  K.setFromTriplets(entries.begin(), entries.end());
-  return K;
+void take_matrix(const CutMatrix<double>& of_cells, double unit, const std::vector<char>& fixed, CutLevel& level) {
+  level.A = CutMatrix<float>(of_cells);
+  level.A.add_anchors(level, unit);
+  level.A.clear_fixed(fixed);
+  level.D = level.A.inverse_diagonal(fixed);
 }
 
 void CoarsestFactors::factor(const Eigen::SparseMatrix<double>& K) {

@@ -6,21 +6,9 @@
 #include <vector>
 
 #include "msm/laws/laws.h"
+#include "msm/multigrid/cut_matrix.h"
 
 namespace springproof {
-
-/// A sparse matrix of 3x3 blocks in single precision with symmetric pattern.
-struct FloatBlocks {
-  std::vector<int> begin, column;
-  std::vector<float> block;             ///< nine per entry, row by row
-  std::vector<float> inverse_diagonal;  ///< nine per row; zero on fixed unknowns
-
-  int rows() const { return static_cast<int>(begin.size()) - 1; }
-  /// r = b - A x in row i, three values.
-  void residual(const float* b, const float* x, int i, float* r) const;
-  /// Gauss-Seidel step of row i.
-  void relax(const float* b, int i, float* x) const;
-};
 
 /// One level: cells with corners of their own, and how its points follow those of the next coarser level.
 struct CutLevel {
@@ -43,7 +31,8 @@ struct CutLevel {
   void invert_anchored();                         ///< sets the two from A
   void relax_anchored(std::size_t number, const float* b, float* x) const;
 
-  FloatBlocks A;  ///< in units of the shear modulus times the finest edge
+  CutMatrix<float> A;    ///< in units of the shear modulus times the finest edge
+  std::vector<float> D;  ///< inverse diagonal blocks of A
 
   Eigen::Index unknowns() const { return 3 * static_cast<Eigen::Index>(point.size()); }
   /// Edge of a cell [m].
@@ -61,9 +50,13 @@ struct AnchoredNodes {
   int corners = 0;          ///< nodes that are corners; the anchored ones follow
 
   AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns);
+  /// `fixed` of the corners; empty if none but carried ones is.
+  std::vector<char> fixed_corners() const;
 
   /// Right-hand side of the corners once the free directions of anchored nodes are eliminated; zero where fixed.
   Eigen::VectorXd eliminated(const Eigen::VectorXd& r) const;
+  /// y = K x of all nodes, x zero in carried unknowns, from the matrix of the cells in `unit` [N/m].
+  void multiply(const CutMatrix<double>& of_cells, double unit, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
   /// The solution from that of the corners.
   void complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of_corners, Eigen::VectorXd& z) const;
 };
@@ -71,9 +64,9 @@ struct AnchoredNodes {
 /// The levels of a network of cut cells, without their matrices, finest first.
 std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes);
 
-/// Sets a level's matrix: averaged springs and anchors, without the rows and columns of `fixed` (empty: none).
-/// `unit` of stiffness [N/m].
-void assemble(const AveragedSprings& law, double unit, const std::vector<char>& fixed, CutLevel& level);
+/// Sets a level's matrix, with anchors and without the rows and columns of `fixed` (empty: none), from that of its
+/// cells alone.
+void take_matrix(const CutMatrix<double>& of_cells, double unit, const std::vector<char>& fixed, CutLevel& level);
 
 /// Factors a symmetric matrix; if it is singular, as that of a level which has lost its supports, with a multiple of
 /// the identity added.
@@ -86,8 +79,5 @@ class CoarsestFactors {
  private:
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt_;
 };
-
-/// The matrix in double precision.
-Eigen::SparseMatrix<double> sparse(const FloatBlocks& A);
 
 }  // namespace springproof

@@ -2,23 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
 #include "msm/multigrid/multigrid.h"
 
 namespace springproof {
 namespace {
 
-constexpr int sweeps_of_cut_cells = 3;    // before and after the coarser lattice
-constexpr double anchors_of_cycle = 0.3;  // of the anchors' stiffness: point smoothers cope badly with all of it
-constexpr double relaxed = 1.8;           // largest eigenvalue of the damped D K_s
+constexpr int sweeps_of_cut_cells = 2;  // before and after the coarser lattice
+constexpr float damped = 1.3f;          // of the inverse diagonal blocks in the Schur complement; too little diverges
 
-/// The model without its volume term, in units of G and the cells' edge.
-MassSpringModel springs_alone(const MassSpringModel& model) {
-  MassSpringModel springs = model;
-  for (ForceLaw& law : springs.laws)
-    if (auto* averaged = std::get_if<AveragedSprings>(&law)) averaged->lame_lambda = averaged->shear_modulus;
-  return springs;
+/// Without the volume term.
+AveragedSprings springs_alone(AveragedSprings law) {
+  law.lame_lambda = law.shear_modulus;
+  return law;
 }
 
 }  // namespace
@@ -26,15 +23,15 @@ MassSpringModel springs_alone(const MassSpringModel& model) {
 CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : nodes_(model.network, fixed),
       scaled_nodes_(nodes_),
-      springs_(springs_alone(model)),
+      network_(model.network),
       lattice_(cut_levels(model.network, nodes_)) {
   const AveragedSprings& law = *averaged_springs_of(model);
+  const AveragedSprings springs = springs_alone(law);
   const Network& network = model.network;
   const double l = network.cell_edge, kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
   unit_ = law.shear_modulus * l;
   for (Anchor& a : scaled_nodes_.anchors) a.stiffness /= unit_;
-  chebyshev_steps_ = kappa > 1000 ? 12 : 6;
-  K_ = tangent(springs_, network.X);
+  schur_sweeps_ = kappa > 1000 ? 8 : 4;
   gradient_.resize(24, static_cast<Eigen::Index>(network.cells.size()));
   compliance_.resize(gradient_.cols());
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
@@ -43,77 +40,105 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
     compliance_[static_cast<Eigen::Index>(c)] = network.filled[c].fraction * h * h * h / kappa;
   }
   levels_.resize(lattice_.size());
-  for (CutLevel& level : lattice_)
-    for (Anchor& a : level.anchors) a.stiffness *= anchors_of_cycle;
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
-    const bool coarsest = i + 1 == lattice_.size();
-    if (coarsest) {  // the pressure is eliminated there
-      assemble(law, unit_, i == 0 ? nodes_.fixed : std::vector<char>{}, lattice_[i]);
-      coarsest_.factor(sparse(lattice_[i].A));
+    const std::vector<char> fixed_here = i == 0 ? nodes_.fixed_corners() : std::vector<char>{};
+    if (i + 1 == lattice_.size()) {  // the pressure is eliminated there
+      take_matrix(CutMatrix<double>(law, unit_, lattice_[i], fixed_here), unit_, fixed_here, lattice_[i]);
+      coarsest_.factor(lattice_[i].A.sparse());
     }
-    assemble(*averaged_springs_of(springs_), unit_, i == 0 ? nodes_.fixed : std::vector<char>{}, lattice_[i]);
+    CutMatrix<double> of_cells(springs, unit_, lattice_[i], fixed_here);
+    take_matrix(of_cells, unit_, fixed_here, lattice_[i]);
+    if (i == 0) K_ = std::move(of_cells);
     set_up(i, kappa);
   }
 }
 
 void CutMixedMultigrid::set_up(std::size_t l, double kappa) {
-  const CutLevel& lattice = lattice_[l];
+  CutLevel& lattice = lattice_[l];
   Level& level = levels_[l];
+  lattice.invert_anchored();
   const std::size_t cells = lattice.cubes.size();
-  const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   level.f = level.u = level.d = Eigen::VectorXf::Zero(lattice.unknowns());
-  level.compliance = level.inverse_schur = level.g = level.p = level.Bu = level.r = level.z = level.q =
+  level.compliance = level.inverse_schur = level.g = level.p = level.Bu = level.r = level.q =
       Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
-  level.D.assign(lattice.A.inverse_diagonal.begin(), lattice.A.inverse_diagonal.end());
-  const auto omega = static_cast<float>(damping(l) / relaxed);
-  for (float& value : level.D) value /= omega;
+  level.D = lattice.D;
+  for (float& value : level.D) value *= damped;
   level.gradient.resize(24 * cells);
   for (std::size_t c = 0; c < cells; ++c) {
     const double h = lattice.cell_edge(c) / lattice_[0].edge;
     const Eigen::Matrix<double, 24, 1> b = volume_gradient(h, lattice.filled[c]);
-    std::map<int, Vec3> row;  // with what carried corners hand back
-    for (int n = 0; n < 8; ++n) {
-      const int point = lattice.corners[c][n];
-      const auto hand = [&](int p, double w) {
-        row.try_emplace(p, Vec3::Zero()).first->second += w * b.segment<3>(3 * n);
-      };
-      if (carriers.empty() || carriers[point].empty()) hand(point, 1);
-      if (!carriers.empty())
-        for (const auto& [p, w] : carriers[point]) hand(p, w);
-    }
-    double sum = 0;
-    for (const auto& [point, own] : row) {
-      const float* D = &level.D[9 * static_cast<std::size_t>(point)];
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) sum += own[i] * D[3 * i + j] * own[j];
-    }
     for (int i = 0; i < 24; ++i) level.gradient[24 * c + i] = static_cast<float>(b[i]);
-    const double C = lattice.filled[c].fraction * h * h * h / kappa;
-    level.compliance[static_cast<Eigen::Index>(c)] = static_cast<float>(C);
-    level.inverse_schur[static_cast<Eigen::Index>(c)] = static_cast<float>(1 / (C + sum));
+    level.compliance[static_cast<Eigen::Index>(c)] = static_cast<float>(lattice.filled[c].fraction * h * h * h / kappa);
   }
-  bound_schur(l);
+  set_up_schur(l);
 }
 
-/// Largest eigenvalue of diag(K)^-1 K, by power iteration with a margin.
-double CutMixedMultigrid::damping(std::size_t l) const {
-  const FloatBlocks& A = lattice_[l].A;
-  Eigen::VectorXf v(3 * A.rows()), y(3 * A.rows());
-  const Eigen::VectorXf zero = Eigen::VectorXf::Zero(v.size());
-  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = static_cast<float>((i * 7919) % 13 - 6) / 6.0f;
-  double bound = 1;
-  for (int k = 0; k < 15; ++k) {
-    v.normalize();
-    for (int i = 0; i < A.rows(); ++i) {
-      float r[3];
-      A.residual(zero.data(), v.data(), i, r);
-      const float* D = &A.inverse_diagonal[9 * static_cast<std::size_t>(i)];
-      for (int a = 0; a < 3; ++a) y[3 * i + a] = -(D[3 * a] * r[0] + D[3 * a + 1] * r[1] + D[3 * a + 2] * r[2]);
+void CutMixedMultigrid::set_up_schur(std::size_t l) {
+  const CutLevel& lattice = lattice_[l];
+  Level& level = levels_[l];
+  struct Entry {
+    int cell;
+    Eigen::Vector3f b, Db;
+  };
+  std::vector<std::vector<Entry>> at(lattice.point.size());  // columns of B, with what carried corners hand back
+  const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
+  const int cells = static_cast<int>(lattice.corners.size());
+  const auto hand = [&](int p, int c, const Eigen::Vector3f& b) {
+    const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> D(&level.D[9 * static_cast<std::size_t>(p)]);
+    at[p].push_back({c, b, D * b});
+  };
+  for (int c = 0; c < cells; ++c)
+    for (int n = 0; n < 8; ++n) {
+      const int point = lattice.corners[c][n];
+      const Eigen::Vector3f b =
+          Eigen::Map<const Eigen::Vector3f>(&level.gradient[24 * static_cast<std::size_t>(c) + 3 * n]);
+      if (carriers.empty() || carriers[point].empty()) hand(point, c, b);
+      if (!carriers.empty())
+        for (const auto& [p, w] : carriers[point]) hand(p, c, static_cast<float>(w) * b);
     }
-    bound = 1.1 * y.norm();
-    v = y;
+  level.begin = {0};
+  std::vector<int> place(cells, -1);  // of each column in the row
+  std::set<int> points;
+  for (int c = 0; c < cells; ++c) {
+    const int start = level.begin.back();
+    const auto add = [&](int column, float value) {
+      if (place[column] < start) {
+        place[column] = static_cast<int>(level.column.size());
+        level.column.push_back(column);
+        level.schur.push_back(0);
+      }
+      level.schur[place[column]] += value;
+    };
+    add(c, level.compliance[c]);
+    points.clear();
+    for (const int q : lattice.corners[c]) {
+      if (carriers.empty() || carriers[q].empty()) points.insert(q);
+      if (!carriers.empty())
+        for (const auto& [p, w] : carriers[q]) points.insert(p);
+    }
+    for (const int p : points)
+      for (const Entry& own : at[p])
+        if (own.cell == c)
+          for (const Entry& other : at[p]) add(other.cell, own.b.dot(other.Db));
+    level.inverse_schur[c] = 1 / level.schur[start];
+    level.begin.push_back(static_cast<int>(level.column.size()));
   }
-  return bound;
+}
+
+void CutMixedMultigrid::relax_schur(bool ascending, Level& level) {
+  const int rows = static_cast<int>(level.r.size());
+  for (int n = 0; n < rows; ++n) {
+    const int i = ascending ? n : rows - 1 - n;
+    float even = 0, odd = 0;  // two sums, since each addition waits for the one before
+    int e = level.begin[i];
+    for (; e + 1 < level.begin[i + 1]; e += 2) {
+      even += level.schur[e] * level.q[level.column[e]];
+      odd += level.schur[e + 1] * level.q[level.column[e + 1]];
+    }
+    if (e < level.begin[i + 1]) even += level.schur[e] * level.q[level.column[e]];
+    const float sum = level.r[i] - even - odd;
+    level.q[i] += level.inverse_schur[i] * sum;
+  }
 }
 
 void CutMixedMultigrid::divergence(std::size_t l, const Eigen::VectorXf& u, Eigen::VectorXf& out) const {
@@ -156,62 +181,45 @@ void CutMixedMultigrid::scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) con
   }
 }
 
-/// Sz = C z + B D B^T z.
-void CutMixedMultigrid::schur(std::size_t l, const Eigen::VectorXf& z, Eigen::VectorXf& Sz) {
-  Eigen::VectorXf t = Eigen::VectorXf::Zero(levels_[l].u.size());
-  add_gradient(l, z, t);
-  scale_by_diagonal(l, t);
-  divergence(l, t, Sz);
-  Sz += levels_[l].compliance.cwiseProduct(z);
-}
-
-void CutMixedMultigrid::bound_schur(std::size_t l) {
-  Level& level = levels_[l];
-  for (Eigen::Index i = 0; i < level.z.size(); ++i)
-    level.z[i] = static_cast<float>(1 + 0.5 * ((i * 7919) % 13 - 6) / 6.0);
-  for (int k = 0; k < 20; ++k) {
-    level.z.normalize();
-    schur(l, level.z, level.Bu);
-    level.z = level.inverse_schur.cwiseProduct(level.Bu);
-    level.schur_bound = 1.15 * level.z.norm();
-  }
+Eigen::VectorXf CutMixedMultigrid::load(std::size_t l) const {
+  const Level& level = levels_[l];
+  Eigen::VectorXf all = level.f;
+  const Eigen::VectorXf minus_p = -level.p;
+  add_gradient(l, minus_p, all);
+  if (l == 0)
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+      if (nodes_.fixed[i]) all[i] = 0;
+  return all;
 }
 
 /// d = f - K u - B^T p, Bu = B u.
 void CutMixedMultigrid::residual(std::size_t l) {
   Level& level = levels_[l];
-  const FloatBlocks& A = lattice_[l].A;
-  Eigen::VectorXf load = level.f;
-  const Eigen::VectorXf minus_p = -level.p;
-  add_gradient(l, minus_p, load);
-  if (l == 0)
-    for (Eigen::Index i = 0; i < load.size(); ++i)
-      if (nodes_.fixed[i]) load[i] = 0;
-  for (int i = 0; i < A.rows(); ++i) A.residual(load.data(), level.u.data(), i, &level.d[3 * i]);
+  lattice_[l].A.residual(load(l).data(), level.u.data(), level.d.data());
   divergence(l, level.u, level.Bu);
 }
 
-void CutMixedMultigrid::sweep(std::size_t l) {
+/// Gauss-Seidel for the displacements, then pressures q and displacements -D B^T q that restore the volumes.
+void CutMixedMultigrid::sweep(std::size_t l, bool ascending) {
   Level& level = levels_[l];
-  residual(l);
-  scale_by_diagonal(l, level.d);
-  divergence(l, level.d, level.r);
-  level.r += level.Bu - level.g - level.compliance.cwiseProduct(level.p);
-  const ChebyshevStep start(1, level.schur_bound);  // S q = r, nearly
-  level.z = static_cast<float>(start.step) * level.inverse_schur.cwiseProduct(level.r);
-  level.q = level.z;
-  for (int k = 2; k <= chebyshev_steps_; ++k) {
-    const ChebyshevStep step(k, level.schur_bound);
-    schur(l, level.z, level.Bu);
-    level.r -= level.Bu;
-    level.z = static_cast<float>(step.previous) * level.z +
-              static_cast<float>(step.step) * level.inverse_schur.cwiseProduct(level.r);
-    level.q += level.z;
-  }
+  const CutLevel& lattice = lattice_[l];
+  const Eigen::VectorXf b = load(l);
+  const auto relax_anchored = [&] {
+    const std::size_t count = lattice.anchored.size();
+    for (std::size_t c = 0; c < count; ++c)
+      lattice.relax_anchored(ascending ? c : count - 1 - c, b.data(), level.u.data());
+  };
+  if (!ascending) relax_anchored();
+  lattice.A.relax(lattice.D, ascending, b.data(), level.u.data());
+  if (ascending) relax_anchored();
+  divergence(l, level.u, level.Bu);
+  level.r = level.Bu - level.g - level.compliance.cwiseProduct(level.p);
+  level.q.setZero();
+  for (int s = 0; s < schur_sweeps_; ++s) relax_schur((s % 2 == 0) == ascending, level);
   Eigen::VectorXf t = Eigen::VectorXf::Zero(level.u.size());
   add_gradient(l, level.q, t);
   scale_by_diagonal(l, t);
-  level.u += level.d - t;
+  level.u -= t;
   level.p += level.q;
 }
 
@@ -233,7 +241,7 @@ void CutMixedMultigrid::cycle(std::size_t l) {
   const CutLevel& lattice = lattice_[l];
   level.u.setZero();
   level.p.setZero();
-  for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(l);
+  for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(l, true);
   residual(l);
   below.f.setZero();
   lattice.restrict_to(level.d, lattice_[l + 1], below.f);
@@ -246,27 +254,24 @@ void CutMixedMultigrid::cycle(std::size_t l) {
     for (Eigen::Index i = 0; i < level.u.size(); ++i)
       if (nodes_.fixed[i]) level.u[i] = 0;
   for (Eigen::Index c = 0; c < volumes.size(); ++c) level.p[c] += below.p[lattice.parent[c]];
-  for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(l);
+  for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(l, false);
 }
 
 Eigen::VectorXd CutMixedMultigrid::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) const {
   Eigen::VectorXd y;
-  K_.multiply(u, y);
-  y /= unit_;
+  scaled_nodes_.multiply(K_, 1, u, y);
   for (Eigen::Index c = 0; c < p.size(); ++c)
-    for (int n = 0; n < 8; ++n)
-      y.segment<3>(3 * springs_.network.cells[c][n]) += p[c] * gradient_.col(c).segment<3>(3 * n);
-  hand_back(springs_.network.carried, y);
+    for (int n = 0; n < 8; ++n) y.segment<3>(3 * network_.cells[c][n]) += p[c] * gradient_.col(c).segment<3>(3 * n);
+  hand_back(network_.carried, y);
   return y;
 }
 
 Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& displacement) const {
   Eigen::VectorXd u = displacement;
-  carry(springs_.network.carried, u);
+  carry(network_.carried, u);
   Eigen::VectorXd J = Eigen::VectorXd::Zero(gradient_.cols());
   for (Eigen::Index c = 0; c < J.size(); ++c)
-    for (int n = 0; n < 8; ++n)
-      J[c] += gradient_.col(c).segment<3>(3 * n).dot(u.segment<3>(3 * springs_.network.cells[c][n]));
+    for (int n = 0; n < 8; ++n) J[c] += gradient_.col(c).segment<3>(3 * n).dot(u.segment<3>(3 * network_.cells[c][n]));
   return J;
 }
 

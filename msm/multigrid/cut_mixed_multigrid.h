@@ -2,18 +2,16 @@
 #pragma once
 
 #include "msm/algebra/krylov.h"
-#include "msm/algebra/tangent.h"
 #include "msm/multigrid/cut_levels.h"
 
 namespace springproof {
 
-/// kappa / G (48 at nu = 0.49) above which the pressures as unknowns are worth it: Gauss-Seidel copes longer than
-/// Jacobi.
-inline constexpr double cut_cells_mixed_above_kappa = 40;
+/// kappa / G (8 at nu = 0.45) above which the pressures as unknowns are worth it.
+inline constexpr double cut_cells_mixed_above_kappa = 6;
 
 /// The saddle-point system  [K_s B^T; B -C] (u, p) = (f, g)  of averaged springs and anchors K_s (nu = 1/4 but for the
 /// hourglass stiffness) and one pressure per cell, p = kappa / (alpha V) B u; kappa > 0.  Inexact Braess-Sarazin
-/// smoothing as on lattices of full cells (msm/multigrid/braess_sarazin.h), with blocks of nodes; GMRES over the cycle.
+/// smoothing: Gauss-Seidel over the nodes, then pressures that restore the volumes; GMRES over the cycle.
 /// Units: shear modulus and edge of the finest cells.
 class CutMixedMultigrid {
  public:
@@ -33,34 +31,36 @@ class CutMixedMultigrid {
  private:
   /// One level of the cycle, in single precision.
   struct Level {
-    std::vector<float> gradient;  ///< 24 per cell: row of B
-    std::vector<float> D;         ///< nine per point: inverse of the damped diagonal block of K_s
-    Eigen::VectorXf compliance, inverse_schur;
-    double schur_bound = 1;
-    Eigen::VectorXf f, g, u, p, d, Bu, r, z, q;
+    std::vector<float> gradient;     ///< 24 per cell: row of B
+    std::vector<float> D;            ///< nine per point: inverse of the diagonal block of K_s, damped
+    Eigen::VectorXf compliance;      ///< diagonal of C
+    std::vector<int> begin, column;  ///< of the rows of S = C + B D B^T, a cell each
+    std::vector<float> schur;        ///< its entries
+    Eigen::VectorXf inverse_schur;   ///< of its diagonal
+    Eigen::VectorXf f, g, u, p, d, Bu, r, q;
   };
 
   void set_up(std::size_t l, double kappa);
-  void bound_schur(std::size_t l);
-  double damping(std::size_t l) const;
+  void set_up_schur(std::size_t l);
+  static void relax_schur(bool ascending, Level& level);  ///< Gauss-Seidel for S q = r
   void cycle(std::size_t l);
-  void sweep(std::size_t l);
+  void sweep(std::size_t l, bool ascending);
   void residual(std::size_t l);
+  Eigen::VectorXf load(std::size_t l) const;  ///< f - B^T p
   void solve_coarsest();
   void divergence(std::size_t l, const Eigen::VectorXf& u, Eigen::VectorXf& out) const;
   void add_gradient(std::size_t l, const Eigen::VectorXf& p, Eigen::VectorXf& out) const;
   void scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) const;
-  void schur(std::size_t l, const Eigen::VectorXf& z, Eigen::VectorXf& Sz);
 
   AnchoredNodes nodes_, scaled_nodes_;  ///< anchors in N/m, and in units
   double unit_;                         ///< of stiffness [N/m]
-  MassSpringModel springs_;
-  Tangent K_;                 ///< of the network, in units
+  const Network& network_;
+  CutMatrix<double> K_;       ///< of the cells, in units
   Eigen::MatrixXd gradient_;  ///< 24 x cells
   Eigen::VectorXd compliance_;
   std::vector<CutLevel> lattice_;
   std::vector<Level> levels_;
-  int chebyshev_steps_;
+  int schur_sweeps_;
   CoarsestFactors coarsest_;
 };
 

@@ -5,7 +5,7 @@
 namespace springproof {
 namespace {
 
-constexpr int relaxations = 2;  // before and after the coarser lattice
+constexpr int relaxations = 2;
 
 }  // namespace
 
@@ -22,12 +22,24 @@ CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>
       levels_(cut_levels(model.network, nodes_)) {
   for (CutLevel& level : levels_) {
     const bool finest = &level == &levels_.front();
-    assemble(*averaged_springs_of(model), unit_, finest ? nodes_.fixed : std::vector<char>{}, level);
+    const std::vector<char> fixed_here = finest ? nodes_.fixed_corners() : std::vector<char>{};
+    CutMatrix<double> of_cells(*averaged_springs_of(model), unit_, level, fixed_here);
+    take_matrix(of_cells, unit_, fixed_here, level);
+    if (finest) K_ = std::move(of_cells);
     level.invert_anchored();
     const Eigen::VectorXf zero = Eigen::VectorXf::Zero(level.unknowns());
     at_level_.push_back({zero, zero, zero});
   }
-  coarsest_.factor(sparse(levels_.back().A));
+  coarsest_.factor(levels_.back().A.sparse());
+}
+
+Eigen::VectorXd CutMultigrid::diagonal() const {
+  Eigen::VectorXd d = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nodes_.fixed.size()));
+  for (int i = 0; i < K_.rows(); ++i)
+    if (const double* block = K_.block(i, i))
+      for (int a = 0; a < 3; ++a) d[3 * i + a] = unit_ * block[4 * a];
+  for (const Anchor& a : nodes_.anchors) d.segment<3>(3 * a.node).array() += a.stiffness;
+  return d;
 }
 
 void CutMultigrid::cycle(std::size_t l) const {
@@ -37,13 +49,12 @@ void CutMultigrid::cycle(std::size_t l) const {
     return;
   }
   const CutLevel& level = levels_[l];
-  const FloatBlocks& A = level.A;
   x.setZero();
   for (int s = 0; s < relaxations; ++s) {
-    for (int i = 0; i < A.rows(); ++i) A.relax(b.data(), i, x.data());
+    level.A.relax(level.D, true, b.data(), x.data());
     for (std::size_t c = 0; c < level.anchored.size(); ++c) level.relax_anchored(c, b.data(), x.data());
   }
-  for (int i = 0; i < A.rows(); ++i) A.residual(b.data(), x.data(), i, &r[3 * i]);
+  level.A.residual(b.data(), x.data(), r.data());
   Vectors& below = at_level_[l + 1];
   below.b.setZero();
   level.restrict_to(r, levels_[l + 1], below.b);
@@ -54,7 +65,7 @@ void CutMultigrid::cycle(std::size_t l) const {
       if (nodes_.fixed[i]) x[i] = 0;
   for (int s = 0; s < relaxations; ++s) {
     for (std::size_t c = level.anchored.size(); c-- > 0;) level.relax_anchored(c, b.data(), x.data());
-    for (int i = A.rows() - 1; i >= 0; --i) A.relax(b.data(), i, x.data());
+    level.A.relax(level.D, false, b.data(), x.data());
   }
 }
 

@@ -14,6 +14,9 @@ class CutMultigrid {
 
   CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed);
 
+  /// y = K x, all unknowns; x zero in carried ones.
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const { nodes_.multiply(K_, unit_, x, y); }
+  Eigen::VectorXd diagonal() const;  ///< of K
   /// z = M^-1 r, symmetric positive definite; zero on the fixed unknowns.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
 
@@ -24,7 +27,8 @@ class CutMultigrid {
   void cycle(std::size_t l) const;
 
   AnchoredNodes nodes_;
-  double unit_;  ///< of stiffness [N/m]
+  double unit_;          ///< of stiffness [N/m]
+  CutMatrix<double> K_;  ///< of the cells, in units
   std::vector<CutLevel> levels_;
   mutable std::vector<Vectors> at_level_;
   CoarsestFactors coarsest_;

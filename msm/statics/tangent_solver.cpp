@@ -44,7 +44,7 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
 }
 
 bool TangentSolver::take(const NodalVectors& x) {
-  at_rest_ = (lattice_ || list_) && x == model_.network.X;  // the multigrid or the list provides the tangent
+  at_rest_ = (lattice_ || cut_ || list_) && x == model_.network.X;  // the multigrid or the list provides the tangent
   if (at_rest_) return true;
   if (macro_) {
     macro_->take(x);
@@ -81,7 +81,7 @@ void TangentSolver::multiply(const Stiffness& K, const Eigen::VectorXd& x, Eigen
   if (K.at_rest)
     K.at_rest->multiply(x, y);
   else if (at_rest_)
-    lattice_->multiply(x, y);
+    lattice_ ? lattice_->multiply(x, y) : cut_->multiply(x, y);
   else if (macro_)
     macro_->multiply(x, y);
   else
@@ -91,6 +91,7 @@ void TangentSolver::multiply(const Stiffness& K, const Eigen::VectorXd& x, Eigen
 Eigen::VectorXd TangentSolver::diagonal() const {
   if (macro_) return macro_->diagonal();
   if (!at_rest_) return K_.diagonal();
+  if (cut_) return cut_->diagonal();
   const std::vector<Eigen::Matrix3d> blocks = list_->node_blocks();
   Eigen::VectorXd d(static_cast<Eigen::Index>(fixed_.size()));
   for (std::size_t p = 0; p < blocks.size(); ++p) d.segment<3>(3 * list_->blocks()->order[p]) = blocks[p].diagonal();
