@@ -26,11 +26,15 @@ double area_of(const TriangleCorners& t) { return (t[1] - t[0]).cross(t[2] - t[0
 void SolidMoments::add(const TetrahedronCorners& t) {
   const double v = volume_of(t);
   const Vec3 sum = t[0] + t[1] + t[2] + t[3];
-  Eigen::Matrix3d squares = sum * sum.transpose();
-  for (const Vec3& x : t) squares += x * x.transpose();
   volume += v;
   first += v / 4 * sum;
-  second += v / 20 * squares;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j) {
+      double squares = sum[i] * sum[j];
+      for (const Vec3& x : t) squares += x[i] * x[j];
+      second(i, j) += v / 20 * squares;
+      if (j < i) second(j, i) = second(i, j);
+    }
 }
 
 void SolidMoments::add(const SolidMoments& m) {

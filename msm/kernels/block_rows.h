@@ -6,12 +6,13 @@
 namespace springproof {
 
 /// A matrix on plain arrays; vectors hold three values per point.  Row n is that of a point; its blocks are
-/// first[n] ... first[n] + begin[n + 1] - begin[n], nine values each, row by row, so that equal rows share them.
+/// first[n] ... first[n] + end[n] - begin[n], nine values each, row by row, so that equal rows share them.
 template <class Real>
 struct BlockRows {
   long rows = 0;
   const int* point = nullptr;   ///< of each row; every point has one
-  const int* begin = nullptr;   ///< first entry of each row, then the end
+  const int* begin = nullptr;   ///< first entry of each row
+  const int* end = nullptr;     ///< beyond its last
   const int* column = nullptr;  ///< point of each entry
   const int* first = nullptr;   ///< first block of each row
   const Real* block = nullptr;  ///< with one value more beyond the last

@@ -45,7 +45,7 @@ struct Products {
 template <class Real>
 inline void row_times(const BlockRows<Real>& A, long n, const Real* work, Real* out) {
   Products<Real> even, odd;
-  const int end = A.begin[n + 1];
+  const int end = A.end[n];
   const Real* block = A.block + 9 * long(A.first[n]);
   int e = A.begin[n];
   for (; e + 1 < end; e += 2, block += 18) {

@@ -95,6 +95,8 @@ CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLev
         });
       }
     std::sort(column_.begin() + start, column_.end());
+    diagonal_.push_back(
+        static_cast<int>(std::lower_bound(column_.begin() + start, column_.end(), row_[p]) - column_.begin()));
     for (auto e = column_.begin() + start; e != column_.end(); ++e) *e = point_[*e];
     const int entries = static_cast<int>(column_.size()) - begin_.back();
     begin_.push_back(static_cast<int>(column_.size()));
@@ -144,6 +146,7 @@ CutMatrix<Real>::CutMatrix(const CutMatrix<Other>& other)
       begin_(other.begin_),
       column_(other.column_),
       first_(other.first_),
+      diagonal_(other.diagonal_),
       block_(other.block_.begin(), other.block_.end()) {}
 
 template <class Real>
@@ -175,7 +178,7 @@ void CutMatrix<Real>::clear_fixed(const std::vector<char>& fixed) {
 template <class Real>
 BlockRows<Real> CutMatrix<Real>::view() const {
   work_.resize(4 * point_.size());
-  return {rows(), point_.data(), begin_.data(), column_.data(), first_.data(), block_.data()};
+  return {rows(), point_.data(), begin_.data(), begin_.data() + 1, column_.data(), first_.data(), block_.data()};
 }
 
 template <class Real>
@@ -194,6 +197,14 @@ template <class Real>
 void CutMatrix<Real>::relax(const std::vector<Real>& D, bool ascending, const Real* b, Real* x) const {
   const BlockRows<Real> A = view();
   block_row_kernels<Real>().relax(A, D.data(), ascending, b, x, work_.data());
+}
+
+template <class Real>
+void CutMatrix<Real>::relax_from_zero(const std::vector<Real>& D, const Real* b, Real* x) const {
+  BlockRows<Real> A = view();
+  A.end = diagonal_.data();  // the rows that follow are zero yet
+  std::fill_n(x, 3 * point_.size(), Real(0));
+  block_row_kernels<Real>().relax(A, D.data(), true, b, x, work_.data());
 }
 
 template <class Real>

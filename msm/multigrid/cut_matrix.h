@@ -40,6 +40,8 @@ class CutMatrix {
   std::vector<Real> inverse_diagonal(const std::vector<char>& fixed) const;
   /// Gauss-Seidel over all rows with these, in ascending or descending order.
   void relax(const std::vector<Real>& D, bool ascending, const Real* b, Real* x) const;
+  /// The same, ascending, from x = 0: half of the work.
+  void relax_from_zero(const std::vector<Real>& D, const Real* b, Real* x) const;
 
  private:
   template <class Other>
@@ -48,7 +50,7 @@ class CutMatrix {
   Real* own_block(int i, int j) { return const_cast<Real*>(block(i, j)); }
 
   std::vector<int> point_, row_;  ///< of a row, of a point
-  std::vector<int> begin_, column_, first_;
+  std::vector<int> begin_, column_, first_, diagonal_;
   std::vector<Real> block_;
   mutable std::vector<Real> work_;
 };

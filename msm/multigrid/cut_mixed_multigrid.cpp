@@ -10,7 +10,7 @@ namespace springproof {
 namespace {
 
 constexpr int sweeps_of_cut_cells = 2;  // before and after the coarser lattice
-constexpr float damped = 1.3f;          // of the inverse diagonal blocks in the Schur complement; too little diverges
+constexpr float damped = 2;             // of the inverse diagonal blocks in the Schur complement; 1 diverges
 
 /// Without the volume term.
 AveragedSprings springs_alone(AveragedSprings law) {
@@ -31,7 +31,7 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
   const double l = network.cell_edge, kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
   unit_ = law.shear_modulus * l;
   for (Anchor& a : scaled_nodes_.anchors) a.stiffness /= unit_;
-  schur_sweeps_ = kappa > 1000 ? 8 : 4;
+  schur_sweeps_ = kappa > 1000 ? 12 : 6;
   gradient_.resize(24, static_cast<Eigen::Index>(network.cells.size()));
   compliance_.resize(gradient_.cols());
   for (std::size_t c = 0; c < network.cells.size(); ++c) {

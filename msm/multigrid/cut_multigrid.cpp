@@ -49,9 +49,11 @@ void CutMultigrid::cycle(std::size_t l) const {
     return;
   }
   const CutLevel& level = levels_[l];
-  x.setZero();
   for (int s = 0; s < relaxations; ++s) {
-    level.A.relax(level.D, true, b.data(), x.data());
+    if (s == 0)
+      level.A.relax_from_zero(level.D, b.data(), x.data());
+    else
+      level.A.relax(level.D, true, b.data(), x.data());
     for (std::size_t c = 0; c < level.anchored.size(); ++c) level.relax_anchored(c, b.data(), x.data());
   }
   level.A.residual(b.data(), x.data(), r.data());

@@ -64,6 +64,18 @@ TEST(CutMatrix, StoresEqualRowsOnce) {
   EXPECT_EQ(cells.stored_blocks(), 31 * 31 * 31 - 27 * (9 * 9 * 9 - 1));
 }
 
+TEST(CutMatrix, SweepsFromZeroWithHalfOfTheRows) {
+  const MassSpringModel model = bar(true, 0.25, 0);
+  const AnchoredNodes nodes(model.network, std::vector<char>(model.network.X.size(), 0));
+  const CutMatrix<double> A(*averaged_springs_of(model), 1, cut_levels(model.network, nodes).front(), {});
+  const std::vector<double> D = A.inverse_diagonal({});
+  const Eigen::VectorXd b = field(model.network, 1).head(3 * A.rows());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), expected = x;
+  A.relax_from_zero(D, b.data(), x.data());
+  A.relax(D, true, b.data(), expected.data());
+  EXPECT_LE((x - expected).norm(), 1e-14 * expected.norm());
+}
+
 /// Rows of a few blocks, the last two alike, in no order.
 template <class Real>
 struct Sample {
@@ -76,7 +88,9 @@ struct Sample {
       for (int a = 0; a < 3; ++a) block[9 * diagonal + 4 * a] += 1;
     for (int i = 0; i < 36; ++i) D.push_back(Real(i % 9 % 4 == 0 ? 0.9 : 0.05) + Real(0.01) * Real(i));
   }
-  BlockRows<Real> rows() const { return {4, point.data(), begin.data(), column.data(), first.data(), block.data()}; }
+  BlockRows<Real> rows() const {
+    return {4, point.data(), begin.data(), begin.data() + 1, column.data(), first.data(), block.data()};
+  }
   Eigen::Matrix<Real, 3, 1> times(int row, const std::vector<Real>& x) const {
     Eigen::Matrix<Real, 3, 1> sum = Eigen::Matrix<Real, 3, 1>::Zero();
     for (int e = begin[row]; e < begin[row + 1]; ++e)
