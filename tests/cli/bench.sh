@@ -8,7 +8,7 @@ failed=0
 fail() { echo "FAILED: $*"; failed=1; }
 
 benches="dynamics statics"
-command -v mpirun >/dev/null && benches+=" parallel"
+command -v mpirun >/dev/null && [ -x "$(dirname "$program")/springproof-lattice" ] && benches+=" parallel"
 for what in $benches; do
   "$program" bench $what --quick --json "$work/$what.json" --out "$work/$what" >"$work/$what.txt" 2>"$work/$what.err"
   status=$?
