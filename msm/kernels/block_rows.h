@@ -33,4 +33,14 @@ struct BlockRowKernels {
 template <class Real>
 const BlockRowKernels<Real>& block_row_kernels(InstructionSet set = instruction_set());
 
+#define SPRINGPROOF_BLOCK_ROW_KERNELS(instruction_set)           \
+  namespace instruction_set {                                    \
+  extern const BlockRowKernels<double> block_row_kernels_double; \
+  extern const BlockRowKernels<float> block_row_kernels_float;   \
+  }
+SPRINGPROOF_BLOCK_ROW_KERNELS(portable)
+SPRINGPROOF_BLOCK_ROW_KERNELS(avx2)
+SPRINGPROOF_BLOCK_ROW_KERNELS(avx512)
+#undef SPRINGPROOF_BLOCK_ROW_KERNELS
+
 }  // namespace springproof

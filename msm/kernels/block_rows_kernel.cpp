@@ -1,6 +1,6 @@
 // Products and Gauss-Seidel sweeps of sparse matrices of 3x3 blocks: a block's rows, and the vector of its column, are
 // read as vectors of four values, of which the last does not count.
-#include "msm/kernels/block_rows_of_set.h"
+#include "msm/kernels/block_rows.h"
 #include "msm/kernels/simd.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {

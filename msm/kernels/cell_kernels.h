@@ -81,4 +81,14 @@ struct CellKernels {
 template <class Real>
 const CellKernels<Real>& cell_kernels(InstructionSet set = instruction_set());
 
+#define SPRINGPROOF_CELL_KERNELS(instruction_set)       \
+  namespace instruction_set {                           \
+  extern const CellKernels<double> cell_kernels_double; \
+  extern const CellKernels<float> cell_kernels_float;   \
+  }
+SPRINGPROOF_CELL_KERNELS(portable)
+SPRINGPROOF_CELL_KERNELS(avx2)
+SPRINGPROOF_CELL_KERNELS(avx512)
+#undef SPRINGPROOF_CELL_KERNELS
+
 }  // namespace springproof

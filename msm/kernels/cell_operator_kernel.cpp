@@ -1,4 +1,4 @@
-#include "msm/kernels/cell_kernels_of_set.h"
+#include "msm/kernels/cell_kernels.h"
 #include "msm/kernels/simd.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {

@@ -61,8 +61,6 @@ void CutMixedMultigrid::set_up(std::size_t l, double kappa) {
   level.f = level.u = level.d = Eigen::VectorXf::Zero(lattice.unknowns());
   level.compliance = level.inverse_schur = level.g = level.p = level.Bu = level.r = level.q =
       Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
-  level.D = lattice.D;
-  for (float& value : level.D) value *= damped;
   level.gradient.resize(24 * cells);
   for (std::size_t c = 0; c < cells; ++c) {
     const double h = lattice.cell_edge(c) / lattice_[0].edge;
@@ -84,8 +82,8 @@ void CutMixedMultigrid::set_up_schur(std::size_t l) {
   const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   const int cells = static_cast<int>(lattice.corners.size());
   const auto hand = [&](int p, int c, const Eigen::Vector3f& b) {
-    const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> D(&level.D[9 * static_cast<std::size_t>(p)]);
-    at[p].push_back({c, b, D * b});
+    const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> D(&lattice.D[9 * static_cast<std::size_t>(p)]);
+    at[p].push_back({c, b, damped * (D * b)});
   };
   for (int c = 0; c < cells; ++c)
     for (int n = 0; n < 8; ++n) {
@@ -174,10 +172,10 @@ void CutMixedMultigrid::add_gradient(std::size_t l, const Eigen::VectorXf& p, Ei
 }
 
 void CutMixedMultigrid::scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) const {
-  const float* D = levels_[l].D.data();
+  const float* D = lattice_[l].D.data();
   for (Eigen::Index i = 0; i < v.size(); i += 3, D += 9) {
     const float x = v[i], y = v[i + 1], z = v[i + 2];
-    for (int a = 0; a < 3; ++a) v[i + a] = D[3 * a] * x + D[3 * a + 1] * y + D[3 * a + 2] * z;
+    for (int a = 0; a < 3; ++a) v[i + a] = damped * (D[3 * a] * x + D[3 * a + 1] * y + D[3 * a + 2] * z);
   }
 }
 

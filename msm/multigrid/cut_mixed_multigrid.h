@@ -32,7 +32,6 @@ class CutMixedMultigrid {
   /// One level of the cycle, in single precision.
   struct Level {
     std::vector<float> gradient;     ///< 24 per cell: row of B
-    std::vector<float> D;            ///< nine per point: inverse of the diagonal block of K_s, damped
     Eigen::VectorXf compliance;      ///< diagonal of C
     std::vector<int> begin, column;  ///< of the rows of S = C + B D B^T, a cell each
     std::vector<float> schur;        ///< its entries

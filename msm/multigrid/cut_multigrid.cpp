@@ -5,7 +5,7 @@
 namespace springproof {
 namespace {
 
-constexpr int relaxations = 2;
+constexpr int relaxations = 2;  // before and after the coarser lattice
 
 }  // namespace
 

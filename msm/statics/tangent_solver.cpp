@@ -80,8 +80,10 @@ TangentSolver::Stiffness TangentSolver::symmetric_stiffness() const {
 void TangentSolver::multiply(const Stiffness& K, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   if (K.at_rest)
     K.at_rest->multiply(x, y);
+  else if (at_rest_ && lattice_)
+    lattice_->multiply(x, y);
   else if (at_rest_)
-    lattice_ ? lattice_->multiply(x, y) : cut_->multiply(x, y);
+    cut_->multiply(x, y);
   else if (macro_)
     macro_->multiply(x, y);
   else

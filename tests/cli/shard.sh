@@ -93,38 +93,38 @@ report || fail "the report of shards at once"
 same "shards at once"
 
 # Killed at work: meanwhile it is in nobody's way but its own; started again, it keeps what it finished.
-write_case slow '[0.0, 0.1, 0.15, 0.2, 0.25, 0.3]'
+write_case third '[0.0, 0.1, 0.15, 0.2, 0.25, 0.3]'
 out=killed
 FOLDER=$work/killed FEM=$(dirname "$program")/springproof-fem SPRINGPROOF_FEM_PROGRAM=$(dirname "$0")/one_part_fem \
-  "$program" compare "$work/slow.toml" --shard 1/2 --jobs 1 --out "$work/killed" >/dev/null 2>&1 &
+  "$program" compare "$work/third.toml" --shard 1/2 --jobs 1 --out "$work/killed" >/dev/null 2>&1 &
 pid=$!
 until compgen -G "$work/killed/parts/*nu*.cbor" >/dev/null; do
   kill -0 $pid 2>/dev/null || fail "a shard ended before its first part"
   sleep 0.05
 done
-shard 1/2 "$work/slow.toml"; refused "the same shard twice" "--shard: 1/2 is at work in .*killed already"
-"$program" compare "$work/slow.toml" --out "$work/killed" >"$work/log" 2>&1; refused "a comparison beside a shard" "--out: .*killed is in use"
+shard 1/2 "$work/third.toml"; refused "the same shard twice" "--shard: 1/2 is at work in .*killed already"
+"$program" compare "$work/third.toml" --out "$work/killed" >"$work/log" 2>&1; refused "a comparison beside a shard" "--out: .*killed is in use"
 report; refused "a report of a shard at work" ".*parts are missing"
 grep -q '^shard 1/2 (at work): ' "$work/log" || fail "the report does not say who is at work"
 kill -KILL $pid
 wait $pid 2>/dev/null
 kept=$(ls "$work/killed/parts" | grep -c 'nu.*cbor$')
-shard 1/2 "$work/slow.toml" || fail "a killed shard started again"
+shard 1/2 "$work/third.toml" || fail "a killed shard started again"
 [ "$kept" -eq 1 ] && [ "$(grep -c 'kept from before' "$work/log")" -eq 1 ] || fail "not all $kept parts are kept"
 
 # A damaged part is named, and computed anew by its shard.
-shard 2/2 "$work/slow.toml" || fail "shard 2/2"
+shard 2/2 "$work/third.toml" || fail "shard 2/2"
 part=$(ls "$work"/killed/parts/*nu0.2.cbor)
 printf x | dd of="$part" bs=1 seek=1000 conv=notrunc status=none
 report; refused "a damaged part" ".*parts are missing"
-k=$(sed -nE 's/^shard ([12])\/2: 1 part missing: slow  nu0\.2 \(damaged\)$/\1/p' "$work/log")
+k=$(sed -nE 's/^shard ([12])\/2: 1 part missing: third  nu0\.2 \(damaged\)$/\1/p' "$work/log")
 [ -n "$k" ] || fail "the damage is not said"
-shard "$k/2" "$work/slow.toml" || fail "the shard of a damaged part"
+shard "$k/2" "$work/third.toml" || fail "the shard of a damaged part"
 grep -q 'nu0.2.cbor is damaged; this part is computed anew' "$work/log" || fail "the damaged part is kept"
 report || fail "the report after a repair"
 
 # Parts of other inputs.
-cp "$work/killed/parts/slow-nu0.1.cbor" "$work/killed/parts/slow-nu0.2.cbor"
+cp "$work/killed/parts/third-nu0.1.cbor" "$work/killed/parts/third-nu0.2.cbor"
 report; refused "a part of other inputs" ".*parts are missing"
 grep -q 'nu0.2 (computed from other inputs)' "$work/log" || fail "the part of other inputs is taken"
 
@@ -132,7 +132,7 @@ grep -q 'nu0.2 (computed from other inputs)' "$work/log" || fail "the part of ot
 out=five
 shard 1/4; refused "another number of shards" "--shard: is one of 4, but .*five holds a sweep of 5 shards"
 shard 1/5 "$work/first.toml"; refused "a case less" "--out: .*five holds a sweep with second  nu0.1 too"
-shard 1/5 "$work/first.toml" "$work/second.toml" "$work/slow.toml"; refused "a case more" "--out: .*five holds a sweep without slow  nu0"
+shard 1/5 "$work/first.toml" "$work/second.toml" "$work/third.toml"; refused "a case more" "--out: .*five holds a sweep without third  nu0"
 sed -i 's/1e4/2e4/' "$work/second.toml"
 shard 1/5; refused "another input" "--out: .*five holds a sweep in which second  nu0.1 is computed from other inputs"
 for bad in 0/4 5/4 3 a/b 1/0 -1/4 1/4x 1/ /4 1/99999999999 ''; do
