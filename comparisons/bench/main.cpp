@@ -11,6 +11,7 @@
 #include "comparisons/bench/engines.h"
 #include "comparisons/bench/experiments.h"
 #include "comparisons/bench/fem.h"
+#include "comparisons/bench/gpu.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/page.h"
 #include "comparisons/bench/parallel.h"
@@ -32,10 +33,12 @@ void add_options(CLI::App& app, BenchOptions& options) {
                  "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
                  "damped dynamics), "
                  "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
-                 "cases), parallel (springproof-lattice on several processes against one), all of these; "
+                 "cases), parallel (springproof-lattice on several processes against one), gpu (lattices on the GPU "
+                 "against this "
+                 "processor), all of these; "
                  "engines (real-time engines and our springs by the same measures; some 15 minutes)")
       ->required()
-      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "parallel", "engines", "all"}));
+      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "parallel", "gpu", "engines", "all"}));
   app.add_option("--json", options.json, "write the figures to this file too");
   app.add_option("--out", options.out, "folder for bench.html, with the roofline, and bench.json");
   app.add_flag("--quick", options.quick, "small sizes: a look at the table in half a minute, no measurement");
@@ -85,6 +88,7 @@ void measure(const BenchOptions& options, Measured& m) {
     if (!fem.is_null()) bench_calculix(options, findings);
   }
   if (wants(options, "parallel")) bench_parallel(options, findings);
+  if (wants(options, "gpu")) bench_gpu(options, findings);
   if (options.what == "engines") {
     if (options.install) install_packages();
     bench_engines(options, findings, engines);

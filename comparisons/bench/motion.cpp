@@ -68,12 +68,12 @@ Motion new_motion(const std::string& how, const MassSpringModel& model, Precisio
 }
 
 Motion lattice_motion(const MassSpringModel& model, const MotionOptions& options) {
-  const auto kernel =
-      std::make_shared<LatticeMotion>(model, density,
-                                      LatticeMotionOptions{.precision = options.precision,
-                                                           .threads = options.threads,
-                                                           .viscosity = options.viscosity,
-                                                           .mass_consistency = options.mass_consistency});
+  const auto kernel = std::make_shared<LatticeMotion>(model, density,
+                                                      LatticeMotionOptions{.precision = options.precision,
+                                                                           .threads = options.threads,
+                                                                           .viscosity = options.viscosity,
+                                                                           .mass_consistency = options.mass_consistency,
+                                                                           .device = options.device});
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
   Motion motion = new_motion(kernel->description(), model, options.precision);

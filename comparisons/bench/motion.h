@@ -35,6 +35,7 @@ struct MotionOptions {
   Precision precision = Precision::float64;
   Viscosity viscosity = {};
   double mass_consistency = 0;  ///< share of consistent mass
+  Device device = Device::processor;
 };
 
 /// The library's fastest implementation for a model; empty if none supports these options.  The model must outlive it.

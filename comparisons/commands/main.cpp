@@ -23,6 +23,7 @@
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/suite.h"
 #include "fem_reference/reference.h"
+#include "msm/gpu/gpu.h"
 #include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/measures.h"
@@ -198,6 +199,7 @@ int main(int argc, char** argv) try {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
+  springproof::gpu::wants_gpu();  // refuses what cannot be had before anything runs
   if (*compare_command) return compare(find_cases(names), options);
   if (*report_command) return sweep_report.run();
   if (*list_command) return list();

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "msm/dynamics/gpu_arrays.h"
 #include "msm/dynamics/lattice_arrays.h"
 
 namespace springproof {
@@ -24,6 +25,11 @@ bool LatticeMotion::suits(const MassSpringModel& model, const Viscosity& viscosi
   return is_lattice_of_springs(model) && (!viscosity.acts() || of_cells) && (mass_consistency == 0 || averages);
 }
 
+bool LatticeMotion::suits_gpu(const MassSpringModel& model, const LatticeMotionOptions& options) {
+  return is_lattice_of_springs(model) && !dispersion_of(model) && !options.viscosity.acts() &&
+         options.mass_consistency == 0;
+}
+
 LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {
   if (!suits(model, options.viscosity, options.mass_consistency))
     throw std::invalid_argument(
@@ -31,6 +37,16 @@ LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const
         "momentum dispersion, and of averaged springs in full cells; viscosity is that of their cells; boxes have a "
         "share of consistent mass, without "
         "viscosity");
+  if (options.device == Device::gpu) {
+    if (!suits_gpu(model, options))
+      throw std::invalid_argument(
+          "on a GPU there is no momentum dispersion, viscosity or share of consistent mass of lattices");
+    if (options.precision == Precision::float64)
+      arrays_ = std::make_unique<ArraysOnGpu<double>>(model, density);
+    else
+      arrays_ = std::make_unique<ArraysOnGpu<float>>(model, density);
+    return;
+  }
   if (options.precision == Precision::float64)
     arrays_ = std::make_unique<ArraysOf<double>>(model, density, options);
   else

@@ -14,12 +14,17 @@ namespace springproof {
 
 enum class Precision { float64, float32 };
 
+/// Where steps are made.  A GPU: the one that the library was built for (SPRINGPROOF_CUDA); in a library without one
+/// its code runs on the processor, thread by thread, which is slow.
+enum class Device { processor, gpu };
+
 struct LatticeMotionOptions {
   Precision precision = Precision::float64;  ///< float32: forces to 1e-6 of the largest, twice as fast
   int threads = 1;                           ///< at most one per plane of nodes; momentum dispersion uses one
   InstructionSet instructions = instruction_set();
   Viscosity viscosity = {};
   double mass_consistency = 0;  ///< share of consistent mass: MassAverage
+  Device device = Device::processor;
 };
 
 /// Norms of the sum of internal and external forces [N].
@@ -37,6 +42,8 @@ class LatticeMotion {
   /// Viscosity: of cells; there is none along springs.  A share of consistent mass: of boxes of full cells, undamped or
   /// damped in proportion to their mass.
   static bool suits(const MassSpringModel& model, const Viscosity& viscosity = {}, double mass_consistency = 0);
+  /// The same for a GPU: without momentum dispersion, viscosity and shares of consistent mass.
+  static bool suits_gpu(const MassSpringModel& model, const LatticeMotionOptions& options);
 
   /// At rest at X, nothing fixed, no load.  Keeps a reference to the network.
   /// @throws std::invalid_argument unless suits() the options, or for an instruction set that is not usable here.
@@ -73,6 +80,8 @@ class LatticeMotion {
   class Arrays;
   template <class Real>
   class ArraysOf;
+  template <class Real>
+  class ArraysOnGpu;
   std::unique_ptr<Arrays> arrays_;
 };
 

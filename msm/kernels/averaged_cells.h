@@ -55,10 +55,7 @@ SPRINGPROOF_INLINE Lanes<Real> logarithm_of_1_and(const Lanes<Real>& d) {
   if (stdx::all_of(z * z < Real(0.0135))) return twice_artanh(z);
   const Lanes<Real> y = inverse_cube_root(d + Real(1)), far = (Real(1) - y) / (Real(1) + y);
   if (stdx::all_of(far * far < Real(0.0135))) return Real(3) * twice_artanh(far);
-  Real values[lanes<Real>];
-  store(d, values);
-  for (Real& value : values) value = static_cast<Real>(__builtin_log1p(static_cast<double>(value)));
-  return load(values);
+  return plain_logarithm_of_1_and(d);
 }
 
 /// Stress tau of the law in the units of its moduli, of F = 1 + D: dW/dF = tau F^-T.  In terms of b = F F^T - 1 and
@@ -136,6 +133,19 @@ SPRINGPROOF_INLINE void turned_back(const Lanes<Real> (&F)[3][3], const Lanes<Re
                                     Lanes<Real> (&v)[4][3]) {
   for (int m = 0; m < 4; ++m)
     for (int j = 0; j < 3; ++j) v[m][j] = F[0][j] * S[0][m] + F[1][j] * S[1][m] + F[2][j] * S[2][m];
+}
+
+/// w += (hourglass springs) v; constants in the three directions of a pattern.
+template <class Real>
+SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Real>& law, const Lanes<Real> (&v)[4][3],
+                                             Lanes<Real> (&w)[4][3]) {
+  const Lanes<Real> twisted = law.torsion * (v[0][0] + v[1][1] + v[2][2]);
+  for (int m = 0; m < 3; ++m) {
+    for (int j = 0; j < 3; ++j)
+      w[m][j] +=
+          m == j ? (law.torsion + law.twist) * v[m][m] + twisted : law.bending * v[m][j] + law.coupling * v[j][m];
+    w[3][m] += law.warping * v[3][m];
+  }
 }
 
 /// P += G F 2E' + lambda tr(F' F^-1) F^-T and v = F'^T S + F^T S': viscous stress and rates of the hourglass

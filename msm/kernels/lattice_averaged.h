@@ -33,19 +33,6 @@ SPRINGPROOF_INLINE void patterns_of_cells(const Row<Real> (&r)[4], long n, const
     }
 }
 
-/// w += (hourglass springs) v; constants in the three directions of a pattern.
-template <class Real>
-SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Real>& law, const Lanes<Real> (&v)[4][3],
-                                             Lanes<Real> (&w)[4][3]) {
-  const Lanes<Real> twisted = law.torsion * (v[0][0] + v[1][1] + v[2][2]);
-  for (int m = 0; m < 3; ++m) {
-    for (int j = 0; j < 3; ++j)
-      w[m][j] +=
-          m == j ? (law.torsion + law.twist) * v[m][m] + twisted : law.bending * v[m][j] + law.coupling * v[j][m];
-    w[3][m] += law.warping * v[3][m];
-  }
-}
-
 /// Forces of the cells between four rows, which have (y, z) offsets 00, 10, 01, 11 from the first; formulas:
 /// AveragedSprings::add_forces() of a full cell, in sums over the corners instead of their means.  No curve: the
 /// dashpots alone.

@@ -1,6 +1,10 @@
 // Vector functions that std::experimental::simd lacks.  For kernels only.
 #pragma once
 
+#ifdef SPRINGPROOF_ONE_LANE
+#include "msm/kernels/one_lane.h"
+#else
+
 #include "msm/kernels/simd.h"
 
 /// Forces inlining: the compiler considers the larger of a kernel's small functions too large for it.
@@ -12,30 +16,30 @@ template <class Real>
 constexpr int lanes = static_cast<int>(Lanes<Real>::size());
 
 template <class Real>
-using RealVector = typename Builtin<Real, lanes<Real>>::type;
+using RealVector = typename Builtin<Real, lanes<Real> >::type;
 
 /// (last of `before`, all but the last of `v`).
 #ifdef __wasm__
 SPRINGPROOF_INLINE Lanes<double> shift_in(const Lanes<double>& before, const Lanes<double>& v) {
   return Lanes<double>(
-      __builtin_shufflevector(static_cast<RealVector<double>>(before), static_cast<RealVector<double>>(v), 1, 2));
+      __builtin_shufflevector(static_cast<RealVector<double> >(before), static_cast<RealVector<double> >(v), 1, 2));
 }
 SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes<float>& v) {
   return Lanes<float>(
-      __builtin_shufflevector(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), 3, 4, 5, 6));
+      __builtin_shufflevector(static_cast<RealVector<float> >(before), static_cast<RealVector<float> >(v), 3, 4, 5, 6));
 }
 #else
 SPRINGPROOF_INLINE Lanes<double> shift_in(const Lanes<double>& before, const Lanes<double>& v) {
-  typename Builtin<long long, lanes<double>>::type order;
+  typename Builtin<long long, lanes<double> >::type order;
   for (int i = 0; i < lanes<double>; ++i) order[i] = lanes<double> - 1 + i;
   return Lanes<double>(
-      __builtin_shuffle(static_cast<RealVector<double>>(before), static_cast<RealVector<double>>(v), order));
+      __builtin_shuffle(static_cast<RealVector<double> >(before), static_cast<RealVector<double> >(v), order));
 }
 SPRINGPROOF_INLINE Lanes<float> shift_in(const Lanes<float>& before, const Lanes<float>& v) {
-  typename Builtin<int, lanes<float>>::type order;
+  typename Builtin<int, lanes<float> >::type order;
   for (int i = 0; i < lanes<float>; ++i) order[i] = lanes<float> - 1 + i;
   return Lanes<float>(
-      __builtin_shuffle(static_cast<RealVector<float>>(before), static_cast<RealVector<float>>(v), order));
+      __builtin_shuffle(static_cast<RealVector<float> >(before), static_cast<RealVector<float> >(v), order));
 }
 #endif
 
@@ -49,9 +53,9 @@ SPRINGPROOF_INLINE Lanes<Real> estimated_inverse_root(const Lanes<Real>& square)
   return Real(1 + 0x1p-14) / stdx::sqrt(square);
 #else
   if constexpr (sizeof(Real) == 8)
-    return Lanes<Real>(_mm512_rsqrt14_pd(static_cast<RealVector<Real>>(square)));
+    return Lanes<Real>(_mm512_rsqrt14_pd(static_cast<RealVector<Real> >(square)));
   else
-    return Lanes<Real>(_mm512_rsqrt14_ps(static_cast<RealVector<Real>>(square)));
+    return Lanes<Real>(_mm512_rsqrt14_ps(static_cast<RealVector<Real> >(square)));
 #endif
 }
 #endif
@@ -80,10 +84,10 @@ SPRINGPROOF_INLINE Lanes<Real> nearer_inverse_cube_root(const Lanes<Real>& J, co
 /// bits of J.
 template <class Real>
 SPRINGPROOF_INLINE Lanes<Real> inverse_cube_root(const Lanes<Real>& J) {
-  using Float = typename Builtin<float, lanes<Real>>::type;
-  using Int = typename Builtin<int, lanes<Real>>::type;
+  using Float = typename Builtin<float, lanes<Real> >::type;
+  using Int = typename Builtin<int, lanes<Real> >::type;
   const Lanes<Real> size = stdx::abs(J);
-  const Float s = __builtin_convertvector(static_cast<RealVector<Real>>(size), Float);
+  const Float s = __builtin_convertvector(static_cast<RealVector<Real> >(size), Float);
   const Float third = __builtin_convertvector(reinterpret_cast<Int>(s), Float) * (-1.0f / 3);
   const Int bits = __builtin_convertvector(third, Int) +
                    0x54a21d2a;  // 4/3 of the exponent's bias, and a shift that spreads the error
@@ -93,4 +97,15 @@ SPRINGPROOF_INLINE Lanes<Real> inverse_cube_root(const Lanes<Real>& J) {
   return y;
 }
 
+/// ln(1 + d) where no series serves.
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> plain_logarithm_of_1_and(const Lanes<Real>& d) {
+  Real values[lanes<Real>];
+  store(d, values);
+  for (Real& value : values) value = static_cast<Real>(__builtin_log1p(static_cast<double>(value)));
+  return load(values);
+}
+
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE
+
+#endif

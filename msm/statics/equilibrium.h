@@ -37,8 +37,9 @@ struct Equilibrium {
   std::optional<SoftestMotion> softest = {};  ///< of the returned state, if it was asked for
 };
 
-/// Solvers of the linear equations; mixed_multigrid has pressures as unknowns, for nu near 1/2.
-enum class LinearSolver { automatic, cholesky, multigrid, mixed_multigrid };
+/// Solvers of the linear equations; mixed_multigrid has pressures as unknowns, for nu near 1/2; gpu_multigrid is that
+/// of whole cells on a GPU (msm/gpu), where SPRINGPROOF_DEVICE chooses it.
+enum class LinearSolver { automatic, cholesky, multigrid, mixed_multigrid, gpu_multigrid };
 
 /// How to solve a linear problem.
 struct LinearOptions {

@@ -4,6 +4,7 @@
 
 #include "meshes/volume.h"
 #include "msm/algebra/krylov.h"
+#include "msm/gpu/gpu_multigrid.h"
 #include "msm/multigrid/cell_stiffness.h"
 #include "msm/multigrid/cut_mixed_multigrid.h"
 #include "msm/multigrid/cut_multigrid.h"
@@ -65,6 +66,18 @@ void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
   K.multiply(p.prescribed, Ku);
   // A factorisation is a preconditioner too: one or two steps remove its round-off.
   report(K.solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du), K.name(), result);
+  const Eigen::VectorXd u = p.prescribed + du;
+  K.multiply(u, Ku);
+  finish(p, u, Ku, result);
+}
+
+void solve_on_gpu(const LinearProblem& p, const CellStiffness& cell, Equilibrium& result) {
+  GpuMultigrid K(lattice_levels(p.model.network, p.fixed, 300), cell.total);
+  Eigen::VectorXd Ku, du;
+  K.multiply(p.prescribed, Ku);
+  const std::string device = gpu::device_name();
+  report(K.solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du),
+         "CG + multigrid on " + (device.empty() ? "the processor, by a GPU's code" : device), result);
   const Eigen::VectorXd u = p.prescribed + du;
   K.multiply(u, Ku);
   finish(p, u, Ku, result);
@@ -132,6 +145,8 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   try {
     if (solver == LinearSolver::mixed_multigrid)
       solve_mixed(problem, cell, G, result);
+    else if (solver == LinearSolver::gpu_multigrid)
+      solve_on_gpu(problem, cell, result);
     else
       solve_primal(problem, solver == LinearSolver::cholesky, result);
     const bool iterated = solver == LinearSolver::multigrid && options.solver == LinearSolver::automatic;

@@ -141,5 +141,7 @@ expect "differences of other files" "results.json: not the results" diff "$work"
 # What is no fault of the case.
 TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
 
+SPRINGPROOF_DEVICE=abacus expect "an unknown device" "^error: SPRINGPROOF_DEVICE = .abacus. is unknown .allowed: processor, gpu" compare "$work/good.toml" --out "$work/out"
+
 [ $failures -eq 0 ] && echo "all refused as they should be"
 exit $((failures > 0))

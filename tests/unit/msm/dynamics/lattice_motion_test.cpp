@@ -68,8 +68,8 @@ std::vector<ModelParameters> models() {
 std::string label(const ModelParameters& p, const Body& body, const LatticeMotionOptions& options) {
   return fmt::format("{}{} form {} {} {} float{} {} threads", p.row.name,
                      p.volume_energy == VolumeEnergy::paper ? " (paper)" : "", static_cast<int>(p.dispersion),
-                     body.name, name_of(options.instructions), options.precision == Precision::float32 ? 32 : 64,
-                     options.threads);
+                     body.name, options.device == Device::gpu ? "gpu" : name_of(options.instructions),
+                     options.precision == Precision::float32 ? 32 : 64, options.threads);
 }
 
 std::vector<LatticeMotionOptions> every_kernel(const std::vector<int>& thread_counts = {1, 2, 3}) {
@@ -77,7 +77,13 @@ std::vector<LatticeMotionOptions> every_kernel(const std::vector<int>& thread_co
   for (InstructionSet set : usable_instruction_sets())
     for (Precision precision : {Precision::float64, Precision::float32})
       for (int threads : thread_counts) all.push_back({precision, threads, set});
+  for (Precision precision : {Precision::float64, Precision::float32})
+    all.push_back({.precision = precision, .device = Device::gpu});
   return all;
+}
+
+bool lacks(const LatticeMotionOptions& options, const MassSpringModel& model) {
+  return options.device == Device::gpu && !LatticeMotion::suits_gpu(model, options);
 }
 
 double worst(const NodalVectors& a, const NodalVectors& b) {
@@ -93,6 +99,7 @@ TEST(LatticeMotion, ForcesAreThoseOfThePlainLoops) {
                          f = forces(model, x);
       ASSERT_TRUE(LatticeMotion::suits(model)) << body.name;
       for (const LatticeMotionOptions& options : every_kernel()) {
+        if (lacks(options, model)) continue;
         LatticeMotion motion(model, density, options);
         motion.set_state(x, v);
         const double allowed = options.precision == Precision::float64 ? 1e-12 : 1e-5;
@@ -168,6 +175,7 @@ TEST(LatticeMotion, StepsAreThoseOfThePlainLoops) {
       const State plain = plain_steps(model, rest, bc, steps, dt, damping);
       // Three threads wait for each other on two cores; ThreadsDoNotChangeTheMotionAndRepeatIt has them.
       for (const LatticeMotionOptions& options : every_kernel({1, 2})) {
+        if (lacks(options, model)) continue;
         const bool exact = options.precision == Precision::float64;
         LatticeMotion motion(model, density, options);
         motion.set_conditions(bc);
@@ -205,6 +213,7 @@ TEST(LatticeMotion, ViscousStepsAreThoseOfThePlainLoops) {
       const State plain = plain_steps(model, first, moved, steps, dt, damping, viscosity);
       for (LatticeMotionOptions options : every_kernel({1, 2})) {
         options.viscosity = viscosity;
+        if (lacks(options, model)) continue;
         const bool exact = options.precision == Precision::float64;
         LatticeMotion motion(model, density, options);
         motion.set_conditions(bc);

@@ -1,0 +1,12 @@
+// Lattices on the GPU against the same on this processor.
+#pragma once
+
+#include "comparisons/bench/options.h"
+#include "comparisons/bench/rows.h"
+
+namespace springproof::bench {
+
+/// Explicit steps, and conjugate gradients with multigrid; a remark where there is no GPU.
+void bench_gpu(const BenchOptions& options, Findings& findings);
+
+}  // namespace springproof::bench

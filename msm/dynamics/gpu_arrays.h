@@ -1,0 +1,189 @@
+// The arrays of LatticeMotion on a GPU.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "msm/dynamics/lattice_arrays.h"
+#include "msm/gpu/gpu.h"
+
+namespace springproof {
+
+template <class Real>
+class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
+ public:
+  ArraysOnGpu(const MassSpringModel& model, double density)
+      : network_(model.network), edge_(network_.cell_edge), density_(density), steps_(lattice_of(model)) {
+    u_.assign(3 * std::size_t(box_.size), 0);
+    v_ = u_;
+    BoundaryConditions none;
+    none.fixed.assign(3 * network_.nodes(), 0);
+    none.prescribed = none.external = NodalVectors::Zero(network_.nodes(), 3);
+    ArraysOnGpu::set_conditions(none);
+  }
+
+  void set_conditions(const BoundaryConditions& conditions) override {
+    CoefficientTable table(6);
+    std::vector<int> load(box_.size, -1);
+    support_places_.clear();
+    support_values_.clear();
+    for (int n = 0; n < network_.nodes(); ++n) {
+      double entry[6];
+      for (int d = 0; d < 3; ++d) {
+        const bool fixed = conditions.fixed[3 * n + axis_[d]];
+        entry[d] = fixed ? 0 : 1 / (density_ * network_.volume[n] * edge_);
+        entry[3 + d] = conditions.external(n, axis_[d]);
+        if (!fixed) continue;
+        support_places_.push_back(d * box_.size + place_[n]);
+        support_values_.push_back(static_cast<Real>(conditions.prescribed(n, axis_[d]) / edge_));
+      }
+      load[place_[n]] = table.entry(entry);
+    }
+    steps_.set_loads(load, {table.values().begin(), table.values().end()});
+    supports_wait_ = true;
+  }
+
+  void move_supports() override {
+    steps_.set(support_places_, support_values_);
+    supports_wait_ = false;
+  }
+
+  void set_state(const NodalVectors& x, const NodalVectors& v) override {
+    for (int n = 0; n < network_.nodes(); ++n)
+      for (int d = 0; d < 3; ++d) {
+        u_[d * box_.size + place_[n]] = static_cast<Real>((x(n, axis_[d]) - network_.X(n, axis_[d])) / edge_);
+        v_[d * box_.size + place_[n]] = static_cast<Real>(v(n, axis_[d]) / edge_);
+      }
+    steps_.write(u_, v_);
+  }
+
+  void read(int begin, int end, double* values) const override {
+    steps_.read(u_, v_);
+    for (int n = begin; n < end; ++n, values += 6)
+      for (int d = 0; d < 3; ++d) {
+        values[axis_[d]] = edge_ * u_[d * box_.size + place_[n]];
+        values[3 + axis_[d]] = edge_ * v_[d * box_.size + place_[n]];
+      }
+  }
+
+  void write(int begin, int end, const double* values) override {
+    steps_.read(u_, v_);
+    for (int n = begin; n < end; ++n, values += 6)
+      for (int d = 0; d < 3; ++d) {
+        u_[d * box_.size + place_[n]] = static_cast<Real>(values[axis_[d]] / edge_);
+        v_[d * box_.size + place_[n]] = static_cast<Real>(values[3 + axis_[d]] / edge_);
+      }
+    steps_.write(u_, v_);
+  }
+
+  ForceNorms advance(long steps, double time_step, double damping) override {
+    const Real dt = static_cast<Real>(time_step), decay = static_cast<Real>(1 / (1 + damping * time_step));
+    LatticeSums sums = {0, 0};
+    if (supports_wait_ && steps > 0) {
+      sums = steps_.advance(1, dt, decay);
+      move_supports();
+      --steps;
+    }
+    if (steps > 0) sums = steps_.advance(steps, dt, decay);
+    return {std::sqrt(sums.free), std::sqrt(sums.fixed)};
+  }
+
+  NodalVectors positions() const override {
+    steps_.read(u_, v_);
+    return network_.X + edge_ * in_network_order(u_);
+  }
+  NodalVectors velocities() const override {
+    steps_.read(u_, v_);
+    return edge_ * in_network_order(v_);
+  }
+  NodalVectors forces() override { return in_network_order(steps_.forces()); }
+
+  double bytes_per_node() const override { return steps_.bytes() / network_.nodes(); }
+  std::string description() const override {
+    const std::string name = gpu::device_name();
+    return fmt::format("lattice kernel of {}, {} bits", name.empty() ? "GPUs, on the processor thread by thread" : name,
+                       8 * sizeof(Real));
+  }
+
+ private:
+  /// Finds the nodes' places and tells the GPU the model.
+  gpu::LatticeForGpu<Real> lattice_of(const MassSpringModel& model);
+
+  NodalVectors in_network_order(const std::vector<Real>& values) const {
+    NodalVectors result(network_.nodes(), 3);
+    for (int n = 0; n < network_.nodes(); ++n)
+      for (int d = 0; d < 3; ++d) result(n, axis_[d]) = static_cast<double>(values[d * box_.size + place_[n]]);
+    return result;
+  }
+
+  const Network& network_;
+  double edge_, density_;
+  std::array<int, 3> axis_ = {0, 1, 2};  ///< of space along x, y and z of the box: the longest first
+  gpu::Box box_;
+  std::vector<int> place_;  ///< of each node
+  gpu::LatticeSteps<Real> steps_;
+  std::vector<int> support_places_;
+  std::vector<Real> support_values_;
+  bool supports_wait_ = false;
+  mutable std::vector<Real> u_, v_;  ///< on the way to and from the GPU; zero where there is no node
+};
+
+template <class Real>
+gpu::LatticeForGpu<Real> LatticeMotion::ArraysOnGpu<Real>::lattice_of(const MassSpringModel& model) {
+  constexpr int kappa = 27, cell = 28, values = 29;  // of an entry, as msm/gpu/lattice_step.h says
+  const NodalVectors& X = network_.X;
+  const Eigen::RowVector3d low = X.colwise().minCoeff(), extent = (X.colwise().maxCoeff() - low) / edge_;
+  std::stable_sort(axis_.begin(), axis_.end(), [&](int a, int b) { return extent[a] > extent[b] + 0.5; });
+  const auto along = [&](int n, int d) {
+    return 1 + static_cast<int>(std::lround((X(n, axis_[d]) - low[axis_[d]]) / edge_));
+  };
+  const auto nodes_along = [&](int d) { return 1 + static_cast<int>(std::lround(extent[axis_[d]])); };
+  gpu::LatticeForGpu<Real> l;
+  l.box = box_ = gpu::Box(nodes_along(0), nodes_along(1), nodes_along(2));
+  for (int n = 0; n < network_.nodes(); ++n) place_.push_back(box_.at(along(n, 0), along(n, 1), along(n, 2)));
+
+  std::vector<double> all(std::size_t(network_.nodes()) * values, 0.0);
+  bool cells = false;
+  for (const ForceLaw& law : model.laws) {
+    if (std::get_if<Springs>(&law))
+      for (const Spring& s : network_.springs) {
+        int c = 13, power = 1, square = 0;
+        for (int d = 0; d < 3; ++d, power *= 3) {
+          const int step = along(s.j, d) - along(s.i, d);
+          c += power * step;
+          square += step * step;
+        }
+        all[std::size_t(s.i) * values + c] += s.stiffness * edge_;
+        all[std::size_t(s.j) * values + 26 - c] += s.stiffness * edge_;
+        l.reach = std::max(l.reach, square);
+      }
+    const auto* volume = std::get_if<VolumeCorrection>(&law);
+    const auto* hourglass = std::get_if<HourglassCorrection>(&law);
+    const auto* averaged = std::get_if<AveragedSprings>(&law);
+    if (volume) l.bounded = volume->form == VolumeEnergy::bounded;
+    if (hourglass) l.hourglass = lattice_constants<Real>(hourglass->stiffness(edge_), edge_);
+    if (averaged) l.averaged = lattice_constants<Real>(*averaged, edge_);
+    l.volume = l.volume || volume;
+    l.corrected = l.corrected || hourglass;
+    cells = cells || volume || hourglass || averaged;
+    if (!volume && !hourglass && !averaged) continue;
+    for (const Hexahedron& corners : network_.cells) {
+      const int lowest =
+          *std::min_element(corners.begin(), corners.end(), [&](int a, int b) { return place_[a] < place_[b]; });
+      double* entry = &all[std::size_t(lowest) * values];
+      if (volume) entry[kappa] = volume->kappa * edge_ * edge_;
+      entry[cell] = 1;
+    }
+  }
+  CoefficientTable table(values);
+  const std::vector<double> empty(values, 0.0);
+  l.kind.assign(box_.size, table.entry(empty.data()));
+  for (int n = 0; n < network_.nodes(); ++n) l.kind[place_[n]] = table.entry(&all[std::size_t(n) * values]);
+  l.kinds.assign(table.values().begin(), table.values().end());
+  return l;
+}
+
+}  // namespace springproof

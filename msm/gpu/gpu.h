@@ -1,0 +1,104 @@
+// The GPU that the library was built for (SPRINGPROOF_CUDA), and what it does.  Plain arrays: what implements this is
+// compiled by nvcc, or, without CUDA, by the C++ compiler for the processor (msm/gpu/backend.h).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "msm/gpu/box.h"
+#include "msm/kernels/cell_kernels.h"
+#include "msm/kernels/lattice_kernel.h"
+
+namespace springproof::gpu {
+
+/// Name of the GPU; empty: the library has none, or the machine.
+std::string device_name();
+bool built_for_gpu();  ///< by CUDA
+
+/// Where lattices are computed that do not say it themselves: SPRINGPROOF_DEVICE, "processor" (default) or "gpu".
+/// @throws InputError for another value, or where there is no GPU.
+bool wants_gpu();
+
+/// What explicit steps need of a lattice; lengths in cell edges, places in the box.
+template <class Real>
+struct LatticeForGpu {
+  Box box;
+  std::vector<int> kind;
+  std::vector<Real> kinds;  ///< entries as msm/gpu/lattice_step.h says
+  int reach = 0;            ///< squared length of the longest springs; 0: there are none
+  bool volume = false, bounded = false, corrected = false;
+  LatticeHourglass<Real> hourglass = {};
+  LatticeAveraged<Real> averaged = {};  ///< with a curve: the model's only law
+};
+
+/// Displacements [edges] and velocities [edges/s] of a lattice in the GPU's memory, and what moves them.
+template <class Real>
+class LatticeSteps {
+ public:
+  explicit LatticeSteps(const LatticeForGpu<Real>& lattice);
+  LatticeSteps(LatticeSteps&&) noexcept;
+  ~LatticeSteps();
+
+  /// Supports and loads: per place the start of its entry of six values, or -1 where there is no node.
+  void set_loads(const std::vector<int>& load, const std::vector<Real>& loads);
+  /// Three components, one after the other, of box.size values.
+  void write(const std::vector<Real>& u, const std::vector<Real>& v);
+  void read(std::vector<Real>& u, std::vector<Real>& v) const;
+  /// Sets components of displacements: places count from the first component's first.
+  void set(const std::vector<int>& places, const std::vector<Real>& u);
+
+  /// Sums over the nodes of |force|^2 [N^2] at the beginning of the last step.
+  LatticeSums advance(long steps, Real time_step, Real decay);
+  std::vector<Real> forces();  ///< internal forces [N]
+  double bytes() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+/// A level of lattice multigrid, in the units of its cycle.  The first points of all levels coincide.
+struct MultigridLevel {
+  Box box;
+  CellBlocks<float> K = {};
+  std::vector<float> fill;              ///< per place of a cell's lowest corner, 0: no cell
+  std::vector<float> inverse_diagonal;  ///< three components; 0 on fixed unknowns and where there is no node
+  double largest_eigenvalue = 0;
+};
+
+/// Lattice multigrid, finest level first; of the coarsest a dense inverse and the places of its unknowns.
+struct MultigridForGpu {
+  std::vector<MultigridLevel> levels;
+  CellBlocks<double> K = {};  ///< of the finest level
+  double unit = 1;            ///< that of the cycle's stiffness, in units of K
+  int smoothing_degree = 3;
+  std::vector<float> coarsest_inverse;
+  std::vector<int> coarsest_places;
+};
+
+/// Conjugate gradients in double precision, preconditioned by a V-cycle in single precision, in the GPU's memory.
+class MultigridSolver {
+ public:
+  explicit MultigridSolver(const MultigridForGpu& multigrid);
+  MultigridSolver(MultigridSolver&&) noexcept;
+  ~MultigridSolver();
+
+  struct Result {
+    bool converged = false, negative_curvature = false;
+    int iterations = 0;
+    double residual = 0;  ///< |b - K u| / |b|, recomputed at the end
+    double seconds = 0;   ///< wall time, without moving b and u
+  };
+  /// u = K^-1 b: three components of the finest box's size; b zero on fixed unknowns and where there is no node.
+  Result solve(const std::vector<double>& b, double tolerance, int max_iterations, std::vector<double>& u);
+  /// y = K x, all unknowns.
+  void multiply(const std::vector<double>& x, std::vector<double>& y);
+  double bytes() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace springproof::gpu
