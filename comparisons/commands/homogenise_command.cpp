@@ -182,7 +182,8 @@ void HomogeniseCommand::add_options(CLI::App& command) {
   number("--seed", "seed", "random: first seed (default 1)");
   number("--seeds", "seeds", "random: number of networks (default 1)");
   number("--face-to-cube", "face_to_cube", "lattices: A = k_f / k_c");
-  word("--dispersion", "dispersion", "eMSM: symmetric, share_weighted, published or published_transposed");
+  word("--dispersion", "dispersion",
+       "eMSM: symmetric, share_weighted, published, published_transposed or finite_strain");
   word("--weights", "weights", "eMSM, symmetric: volume or kL (default: by the sign of q)");
   word("--calibration", "calibration", "random: homogenised (default, as compare) or affine (the papers' formulas)");
   word("--surface", "surface", "random: nodes (default) or cut, whose springs are left as they are made");

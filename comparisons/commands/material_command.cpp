@@ -42,6 +42,8 @@ const char* name_of(Dispersion form) {
       return "published";
     case Dispersion::published_transposed:
       return "published_transposed";
+    case Dispersion::finite_strain:
+      return "finite_strain";
   }
   return "";
 }
@@ -79,10 +81,10 @@ nlohmann::json json_of(const DispersionFacts& f, const ModelParameters& p, const
   if (p.has(Extension::momentum_dispersion))
     out["dispersion"] = {{"q", f.q},
                          {"form", name_of(p.dispersion)},
-                         {"conservative", p.dispersion == Dispersion::symmetric},
-                         {"weights", p.dispersion != Dispersion::symmetric ? "counts"
-                                     : exact_volumes(p, m)                 ? "volume"
-                                                                           : "kL"}};
+                         {"conservative", has_energy(p.dispersion)},
+                         {"weights", !has_energy(p.dispersion) ? "counts"
+                                     : exact_volumes(p, m)     ? "volume"
+                                                               : "kL"}};
   if (p.row.topology == Topology::random)
     out["network"] = {{"springs_per_node", f.network.springs_per_node},
                       {"mean_length_m", f.network.mean_length},
@@ -97,12 +99,12 @@ void print(const DispersionFacts& f, const ModelParameters& p, const IsotropicMa
         "(20)\n",
         f.network.springs_per_node, f.network.mean_length, f.spring_factor);
   if (p.has(Extension::momentum_dispersion))
-    fmt::print("dispersion q = {:.6g}   form {}{}   {}\n", f.q, name_of(p.dispersion),
-               p.dispersion != Dispersion::symmetric ? ""
-               : exact_volumes(p, m)                 ? ", weights volume"
-                                                     : ", weights kL",
-               p.dispersion == Dispersion::symmetric ? "conservative, symmetric stiffness"
-                                                     : "not conservative, stiffness not symmetric");
+    fmt::print(
+        "dispersion q = {:.6g}   form {}{}   {}\n", f.q, name_of(p.dispersion),
+        !has_energy(p.dispersion) ? ""
+        : exact_volumes(p, m)     ? ", weights volume"
+                                  : ", weights kL",
+        has_energy(p.dispersion) ? "conservative, symmetric stiffness" : "not conservative, stiffness not symmetric");
   fmt::print("stable     {}\n", stable_range(p, m));
   fmt::print(
       "           measured on a small free block: |K - K^T| / |K| = {:.2g}, smallest eigenvalue {:.2g} of the largest, "
@@ -332,7 +334,8 @@ void MaterialCommand::add_options(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
   command.add_option("--face-to-cube", face_to_cube_, "A = k_f / k_c");
-  command.add_option("--dispersion", dispersion_, "eMSM: symmetric, share_weighted, published or published_transposed");
+  command.add_option("--dispersion", dispersion_,
+                     "eMSM: symmetric, share_weighted, published, published_transposed or finite_strain");
   command.add_option("--weights", weights_, "eMSM, symmetric: volume or kL (default: by the sign of q)");
   command.add_option("--springs-per-node", springs_per_node_, "random: mean number of springs at a node (default 15)");
   command.add_option("--frequency", frequency_, "a vibration [Hz] whose damping by implicit Euler is printed")

@@ -88,9 +88,11 @@ void check_vertex_options(const PreparedCase& prepared) {
   }
 }
 
-/// Averaged springs follow the material law of the case.
+/// Averaged springs and momentum dispersion of finite strain follow the material law of the case.
 void choose_curve(const Experiment& e, ModelParameters& p) {
-  if (!(p.has(Extension::averaging) || p.has(Extension::volume_modes)) || p.curve) return;
+  const bool follows =
+      p.has(Extension::averaging) || p.has(Extension::volume_modes) || p.dispersion == Dispersion::finite_strain;
+  if (!follows || p.curve) return;
   p.curve = e.kinematics == "neo_hooke"             ? StrainCurve::neo_hooke
             : e.kinematics == "neo_hooke_isochoric" ? StrainCurve::neo_hooke_isochoric
                                                     : StrainCurve::hencky;

@@ -25,11 +25,17 @@ void Tangent::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
 std::vector<Eigen::Matrix3d> Tangent::node_blocks() const {
   std::vector<Eigen::Matrix3d> blocks(local.nodes());
   for (int n = 0; n < local.nodes(); ++n) blocks[n] = local.at(n, n);
-  // Rows store all three columns of each node, and the two matrices share their sparsity pattern.
+  const auto next_node = [](NodalForms::InnerIterator& e, int node) {  // the entries of a node in a row
+    Eigen::Vector3d form = Eigen::Vector3d::Zero();
+    for (; e && e.col() / 3 <= node; ++e)
+      if (e.col() / 3 == node) form[e.col() % 3] = e.value();
+    return form;
+  };
   for (int n = 0; n < inflow.outerSize(); ++n)
-    for (NodalForms::InnerIterator in(inflow, n), out(outflow, n); in; ++in, ++in, ++in, ++out, ++out, ++out) {
-      const Eigen::Map<const Eigen::Vector3d> a(&in.value()), c(&out.value());
-      blocks[in.col() / 3] += c * a.transpose();
+    for (NodalForms::InnerIterator in(inflow, n), out(outflow, n); in;) {
+      const int node = static_cast<int>(in.col() / 3);
+      const Eigen::Vector3d a = next_node(in, node), c = next_node(out, node);
+      blocks[node] += c * a.transpose();
     }
   return blocks;
 }

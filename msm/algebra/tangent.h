@@ -5,13 +5,13 @@
 
 namespace springproof {
 
-/// One linear form per node over all unknowns, n x 3 n.
+/// Linear forms over all unknowns, one or more per node: n x 3 n at rest.
 using NodalForms = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// K = local + outflow^T inflow.  The second term couples neighbours of neighbours and is stored as its two factors.
 struct Tangent {
   BlockMatrix local;      ///< between nodes that share a spring, a triangle or a cell [N/m]
-  NodalForms inflow;      ///< dJ_n/dx of momentum dispersion; no rows if the model has none
+  NodalForms inflow;      ///< dJ_n/dx of momentum dispersion, or dF_n/dx; no rows if the model has none
   NodalForms outflow;     ///< d(force)/dJ_n, with the sign of a stiffness
   bool symmetric = true;  ///< false for dispersion without an energy
 

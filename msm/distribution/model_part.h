@@ -19,7 +19,8 @@ struct ModelPart {
 /// @param whole a model without periodic images
 /// @param own per node of the whole
 /// @return its part
-/// @throws std::invalid_argument for a periodic model, and for one whose forces have no energy (conservative()).
+/// @throws std::invalid_argument for a periodic model, one whose forces have no energy (conservative()), and
+/// momentum dispersion of finite strain.
 ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own);
 
 /// Nodes to which the nodes `first` <= n < `last` of a network are coupled, ascending and without themselves: rows of a

@@ -50,6 +50,9 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
   if (options.integrator == Integrator::energy_momentum)
     if (const std::string why = EnergyMomentum::lacks(model); !why.empty())
       throw InputError("integrator: energy_momentum does not suit this model: " + why);
+  if (const MomentumDispersion* dispersion = dispersion_of(model);
+      options.lagged && dispersion && dispersion->form == Dispersion::finite_strain)
+    throw InputError("lagged dispersion is not of finite strain (allowed: dispersion = \"symmetric\")");
   if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
   if (implicit && options.contact && options.contact->plane().friction > 0)
     throw InputError("integrator: large steps have a plane without friction (allowed: friction = 0, or explicit)");

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "msm/laws/nodal_gradients.h"
+
 namespace springproof {
 namespace {
 
@@ -30,6 +32,16 @@ Mat3 secant_stress(const Mat3& C0, const Mat3& C1, const Law& at) {
   if (size < small_change) return S;
   const double work = at(C1, Derivative::none).energy - at(C0, Derivative::none).energy;
   return S + (2 * work - S.cwiseProduct(change).sum()) / size * change;
+}
+
+/// Of an energy of F that does not depend on the frame.
+template <class Energy>
+Stress stress_in(const Mat3& C, Derivative up_to, const Energy& energy) {
+  const Mat3 F = C.llt().matrixU();  // any F with F^T F = C
+  const StrainEnergy W = energy(F);
+  if (up_to == Derivative::none) return {W.value, Mat3::Zero()};
+  const Mat3 S = F.triangularView<Eigen::Upper>().solve(W.stress);
+  return {W.value, (S + S.transpose()) / 2};
 }
 
 Corners corners_at(const Hexahedron& cell, const NodalVectors& x) {
@@ -70,8 +82,23 @@ struct AddSecantForces {
 
   /// The energy is quadratic in the elongations, so the tension of their means does the work.
   void operator()(const MomentumDispersion& law) const {
+    if (law.form == Dispersion::finite_strain) pull_nodes(NodalGradients(law, network));
+    if (law.of_volumes()) return;
     const std::vector<double> T = law.tensions(network, (law.inflow(network, x0) + law.inflow(network, x1)) / 2);
     pull_springs(network, x0, x1, f, [&](std::size_t n, double) { return T[n]; });
+  }
+
+  void pull_nodes(const NodalGradients& nodes) const {
+    const std::vector<Mat3> F0 = nodes.at(x0), F1 = nodes.at(x1);
+    std::vector<Mat3> P(F0.size(), Mat3::Zero());
+    for (int n = 0; n < network.nodes(); ++n) {
+      if (nodes.GV[n] == 0) continue;
+      const auto at = [&](const Mat3& C, Derivative up_to) {
+        return stress_in(C, up_to, [&](const Mat3& F) { return nodes.energy_of(n, F, up_to); });
+      };
+      P[n] = (F0[n] + F1[n]) / 2 * secant_stress(F0[n].transpose() * F0[n], F1[n].transpose() * F1[n], at);
+    }
+    nodes.pull(P, f);
   }
 
   void operator()(const VolumeCorrection& law) const {
@@ -92,13 +119,12 @@ struct AddSecantForces {
   }
 
   void operator()(const AveragedSprings& law) const {
-    const auto at = [&](const Mat3& C, Derivative up_to) -> Stress {
-      const Mat3 F = C.llt().matrixU();  // any F with F^T F = C: the energy does not depend on the frame
-      StrainEnergy W = springs_energy(law.curve, law.shear_modulus, F, up_to);
-      add_volume_term(law.curve, law.lame_lambda - law.shear_modulus, F, up_to, W);
-      if (up_to == Derivative::none) return {W.value, Mat3::Zero()};
-      const Mat3 S = F.triangularView<Eigen::Upper>().solve(W.stress);
-      return {W.value, (S + S.transpose()) / 2};
+    const auto at = [&](const Mat3& C, Derivative up_to) {
+      return stress_in(C, up_to, [&](const Mat3& F) {
+        StrainEnergy W = springs_energy(law.curve, law.shear_modulus, F, up_to);
+        add_volume_term(law.curve, law.lame_lambda - law.shear_modulus, F, up_to, W);
+        return W;
+      });
     };
     std::size_t cut = 0;
     for (std::size_t c = 0; c < network.cells.size(); ++c) {

@@ -9,6 +9,7 @@
 
 #include "msm/algebra/dense.h"
 #include "msm/dynamics/mass_average.h"
+#include "msm/laws/nodal_gradients.h"
 #include "msm/multigrid/cell_stiffness.h"
 
 namespace springproof {
@@ -35,6 +36,24 @@ void add_springs(const Network& network, const Eigen::VectorXd& mass, const std:
     blocks[i] += (1 / mass[i] + both) * k;
     blocks[j] += (1 / mass[j] + both) * k;
   }
+}
+
+/// The same for the volumes of nodes: (sum of g . dd)^2 <= sum |g|^2/k sum k (g . dd)^2 / |g|^2 over a node's spring
+/// ends.
+void add_volumes(const NodalGradients& nodes, const Eigen::VectorXd& mass, NodeBlocks& blocks) {
+  const Network& network = nodes.network;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.nodes());
+  nodes.each_end(
+      [&](std::size_t s, int end, int n) { sum[n] += nodes.g[s][end].squaredNorm() / network.springs[s].stiffness; });
+  nodes.each_end([&](std::size_t s, int end, int n) {
+    const int i = network.master(network.springs[s].i), j = network.master(network.springs[s].j);
+    const Vec3 e = nodes.g[s][end].normalized();
+    const Eigen::Matrix3d k = std::max(0.0, added_lambda(nodes.law)) * nodes.GV[n] * sum[n] *
+                              network.springs[s].stiffness * e * e.transpose();
+    const double both = 1 / std::sqrt(mass[i] * mass[j]);
+    blocks[i] += (1 / mass[i] + both) * k;
+    blocks[j] += (1 / mass[j] + both) * k;
+  });
 }
 
 /// The same for any law, from the norms of the blocks of its stiffness at rest.
@@ -164,7 +183,10 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
   NodeBlocks blocks(network.nodes(), Eigen::Matrix3d::Zero());
   const AveragedSprings* averaged = cells ? nullptr : averaged_springs_of(model);
   for (const ForceLaw& law : model.laws) {
-    if (const auto* dispersion = std::get_if<MomentumDispersion>(&law))
+    const auto* dispersion = std::get_if<MomentumDispersion>(&law);
+    if (dispersion && dispersion->of_volumes())
+      add_volumes(NodalGradients(*dispersion, network), mass, blocks);
+    else if (dispersion)
       add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
     else if (averaged && (std::holds_alternative<AveragedSprings>(law) || std::holds_alternative<Anchors>(law)))
       continue;  // below

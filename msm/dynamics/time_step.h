@@ -9,7 +9,8 @@ namespace springproof {
 /// rest: 2 / omega, omega a bound on the frequencies of the network under any supports.  omega^2 combines safe bounds:
 ///  - springs: k dL^2 <= sum over both ends of k (1 + sqrt(m / m_other)) (n . u)^2, which leaves one 3x3 block per
 ///    node;
-///  - momentum dispersion: additional springs k (R_i + R_j), with R_n of MomentumDispersion::stiffness_bound();
+///  - momentum dispersion: additional springs k (R_i + R_j), with R_n of MomentumDispersion::stiffness_bound(); of the
+///    volumes of nodes the same along the g of NodalGradients;
 ///  - volume and hourglass corrections of a lattice of equal cells: with the springs, the stiffest single cell (Irons
 ///    and Treharne);
 ///  - averaged springs, in whole or cut cells: the stiffest cell alone, or the norms of the blocks, whichever is less;

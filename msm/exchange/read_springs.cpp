@@ -10,6 +10,7 @@
 #include "msm/exchange/lattice_of_cells.h"
 #include "msm/exchange/read_cut_cells.h"
 #include "msm/exchange/springs_document.h"
+#include "msm/laws/nodal_gradients.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/shortened.h"
@@ -177,6 +178,12 @@ void require_its_parts(const ForceLaw& law, const Network& network, const JsonPl
   if (std::holds_alternative<MacroSprings>(law)) place.refuse("has no macro-cells to act on", "averaged_springs");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
+  const auto* dispersion = std::get_if<MomentumDispersion>(&law);
+  if (dispersion && dispersion->form == Dispersion::finite_strain) try {
+      const NodalGradients every_node(*dispersion, network);
+    } catch (const std::invalid_argument& e) {
+      place.refuse(e.what(), "the form symmetric");
+    }
 }
 
 void read_laws(const JsonPlace& document, const SpringOrder& order, MassSpringModel& model) {

@@ -82,6 +82,7 @@ bool laws_fit(const MassSpringModel& model) {
            lattice_curve(averaged->curve) != LatticeCurve::none;
   const MomentumDispersion* dispersion = dispersion_of(model);
   if (!dispersion) return true;
+  if (dispersion->form == Dispersion::finite_strain) return false;
   for (int to : dispersion->group)
     if (dispersion->group[to] != to) return false;
   return law_of<Springs>(model) != nullptr;

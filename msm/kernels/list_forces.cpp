@@ -82,7 +82,8 @@ bool ListForces<Real>::covers(const MassSpringModel& model) {
     dispersions += std::holds_alternative<MomentumDispersion>(law);
     if (!traits(law).list_kernels) return false;
   }
-  return springs == 1 && dispersions <= 1;
+  const MomentumDispersion* dispersion = dispersion_of(model);
+  return springs == 1 && dispersions <= 1 && !(dispersion && dispersion->form == Dispersion::finite_strain);
 }
 
 template <class Real>

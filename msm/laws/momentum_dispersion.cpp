@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "msm/laws/nodal_gradients.h"
+
 namespace springproof {
 namespace {
 
@@ -37,6 +39,28 @@ void add_forces_of(const MomentumDispersion& law, const Coefficients& c, const N
   }
 }
 
+/// The derivatives of inflow and outflow by the elongations, a row per node.
+void add_elongations(const MomentumDispersion& law, const Coefficients& c, const Network& network,
+                     const NodalVectors& x, std::vector<Eigen::Triplet<double>>& in,
+                     std::vector<Eigen::Triplet<double>>& out) {
+  in.reserve(12 * c.in.size());
+  out.reserve(12 * c.in.size());
+  for (std::size_t n = 0; n < c.in.size(); ++n) {
+    const Spring& s = network.springs[n];
+    const Vec3 e = (x.row(s.j) - x.row(s.i)).transpose().normalized();
+    for (int end = 0; end < 2; ++end) {
+      if (c.in[n][end] == 0 && c.out[n][end] == 0) continue;
+      const int node = law.sink(network, end == 0 ? s.i : s.j);
+      for (int d = 0; d < 3; ++d) {
+        in.emplace_back(node, 3 * s.j + d, c.in[n][end] * e[d]);
+        in.emplace_back(node, 3 * s.i + d, -c.in[n][end] * e[d]);
+        out.emplace_back(node, 3 * s.j + d, c.out[n][end] * e[d]);
+        out.emplace_back(node, 3 * s.i + d, -c.out[n][end] * e[d]);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 MomentumDispersion::Coefficients MomentumDispersion::coefficients(const Network& network) const {
@@ -51,7 +75,8 @@ MomentumDispersion::Coefficients MomentumDispersion::coefficients(const Network&
     for (int end = 0; end < 2; ++end) {
       double norm = 1;
       switch (form) {
-        case Dispersion::symmetric: {
+        case Dispersion::symmetric:
+        case Dispersion::finite_strain: {
           const double w = weight.empty() ? k * L : weight[2 * s + end];
           c.in[s][end] = w;
           c.out[s][end] = q * w;
@@ -84,9 +109,11 @@ MomentumDispersion::Coefficients MomentumDispersion::coefficients(const Network&
 
 double MomentumDispersion::energy(const Network& network, const NodalVectors& x) const {
   if (!conservative()) return 0;
+  double sum = form == Dispersion::finite_strain ? NodalGradients(*this, network).energy(x) : 0;
+  if (of_volumes()) return sum;
   const Coefficients c = coefficients(network);
   const Eigen::VectorXd J = inflow_of(*this, c, network, x);
-  double sum = 0;  // half of tension times elongation: the energy is quadratic in the elongations
+  // Half of tension times elongation: the energy is quadratic in the elongations.
   for (std::size_t s = 0; s < network.springs.size(); ++s) {
     const Spring& spring = network.springs[s];
     sum += 0.5 * tension(*this, c, network, J, s) * ((x.row(spring.j) - x.row(spring.i)).norm() - spring.rest_length);
@@ -99,6 +126,8 @@ Eigen::VectorXd MomentumDispersion::inflow(const Network& network, const NodalVe
 }
 
 void MomentumDispersion::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
+  if (form == Dispersion::finite_strain) NodalGradients(*this, network).add_forces(x, f);
+  if (of_volumes()) return;
   const Coefficients c = coefficients(network);
   add_forces_of(*this, c, network, x, inflow_of(*this, c, network, x), f);
 }
@@ -141,6 +170,7 @@ std::vector<double> MomentumDispersion::stiffness_bound(const Network& network, 
 }
 
 void MomentumDispersion::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
+  if (of_volumes()) return;  // all of it is in add_flow()
   const Coefficients c = coefficients(network);
   const Eigen::VectorXd J = inflow_of(*this, c, network, x);
   if (J.isZero(0)) return;
@@ -159,26 +189,15 @@ void MomentumDispersion::add_tangent(const Network& network, const NodalVectors&
 }
 
 void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x, Tangent& K) const {
-  const Coefficients c = coefficients(network);
   std::vector<Eigen::Triplet<double>> in, out;
-  in.reserve(12 * c.in.size());
-  out.reserve(12 * c.in.size());
-  for (std::size_t n = 0; n < c.in.size(); ++n) {
-    const Spring& s = network.springs[n];
-    const Vec3 e = (x.row(s.j) - x.row(s.i)).transpose().normalized();
-    for (int end = 0; end < 2; ++end) {
-      if (c.in[n][end] == 0 && c.out[n][end] == 0) continue;
-      const int node = sink(network, end == 0 ? s.i : s.j);
-      for (int d = 0; d < 3; ++d) {
-        in.emplace_back(node, 3 * s.j + d, c.in[n][end] * e[d]);
-        in.emplace_back(node, 3 * s.i + d, -c.in[n][end] * e[d]);
-        out.emplace_back(node, 3 * s.j + d, c.out[n][end] * e[d]);
-        out.emplace_back(node, 3 * s.i + d, -c.out[n][end] * e[d]);
-      }
-    }
+  int rows = 0;
+  if (!of_volumes()) {
+    add_elongations(*this, coefficients(network), network, x, in, out);
+    rows = network.nodes();
   }
-  K.inflow.resize(network.nodes(), 3 * network.nodes());
-  K.outflow.resize(network.nodes(), 3 * network.nodes());
+  if (form == Dispersion::finite_strain) rows += NodalGradients(*this, network).add_flow(x, rows, in, out);
+  K.inflow.resize(rows, 3 * network.nodes());
+  K.outflow.resize(rows, 3 * network.nodes());
   K.inflow.setFromTriplets(in.begin(), in.end());
   K.outflow.setFromTriplets(out.begin(), out.end());
   K.symmetric = K.symmetric && conservative();

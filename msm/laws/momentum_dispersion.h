@@ -7,6 +7,7 @@
 
 #include "msm/algebra/tangent.h"
 #include "msm/laws/law_traits.h"
+#include "msm/laws/strain_energy.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -18,7 +19,11 @@ enum class Dispersion {
   share_weighted,  ///< a = q k L, c = share / (L sum_n share): the paper's form, correct at the surface of a lattice
   published,       ///< a = q k L, c = 1 / (b L): Kot & Nagahashi (2015), sec. 4
   published_transposed,  ///< a = q k / L, c = L / b: the paper's other form, for lattices of 18 springs only
+  finite_strain,         ///< symmetric at small strain; at large strain a material law (nodal_gradients.h)
 };
+
+/// Whether the forces of a form derive from an energy.
+inline bool has_energy(Dispersion form) { return form == Dispersion::symmetric || form == Dispersion::finite_strain; }
 
 /// A node takes in a fraction of what stretches the springs around it, and gives it back to them as tension.
 struct MomentumDispersion {
@@ -27,23 +32,30 @@ struct MomentumDispersion {
 
   double q = 0;                             ///< Q / 2, the fraction of the incoming force that a node disperses
   Dispersion form = Dispersion::symmetric;  ///< which inflow and outflow
-  /// Symmetric: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full spring;
-  /// empty: 1.
+  /// With an energy: w [N] per spring end, i then j; empty: k L.  Share-weighted: each spring's share of the full
+  /// spring; empty: 1.
   std::vector<double> weight = {};
-  /// Per node, the node whose J receives its springs' inflow; empty: its own.  Symmetric form only.
+  /// Per node, the node whose J receives its springs' inflow; empty: its own.  Forms with an energy only.
   std::vector<int> group = {};
+  StrainCurve curve = StrainCurve::hencky;  ///< the material law of finite strain
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
   void fields(Fields& f) {
     f.number("q", q);
-    f.choice("form", form, {"symmetric", "share_weighted", "published", "published_transposed"});
+    f.choice("form", form, {"symmetric", "share_weighted", "published", "published_transposed", "finite_strain"});
+    if (form == Dispersion::finite_strain)
+      f.choice("curve", curve, {"hencky", "neo_hooke", "neo_hooke_isochoric", "springs_hencky", "springs_neo_hooke"});
     f.of_springs("weight", weight);
     f.of_nodes("group", group);
   }
 
   /// Whether the forces derive from an energy.
-  bool conservative() const { return form == Dispersion::symmetric; }
+  bool conservative() const { return has_energy(form); }
+
+  /// Whether a material law at the nodes has taken the place of the dispersed elongations, in finite strain with given
+  /// weights; inflow() and tensions() then hold at small strain only.
+  bool of_volumes() const { return form == Dispersion::finite_strain && !weight.empty(); }
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; 0 for non-conservative forms
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< [N]

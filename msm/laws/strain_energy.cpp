@@ -125,32 +125,8 @@ struct SpringCurve {
 };
 constexpr SpringCurve as_hencky{-4.17, -2.91}, as_neo_hooke{-0.83, -5.38};
 
-/// The edges, face diagonals and cube diagonals of a cell with the weights of the quadrature over directions that is
-/// exact to seventh degree (Lebedev's 26 points): A = 16/9.
-struct Direction {
-  Eigen::Vector3d n;
-  double weight;
-};
-const std::array<Direction, 13>& directions() {
-  static const std::array<Direction, 13> all = [] {
-    std::array<Direction, 13> d;
-    int next = 0;
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          if (9 * x + 3 * y + z <= 0) continue;  // one of each pair of opposite directions
-          const int length = x * x + y * y + z * z;
-          d[next++] = {Eigen::Vector3d(x, y, z).normalized(), length == 1   ? 2.0 / 21
-                                                              : length == 2 ? 8.0 / 105
-                                                                            : 9.0 / 140};
-        }
-    return d;
-  }();
-  return all;
-}
-
 void add_springs(const SpringCurve& c, double G, const Strain& strain, StrainEnergy& W) {
-  for (const auto& [n, weight] : directions()) {
+  for (const auto& [n, weight] : spring_directions()) {
     const Scalar s = strain.log_stretch(n);
     const double x = s.value, k = 15 * G * weight;
     strain.add(k * x * x * (1.0 / 2 + x * (c.p / 6 + x * c.r / 24)), k * x * (1 + x * (c.p / 2 + x * c.r / 6)),
@@ -171,6 +147,24 @@ void add_lengths_and_areas(double G, const Strain& strain, StrainEnergy& W) {
 }
 
 }  // namespace
+
+std::span<const SpringDirection> spring_directions() {
+  static const std::array<SpringDirection, 13> all = [] {
+    std::array<SpringDirection, 13> d;
+    int next = 0;
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z) {
+          if (9 * x + 3 * y + z <= 0) continue;  // one of each pair of opposite directions
+          const int length = x * x + y * y + z * z;
+          d[next++] = {Eigen::Vector3d(x, y, z).normalized(), length == 1   ? 2.0 / 21
+                                                              : length == 2 ? 8.0 / 105
+                                                                            : 9.0 / 140};
+        }
+    return d;
+  }();
+  return all;
+}
 
 VolumeDensity volume_term(StrainCurve curve, double J) {
   if (curve == StrainCurve::neo_hooke_isochoric || curve == StrainCurve::springs_neo_hooke)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "msm/laws/volume_correction.h"
 
@@ -17,6 +18,16 @@ enum class StrainCurve {
   springs_hencky,       ///< thirteen springs whose stiffness falls with their stretch as Hencky's law wants it
   springs_neo_hooke,    ///< thirteen springs tuned to neo_hooke_isochoric
 };
+
+/// A direction of springs, and its share in sum k L^2.
+struct SpringDirection {
+  Eigen::Vector3d n;  ///< unit vector
+  double weight;      ///< they sum to 1
+};
+
+/// The edges, face diagonals and cube diagonals of a cell with the weights of the quadrature over directions that is
+/// exact to seventh degree (Lebedev's 26 points): A = 16/9.
+std::span<const SpringDirection> spring_directions();
 
 /// Of two entries of F each.
 using Matrix9 = Eigen::Matrix<double, 9, 9>;

@@ -94,7 +94,7 @@ std::string stable_range(const ModelParameters& p, const IsotropicMaterial& mate
     return "-1 < nu_2D < 1 in its plane: a triangle strains affinely, K > 0 and G > 0 suffice";
   if (p.has(Extension::averaging) || p.has(Extension::volume_modes)) return "-1 < nu < 1/2: every constant is positive";
   if (!p.has(Extension::momentum_dispersion)) return "never negative: springs alone are a sum of squares";
-  if (p.dispersion == Dispersion::symmetric) return stable_range_of_energy(p, material);
+  if (has_energy(p.dispersion)) return stable_range_of_energy(p, material);
   if (p.row.topology == Topology::random || p.row.topology == Topology::hexagonal)
     return "no energy: not proved, measured only";
   if (std::isinf(p.face_to_cube))

@@ -139,12 +139,15 @@ std::vector<Option> options_of(const ModelRow& row) {
   if (row.extension == Extension::volume_correction)
     options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
                                            {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));
-  if (row.extension == Extension::momentum_dispersion)
-    options.push_back(choice<Dispersion>("dispersion", &ModelParameters::dispersion,
-                                         {{"symmetric", Dispersion::symmetric},
-                                          {"share_weighted", Dispersion::share_weighted},
-                                          {"published", Dispersion::published},
-                                          {"published_transposed", Dispersion::published_transposed}}));
+  if (row.extension == Extension::momentum_dispersion) {
+    std::vector<std::pair<std::string, Dispersion>> forms = {
+        {"symmetric", Dispersion::symmetric},
+        {"share_weighted", Dispersion::share_weighted},
+        {"published", Dispersion::published},
+        {"published_transposed", Dispersion::published_transposed}};
+    if (row.topology != Topology::hexagonal) forms.emplace_back("finite_strain", Dispersion::finite_strain);
+    options.push_back(choice<Dispersion>("dispersion", &ModelParameters::dispersion, std::move(forms)));
+  }
   if (row.extension == Extension::momentum_dispersion)
     options.push_back(
         choice<std::optional<bool>>("weights", &ModelParameters::exact_volumes, {{"volume", true}, {"kL", false}}));

@@ -54,8 +54,8 @@ BulkCalibration fit(ModelParameters p, const IsotropicMaterial& m) {
   if (!p.has(Extension::momentum_dispersion)) return {m.youngs_modulus / measured(sample_of(p)).youngs_modulus, 0};
   // If the weights are chosen by the sign of q, q must have that sign, to the last bit: with q >= 0 exact volumes are a
   // sum of squares.
-  const bool sum_of_squares = p.dispersion == Dispersion::symmetric && !p.exact_volumes && exact_volumes(p, m);
-  if (p.dispersion == Dispersion::symmetric) p.exact_volumes = exact_volumes(p, m);
+  const bool sum_of_squares = has_energy(p.dispersion) && !p.exact_volumes && exact_volumes(p, m);
+  if (has_energy(p.dispersion)) p.exact_volumes = exact_volumes(p, m);
   return fit_dispersion(p, m, sum_of_squares ? 0 : -0.5);
 }
 

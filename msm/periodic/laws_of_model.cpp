@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "msm/laws/nodal_gradients.h"
+
 namespace springproof {
 namespace {
 
@@ -16,14 +18,16 @@ AngularSprings angular(const Network& network, const IsotropicMaterial& material
 
 MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,
                                   const NodalVectors& volume_gradient, WeightStart start) {
-  MomentumDispersion law{calibration.q, p.dispersion, {}};
+  MomentumDispersion law{calibration.q, p.dispersion};
+  law.curve = p.curve.value_or(StrainCurve::hencky);
   if (p.dispersion == Dispersion::share_weighted && p.row.topology == Topology::cells)
     law.weight = spring_shares(network);
-  if (p.dispersion == Dispersion::symmetric && p.exact_volumes.value_or(false)) {
+  if (has_energy(p.dispersion) && p.exact_volumes.value_or(false)) {
     DispersionWeights exact = volume_weights(network, volume_gradient, calibration.spring_shear_modulus, start);
     law.weight = std::move(exact.weight);
     law.group = std::move(exact.group);
   }
+  if (law.form == Dispersion::finite_strain) const NodalGradients every_node(law, network);  // refuses what it must
   return law;
 }
 
@@ -51,7 +55,7 @@ std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& 
   std::vector<ForceLaw> laws = {Springs{}};
   if (p.has(volume_correction)) laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   if (p.has(momentum_dispersion)) {
-    if (p.dispersion == Dispersion::symmetric) p.exact_volumes = exact_volumes(p, material);
+    if (has_energy(p.dispersion)) p.exact_volumes = exact_volumes(p, material);
     laws.push_back(dispersion_law(p, network, calibration, volume_gradient, start));
   }
   if (p.has(angular_springs)) laws.push_back(angular(network, material));

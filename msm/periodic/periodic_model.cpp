@@ -48,8 +48,7 @@ MassSpringModel periodic_model(const ModelParameters& parameters, const Isotropi
     throw InputError(
         fmt::format("{}: has the material's moduli exactly and no periodic form (allowed: hybmss_avg)", p.row.name));
   const BulkCalibration bulk = bulk_calibration(parameters, material);
-  if (p.has(Extension::momentum_dispersion) && p.dispersion == Dispersion::symmetric)
-    p.exact_volumes = exact_volumes(p, material);
+  if (p.has(Extension::momentum_dispersion) && has_energy(p.dispersion)) p.exact_volumes = exact_volumes(p, material);
   if (p.row.topology == Topology::random) return periodic_random_model(p, bulk, spacing, nodes);
   MassSpringModel model{periodic_lattice(p, spacing, nodes), {}};
   calibrate(bulk.spring_shear_modulus, model.network);

@@ -50,6 +50,14 @@ for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { insi
     fi
   done
 done
+for options in '' ', weights = "kL"'; do  # momentum dispersion of finite strain
+  sed "s/^models.*/models = [{ model = \"emsm\", dispersion = \"finite_strain\"$options }]/" case.toml >finite.toml
+  export_to finite.toml --to springs --nu 0.4 --cells 4 2 2 --out finite.json
+  if [ -n "$numpy" ]; then
+    off=$("$numpy" springs.py finite.json | awk '{ print $3 }')
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-9) }' || fail "forces of finite strain$options by docs/springs_file.md: off by '$off'"
+  fi
+done
 # A body that is no block: cut cells, of the models that take them; whole cubes on demand.
 cp "$source/comparisons/experiments/calibration/icosahedron.stl" .
 body=(icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 300 --to springs)

@@ -3,7 +3,9 @@
 
 #include <set>
 
+#include "meshes/volume.h"
 #include "msm/exchange/springs_file.h"
+#include "msm/laws/dispersion_weights.h"
 #include "msm/laws/laws.h"
 #include "msm/topology/cubic_lattice.h"
 #include "support/tolerances.h"
@@ -38,6 +40,12 @@ std::vector<Case> cases() {
                        true});
       const double q = dispersed_fraction(lame_lambda(material), shear_modulus(material));
       all.push_back({"DispersionSymmetric" + name, {network, {MomentumDispersion{q}}}, true});
+      all.push_back(
+          {"DispersionFiniteStrain" + name, {network, {MomentumDispersion{q, Dispersion::finite_strain}}}, true});
+      MomentumDispersion of_volumes{q, Dispersion::finite_strain};
+      of_volumes.weight = volume_weights(network, volume_gradient(mesh), shear_modulus(material)).weight;
+      of_volumes.group = volume_groups(network);
+      all.push_back({"DispersionOfVolumes" + name, {network, {of_volumes}}, true});
       all.push_back({"DispersionShareWeighted" + name,
                      {network, {MomentumDispersion{q, Dispersion::share_weighted, spring_shares(network)}}},
                      true});
