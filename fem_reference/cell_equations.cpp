@@ -131,6 +131,17 @@ PointStates states(const CellLaw& law, const CellShape& shape, const CellVector&
   return s;
 }
 
+// Mean of f over the straight line from a to b.
+template <class T, class Function>
+auto mean_over(const T& a, const T& b, const Function& f) {
+  constexpr double at[2] = {0.33998104358485626, 0.86113631159405258},  // Gauss, four points
+      weight[2] = {0.32607257743127307, 0.17392742256872693};
+  const T middle = (a + b) / 2, half = (b - a) / 2;
+  std::decay_t<decltype(f(a))> sum = weight[0] * (f(T(middle - at[0] * half)) + f(T(middle + at[0] * half)));
+  sum += weight[1] * (f(T(middle - at[1] * half)) + f(T(middle + at[1] * half)));
+  return sum;
+}
+
 // Geometric stiffness: grad N_a . S grad N_b, equal for the three components.
 void add_stress_stiffness(const CellShape& shape, const std::vector<Matrix3d>& S, CellMatrix& K) {
   const int n = shape.nodes();
@@ -199,6 +210,49 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
       break;
   }
   return r;
+}
+
+CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellVector& before, const CellVector& middle,
+                         double& smallest) {
+  if (!law.law) return cell_residual(law, shape, middle, smallest, nullptr);
+  const int points = shape.points(), np = int(shape.pressures.cols());
+  CellVector r{Eigen::MatrixXd::Zero(shape.nodes(), 3), Eigen::VectorXd::Zero(np)};
+  const CellVector after{2 * middle.u - before.u, 2 * middle.p - before.p};
+  const PointStates first = states(law, shape, before), last = states(law, shape, after);
+  smallest = std::min({smallest, first.smallest, last.smallest});
+  if (!(smallest > 0)) return r;
+  PointTensors stress(3 * points, 3);
+  for (int q = 0; q < points; ++q) {
+    const double w = shape.weights[q];
+    double p = (first.p[q] + last.p[q]) / 2;
+    if (law.form == Form::mixed)
+      r.p += w *
+             ((first.g[q] + last.g[q]) / 2 -
+              mean_over(first.p[q], last.p[q], [&](double at) { return dilatation_of(law, at).value; })) *
+             shape.pressures.row(q).transpose();
+    else
+      p = mean_over(first.g[q], last.g[q], [&](double at) { return pressure_of(law, at).value; });
+    const Matrix3d F0 = Matrix3d::Identity() + first.h[q], F1 = Matrix3d::Identity() + last.h[q];
+    const Vector6 S = mean_over(Matrix3d(F0.transpose() * F0), Matrix3d(F1.transpose() * F1), [&](const Matrix3d& C) {
+      const Matrix3d U = C.llt().matrixU();  // any F with F^T F = C
+      return Vector6(from_voigt(respond(*law.law, law.mu, p, to_array(U)).S));
+    });
+    stress.middleRows<3>(3 * q) = w / 2 * tensor(S) * (F0 + F1).transpose();
+  }
+  add_forces(shape, stress, r.u);
+  return r;
+}
+
+double cell_energy(const CellLaw& law, const CellShape& shape, const CellVector& x) {
+  const PointStates s = states(law, shape, x);
+  double sum = 0;
+  for (int q = 0; q < shape.points(); ++q) {
+    const double g = law.form == Form::mixed ? dilatation_of(law, s.p[q]).value : s.g[q];
+    const Matrix3 F = to_array(Matrix3d::Identity() + s.h[q]);
+    sum += shape.weights[q] *
+           (shear_energy(*law.law, law.mu, F) + dilatation_energy(*law.law, law.lambda, g) + s.p[q] * (s.g[q] - g));
+  }
+  return sum;
 }
 
 void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& u, const Eigen::MatrixXd& rate,

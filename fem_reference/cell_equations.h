@@ -43,6 +43,16 @@ struct CellLaw {
 CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellVector& x, double& smallest,
                          CellTangent* tangent);
 
+/// The residual of an energy-momentum step from `before` to `after` = 2 middle - before, for the middle's F: with the
+/// mean of S over the straight line from C of `before` to that of `after` (Gauss, four points: exact to the eighth
+/// power of the change), whose work S : (C1 - C0)/2 is the change of the law's energy (Gonzalez 1996); pressures are
+/// means over the dilatation in the same way.  At small strain it is cell_residual() at the middle.
+CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellVector& before, const CellVector& middle,
+                         double& smallest);
+
+/// Elastic energy at finite strain [J]; in the mixed form with its pressures, of which it is stationary.
+double cell_energy(const CellLaw& law, const CellShape& shape, const CellVector& x);
+
 /// Kelvin-Voigt viscosity: adds to the residual `viscosity` [s] times the stress 2 mu E' (second Piola-Kirchhoff, E'
 /// the rate of Green-Lagrange strain) and lambda tr(F' F^-1) F^-T (first).  In the mixed form the pressure resists the
 /// rate too: the dilatation residual becomes that of g + viscosity tr(F' F^-1), divided by 1 + viscosity * per_rate.

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace springproof::fem {
 namespace {
@@ -139,6 +140,30 @@ ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p) {
   }
   const double g = std::expm1(log_J);
   return {g, 1 / pressure(law, lambda, g).slope};
+}
+
+double shear_energy(Law law, double mu, const Matrix3& F) {
+  const Eigen::Matrix3d C = right_cauchy_green(F);
+  const double J = determinant(F);
+  switch (law) {
+    case Law::hencky:
+      return mu / 4 * Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(C).eigenvalues().array().log().square().sum();
+    case Law::neo_hooke:
+      return mu / 2 * (C.trace() - 3 - 2 * std::log(J));
+    case Law::neo_hooke_isochoric:
+      return mu / 2 * (C.trace() / std::cbrt(J * J) - 3) + mu / 3 * (J - 1) * (J - 1);
+    case Law::st_venant_kirchhoff:
+      return mu / 4 * (C - Eigen::Matrix3d::Identity()).squaredNorm();
+    case Law::log_cauchy:
+      break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double dilatation_energy(Law law, double lambda, double g) {
+  if (law == Law::log_cauchy) return std::numeric_limits<double>::quiet_NaN();
+  const double measure = is_linear_in_dilatation(law) ? g : std::log1p(g);
+  return lambda / 2 * measure * measure;
 }
 
 LawResponse respond(Law law, double mu, double p, const Matrix3& F) {

@@ -55,6 +55,12 @@ ValueAndSlope pressure(Law law, double lambda, double g);
 /// Its inverse g(p).  Where hencky and neo_hooke have none (lambda / e < p, J beyond e) the largest attainable g.
 ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p);
 
+/// Energy per rest volume of S_shear [Pa], det F > 0.  Not of log_cauchy, which has none: NaN.
+double shear_energy(Law law, double mu, const Matrix3& F);
+
+/// That of the pressure, whose derivative is p(g) [Pa].  Not of log_cauchy: NaN.
+double dilatation_energy(Law law, double lambda, double g);
+
 double determinant(const Matrix3& F);
 
 }  // namespace springproof::fem

@@ -9,10 +9,11 @@
 namespace springproof::fem {
 
 /// Integrates GridProblem::motion in equal steps of the implicit midpoint rule: of second order, without damping of its
-/// own, symplectic, with exact linear and angular momentum; for small strain it is Newmark's average acceleration.  A
-/// step is solved by Newton's method with factors (MUMPS) that are kept while it converges; pressures of the mixed form
-/// are unknowns beside the displacements.  Sets the time, path, kinetic energy, last displacement and description of
-/// the solution.  Loads and pressures are dead loads.
+/// own, symplectic, with exact linear and angular momentum; for small strain it is Newmark's average acceleration. With
+/// Motion::energy_momentum its stress is that of step_residual(), so that energy is exact too.  A step is solved by
+/// Newton's method with factors (MUMPS) that are kept while it converges; pressures of the mixed form are unknowns
+/// beside the displacements.  Sets the time, path, kinetic energy, last displacement and description of the solution.
+/// Loads and pressures are dead loads.
 /// @throws InputError for several processes.
 void solve_motion(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                   Solution& solution);

@@ -43,6 +43,7 @@ struct Motion {
   Vec3 spin = Vec3::Zero();      ///< and about its centre of mass [rad/s]
   double viscosity = 0;          ///< time of retardation of a Kelvin-Voigt solid: to the stress of a strain E it adds
                                  ///< `viscosity` times Hooke's stress of dE/dt [s]
+  bool energy_momentum = false;  ///< steps do the work of the law's stress exactly; false: the midpoint rule
 };
 
 struct Request {
@@ -89,6 +90,8 @@ struct Solution {
   std::vector<double> time;              ///< of Request::motion: 0 and the end of every step [s]
   std::vector<NodalVectors> path;        ///< displacements at Request::points at these times [m]
   std::vector<double> kinetic_energy;    ///< at these times [J]
+  std::vector<double> elastic_energy;    ///< [J]; of laws at finite strain that have one, else empty
+  std::vector<Vec3> angular_momentum;    ///< about the origin [kg m^2/s]
   double memory_MiB = 0;  ///< peak resident set so far, of the largest process; for an experiment with `cost` the
                           ///< growth due to this grid
 };

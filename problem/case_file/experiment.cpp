@@ -40,7 +40,8 @@ constexpr Key material_schema[] = {{"youngs_modulus_Pa"}, {"poisson_ratio"},  {"
 
 constexpr Key section_schema[] = {{"point_m", "[x, y, z]"}, {"normal", "[x, y, z]"}};
 constexpr Key probe_schema[] = {{"name", "a name"}, {"at_m", "[x, y, z], a rest position"}};
-constexpr Key reference_schema[] = {{"cells"}, {"elements"}, {"grading"}, {"edge_m"}, {"smooth"}, {"in_time"}};
+constexpr Key reference_schema[] = {{"cells"},  {"elements"}, {"grading"},   {"edge_m"},
+                                    {"smooth"}, {"in_time"},  {"integrator"}};
 
 /// A key of [material] and the modulus that it sets.
 struct ModulusKey {
@@ -198,6 +199,10 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
     if (const auto given = table.find(key); given && voxels)
       refuse(*given, "is for bodies of hexahedra", "edge_m, for bodies of voxels");
   if (const auto in_time = table.find("in_time")) reference.in_time = as_flag(*in_time);
+  if (const auto integrator = table.find("integrator")) {
+    if (!reference.in_time) refuse(*integrator, "is that of finite elements in time", "in_time = true beside it");
+    reference.energy_momentum = as_choice(*integrator, {"midpoint", "energy_momentum"}) == "energy_momentum";
+  }
   if (const auto cells = table.find("cells")) reference.cells = as_cells(*cells);
   if (const auto elements = table.find("elements")) {
     reference.elements.clear();

@@ -48,7 +48,8 @@ struct ReferenceChoice {
   double grading = 1.5;  ///< exponent that draws elements towards the faces of the block; 1 = uniform
   double edge = 0;       ///< [m] edge length of the tetrahedra for a body of voxels, finest of three meshes; 0 = chosen
   bool in_time = false;  ///< the motion of [dynamics] is integrated by finite elements too
-  bool smooth = false;   ///< the exact solution is smooth: the elements' theoretical order may be assumed
+  bool energy_momentum = false;  ///< in time by energy-momentum steps; false: by the midpoint rule
+  bool smooth = false;           ///< the exact solution is smooth: the elements' theoretical order may be assumed
 };
 
 /// Elements of the reference: hexahedra "q1", "q2", tetrahedra "p1", "p2".

@@ -162,5 +162,34 @@ TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
     }
 }
 
+// The work of a step's forces is the change of the energy, at whatever pressures meet the step's dilatations; no
+// torque.
+TEST(CellEquations, AStepDoesTheWorkOfTheEnergy) {
+  std::srand(4);
+  constexpr int n = 8, points = 4;
+  fem::CellShape shape;
+  shape.gradients = Eigen::MatrixXd::Random(3 * points, n);
+  shape.gradients.rowwise() -= shape.gradients.colwise().mean();
+  shape.weights = Eigen::VectorXd::Constant(points, 0.25) + 0.1 * Eigen::VectorXd::Random(points);
+  for (const fem::Form form : {fem::Form::pointwise, fem::Form::mean_dilatation, fem::Form::mixed})
+    for (const char* name : {"hencky", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"}) {
+      shape.pressures =
+          form == fem::Form::mixed ? Eigen::MatrixXd(Eigen::MatrixXd::Random(points, 2)) : Eigen::MatrixXd(points, 0);
+      const fem::CellLaw law{fem::law_named(name), form, 0.7, 1.9};
+      const auto state = [&] {
+        return fem::CellVector{0.02 * Eigen::MatrixXd::Random(n, 3),
+                               0.1 * Eigen::VectorXd::Random(shape.pressures.cols())};
+      };
+      const fem::CellVector before = state(), after = state(),
+                            middle{(before.u + after.u) / 2, (before.p + after.p) / 2};
+      double smallest = 1;
+      const fem::CellVector f = fem::step_residual(law, shape, before, middle, smallest);
+      ASSERT_GT(smallest, 0);
+      const double work = f.u.cwiseProduct(after.u - before.u).sum() + f.p.dot(after.p - before.p),
+                   change = fem::cell_energy(law, shape, after) - fem::cell_energy(law, shape, before);
+      EXPECT_NEAR(work, change, 1e-9 * f.u.norm()) << name << static_cast<int>(form);
+    }
+}
+
 }  // namespace
 }  // namespace springproof::assembled_test

@@ -51,6 +51,24 @@ std::vector<Matrix> some_gradients() {
 
 class FemLaw : public testing::TestWithParam<Law> {};
 
+TEST_P(FemLaw, StressIsTheDerivativeOfTheEnergy) {
+  const Law law = GetParam();
+  if (law == Law::log_cauchy) return;
+  const auto energy = [&](const Matrix& F) {
+    return fem::shear_energy(law, mu, plain(F)) + fem::dilatation_energy(law, lambda, fem::dilatation(law, plain(F)));
+  };
+  const double step = 1e-5;
+  for (const Matrix& F : some_gradients()) {
+    const Matrix P = F * tensor(at(law, F).S);
+    for (int i = 0; i < 9; ++i) {
+      Matrix up = F, down = F;
+      up(i % 3, i / 3) += step;
+      down(i % 3, i / 3) -= step;
+      EXPECT_NEAR((energy(up) - energy(down)) / (2 * step), P(i % 3, i / 3), 1e-8 * (mu + P.norm()));
+    }
+  }
+}
+
 TEST_P(FemLaw, TangentIsTheDerivativeOfTheStress) {
   const Law law = GetParam();
   const double p = 0.7, step = 1e-5;

@@ -222,5 +222,35 @@ TEST(FemMotion, ViscosityDoesNotBrakeASpin) {
   EXPECT_NEAR(settled, s.kinetic_energy[0], 0.02 * settled);
 }
 
+/// Largest change of the energy and of the angular momentum of a free bar that spins and rings for four turns.
+std::pair<double, double> lost(bool energy_momentum, const char* law, double nu, int steps) {
+  const double turn = 2 * std::numbers::pi / 20;
+  fem::Motion motion{.duration = 4 * turn, .spin = {0, 6, 19}};
+  motion.energy_momentum = energy_momentum;
+  fem::GridProblem problem = block_in_motion({0.3, 0.1, 0.1}, {3, 1, 1}, nu, motion, steps);
+  problem.law = law;
+  problem.material.youngs_modulus = 1e5;
+  problem.material.density = 1000;
+  const fem::Solution s = fem::solve_grid(problem);
+  EXPECT_TRUE(s.ok) << s.message;
+  double energy = 0, spin = 0;
+  const double E = s.kinetic_energy[0] + s.elastic_energy[0], L = s.angular_momentum[0].norm();
+  for (std::size_t i = 0; i < s.time.size(); ++i) {
+    energy = std::max(energy, std::abs((s.kinetic_energy[i] + s.elastic_energy[i]) / E - 1));
+    spin = std::max(spin, (s.angular_momentum[i] - s.angular_momentum[0]).norm() / L);
+  }
+  return {energy, spin};
+}
+
+TEST(FemMotion, EnergyMomentumStepsKeepBoth) {
+  for (const char* law : {"hencky", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"})
+    for (const double nu : {0.25, 0.49}) {
+      const auto [energy, spin] = lost(true, law, nu, 160);
+      EXPECT_LT(energy, 1e-8) << law << nu;
+      EXPECT_LT(spin, 1e-8) << law << nu;
+      EXPECT_GT(lost(false, law, nu, 160).first, 5e-3) << law << nu;
+    }
+}
+
 }  // namespace
 }  // namespace springproof::motion_test

@@ -1,0 +1,86 @@
+// The cells of a body in motion: consistent mass, internal force, energy, and the factors of the tangent.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem_reference/boundary_conditions.h"
+#include "fem_reference/cell_equations.h"
+#include "fem_reference/multigrid.h"
+#include "fem_reference/petsc.h"
+#include "fem_reference/solve_grid.h"
+#include "fem_reference/triangulate.h"
+
+namespace springproof::fem {
+
+/// Displacements of all degrees of freedom and pressures; or forces and residuals of the dilatation equation.
+struct Unknowns {
+  Eigen::VectorXd u, p;
+};
+
+/// Viscosity in a step: the rate of displacements is per_rate * (x - before).
+struct Viscous {
+  double time = 0;      ///< of retardation [s]; 0: none
+  double per_rate = 0;  ///< [1/s]
+  Eigen::VectorXd before;
+
+  bool acts() const { return time * per_rate > 0; }
+};
+
+/// The cells of a body with their equations: consistent mass, internal force, and the factors of the tangent.
+class BodyCells {
+ public:
+  BodyCells(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+            const std::vector<Prescribed>& held);
+
+  Unknowns zero() const {
+    return {Eigen::VectorXd::Zero(Eigen::Index(number_.size())), Eigen::VectorXd::Zero(pressures_)};
+  }
+  Eigen::Index unknowns() const { return free_ + pressures_; }
+  bool is_free(Eigen::Index dof) const { return number_[dof] >= 0; }
+  int component(Eigen::Index dof) const { return component_[dof]; }
+  std::string form() const { return form_; }
+
+  /// M a on all degrees of freedom.
+  Eigen::VectorXd times_mass(const Eigen::VectorXd& a) const;
+  /// Sum of x M v over the nodes' positions x.
+  Vec3 angular_momentum(const Eigen::VectorXd& position, const Eigen::VectorXd& v) const;
+  /// Elastic energy; nothing at small strain and of a law without one.
+  std::optional<double> energy(const Unknowns& x) const;
+  /// Internal force and dilatation residual at x, on all degrees of freedom; the smallest det F, not positive if they
+  /// are not valid.
+  /// `before`, if not null: of the energy-momentum step from it whose middle x is (cell_equations.h).
+  double residual(const Unknowns& x, const Viscous& viscous, const Unknowns* before, Unknowns& r) const;
+  /// Factors of inertia M + dr/dx, symmetrised.
+  void factor(const Unknowns& x, const Viscous& viscous, double inertia);
+  /// The correction by the factors; zero where held.
+  Unknowns correction(const Unknowns& r) const;
+
+ private:
+  struct Cell {
+    CellShape shape;
+    Eigen::MatrixXd mass;                  ///< of one component [kg]
+    std::vector<Eigen::Index> u;           ///< 3 a + i: component i of node a
+    std::vector<Eigen::Index> p;           ///< pressures
+    std::vector<PetscInt> rows_u, rows_p;  ///< in the matrix; -1: held
+  };
+  CellVector read(const Cell& cell, const Unknowns& x) const;
+  static Unknowns rate_of(const Unknowns& x, const Viscous& viscous) {
+    return {viscous.acts() ? Eigen::VectorXd(viscous.per_rate * (x.u - viscous.before)) : x.u, x.p};
+  }
+
+  CellLaw law_;
+  std::string form_;
+  std::vector<Cell> cells_;
+  std::vector<PetscInt> number_;  ///< of each degree of freedom among the free ones; -1: held
+  std::vector<int> component_;    ///< of each degree of freedom
+  PetscInt free_ = 0;
+  Eigen::Index pressures_ = 0;
+  std::unique_ptr<SparseMatrix> matrix_;
+  std::unique_ptr<SymmetricFactors> factors_;
+};
+
+}  // namespace springproof::fem
