@@ -94,7 +94,8 @@ constexpr std::array environment = {
              "portable, avx2 or avx512: what the kernels are to use (default: the widest of this processor)"},
     Variable{"SPRINGPROOF_DEVICE",
              "processor or gpu: where lattices of whole cells are computed (default: processor; gpu: in a build with "
-             "SPRINGPROOF_CUDA, explicit steps without viscosity, and equilibria away from nu = 1/2)"},
+             "SPRINGPROOF_CUDA, explicit steps without viscosity, and equilibria at small strain away from nu = 1/2; "
+             "not by the live page and springproof-lattice)"},
     Variable{"SPRINGPROOF_LAMMPS", "the lmp of LAMMPS that the bench measures beside ours, instead of the one on PATH"},
     Variable{"SPRINGPROOF_ENGINES",
              "folder whose node_modules has the engines of bench engines (default: "

@@ -184,7 +184,7 @@ void HomogeniseCommand::add_options(CLI::App& command) {
   number("--face-to-cube", "face_to_cube", "lattices: A = k_f / k_c");
   word("--dispersion", "dispersion",
        "eMSM: symmetric, share_weighted, published, published_transposed or finite_strain");
-  word("--weights", "weights", "eMSM, symmetric: volume or kL (default: by the sign of q)");
+  word("--weights", "weights", "eMSM, symmetric or finite_strain: volume or kL (default: by the sign of q)");
   word("--calibration", "calibration", "random: homogenised (default, as compare) or affine (the papers' formulas)");
   word("--surface", "surface", "random: nodes (default) or cut, whose springs are left as they are made");
   command.add_flag("--json", json_, "print JSON");

@@ -199,11 +199,11 @@ int main(int argc, char** argv) try {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
+  if (*list_command) return list();
+  if (*describe_command) return describe(app, form);
   springproof::gpu::wants_gpu();  // refuses what cannot be had before anything runs
   if (*compare_command) return compare(find_cases(names), options);
   if (*report_command) return sweep_report.run();
-  if (*list_command) return list();
-  if (*describe_command) return describe(app, form);
   if (*bench_command) return run_bench(bench_command->remaining());
   if (*homogenise_command) return homogenisation.run();
   if (*export_command) return export_case.run();

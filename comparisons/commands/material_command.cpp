@@ -336,7 +336,8 @@ void MaterialCommand::add_options(CLI::App& command) {
   command.add_option("--face-to-cube", face_to_cube_, "A = k_f / k_c");
   command.add_option("--dispersion", dispersion_,
                      "eMSM: symmetric, share_weighted, published, published_transposed or finite_strain");
-  command.add_option("--weights", weights_, "eMSM, symmetric: volume or kL (default: by the sign of q)");
+  command.add_option("--weights", weights_,
+                     "eMSM, symmetric or finite_strain: volume or kL (default: by the sign of q)");
   command.add_option("--springs-per-node", springs_per_node_, "random: mean number of springs at a node (default 15)");
   command.add_option("--frequency", frequency_, "a vibration [Hz] whose damping by implicit Euler is printed")
       ->check(CLI::PositiveNumber)

@@ -8,7 +8,6 @@
 
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
-#include "msm/gpu/gpu.h"
 #include "msm/kernels/cell_forces.h"
 #include "msm/kernels/list_forces.h"
 #include "msm/topology/macro_cells.h"
@@ -185,20 +184,17 @@ class MotionOfList : public Motion {
   ListMotion<Real> motion_;
 };
 
-LatticeMotionOptions of_lattice(const MassSpringModel& model, const DynamicsOptions& options) {
-  LatticeMotionOptions of{.precision = options.precision,
-                          .threads = options.threads,
-                          .viscosity = options.viscosity,
-                          .mass_consistency = options.mass_consistency};
-  if (gpu::wants_gpu() && LatticeMotion::suits_gpu(model, of)) of.device = Device::gpu;
-  return of;
-}
-
 /// Lattices that have a kernel.
 class MotionOfLattice : public Motion {
  public:
   MotionOfLattice(const MassSpringModel& model, double density, double time_step, const DynamicsOptions& options)
-      : motion_(model, density, of_lattice(model, options)), dt_(time_step), damping_(options.damping) {}
+      : motion_(model, density,
+                on_chosen_device(model, {.precision = options.precision,
+                                         .threads = options.threads,
+                                         .viscosity = options.viscosity,
+                                         .mass_consistency = options.mass_consistency})),
+        dt_(time_step),
+        damping_(options.damping) {}
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.set_conditions(conditions); }
   void move_supports() override { motion_.move_supports(); }

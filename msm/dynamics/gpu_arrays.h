@@ -26,12 +26,12 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
   }
 
   void set_conditions(const BoundaryConditions& conditions) override {
-    CoefficientTable table(6);
-    std::vector<int> load(box_.size, -1);
+    CoefficientTable table(gpu::values_of_load);
+    std::vector<int> load(box_.size, gpu::no_node);
     support_places_.clear();
     support_values_.clear();
     for (int n = 0; n < network_.nodes(); ++n) {
-      double entry[6];
+      double entry[gpu::values_of_load];
       for (int d = 0; d < 3; ++d) {
         const bool fixed = conditions.fixed[3 * n + axis_[d]];
         entry[d] = fixed ? 0 : 1 / (density_ * network_.volume[n] * edge_);
@@ -133,7 +133,7 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
 
 template <class Real>
 gpu::LatticeForGpu<Real> LatticeMotion::ArraysOnGpu<Real>::lattice_of(const MassSpringModel& model) {
-  constexpr int kappa = 27, cell = 28, values = 29;  // of an entry, as msm/gpu/lattice_step.h says
+  constexpr int values = gpu::values_of_kind;
   const NodalVectors& X = network_.X;
   const Eigen::RowVector3d low = X.colwise().minCoeff(), extent = (X.colwise().maxCoeff() - low) / edge_;
   std::stable_sort(axis_.begin(), axis_.end(), [&](int a, int b) { return extent[a] > extent[b] + 0.5; });
@@ -157,7 +157,7 @@ gpu::LatticeForGpu<Real> LatticeMotion::ArraysOnGpu<Real>::lattice_of(const Mass
           square += step * step;
         }
         all[std::size_t(s.i) * values + c] += s.stiffness * edge_;
-        all[std::size_t(s.j) * values + 26 - c] += s.stiffness * edge_;
+        all[std::size_t(s.j) * values + (gpu::neighbours - 1 - c)] += s.stiffness * edge_;
         l.reach = std::max(l.reach, square);
       }
     const auto* volume = std::get_if<VolumeCorrection>(&law);
@@ -174,8 +174,8 @@ gpu::LatticeForGpu<Real> LatticeMotion::ArraysOnGpu<Real>::lattice_of(const Mass
       const int lowest =
           *std::min_element(corners.begin(), corners.end(), [&](int a, int b) { return place_[a] < place_[b]; });
       double* entry = &all[std::size_t(lowest) * values];
-      if (volume) entry[kappa] = volume->kappa * edge_ * edge_;
-      entry[cell] = 1;
+      if (volume) entry[gpu::kappa_of_kind] = volume->kappa * edge_ * edge_;
+      entry[gpu::cell_of_kind] = 1;
     }
   }
   CoefficientTable table(values);

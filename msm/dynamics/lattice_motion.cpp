@@ -30,6 +30,11 @@ bool LatticeMotion::suits_gpu(const MassSpringModel& model, const LatticeMotionO
          options.mass_consistency == 0;
 }
 
+LatticeMotionOptions on_chosen_device(const MassSpringModel& model, LatticeMotionOptions options) {
+  if (gpu::wants_gpu() && LatticeMotion::suits_gpu(model, options)) options.device = Device::gpu;
+  return options;
+}
+
 LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const LatticeMotionOptions& options) {
   if (!suits(model, options.viscosity, options.mass_consistency))
     throw std::invalid_argument(

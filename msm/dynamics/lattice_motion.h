@@ -27,6 +27,10 @@ struct LatticeMotionOptions {
   Device device = Device::processor;
 };
 
+/// The same on the GPU, if SPRINGPROOF_DEVICE chooses it and LatticeMotion::suits_gpu().
+/// @throws InputError as gpu::wants_gpu().
+LatticeMotionOptions on_chosen_device(const MassSpringModel& model, LatticeMotionOptions options);
+
 /// Norms of the sum of internal and external forces [N].
 struct ForceNorms {
   double unbalanced = 0;  ///< at free unknowns

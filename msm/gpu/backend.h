@@ -2,6 +2,7 @@
 // thread by thread: slow, and how the tests run a GPU's code on a machine that has none.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
@@ -38,7 +39,9 @@ inline void check(cudaError_t status) {
 }
 inline void* allocate(std::size_t bytes) {
   void* p = nullptr;
-  check(cudaMalloc(&p, bytes));
+  if (cudaMalloc(&p, bytes) != cudaSuccess)
+    throw std::runtime_error("the GPU has no " + std::to_string(bytes >> 20) +
+                             " MiB left (without SPRINGPROOF_DEVICE = gpu the processor computes)");
   return p;
 }
 inline void release(void* p) { cudaFree(p); }

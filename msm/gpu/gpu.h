@@ -20,12 +20,20 @@ bool built_for_gpu();  ///< by CUDA
 /// @throws InputError for another value, or where there is no GPU.
 bool wants_gpu();
 
+// An entry of the table of kinds.
+constexpr int neighbours = 27;  ///< number c of the neighbour at (c % 3, c / 3 % 3, c / 9) - 1; 13: the node itself
+constexpr int kappa_of_kind = neighbours;       ///< kappa edge^2 [N] of the cell whose lowest corner is the node
+constexpr int cell_of_kind = neighbours + 1;    ///< 1: there is this cell
+constexpr int values_of_kind = neighbours + 2;  ///< before them: spring constant times edge [N] to each neighbour
+constexpr int values_of_load = 6;               ///< 1 / (mass edge) of three unknowns (0 if fixed), force [N]
+constexpr int no_node = -1;                     ///< in place of an entry of loads
+
 /// What explicit steps need of a lattice; lengths in cell edges, places in the box.
 template <class Real>
 struct LatticeForGpu {
   Box box;
   std::vector<int> kind;
-  std::vector<Real> kinds;  ///< entries as msm/gpu/lattice_step.h says
+  std::vector<Real> kinds;  ///< entries of values_of_kind
   int reach = 0;            ///< squared length of the longest springs; 0: there are none
   bool volume = false, bounded = false, corrected = false;
   LatticeHourglass<Real> hourglass = {};
@@ -37,10 +45,9 @@ template <class Real>
 class LatticeSteps {
  public:
   explicit LatticeSteps(const LatticeForGpu<Real>& lattice);
-  LatticeSteps(LatticeSteps&&) noexcept;
   ~LatticeSteps();
 
-  /// Supports and loads: per place the start of its entry of six values, or -1 where there is no node.
+  /// Supports and loads: per place the start of its entry of values_of_load, or no_node.
   void set_loads(const std::vector<int>& load, const std::vector<Real>& loads);
   /// Three components, one after the other, of box.size values.
   void write(const std::vector<Real>& u, const std::vector<Real>& v);
@@ -81,7 +88,6 @@ struct MultigridForGpu {
 class MultigridSolver {
  public:
   explicit MultigridSolver(const MultigridForGpu& multigrid);
-  MultigridSolver(MultigridSolver&&) noexcept;
   ~MultigridSolver();
 
   struct Result {

@@ -1,5 +1,7 @@
 #include "msm/gpu/gpu_multigrid.h"
 
+#include <stdexcept>
+
 #include "msm/multigrid/multigrid.h"
 
 namespace springproof {
@@ -32,6 +34,7 @@ gpu::MultigridLevel level_for_gpu(const LatticeLevel& level, const SmoothingLeve
 }  // namespace
 
 gpu::MultigridForGpu GpuMultigrid::prepared(const LatticeLevels& all, const CellMatrix& cell_of_network, int degree) {
+  if (!all.levels[0].fill.empty()) throw std::invalid_argument("a GPU's multigrid is for whole cells");
   const CellMatrix cell = reorder(cell_of_network, all.axes);
   gpu::MultigridForGpu m;
   m.smoothing_degree = degree;

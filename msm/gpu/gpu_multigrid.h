@@ -17,6 +17,8 @@ namespace springproof {
 class GpuMultigrid {
  public:
   /// As Multigrid; `levels` down to some 300 unknowns, whose matrix is inverted.
+  /// @throws std::invalid_argument if the finest level's cells are filled in part; std::runtime_error as
+  ///   factor_coarsest().
   GpuMultigrid(LatticeLevels levels, const CellMatrix& cell, int smoothing_degree = 3);
 
   /// u = K^-1 b on the free unknowns, 0 on the fixed; nodal vectors.

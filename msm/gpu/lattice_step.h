@@ -4,18 +4,11 @@
 // mass and load.
 #pragma once
 
+#include "msm/gpu/gpu.h"
 #include "msm/gpu/sweep.h"
 #include "msm/kernels/cell_pressure.h"
 
 namespace springproof::gpu {
-
-// An entry of the table of kinds.
-constexpr int neighbours = 27;  ///< number c of the neighbour at (c % 3, c / 3 % 3, c / 9) - 1; 13: the node itself
-constexpr int kappa_of_kind = neighbours;       ///< kappa edge^2 [N] of the cell whose lowest corner is the node
-constexpr int cell_of_kind = neighbours + 1;    ///< 1: there is this cell
-constexpr int values_of_kind = neighbours + 2;  ///< before them: spring constant times edge [N] to each neighbour
-constexpr int values_of_load = 6;               ///< 1 / (mass edge) of three unknowns (0 if fixed), force [N]
-constexpr int no_node = -1;                     ///< in place of an entry of loads
 
 /// A lattice model in the device's memory.
 template <class Real>

@@ -109,8 +109,6 @@ struct LatticeSteps<Real>::Data {
 template <class Real>
 LatticeSteps<Real>::LatticeSteps(const LatticeForGpu<Real>& lattice) : data_(std::make_unique<Data>(lattice)) {}
 template <class Real>
-LatticeSteps<Real>::LatticeSteps(LatticeSteps&&) noexcept = default;
-template <class Real>
 LatticeSteps<Real>::~LatticeSteps() = default;
 
 template <class Real>

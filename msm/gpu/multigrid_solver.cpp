@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -135,7 +136,6 @@ struct MultigridSolver::Data {
 };
 
 MultigridSolver::MultigridSolver(const MultigridForGpu& multigrid) : data_(std::make_unique<Data>(multigrid)) {}
-MultigridSolver::MultigridSolver(MultigridSolver&&) noexcept = default;
 MultigridSolver::~MultigridSolver() = default;
 
 MultigridSolver::Result MultigridSolver::solve(const std::vector<double>& b, double tolerance, int max_iterations,

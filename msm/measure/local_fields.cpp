@@ -43,9 +43,15 @@ std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVec
   for (const Spring& s : network.springs)
     T.push_back(s.stiffness * between(s, u).dot(between(s, network.X).normalized()));
   if (const MomentumDispersion* dispersion = dispersion_of(model)) {
-    Tangent flow;
-    dispersion->add_flow(network, network.X, flow);
-    add(dispersion->tensions(network, flow.inflow * flat(u)), T);
+    const MomentumDispersion::Coefficients c = dispersion->coefficients(network);
+    Eigen::VectorXd J = Eigen::VectorXd::Zero(network.nodes());
+    for (std::size_t n = 0; n < network.springs.size(); ++n) {
+      const Spring& s = network.springs[n];
+      const double elongation = between(s, u).dot(between(s, network.X).normalized());
+      J[dispersion->sink(network, s.i)] += c.in[n][0] * elongation;
+      J[dispersion->sink(network, s.j)] += c.in[n][1] * elongation;
+    }
+    add(dispersion->tensions(network, J), T);
   }
   return T;
 }
@@ -55,8 +61,11 @@ std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVec
   std::vector<double> T;
   T.reserve(network.springs.size());
   for (const Spring& s : network.springs) T.push_back(s.stiffness * (between(s, x).norm() - s.rest_length));
-  if (const MomentumDispersion* dispersion = dispersion_of(model))
+  if (const MomentumDispersion* dispersion = dispersion_of(model)) {
+    if (dispersion->form == Dispersion::finite_strain)
+      throw std::invalid_argument("the forces of momentum dispersion of finite strain are no tensions of springs");
     add(dispersion->tensions(network, dispersion->inflow(network, x)), T);
+  }
   return T;
 }
 

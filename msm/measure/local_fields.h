@@ -9,6 +9,7 @@ namespace springproof {
 
 /// Tension of each spring [N], positive if it pulls: its own plus that added by momentum dispersion.  Forces of cells
 /// and angles are not tensions, so the measured stress of models with those is incomplete.
+/// @throws std::invalid_argument of finite_tensions() for dispersion of finite strain.
 std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVectors& u);  ///< displacement from rest
 std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVectors& x);  ///< positions
 

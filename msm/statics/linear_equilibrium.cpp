@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <stdexcept>
 
 #include "meshes/volume.h"
 #include "msm/algebra/krylov.h"
@@ -140,8 +141,11 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
       solver = volume_stiffness(model, cell, G) >
                        (CutMultigrid::covers(model) ? cut_cells_mixed_above_kappa : mixed_above_kappa) * G
                    ? LinearSolver::mixed_multigrid
-                   : LinearSolver::multigrid;
+               : has_cells && gpu::wants_gpu() ? LinearSolver::gpu_multigrid
+                                               : LinearSolver::multigrid;
   }
+  if (solver == LinearSolver::gpu_multigrid && !has_cells)
+    throw std::invalid_argument("a GPU's multigrid is for lattices of whole cells");
   try {
     if (solver == LinearSolver::mixed_multigrid)
       solve_mixed(problem, cell, G, result);
@@ -149,7 +153,8 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
       solve_on_gpu(problem, cell, result);
     else
       solve_primal(problem, solver == LinearSolver::cholesky, result);
-    const bool iterated = solver == LinearSolver::multigrid && options.solver == LinearSolver::automatic;
+    const bool iterated = (solver == LinearSolver::multigrid || solver == LinearSolver::gpu_multigrid) &&
+                          options.solver == LinearSolver::automatic;
     if (!result.ok && iterated && result.unknowns <= judge_limit) solve_primal(problem, true, result);
   } catch (const std::runtime_error& e) {
     result.message = e.what();

@@ -141,6 +141,9 @@ expect "differences of other files" "results.json: not the results" diff "$work"
 # What is no fault of the case.
 TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
 
+if "$program" bench gpu --quick 2>&1 | grep -q "built without SPRINGPROOF_CUDA"; then
+  SPRINGPROOF_DEVICE=gpu expect "a GPU of a build without" "^error: SPRINGPROOF_DEVICE = .gpu. cannot be used here: built without SPRINGPROOF_CUDA" compare "$work/good.toml" --out "$work/out"
+fi
 SPRINGPROOF_DEVICE=abacus expect "an unknown device" "^error: SPRINGPROOF_DEVICE = .abacus. is unknown .allowed: processor, gpu" compare "$work/good.toml" --out "$work/out"
 
 [ $failures -eq 0 ] && echo "all refused as they should be"

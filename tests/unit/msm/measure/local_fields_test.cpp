@@ -116,6 +116,20 @@ TEST(LocalStress, FiniteTensionsTendToLinearOnes) {
   EXPECT_LE((f - forces(model, model.network.X + u)).norm(), 1e-9 * f.norm());
 }
 
+TEST(LocalStress, TensionsOfFiniteStrainAreThoseOfTheSymmetricFormAtRest) {
+  const Mesh mesh = block_mesh(Vec3(2, 1.5, 1), {4, 3, 2});
+  ModelParameters parameters = test::model("emsm");
+  const auto model = [&](Dispersion form) {
+    parameters.dispersion = form;
+    return build_model(parameters, mesh, {1e5, 0.4, 1000});
+  };
+  const MassSpringModel symmetric = model(Dispersion::symmetric), finite = model(Dispersion::finite_strain);
+  const NodalVectors u = test::noise(symmetric.network.X.rows(), 1e-3);
+  const std::vector<double> expected = linear_tensions(symmetric, u), found = linear_tensions(finite, u);
+  for (std::size_t s = 0; s < expected.size(); ++s) EXPECT_NEAR(found[s], expected[s], 1e-9 * std::abs(expected[0]));
+  EXPECT_THROW(finite_tensions(finite, finite.network.X + u), std::invalid_argument);
+}
+
 TEST(PoissonRatio, OfStressesOnAllSides) {
   const double E = 7, nu = 0.31;
   const Vec3 s(1.0, -0.3, 0.45);
