@@ -12,7 +12,7 @@ bool choose() {
   const std::string of = "SPRINGPROOF_DEVICE = \"" + std::string(wanted) + "\" ";
   if (wanted != std::string("gpu")) throw InputError(of + "is unknown (allowed: processor, gpu)");
   if (device_name().empty())
-    throw std::runtime_error(
+    throw InputError(
         of + "cannot be used here: " + (built_for_gpu() ? "no GPU is found" : "built without SPRINGPROOF_CUDA"));
   return true;
 }
