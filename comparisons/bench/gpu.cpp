@@ -88,7 +88,7 @@ void statics(const BenchOptions& options, int n, double poisson_ratio, Findings&
        fmt::format("{} iterations, set-up by the processor {:.2g} s, {:.0f} MB, displacements equal "
                    "to {:.0e}",
                    on_gpu.iterations, set_up, 1e-6 * gpu.bytes(), difference),
-       on_gpu.converged && difference < 1e-5});
+       on_gpu.converged && difference < 100 * tolerance});
 }
 
 }  // namespace

@@ -34,8 +34,7 @@ void add_options(CLI::App& app, BenchOptions& options) {
                  "damped dynamics), "
                  "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
                  "cases), parallel (springproof-lattice on several processes against one), gpu (lattices on the GPU "
-                 "against this "
-                 "processor), all of these; "
+                 "against this processor), all of these; "
                  "engines (real-time engines and our springs by the same measures; some 15 minutes)")
       ->required()
       ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "parallel", "gpu", "engines", "all"}));

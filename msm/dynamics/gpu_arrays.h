@@ -61,7 +61,8 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
   }
 
   void read(int begin, int end, double* values) const override {
-    steps_.read(u_, v_);
+    steps_.read_u(u_);
+    steps_.read_v(v_);
     for (int n = begin; n < end; ++n, values += 6)
       for (int d = 0; d < 3; ++d) {
         values[axis_[d]] = edge_ * u_[d * box_.size + place_[n]];
@@ -70,7 +71,8 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
   }
 
   void write(int begin, int end, const double* values) override {
-    steps_.read(u_, v_);
+    steps_.read_u(u_);
+    steps_.read_v(v_);
     for (int n = begin; n < end; ++n, values += 6)
       for (int d = 0; d < 3; ++d) {
         u_[d * box_.size + place_[n]] = static_cast<Real>(values[axis_[d]] / edge_);
@@ -92,11 +94,11 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
   }
 
   NodalVectors positions() const override {
-    steps_.read(u_, v_);
+    steps_.read_u(u_);
     return network_.X + edge_ * in_network_order(u_);
   }
   NodalVectors velocities() const override {
-    steps_.read(u_, v_);
+    steps_.read_v(v_);
     return edge_ * in_network_order(v_);
   }
   NodalVectors forces() override { return in_network_order(steps_.forces()); }

@@ -51,7 +51,8 @@ class LatticeSteps {
   void set_loads(const std::vector<int>& load, const std::vector<Real>& loads);
   /// Three components, one after the other, of box.size values.
   void write(const std::vector<Real>& u, const std::vector<Real>& v);
-  void read(std::vector<Real>& u, std::vector<Real>& v) const;
+  void read_u(std::vector<Real>& u) const;
+  void read_v(std::vector<Real>& v) const;
   /// Sets components of displacements: places count from the first component's first.
   void set(const std::vector<int>& places, const std::vector<Real>& u);
 

@@ -124,10 +124,14 @@ void LatticeSteps<Real>::write(const std::vector<Real>& u, const std::vector<Rea
 }
 
 template <class Real>
-void LatticeSteps<Real>::read(std::vector<Real>& u, std::vector<Real>& v) const {
-  u.resize(3 * std::size_t(data_->box.size));
-  v.resize(u.size());
+void LatticeSteps<Real>::read_u(std::vector<Real>& u) const {
+  u.resize(data_->u[data_->now].size());
   data_->u[data_->now].read(u.data());
+}
+
+template <class Real>
+void LatticeSteps<Real>::read_v(std::vector<Real>& v) const {
+  v.resize(data_->v.size());
   data_->v.read(v.data());
 }
 

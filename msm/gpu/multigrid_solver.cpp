@@ -4,6 +4,7 @@
 
 #include "msm/gpu/gpu.h"
 #include "msm/gpu/multigrid_level.h"
+#include "msm/multigrid/chebyshev.h"
 
 namespace springproof::gpu {
 namespace {
@@ -28,19 +29,19 @@ struct LevelOnGpu {
     launch(sweep, box.blocks);
   }
 
-  /// Chebyshev steps of the fourth kind, each after the residual update of the step before.
+  /// Chebyshev steps `first` ... `last`, each after the residual update of the step before.
   void smooth(int first, int last) {
     for (int k = first; k <= last; ++k) {
-      const double previous = k > 1 ? (2.0 * k - 3) / (2.0 * k + 1) : 0;
+      const ChebyshevStep step(k, largest_eigenvalue);
       sweep(Smooth{inverse_diagonal.data(), z[now].data(), z[1 - now].data(), r.data(), x.data(), box.size,
-                   static_cast<float>(previous), static_cast<float>(step(k))});
+                   static_cast<float>(step.previous), static_cast<float>(step.step)});
       now = 1 - now;
     }
   }
-  double step(int k) const { return (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue); }
 
   void before_coarse(int degree) {
-    launch_each(FirstStep{inverse_diagonal.data(), r.data(), z[now].data(), x.data(), static_cast<float>(step(1))},
+    launch_each(FirstStep{inverse_diagonal.data(), r.data(), z[now].data(), x.data(),
+                          static_cast<float>(ChebyshevStep(1, largest_eigenvalue).step)},
                 r.size());
     smooth(2, degree);
     sweep(TakeResidual{inverse_diagonal.data(), r.data(), box.size});

@@ -41,32 +41,20 @@ SPRINGPROOF_INLINE Where<Real> where(bool condition, Real& value) {
 }  // namespace stdx
 
 /// 1 / sqrt(square).
-SPRINGPROOF_INLINE double inverse_root(double square) {
+template <class Real>
+SPRINGPROOF_INLINE Real inverse_root(Real square) {
 #ifdef __CUDA_ARCH__
   return rsqrt(square);
 #else
   return 1 / std::sqrt(square);
 #endif
 }
-SPRINGPROOF_INLINE float inverse_root(float square) {
-#ifdef __CUDA_ARCH__
-  return rsqrtf(square);
-#else
-  return 1 / std::sqrt(square);
-#endif
-}
 
 /// J^(-1/3), with the sign of J.
-SPRINGPROOF_INLINE double inverse_cube_root(double J) {
+template <class Real>
+SPRINGPROOF_INLINE Real inverse_cube_root(Real J) {
 #ifdef __CUDA_ARCH__
   return rcbrt(J);
-#else
-  return 1 / std::cbrt(J);
-#endif
-}
-SPRINGPROOF_INLINE float inverse_cube_root(float J) {
-#ifdef __CUDA_ARCH__
-  return rcbrtf(J);
 #else
   return 1 / std::cbrt(J);
 #endif
@@ -80,7 +68,9 @@ SPRINGPROOF_INLINE Real nearer_inverse_cube_root(Real J, Real y) {
 }
 
 /// ln(1 + d) where no series serves.
-SPRINGPROOF_INLINE double plain_logarithm_of_1_and(double d) { return log1p(d); }
-SPRINGPROOF_INLINE float plain_logarithm_of_1_and(float d) { return log1pf(d); }
+template <class Real>
+SPRINGPROOF_INLINE Real plain_logarithm_of_1_and(Real d) {
+  return std::log1p(d);
+}
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

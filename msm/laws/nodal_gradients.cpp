@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -138,10 +139,10 @@ int NodalGradients::add_flow(const NodalVectors& x, int first, Entries& inflow, 
     }
   };
   if (x == network.X) {
-    const double ratio = law.of_volumes() ? added_lambda(law) : 0;
+    if (!law.of_volumes()) return 0;
     each_end([&](std::size_t s, int end, int n) {
       add(inflow, n, network.springs[s], g[s][end]);
-      add(outflow, n, network.springs[s], ratio * GV[n] * g[s][end]);
+      add(outflow, n, network.springs[s], added_lambda(law) * GV[n] * g[s][end]);
     });
     return network.nodes();
   }

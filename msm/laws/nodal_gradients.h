@@ -38,8 +38,8 @@ struct NodalGradients {
   void pull(const std::vector<Eigen::Matrix3d>& P, NodalVectors& f) const;  ///< f += forces of P_n : dF_n [N]
 
   using Entries = std::vector<Eigen::Triplet<double>>;
-  /// The tangent as rows of inflow and outflow (algebra/tangent.h) from row `first` on.  Returns how many: one per node
-  /// at rest, nine at any other state.
+  /// The tangent as rows of inflow and outflow (algebra/tangent.h) from row `first` on.  Returns how many: at rest
+  /// one per node, or none where the dispersed elongations are kept; nine at any other state.
   int add_flow(const NodalVectors& x, int first, Entries& inflow, Entries& outflow) const;
 
   /// Visits (spring, end 0 or 1, node that receives) where w is not 0.

@@ -7,6 +7,7 @@
 
 #include "msm/algebra/direct_solver.h"
 #include "msm/algebra/krylov.h"
+#include "msm/multigrid/chebyshev.h"
 #include "msm/multigrid/lattice_operator.h"
 #include "msm/multigrid/thin_parts.h"
 
@@ -26,15 +27,6 @@ void restrict_field(const LatticeLevel& coarse, const CellKernels<float>& kernel
 /// Interpolates a coarse field to the finer level.
 void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kernels, const float* field,
                       long fine_stride, float* fine);
-
-/// Coefficients of step k = 1, 2, ... of Chebyshev iteration of the fourth kind, z = previous z + step D r.
-struct ChebyshevStep {
-  double previous, step;
-  ChebyshevStep(int k, double largest_eigenvalue)
-      : ChebyshevStep{k > 1 ? (2.0 * k - 3) / (2.0 * k + 1) : 0, (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue)} {
-  }
-  ChebyshevStep(double of_previous, double of_residual) : previous(of_previous), step(of_residual) {}
-};
 
 /// One level of the cycle for the displacement form: Chebyshev over Jacobi in single precision.
 struct SmoothingLevel {

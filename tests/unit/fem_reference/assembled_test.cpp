@@ -116,14 +116,20 @@ TEST(Tetrahedra, SliversAreSolved) {
   }
 }
 
-// A cube of one cell with a random state: tangent = d residual / d state, central differences.
-TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
-  std::srand(3);
-  constexpr int n = 8, points = 4;
+constexpr int n = 8, points = 4;  // of a cell
+
+fem::CellShape random_shape() {
   fem::CellShape shape;
   shape.gradients = Eigen::MatrixXd::Random(3 * points, n);
   shape.gradients.rowwise() -= shape.gradients.colwise().mean();
   shape.weights = Eigen::VectorXd::Constant(points, 0.25) + 0.1 * Eigen::VectorXd::Random(points);
+  return shape;
+}
+
+// A cube of one cell with a random state: tangent = d residual / d state, central differences.
+TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
+  std::srand(3);
+  fem::CellShape shape = random_shape();
   for (const fem::Form form : {fem::Form::pointwise, fem::Form::mean_dilatation, fem::Form::mixed})
     for (const char* name : {"", "hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"}) {
       shape.pressures =
@@ -166,11 +172,7 @@ TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
 // torque.
 TEST(CellEquations, AStepDoesTheWorkOfTheEnergy) {
   std::srand(4);
-  constexpr int n = 8, points = 4;
-  fem::CellShape shape;
-  shape.gradients = Eigen::MatrixXd::Random(3 * points, n);
-  shape.gradients.rowwise() -= shape.gradients.colwise().mean();
-  shape.weights = Eigen::VectorXd::Constant(points, 0.25) + 0.1 * Eigen::VectorXd::Random(points);
+  fem::CellShape shape = random_shape();
   for (const fem::Form form : {fem::Form::pointwise, fem::Form::mean_dilatation, fem::Form::mixed})
     for (const char* name : {"hencky", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"}) {
       shape.pressures =
