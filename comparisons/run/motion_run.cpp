@@ -93,6 +93,7 @@ class Recorder {
         lattice_(lattice),
         built_(built),
         mass_(masses(built.model.network, material.density)),
+        per_mass_(inverse_masses(built.model.network, material.density)),
         behind_(steps.integrator == Integrator::explicit_euler ? steps.size / 2 : 0),
         damping_(options.damping),
         viscosity_(options.viscosity),
@@ -136,7 +137,8 @@ class Recorder {
     const NodalVectors f =
         forces(built_.model, x) + viscous_forces(x, average_.velocities(v, conditions.fixed)) + conditions.external;
     for (Eigen::Index i = 0; i < v.size(); ++i)
-      if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] / mass_[i / 3] - damping_ * v.data()[i]);
+      if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_[i / 3] - damping_ * v.data()[i]);
+    carry(built_.model.network.carried, v);
     return contact_ ? contact_->stopped(conditions.fixed, v) : v;
   }
 
@@ -183,7 +185,7 @@ class Recorder {
   const PreparedCase& prepared_;
   const Lattice& lattice_;
   const EmbeddedModel& built_;
-  Eigen::VectorXd mass_;
+  Eigen::VectorXd mass_, per_mass_;
   double behind_;   ///< the velocities of a step [s]
   double damping_;  ///< [1/s]
   Viscosity viscosity_;

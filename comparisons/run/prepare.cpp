@@ -66,11 +66,15 @@ void choose_cut_cells(PreparedCase& prepared) {
   }
   if (e.body.accuracies.empty()) return;
   const auto is_cut = [](const ModelParameters& p) { return *p.cut; };
-  if (e.fracture || e.dynamics || std::none_of(prepared.models.begin(), prepared.models.end(), is_cut))
+  if (e.fracture || std::none_of(prepared.models.begin(), prepared.models.end(), is_cut))
     throw InputError(
         e.body.where,
-        "body.accuracy: cells of several sizes are for models of cut cells at rest (allowed: no [dynamics] "
-        "or [fracture], and one such model)");
+        "body.accuracy: cells of several sizes are for models of cut cells (allowed: no [fracture], and one such "
+        "model)");
+  if (e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement))
+    throw InputError(e.body.where,
+                     "body.accuracy: cells are halved where the loads strain the body at rest, and nothing holds this "
+                     "one (allowed: a load with displacement_m; or voxels, or voxel_edge_m, alone)");
 }
 
 /// @throws InputError at options of nodes at random, for a network whose nodes are the vertices of a mesh.

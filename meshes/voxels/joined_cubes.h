@@ -54,16 +54,16 @@ void carry(const std::vector<CarriedPoint>& carried, Field& field) {
     }
 }
 
-/// The transpose: what acts on carried points is handed back to the others.
+/// The transpose: what acts on carried points is handed back to the others; `values` per point.
 template <class Field>
-void hand_back(const std::vector<CarriedPoint>& carried, Field& field) {
+void hand_back(const std::vector<CarriedPoint>& carried, Field& field, int values = 3) {
   using Value = typename Field::Scalar;
   Value* f = field.data();
   for (auto c = carried.rbegin(); c != carried.rend(); ++c)
-    for (int d = 0; d < 3; ++d) {
-      const Value share = f[3 * c->point + d] / static_cast<Value>(c->by.size());
-      for (const int p : c->by) f[3 * p + d] += share;
-      f[3 * c->point + d] = 0;
+    for (int d = 0; d < values; ++d) {
+      const Value share = f[values * c->point + d] / static_cast<Value>(c->by.size());
+      for (const int p : c->by) f[values * p + d] += share;
+      f[values * c->point + d] = 0;
     }
 }
 

@@ -125,11 +125,14 @@ class PlainMotion : public Motion {
       for (Eigen::Index i = 0; i < x_.size(); ++i)
         if (conditions_.fixed[i])
           of_supports_.data()[i] = (model_.network.X.data()[i] + conditions_.prescribed.data()[i] - x_.data()[i]) / dt_;
+    carry(model_.network.carried, of_supports_);
     const NodalVectors averaged = average_.acts() ? moving() : NodalVectors();
     const NodalVectors& v = average_.acts() ? averaged : v_;
     for (Eigen::Index i = 0; i < x_.size(); ++i)
       if (!conditions_.fixed[i]) x_.data()[i] += dt_ * v.data()[i];
     move_supports();
+    carry(model_.network.carried, x_);
+    carry(model_.network.carried, v_);
     return {std::sqrt(unbalanced), std::sqrt(support)};
   }
 
@@ -164,16 +167,16 @@ class PlainMotion : public Motion {
 template <class Real>
 class MotionOfList : public Motion {
  public:
-  MotionOfList(std::unique_ptr<BlockForces<Real>> forces, const NodalVectors& X, const Eigen::VectorXd& inverse_mass,
+  MotionOfList(std::unique_ptr<BlockForces<Real>> forces, const Network& network, const Eigen::VectorXd& inverse_mass,
                const ListMotionOptions& options)
-      : motion_(std::move(forces), X, inverse_mass, options) {}
+      : motion_(std::move(forces), network.X, inverse_mass, options), carried_(network.carried) {}
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
   void move_supports() override { motion_.place_prescribed(); }
   void set_state(const NodalVectors& x, const NodalVectors& v) override { motion_.set_state(x, v); }
   ForceNorms advance(long steps) override { return motion_.advance(steps); }
-  NodalVectors positions() const override { return motion_.positions(); }
-  NodalVectors velocities() const override { return motion_.velocities(); }
+  NodalVectors positions() const override { return with_carried(motion_.positions()); }
+  NodalVectors velocities() const override { return with_carried(motion_.velocities()); }
   std::string description() const override {
     return fmt::format("{}, {}, {}, {}", motion_.kernel(), sizeof(Real) == 4 ? "FP32" : "FP64",
                        name_of(instruction_set()),
@@ -181,7 +184,13 @@ class MotionOfList : public Motion {
   }
 
  private:
+  NodalVectors with_carried(NodalVectors of_nodes) const {
+    carry(carried_, of_nodes);
+    return of_nodes;
+  }
+
   ListMotion<Real> motion_;
+  std::vector<CarriedPoint> carried_;
 };
 
 /// Lattices that have a kernel.
@@ -245,7 +254,7 @@ std::unique_ptr<Motion> motion_by_lists(const MassSpringModel& model, const Eige
   std::unique_ptr<BlockForces<Real>> forces = block_forces<Real>(model, options);
   if (!forces) return nullptr;
   const ListMotionOptions of_list{dt, options.damping, options.lagged, options.threads};
-  return std::make_unique<MotionOfList<Real>>(std::move(forces), model.network.X, inverse_mass, of_list);
+  return std::make_unique<MotionOfList<Real>>(std::move(forces), model.network, inverse_mass, of_list);
 }
 
 }  // namespace
@@ -261,7 +270,7 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
                                                                 .contact = options.contact});
   if (!options.lagged && LatticeMotion::suits(model, options.viscosity, options.mass_consistency))
     return std::make_unique<MotionOfLattice>(model, density, dt, options);
-  const Eigen::VectorXd inverse_mass = masses(model.network, density).cwiseInverse();
+  const Eigen::VectorXd inverse_mass = inverse_masses(model.network, density);
   std::unique_ptr<Motion> motion = options.precision == Precision::float32
                                        ? motion_by_lists<float>(model, inverse_mass, dt, options)
                                        : motion_by_lists<double>(model, inverse_mass, dt, options);
@@ -300,7 +309,7 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
                              const BoundaryConditions& bc, double dt, const DynamicsOptions& options) {
   NodalVectors v = options.velocity;
   if (v.size() == 0) return NodalVectors::Zero(x.rows(), 3);
-  const Eigen::VectorXd mass = masses(model.network, density);
+  const Eigen::VectorXd per_mass = inverse_masses(model.network, density);
   NodalVectors there = x;  // where supports are from the start
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (bc.fixed[i]) there.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i];
@@ -312,7 +321,8 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   v = MassAverage(model.network, options.mass_consistency).momenta(v, bc.fixed);
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (!bc.fixed[i] && explicit_steps)
-      v.data()[i] -= dt / 2 * (f.data()[i] / mass[i / 3] - options.damping * v.data()[i]);
+      v.data()[i] -= dt / 2 * (f.data()[i] * per_mass[i / 3] - options.damping * v.data()[i]);
+  carry(model.network.carried, v);
   return v;
 }
 
@@ -335,7 +345,8 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   BoundaryConditions bc = load_path(options.course.factor(0));
   motion->set_conditions(bc);
   if (options.start.size() > 0 || options.velocity.size() > 0) {
-    const NodalVectors x = options.start.size() > 0 ? options.start : X;
+    NodalVectors x = options.start.size() > 0 ? options.start : X;
+    carry(model.network.carried, x);
     motion->set_state(x, velocity_before(model, density, x, bc, dt, options));
   }
   motion->move_supports();

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "msm/laws/nodal_gradients.h"
@@ -71,6 +72,7 @@ void pull_springs(const Network& network, const NodalVectors& x0, const NodalVec
 struct AddSecantForces {
   const Network& network;
   const std::vector<CellForm>& forms;
+  const std::vector<int>& form_of;
   const NodalVectors &x0, &x1;
   NodalVectors& f;
 
@@ -126,10 +128,8 @@ struct AddSecantForces {
         return W;
       });
     };
-    std::size_t cut = 0;
     for (std::size_t c = 0; c < network.cells.size(); ++c) {
-      const bool full = network.filled.empty() || network.filled[c].fraction == 1;
-      const CellForm& form = full ? forms[0] : forms[++cut];
+      const CellForm& form = forms[form_of[c]];
       const Corners p0 = corners_at(network.cells[c], x0), p1 = corners_at(network.cells[c], x1);
       const Mat3 F0 = p0 * form.gradient.transpose(), F1 = p1 * form.gradient.transpose(), F = (F0 + F1) / 2;
       const Eigen::Matrix<double, 3, 4> q0 = p0 * corner_patterns(), q1 = p1 * corner_patterns(), q = (q0 + q1) / 2,
@@ -170,14 +170,27 @@ EnergyMomentum::EnergyMomentum(const MassSpringModel& model) : model_(model) {
   if (const std::string why = lacks(model); !why.empty()) throw std::invalid_argument(why);
   const AveragedSprings* law = averaged_springs_of(model);
   if (!law) return;
-  forms_.push_back(cell_form(*law, model.network.cell_edge, {}));
-  for (const FilledPart& part : model.network.filled)
-    if (part.fraction != 1) forms_.push_back(cell_form(*law, model.network.cell_edge, part));
+  std::map<double, int> full;  // by edge
+  const Network& network = model.network;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const FilledPart part = network.filled.empty() ? FilledPart{} : network.filled[c];
+    const auto make = [&] {
+      forms_.push_back(cell_form(*law, network.edge(c), part));
+      return static_cast<int>(forms_.size()) - 1;
+    };
+    if (part.fraction != 1)
+      form_of_.push_back(make());
+    else if (const auto known = full.find(network.edge(c)); known != full.end())
+      form_of_.push_back(known->second);
+    else
+      form_of_.push_back(full[network.edge(c)] = make());
+  }
 }
 
 NodalVectors EnergyMomentum::forces(const NodalVectors& x0, const NodalVectors& x1) const {
   NodalVectors f = NodalVectors::Zero(x0.rows(), 3);
-  for (const ForceLaw& law : model_.laws) std::visit(AddSecantForces{model_.network, forms_, x0, x1, f}, law);
+  for (const ForceLaw& law : model_.laws) std::visit(AddSecantForces{model_.network, forms_, form_of_, x0, x1, f}, law);
+  hand_back(model_.network.carried, f);
   return f;
 }
 

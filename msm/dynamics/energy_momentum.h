@@ -26,12 +26,13 @@ class EnergyMomentum {
   /// @throws std::invalid_argument if the model lacks them.
   explicit EnergyMomentum(const MassSpringModel& model);
 
-  /// [N]; NaN where a cell is flat.
+  /// At positions x0 and x1 with carried nodes in their places [N]; NaN where a cell is flat.
   NodalVectors forces(const NodalVectors& x0, const NodalVectors& x1) const;
 
  private:
   const MassSpringModel& model_;
-  std::vector<CellForm> forms_;  ///< of averaged springs: of a full cell, then of each cut one
+  std::vector<CellForm> forms_;  ///< of averaged springs: of full cells, one per size, and of each cut one
+  std::vector<int> form_of_;     ///< each cell
 };
 
 }  // namespace springproof

@@ -99,7 +99,8 @@ ImplicitMotion::Formula ImplicitMotion::formula() const {
 
 /// Internal, viscous and external.  Over an energy-momentum step dashpots are those of its middle, where they have no
 /// torque, and take the energy f . (x1 - x0) <= 0.
-NodalVectors ImplicitMotion::force(const Formula& step, const NodalVectors& x1) const {
+NodalVectors ImplicitMotion::force(const Formula& step, NodalVectors x1) const {
+  carry(model_.network.carried, x1);
   NodalVectors f = secant_ ? NodalVectors(secant_->forces(x_, x1) + (external_before_ + conditions_.external) / 2)
                            : NodalVectors(springproof::forces(model_, x1) + conditions_.external);
   if (options_.viscosity.acts())
@@ -137,7 +138,7 @@ void ImplicitMotion::renew(const Formula& step, const NodalVectors& x1) {
   const double a = prepared_for_ / scale_;
   for (int n = 0; n < model_.network.nodes(); ++n) K_.local.add(n, n, a * mass_[n] * Eigen::Matrix3d::Identity());
   if (plane_) plane_->stiffen(K_.local);
-  factors_->factor(K_, conditions_.fixed);
+  factors_->factor(K_, fixed_or_carried(model_.network, conditions_.fixed));
 }
 
 Eigen::VectorXd ImplicitMotion::correction(const Eigen::VectorXd& r) const {
@@ -161,6 +162,7 @@ NodalVectors ImplicitMotion::with_supports(NodalVectors x) const {
   for (Eigen::Index i = 0; i < x.size(); ++i)
     if (conditions_.fixed[i]) x.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
   if (plane_) plane_->put(x);
+  carry(model_.network.carried, x);
   return x;
 }
 
@@ -337,6 +339,7 @@ bool ImplicitMotion::solve_step() {
       return false;
     }
   }
+  carry(model_.network.carried, x1);
   double unbalanced = 0, support = 0;
   for (Eigen::Index i = 0; i < x1.size(); ++i)
     (conditions_.fixed[i] ? support : unbalanced) += b.force.data()[i] * b.force.data()[i];

@@ -90,7 +90,7 @@ class ImplicitMotion {
   void newton_step(const Formula& step, double relative, NodalVectors& x1, Balance& b);
   NodalVectors with_supports(NodalVectors x) const;
   Eigen::VectorXd free_part(NodalVectors v) const;
-  NodalVectors force(const Formula& step, const NodalVectors& x1) const;
+  NodalVectors force(const Formula& step, NodalVectors x1) const;
   void prepare(const Formula& step);
   void renew(const Formula& step, const NodalVectors& x1);
   Eigen::VectorXd correction(const Eigen::VectorXd& r) const;

@@ -21,7 +21,7 @@ ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const No
     : forces_(std::move(forces)),
       order_(forces_->plan().order),
       wavefront_(forces_->plan()),
-      workers_(std::make_unique<Workers>(forces_->disperses() ? 1 : useful_threads(wavefront_, options.threads))),
+      workers_(std::make_unique<Workers>(forces_->coupled() ? 1 : useful_threads(wavefront_, options.threads))),
       X_(X),
       origin_(forces_->origin()),
       options_(options),
@@ -108,16 +108,16 @@ typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bo
 }
 
 template <class Real>
-typename ListMotion<Real>::Squares ListMotion<Real>::dispersed_step() {
-  forces_->add(x_.data(), f_.data(), options_.lagged);
+typename ListMotion<Real>::Squares ListMotion<Real>::coupled_step() {
+  forces_->add(x_.data(), s_.data(), f_.data(), options_.lagged);
   return move(0, static_cast<int>(order_.size()), true);
 }
 
 template <class Real>
 typename ListMotion<Real>::Squares ListMotion<Real>::run(long steps) {
   Squares sum;
-  if (forces_->disperses()) {
-    for (; steps > 0; --steps) sum = dispersed_step();
+  if (forces_->coupled()) {
+    for (; steps > 0; --steps) sum = coupled_step();
     return sum;
   }
   run_steps(wavefront_, steps, *workers_, [&](long step, long piece) {

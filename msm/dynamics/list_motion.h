@@ -12,7 +12,7 @@ struct ListMotionOptions {
   double damping = 0;    ///< [1/s]
   bool lagged = false;   ///< dispersion uses the J of the previous step
   int threads = 1;       ///< they take the steps of advance() in turn, so a single step has one; at most one per three
-                         ///< layers or so of nodes; momentum dispersion uses one
+                         ///< layers or so of nodes; momentum dispersion and carried nodes use one
 };
 
 /// Time integration: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the kernels' order.  A node
@@ -45,7 +45,7 @@ class ListMotion {
   };
 
   Squares run(long steps);
-  Squares dispersed_step();
+  Squares coupled_step();
   Squares move(int begin, int end, bool apart);
   void move_prescribed();
   NodalVectors in_network_order(const std::vector<Padded<Real>>& v) const;

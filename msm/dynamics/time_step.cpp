@@ -59,11 +59,13 @@ void add_volumes(const NodalGradients& nodes, const Eigen::VectorXd& mass, NodeB
 /// The same for any law, from the norms of the blocks of its stiffness at rest.
 template <class Law>
 void add_norms(const Network& network, const Eigen::VectorXd& mass, const Law& law, NodeBlocks& blocks) {
-  const auto coupled = coupled_nodes(network);
-  BlockMatrix K(coupled);
+  Carriers carriers = carriers_of(network.nodes(), network.carried);
+  const auto coupled = coupled_through(carriers, coupled_nodes(network));
+  BlockMatrix K(coupled, std::move(carriers));
   law.add_tangent(network, network.X, K);
   for (int i = 0; i < network.nodes(); ++i)
     for (int j : coupled[i]) {
+      if (K.at(i, j).isZero(0)) continue;  // that of a carried node
       const double norm = K.at(i, j).norm() / std::sqrt(mass[network.master(i)] * mass[network.master(j)]);
       blocks[network.master(i)] += norm * Eigen::Matrix3d::Identity();
     }
@@ -71,10 +73,11 @@ void add_norms(const Network& network, const Eigen::VectorXd& mass, const Law& l
 
 Eigen::VectorXd checked_masses(const Network& network, double density) {
   const Eigen::VectorXd mass = masses(network, density);
-  std::vector<char> held(static_cast<std::size_t>(network.nodes()), 0);
-  for (const Anchor& a : network.anchors) held[a.node] = 1;
+  std::vector<char> massless(static_cast<std::size_t>(network.nodes()), 0);
+  for (const Anchor& a : network.anchors) massless[a.node] = 1;
+  for (const CarriedPoint& c : network.carried) massless[c.point] = 1;
   for (int n = 0; n < network.nodes(); ++n)
-    if (network.master(n) == n && !held[n] && !(mass[n] > 0))
+    if (network.master(n) == n && !massless[n] && !(mass[n] > 0))
       throw std::invalid_argument("a node has no mass: explicit dynamics cannot move it");
   return mass;
 }
@@ -98,19 +101,25 @@ double cell_frequency_squared(const CellMatrix& K, double full, double theta) {
 
 /// Averaged springs by cells: no squared frequency is above the largest that a cell has alone, with any shares of its
 /// nodes' masses that add up over the cells of a node (Irons and Treharne).  A cell's share is in proportion to its own
-/// stiffness at the node; in a second round times the frequency that it then has.
+/// stiffness at the node; in a second round times the frequency that it then has.  The nodes of a cell with carried
+/// corners are those that carry them.
 class CellFrequencies {
  public:
   CellFrequencies(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass)
-      : law_(law), network_(network), mass_(mass), weight_(network.cells.size()) {
+      : law_(law), network_(network), mass_(mass), nodes_(network.cells.size()), weight_(network.cells.size()) {
     std::map<Hexahedron, int> number;
     for (const Anchor& a : network.anchors) number[a.corners] = -1;
     for (std::size_t c = 0; c < weight_.size(); ++c)
       if (const auto at = number.find(network.cells[c]); at != number.end()) at->second = static_cast<int>(c);
     for (const Anchor& a : network.anchors) anchors_.emplace(number.at(a.corners), &a);
+    const Carriers carriers = carriers_of(network.nodes(), network.carried);
     for (std::size_t c = 0; c < weight_.size(); ++c) {
-      const CellMatrix K = stiffness(c);
-      for (int n = 0; n < 8; ++n) weight_[c][n] = K.block<3, 3>(3 * n, 3 * n).trace();
+      find_nodes(c, carriers);
+      const Eigen::MatrixXd K = stiffness(c);
+      for (std::size_t n = 0; n < nodes_[c].size(); ++n) {
+        const auto at = 3 * static_cast<Eigen::Index>(n);
+        weight_[c].push_back(K.diagonal().segment<3>(at).sum());
+      }
     }
   }
 
@@ -118,15 +127,18 @@ class CellFrequencies {
   double round() {
     Eigen::VectorXd total = Eigen::VectorXd::Zero(network_.nodes());
     for (std::size_t c = 0; c < weight_.size(); ++c)
-      for (int n = 0; n < 8; ++n) total[node(c, n)] += weight_[c][n];
-    std::map<std::array<float, 8>, double> of_full;  // by the shares, whose neighbours are the same for most cells
+      for (std::size_t n = 0; n < nodes_[c].size(); ++n) total[nodes_[c][n]] += weight_[c][n];
+    std::map<std::vector<float>, double> of_full;  // by the shares, whose neighbours are the same for most cells
     double largest = 0;
     for (std::size_t c = 0; c < weight_.size(); ++c) {
-      std::array<double, 8> share;
-      std::array<float, 8> key;
-      for (int n = 0; n < 8; ++n) key[n] = float(share[n] = mass_[node(c, n)] * weight_[c][n] / total[node(c, n)]);
-      const bool full =
-          (network_.filled.empty() || network_.filled[c].fraction == 1) && !anchors_.contains(static_cast<int>(c));
+      std::vector<double> share;
+      std::vector<float> key = {static_cast<float>(network_.edge(c))};
+      for (std::size_t n = 0; n < nodes_[c].size(); ++n) {
+        share.push_back(mass_[nodes_[c][n]] * weight_[c][n] / total[nodes_[c][n]]);
+        key.push_back(static_cast<float>(share.back()));
+      }
+      const bool full = (network_.filled.empty() || network_.filled[c].fraction == 1) &&
+                        !anchors_.contains(static_cast<int>(c)) && !through_.contains(c);
       const auto known = full ? of_full.find(key) : of_full.end();
       const double own = known != of_full.end() ? known->second : alone(c, share);
       if (full) of_full[key] = own;
@@ -139,31 +151,63 @@ class CellFrequencies {
  private:
   static constexpr double rounding = 1e-6;  // of the keys
 
-  int node(std::size_t cell, int corner) const { return network_.master(network_.cells[cell][corner]); }
+  void find_nodes(std::size_t cell, const Carriers& carriers) {
+    const Hexahedron& corners = network_.cells[cell];
+    std::map<int, Eigen::VectorXd> shares;  // of the corners, per node that carries some
+    bool some = false;
+    for (int n = 0; n < 8; ++n) {
+      const auto add = [&](int node, double w) {
+        shares.try_emplace(node, Eigen::VectorXd::Zero(8)).first->second[n] += w;
+      };
+      some = some || (!carriers.empty() && !carriers[corners[n]].empty());
+      if (carriers.empty() || carriers[corners[n]].empty())
+        add(corners[n], 1);
+      else
+        for (const auto& [node, w] : carriers[corners[n]]) add(node, w);
+    }
+    if (!some) {
+      for (const int corner : corners) nodes_[cell].push_back(network_.master(corner));
+      return;
+    }
+    Eigen::MatrixXd W = Eigen::MatrixXd::Zero(24, 3 * static_cast<Eigen::Index>(shares.size()));
+    for (const auto& [node, w] : shares) {
+      const auto column = 3 * static_cast<Eigen::Index>(nodes_[cell].size());
+      for (int n = 0; n < 8; ++n) W.block<3, 3>(3 * n, column).diagonal().setConstant(w[n]);
+      nodes_[cell].push_back(node);
+    }
+    through_[cell] = std::move(W);
+  }
 
-  /// With the anchors of the cell, to points that are held.
-  CellMatrix stiffness(std::size_t cell) const {
-    CellMatrix K = law_.cell_matrix(network_.cell_edge, network_.filled.empty() ? FilledPart{} : network_.filled[cell]);
+  /// Between the nodes of the cell, with its anchors, to points that are held.
+  Eigen::MatrixXd stiffness(std::size_t cell) const {
+    CellMatrix K =
+        law_.cell_matrix(network_.edge(cell), network_.filled.empty() ? FilledPart{} : network_.filled[cell]);
     const auto [first, last] = anchors_.equal_range(static_cast<int>(cell));
     for (auto a = first; a != last; ++a)
       for (int m = 0; m < 8; ++m)
         for (int n = 0; n < 8; ++n)
           K.block<3, 3>(3 * m, 3 * n).diagonal().array() +=
               a->second->stiffness * a->second->weights[m] * a->second->weights[n];
-    return K;
+    const auto at = through_.find(cell);
+    if (at == through_.end()) return K;
+    return at->second.transpose() * K * at->second;
   }
 
-  double alone(std::size_t cell, const std::array<double, 8>& share) const {
-    CellVector scale;
-    for (int n = 0; n < 8; ++n) scale.segment<3>(3 * n).setConstant(1 / std::sqrt(share[n]));
-    return symmetric_eigenvalues(scale.asDiagonal() * stiffness(cell) * scale.asDiagonal())[23];
+  double alone(std::size_t cell, const std::vector<double>& share) const {
+    Eigen::VectorXd scale(3 * static_cast<Eigen::Index>(share.size()));
+    for (std::size_t n = 0; n < share.size(); ++n)
+      scale.segment<3>(3 * static_cast<Eigen::Index>(n)).setConstant(1 / std::sqrt(share[n]));
+    const Eigen::VectorXd values = symmetric_eigenvalues(scale.asDiagonal() * stiffness(cell) * scale.asDiagonal());
+    return values[values.size() - 1];
   }
 
   const AveragedSprings& law_;
   const Network& network_;
   const Eigen::VectorXd& mass_;
-  std::vector<std::array<double, 8>> weight_;  ///< of a cell in the mass of its nodes
-  std::multimap<int, const Anchor*> anchors_;  ///< by the number of their cell
+  std::vector<std::vector<int>> nodes_;             ///< of each cell
+  std::vector<std::vector<double>> weight_;         ///< of a cell in the mass of its nodes
+  std::map<std::size_t, Eigen::MatrixXd> through_;  ///< corners from nodes, 24 x 3 nodes; cells with carried corners
+  std::multimap<int, const Anchor*> anchors_;       ///< by the number of their cell
 };
 
 double averaged_frequency_squared(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass) {
@@ -176,7 +220,6 @@ double averaged_frequency_squared(const AveragedSprings& law, const Network& net
 
 double safe_time_step(const MassSpringModel& model, double density, bool lagged, double theta) {
   const Network& network = model.network;
-  require_cells_of_one_size(network, "time step");
   const Eigen::VectorXd mass = checked_masses(network, density);
   const bool cells =
       !network.cell_springs.empty() && std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);

@@ -33,7 +33,10 @@ Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& m
 
 void Viscosity::add_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
                            NodalVectors& f) const {
-  if (!along_springs_) return cells_.add_viscous_forces(network, x, v, time_, f);
+  if (!along_springs_) {
+    cells_.add_viscous_forces(network, x, v, time_, f);
+    return hand_back(network.carried, f);
+  }
   for (const Spring& s : network.springs) {
     const Eigen::RowVector3d along = (x.row(s.j) - x.row(s.i)).normalized();
     const Eigen::RowVector3d pull = time_ * s.stiffness * (v.row(s.j) - v.row(s.i)).dot(along) * along;

@@ -8,15 +8,21 @@ namespace {
 
 constexpr double least_weight = 1e-12;
 
-/// The points of the surface as means of the nodes.
+/// The points of the surface as means of the nodes that nothing carries.
 Eigen::SparseMatrix<double, Eigen::RowMajor> surface_weights(const CutBody& body, Eigen::Index nodes) {
+  const Carriers carriers = carriers_of(static_cast<int>(nodes), body.carried);
   std::vector<Eigen::Triplet<double>> entries;
   const int points = static_cast<int>(body.surface.size());
   for (int p = 0; p < points; ++p) {
     const auto& [cell, position] = body.surface[p];
     const std::array<double, 8> weights = body.weights(cell, position);
-    for (int n = 0; n < 8; ++n)
-      if (std::abs(weights[n]) > least_weight) entries.emplace_back(p, body.cells[cell].corners[n], weights[n]);
+    for (int n = 0; n < 8; ++n) {
+      if (std::abs(weights[n]) <= least_weight) continue;
+      const int corner = body.cells[cell].corners[n];
+      if (carriers.empty() || carriers[corner].empty()) entries.emplace_back(p, corner, weights[n]);
+      if (!carriers.empty())
+        for (const auto& [node, share] : carriers[corner]) entries.emplace_back(p, node, weights[n] * share);
+    }
   }
   Eigen::SparseMatrix<double, Eigen::RowMajor> all(points, nodes);
   all.setFromTriplets(entries.begin(), entries.end());
@@ -67,6 +73,7 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
     for (const int n : cell.corners) network.volume[n] += cell.filled.fraction * std::pow(l * cell.size, 3) / 8;
   }
   network.carried = body.carried;
+  hand_back(network.carried, network.volume, 1);
   if (body.grid.doubled.empty()) network.cell_edges.clear();
   return network;
 }
@@ -127,6 +134,7 @@ std::vector<int> nodes_at_patch(const CutBody& body, const std::string& patch) {
   for (const PatchInCell& p : body.patches.at(patch))
     for (int n = 0; n < 8; ++n)
       if (p.area[n] >= p.total_area() / 8) nodes.insert(body.cells[p.cell].corners[n]);
+  for (const CarriedPoint& c : body.carried) nodes.erase(c.point);
   return {nodes.begin(), nodes.end()};
 }
 

@@ -23,7 +23,8 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
 Embedding embed(const CutBody& body, const std::vector<std::string>& held, const Network& network, const Mesh& mesh);
 
 /// Nodes by which a support holds a patch where it cannot be anchored, as in motion: of each cell that the patch
-/// crosses the corners nearest to it, whose weights over the patch are those of the middle of the cell or larger.
+/// crosses the corners nearest to it, whose weights over the patch are those of the middle of the cell or larger; none
+/// that is carried.
 std::vector<int> nodes_at_patch(const CutBody& body, const std::string& patch);
 
 /// Displacement of the network at points of the body [m].

@@ -40,10 +40,11 @@ class BlockForces {
   /// There are dashpots: the fourth number of x is velocity / s.
   virtual bool viscous() const { return false; }
 
-  /// There is momentum dispersion: forces are not sums over blocks, but those of add().
-  virtual bool disperses() const { return false; }
-  /// f += all internal forces, where disperses().  `lagged`: dispersion uses the J of the previous call.
-  virtual void add(const Padded<Real>*, Padded<Real>*, bool) {}
+  /// There is momentum dispersion, or some nodes are carried: forces are not sums over blocks, but those of add().
+  virtual bool coupled() const { return false; }
+  /// f += all internal forces, where coupled(); x and s as in add_blocks(), of carried nodes anything.
+  /// @param lagged dispersion uses the J of the previous call
+  virtual void add(const Padded<Real>*, const Padded<Real>*, Padded<Real>*, bool) {}
 };
 
 }  // namespace springproof

@@ -41,7 +41,7 @@ bool CellForces<Real>::covers(const MassSpringModel& model) {
   const Network& network = model.network;
   if (averaged != 1 || anchors > 1 || averaged + anchors != static_cast<int>(model.laws.size())) return false;
   const AveragedSprings& law = *averaged_springs_of(model);
-  return !network.cells.empty() && network.cell_edges.empty() && network.image_of.empty() && law.shift == 0 &&
+  return !network.cells.empty() && network.image_of.empty() && law.shift == 0 &&
          lattice_curve(law.curve) != LatticeCurve::none;
 }
 
@@ -52,13 +52,16 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
       steps_(&list_kernels<Real>(set)),
       X_(model.network.X),
       viscous_(time > 0),
-      order_(model.network, kernels_->cells) {
+      order_(model.network, kernels_->cells),
+      carried_(model.network.carried) {
+  for (CarriedPoint& c : carried_) {
+    c.point = order_.place[c.point];
+    for (int& by : c.by) by = order_.place[by];
+  }
   if (!covers(model) || (viscous_ && dashpots.shift > 0))
-    throw std::invalid_argument("cell forces are of averaged springs in cells of one size, without shift");
-  const double edge = model.network.cell_edge, per_area = 1 / (edge * edge);
-  list_.edge = static_cast<Real>(edge);
-  list_.springs = averaged_constants<Real>(*averaged_springs_of(model), 1, per_area);
-  list_.dashpots = averaged_constants<Real>(dashpots, time, time * per_area);
+    throw std::invalid_argument("cell forces are of averaged springs, without shift");
+  list_.springs = averaged_constants<Real>(*averaged_springs_of(model), 1);
+  list_.dashpots = averaged_constants<Real>(dashpots, time);
   store_cells(model.network);
   if (std::any_of(model.laws.begin(), model.laws.end(),
                   [](const ForceLaw& law) { return std::holds_alternative<Anchors>(law); }))
@@ -68,7 +71,6 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
 template <class Real>
 void CellForces<Real>::store_cells(const Network& network) {
   const long cells = kernels_->cells, count = static_cast<long>(order_.cells.size());
-  const double l = network.cell_edge;
   list_.blocks = order_.plan.blocks;
   corners_.resize(8 * cells * list_.blocks);
   numbers_.resize(cell_number::count * cells * list_.blocks);
@@ -80,10 +82,12 @@ void CellForces<Real>::store_cells(const Network& network) {
     const auto set = [&](int number, double value) {
       numbers_[cell_number::count * cells * (at / cells) + number * cells + at % cells] = static_cast<Real>(value);
     };
-    set(cell_number::volume, at < count ? part.fraction * l * l * l : 0);
+    const double l = network.edge(static_cast<std::size_t>(cell));
+    set(cell_number::area, at < count ? part.fraction * l * l : 0);
+    set(cell_number::per_edge, 1 / l);
     for (int i = 0; i < 3; ++i) {
-      set(cell_number::mean + i, part.mean[i] / (2 * l));
-      set(cell_number::mixed + i, part.mixed[i] / l);
+      set(cell_number::mean + i, part.mean[i] / 2);
+      set(cell_number::mixed + i, part.mixed[i]);
       set(cell_number::variance + i, std::max(12 * part.variance[i], AveragedSprings::least_variance));
     }
   }
@@ -132,6 +136,32 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
 }
 
 template <class Real>
+void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool) {
+  const std::size_t nodes = order_.place.size();
+  x_.assign(x, x + nodes);
+  if (viscous_) s_.assign(s, s + nodes);
+  for (const CarriedPoint& c : carried_) {
+    const Real share = Real(1) / static_cast<Real>(c.by.size());
+    Padded<Real> u = {}, v = {};
+    u.v[3] = 1;
+    for (const int by : c.by)
+      for (int d = 0; d < 3; ++d) {
+        u.v[d] += share * x_[by].v[d];
+        if (viscous_) v.v[d] += share * s_[by].v[d] * x_[by].v[3];
+      }
+    x_[c.point] = u;
+    if (viscous_) s_[c.point] = v;
+  }
+  add_blocks(0, order_.plan.blocks, x_.data(), s_.data(), f);
+  for (auto c = carried_.rbegin(); c != carried_.rend(); ++c)
+    for (int d = 0; d < 3; ++d) {
+      const Real share = f[c->point].v[d] / static_cast<Real>(c->by.size());
+      for (const int by : c->by) f[by].v[d] += share;
+      f[c->point].v[d] = 0;
+    }
+}
+
+template <class Real>
 void CellForces<Real>::at(const NodalVectors& x, const NodalVectors& v, NodalVectors& f) {
   const std::vector<int>& order = order_.plan.order;
   std::vector<Padded<Real>> u(order.size()), s(order.size()), on(order.size(), Padded<Real>{});
@@ -142,7 +172,7 @@ void CellForces<Real>::at(const NodalVectors& x, const NodalVectors& v, NodalVec
     }
     u[p].v[3] = 1;
   }
-  add_blocks(0, order_.plan.blocks, u.data(), s.data(), on.data());
+  add(u.data(), s.data(), on.data(), false);
   f.resize(x.rows(), 3);
   for (std::size_t p = 0; p < order.size(); ++p)
     for (int d = 0; d < 3; ++d) f(order[p], d) = on[p].v[d];

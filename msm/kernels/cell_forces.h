@@ -18,8 +18,7 @@ const CellListKernels<Real>& cell_list_kernels(InstructionSet set);
 template <class Real>
 class CellForces : public BlockForces<Real> {
  public:
-  /// Whether the model has these laws only, at any displacement, with a curve that the kernels have, in cells of one
-  /// size.
+  /// Whether the model has these laws only, at any displacement, with a curve that the kernels have.
   static bool covers(const MassSpringModel& model);
 
   /// @param dashpots stiffness at rest of what AveragedSprings::add_viscous_forces() adds, where `time` > 0
@@ -37,6 +36,8 @@ class CellForces : public BlockForces<Real> {
   NodalVectors origin() const override { return X_; }
   void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const override;
   bool viscous() const override { return viscous_; }
+  bool coupled() const override { return !carried_.empty(); }
+  void add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool lagged) override;
 
  private:
   /// At places, with what its spring is stretched by at rest.
@@ -57,6 +58,8 @@ class CellForces : public BlockForces<Real> {
   std::vector<Real> numbers_;
   CellList<Real> list_;
   std::vector<Held> anchors_;
+  std::vector<CarriedPoint> carried_;  ///< places
+  std::vector<Padded<Real>> x_, s_;    ///< with carried nodes in their places; of add()
 };
 
 extern template class CellForces<double>;

@@ -19,9 +19,10 @@ using Corners = Real[8][4][cells<Real>];
 /// What is stored of a vector of cells.
 template <class Real>
 struct Cells {
-  Lanes<Real> volume, mean[3], mixed[3], variance[3];
+  Lanes<Real> area, mean[3], mixed[3], variance[3], per_edge;
 
-  SPRINGPROOF_INLINE explicit Cells(const Real* numbers) : volume(load(numbers)) {
+  SPRINGPROOF_INLINE explicit Cells(const Real* numbers)
+      : area(load(numbers)), per_edge(load(numbers + cell_number::per_edge * cells<Real>)) {
     for (int i = 0; i < 3; ++i) {
       mean[i] = load(numbers + (cell_number::mean + i) * cells<Real>);
       mixed[i] = load(numbers + (cell_number::mixed + i) * cells<Real>);
@@ -30,12 +31,12 @@ struct Cells {
   }
 };
 
-/// D, the mean gradient [1], and the patterns S (yz, zx, xy, xyz) [m] of the field at the corners.
+/// D, the mean gradient, and the patterns S (yz, zx, xy, xyz) of the field at the corners, over the edge.
 template <class Real>
-SPRINGPROOF_INLINE void patterns_of_cells(const Corners<Real>& u, int at, const Cells<Real>& c, Real edge,
-                                          Lanes<Real> (&D)[3][3], Lanes<Real> (&S)[3][4]) {
+SPRINGPROOF_INLINE void patterns_of_cells(const Corners<Real>& u, int at, const Cells<Real>& c, Lanes<Real> (&D)[3][3],
+                                          Lanes<Real> (&S)[3][4]) {
   using V = Lanes<Real>;
-  const Real quarter = Real(0.25) / edge;
+  const V quarter = Real(0.25) * c.per_edge;
   for (int i = 0; i < 3; ++i) {
     V d[4], m[4], along[3];
     for (int k = 0; k < 4; ++k) {
@@ -44,6 +45,7 @@ SPRINGPROOF_INLINE void patterns_of_cells(const Corners<Real>& u, int at, const 
       m[k] = high + low;
     }
     signed_sums(d, m, along, S[i]);
+    for (V& pattern : S[i]) pattern *= c.per_edge;
     for (int x = 0; x < 3; ++x) {
       const int y = (x + 1) % 3, z = (x + 2) % 3;
       D[i][x] = quarter * along[x] + c.mean[y] * S[i][z] + c.mean[z] * S[i][y] + c.mixed[x] * S[i][3];
@@ -51,22 +53,22 @@ SPRINGPROOF_INLINE void patterns_of_cells(const Corners<Real>& u, int at, const 
   }
 }
 
-/// Those of a law times the volume of each cell.
+/// Those of a law times the volume over the edge of each cell.
 template <class Real>
-SPRINGPROOF_INLINE LatticeAveraged<Lanes<Real>> times_volume(const LatticeAveraged<Real>& law, const Lanes<Real>& v) {
-  return {law.curve,        v * law.shear,   v * law.lambda, v * law.bulk,   v * law.bending,
-          v * law.coupling, v * law.torsion, v * law.twist,  v * law.warping};
+SPRINGPROOF_INLINE LatticeAveraged<Lanes<Real>> times_area(const LatticeAveraged<Real>& law, const Lanes<Real>& a) {
+  return {law.curve,        a * law.shear,   a * law.lambda, a * law.bulk,   a * law.bending,
+          a * law.coupling, a * law.torsion, a * law.twist,  a * law.warping};
 }
 
 /// w += (hourglass springs) v, in the centroid of the filled part: AveragedSprings::add_forces() in sums over the
 /// corners.
 template <class Real>
-SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c, Real edge,
+SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
                                              const Lanes<Real> (&v)[4][3], Lanes<Real> (&w)[4][3]) {
   using V = Lanes<Real>;
   const V* const rho = c.variance;
   V H[3][3], added[3][3];
-  const Real shift = 4 * edge;  // mean / (2 edge) to the centroid, of twice the second differences
+  constexpr Real shift = 4;  // mean / 2 to the centroid, of twice the second differences
   for (int j = 0; j < 3; ++j) {
     const V third = shift * v[3][j];
     for (int m = 0; m < 3; ++m) H[m][j] = v[m][j] + c.mean[m] * third;
@@ -98,7 +100,7 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* 
   using V = Lanes<Real>;
   const Cells<Real> c(numbers + at);
   V D[3][3], S[3][4], F[3][3], inverse_transposed[3][3], dilatation, P[3][3], v[4][3], w[4][3];
-  patterns_of_cells<Real>(u, at, c, list.edge, D, S);
+  patterns_of_cells<Real>(u, at, c, D, S);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
   invert(D, F, inverse_transposed, dilatation);
@@ -106,18 +108,18 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* 
     stdx::where(dilatation < Real(-1), dilatation) = Real(__builtin_nan(""));
   for (auto& of_pattern : w)
     for (V& entry : of_pattern) entry = 0;
-  const LatticeAveraged<V> springs = times_volume(list.springs, c.volume);
+  const LatticeAveraged<V> springs = times_area(list.springs, c.area);
   turned_back(F, S, v);
-  add_hourglass_forces(springs, c, list.edge, v, w);
+  add_hourglass_forces(springs, c, v, w);
   first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
   if constexpr (viscous) {
-    const LatticeAveraged<V> dashpots = times_volume(list.dashpots, c.volume);
+    const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
     V rate[3][3], S_rate[3][4];
-    patterns_of_cells<Real>(rates, at, c, list.edge, rate, S_rate);
+    patterns_of_cells<Real>(rates, at, c, rate, S_rate);
     add_viscous_stress(dashpots, F, inverse_transposed, S, rate, S_rate, P, v);
-    add_hourglass_forces(dashpots, c, list.edge, v, w);
+    add_hourglass_forces(dashpots, c, v, w);
   }
-  const Real quarter = Real(0.25) / list.edge;
+  constexpr Real quarter = 0.25;
   for (int i = 0; i < 3; ++i) {
     V A[3], B[4], even[4], odd[4];
     for (int j = 0; j < 3; ++j)

@@ -7,10 +7,10 @@
 
 namespace springproof {
 
-/// What is stored of a cell of edge l, of FilledPart: alpha l^3 [m^3], c / (2 l) and p / l [1/m], and rho [1]
-/// (AveragedSprings).
+/// What is stored of a cell of edge l, of FilledPart: alpha l^2 [m^2], c / 2, p and rho [1] (AveragedSprings), 1 / l
+/// [1/m].
 namespace cell_number {
-constexpr int volume = 0, mean = 1, mixed = 4, variance = 7, count = 10;
+constexpr int area = 0, mean = 1, mixed = 4, variance = 7, per_edge = 10, count = 11;
 }  // namespace cell_number
 
 /// Cells in blocks of as many as a kernel computes together; an unused place of the last block repeats a cell without
@@ -20,8 +20,7 @@ struct CellList {
   long blocks = 0;
   const int* corners = nullptr;         ///< places; per block those of each corner x + 2 y + 4 z in turn
   const Real* numbers = nullptr;        ///< per block each of cell_number in turn
-  Real edge = 1;                        ///< l [m]
-  LatticeAveraged<Real> springs = {};   ///< moduli [Pa], hourglass stiffness times G / (8 l^2) [Pa/m^2]
+  LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
 };
 

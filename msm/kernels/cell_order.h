@@ -16,7 +16,7 @@ struct CellOrder {
   std::vector<int> place;         ///< of each node
   BlockPlan plan;
 
-  /// @param network with cells of one size
+  /// @param network with cells
   /// @param cells_of_block how many a kernel computes together
   CellOrder(const Network& network, int cells_of_block);
 };

@@ -37,12 +37,12 @@ LatticeHourglass<Real> lattice_constants(const HourglassCorrection::Stiffness& k
   return {real(k.bending), real(k.coupling), real(k.torsion), real(k.torsion_coupling)};
 }
 
-/// Of averaged springs, the moduli and the hourglass stiffness times these factors.
+/// Of averaged springs, times this factor.
 template <class Real>
-LatticeAveraged<Real> averaged_constants(const AveragedSprings& law, double of_moduli, double of_hourglass) {
-  const double G = of_moduli * law.shear_modulus, lambda = of_moduli * law.lame_lambda;
+LatticeAveraged<Real> averaged_constants(const AveragedSprings& law, double factor) {
+  const double G = factor * law.shear_modulus, lambda = factor * law.lame_lambda;
   const HourglassStiffness& h = law.hourglass;
-  const auto stiffness = [&](double value) { return static_cast<Real>(of_hourglass * law.shear_modulus / 8 * value); };
+  const auto stiffness = [&](double value) { return static_cast<Real>(G / 8 * value); };
   return {
       lattice_curve(law.curve), static_cast<Real>(G),  static_cast<Real>(lambda), static_cast<Real>(lambda + 2 * G / 3),
       stiffness(h.bending),     stiffness(h.coupling), stiffness(h.torsion),      stiffness(h.twist),
@@ -52,7 +52,7 @@ LatticeAveraged<Real> averaged_constants(const AveragedSprings& law, double of_m
 /// Of averaged springs in cells of this edge [m]; of dashpots, times their time of retardation [s].
 template <class Real>
 LatticeAveraged<Real> lattice_constants(const AveragedSprings& law, double edge, double time = 1) {
-  return averaged_constants<Real>(law, time * edge * edge, time * edge * edge);
+  return averaged_constants<Real>(law, time * edge * edge);
 }
 
 }  // namespace springproof

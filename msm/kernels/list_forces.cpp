@@ -101,7 +101,7 @@ ListForces<Real>::ListForces(const MassSpringModel& model, InstructionSet set)
 }
 
 template <class Real>
-void ListForces<Real>::add(const Padded<Real>* x, Padded<Real>* f, bool lagged) {
+void ListForces<Real>::add(const Padded<Real>* x, const Padded<Real>*, Padded<Real>* f, bool lagged) {
   const ListPattern pattern = blocks_.pattern();
   const ListSprings<Real> springs = {k_.data(), kL_.data(), L_.data()};
   if (dispersion_.empty()) return kernels_->spring_forces(pattern, springs, x, f);
@@ -125,7 +125,7 @@ template <class Real>
 void ListForces<Real>::at(const NodalVectors& x, NodalVectors& f) {
   by_place(blocks_, x, x_);
   std::fill(f_.begin(), f_.end(), Padded<Real>{});
-  add(x_.data(), f_.data(), false);
+  add(x_.data(), nullptr, f_.data(), false);
   f.resize(x.rows(), 3);
   for (int p = 0; p < blocks_.nodes(); ++p)
     for (int d = 0; d < 3; ++d) f(blocks_.order[p], d) = f_[p].v[d];

@@ -47,9 +47,9 @@ class ListForces : public BlockForces<Real> {
   BlockPlan plan() const override { return blocks_.plan(); }
   const ListKernels<Real>& kernels() const override { return *kernels_; }
   NodalVectors origin() const override { return NodalVectors::Zero(blocks_.nodes(), 3); }
-  void add(const Padded<Real>* x, Padded<Real>* f, bool lagged) override;
+  void add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool lagged) override;
   void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const override;
-  bool disperses() const override { return !dispersion_.empty(); }
+  bool coupled() const override { return !dispersion_.empty(); }
 
  private:
   const ListKernels<Real>* kernels_;

@@ -38,6 +38,12 @@ std::vector<Spring> merge_springs(std::vector<Spring> springs) {
 
 Eigen::VectorXd masses(const Network& network, double density) { return density * network.volume; }
 
+Eigen::VectorXd inverse_masses(const Network& network, double density) {
+  Eigen::VectorXd inverse = masses(network, density).cwiseInverse();
+  for (const CarriedPoint& c : network.carried) inverse[c.point] = 0;
+  return inverse;
+}
+
 std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fixed) {
   for (const CarriedPoint& c : network.carried) std::fill_n(fixed.begin() + 3 * c.point, 3, 1);
   return fixed;

@@ -44,9 +44,9 @@ struct Network {
   std::vector<Anchor> anchors;         ///< of the supports of cut cells
   std::vector<Spring> cell_springs;    ///< contribution of one cell: springs between its corners 0..7
   /// Nodes on edges and faces of larger cells.  They are no unknowns: they follow the others, to which the forces on
-  /// them are handed back.
+  /// them, and their mass, are handed back.
   std::vector<CarriedPoint> carried;
-  Eigen::VectorXd volume;     ///< volume share of each node in the body [m^3]
+  Eigen::VectorXd volume;     ///< volume share of each node in the body [m^3]; of carried ones 0
   std::optional<Grid> grid;   ///< the lattice of the cells
   std::vector<int> image_of;  ///< per node the node it is a periodic image of (itself if none); empty: no images
   std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
@@ -94,5 +94,11 @@ Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Netwo
 /// @param density rho [kg/m^3]
 /// @return [kg], one per node
 Eigen::VectorXd masses(const Network& network, double density);
+
+/// Their inverses: infinite without mass, but 0 for carried nodes, which no force moves.
+/// @param network with Network::volume
+/// @param density rho [kg/m^3]
+/// @return [1/kg], one per node
+Eigen::VectorXd inverse_masses(const Network& network, double density);
 
 }  // namespace springproof

@@ -8,6 +8,7 @@
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
+#include "support/refined_cells.h"
 #include "support/solids.h"
 #include "support/zoo.h"
 
@@ -17,12 +18,13 @@ namespace {
 constexpr double edge = 0.5, retardation = 1e-3;
 
 /// A round bar of two cells and more across, lying anyhow in its lattice, with slivers; held at one end.
-MassSpringModel bar(const ModelParameters& parameters, double poisson_ratio = 0.3, double length = 5) {
+/// @param halved so many cells, and as many of their parts once more
+MassSpringModel bar(const ModelParameters& parameters, double poisson_ratio = 0.3, double length = 5, int halved = 0) {
   const Mesh body =
       test::mapped(test::cylinder(length, 8, static_cast<int>(4 * length)), test::random_placement(2, edge));
-  return build_cut(parameters, cut_body(test::grid_about(body, edge), body), {"z_min"}, Mesh{},
-                   {1e4, poisson_ratio, 1000})
-      .model;
+  VoxelGrid grid = test::grid_about(body, edge);
+  if (halved > 0) grid = test::halved_at_random(grid, 2, halved);
+  return build_cut(parameters, cut_body(grid, body), {"z_min"}, Mesh{}, {1e4, poisson_ratio, 1000}).model;
 }
 
 std::vector<MassSpringModel> models() {
@@ -33,6 +35,7 @@ std::vector<MassSpringModel> models() {
       parameters.curve = curve;
       parameters.slender = curve == StrainCurve::neo_hooke;
       all.push_back(bar(parameters, nu));
+      all.push_back(bar(parameters, nu, 5, 12));
       all.push_back({test::cut_network(), all.back().laws});  // less than a vector of cells
     }
   all.push_back({all.back().network, {*averaged_springs_of(all.back())}});  // without its anchors
@@ -50,12 +53,15 @@ double worst(const NodalVectors& a, const NodalVectors& b) {
 template <class Real>
 void expect_plain_forces(double tolerance) {
   for (const MassSpringModel& model : models()) {
-    const NodalVectors x = disturbed(model.network), v = test::noise(model.network.nodes(), 10, 2),
-                       expected = forces(model, x);
+    NodalVectors x = disturbed(model.network), v = test::noise(model.network.nodes(), 10, 2);
+    carry(model.network.carried, x);
+    carry(model.network.carried, v);
+    const NodalVectors expected = forces(model, x);
     NodalVectors f, damped = expected;
     ASSERT_TRUE(expected.allFinite());
     const AveragedSprings& law = *averaged_springs_of(model);
     law.add_viscous_forces(model.network, x, v, retardation, damped);
+    hand_back(model.network.carried, damped);
     ASSERT_GT(worst(damped, expected), 0.01);
     for (const InstructionSet set : usable_instruction_sets()) {
       CellForces<Real>(model, set).at(x, v, f);
@@ -86,7 +92,7 @@ TEST(CellForces, OfAnInvertedCellAreNoNumbers) {
   }
 }
 
-TEST(CellForces, CoverAveragedSpringsOfOneSizeWithoutShift) {
+TEST(CellForces, CoverAveragedSpringsWithoutShift) {
   const MassSpringModel model = bar(test::model("hybmss_avg"));
   const auto covers = [&](auto change) {
     MassSpringModel changed = model;
@@ -98,9 +104,9 @@ TEST(CellForces, CoverAveragedSpringsOfOneSizeWithoutShift) {
   EXPECT_FALSE(covers([](MassSpringModel&, AveragedSprings& law) { law.curve = StrainCurve::springs_hencky; }));
   EXPECT_FALSE(covers([](MassSpringModel& m, AveragedSprings& law) { m.laws.emplace_back(law); }));
   EXPECT_FALSE(covers([](MassSpringModel& m, AveragedSprings&) { m.laws.emplace_back(Springs{}); }));
-  const MassSpringModel refined{test::refined_network(), model.laws};
-  EXPECT_FALSE(CellForces<double>::covers(refined));
-  EXPECT_THROW(CellForces<double>{refined}, std::invalid_argument);
+  EXPECT_TRUE(covers([](MassSpringModel& m, AveragedSprings&) { m.network = test::refined_network(); }));
+  const MassSpringModel springs{model.network, {Springs{}}};
+  EXPECT_THROW(CellForces<double>{springs}, std::invalid_argument);
 }
 
 TEST(CellOrder, CompletesNodesALayerLater) {
@@ -137,12 +143,17 @@ BoundaryConditions pulled(const Network& network) {
   bc.fixed.assign(3 * network.nodes(), 0);
   bc.prescribed = NodalVectors::Zero(network.nodes(), 3);
   bc.external = test::noise(network.nodes(), 0.5, 4);
+  hand_back(network.carried, bc.external);
   for (const Anchor& a : network.anchors) {
     for (int d = 0; d < 3; ++d) bc.fixed[3 * a.node + d] = 1;
     bc.prescribed.row(a.node) << 0.1, 0, -0.05;
   }
-  bc.fixed[3 * network.cells.back()[0] + 1] = 1;
-  bc.prescribed(network.cells.back()[0], 1) = 0.02;
+  std::vector<char> own(network.nodes(), 1);
+  for (const CarriedPoint& c : network.carried) own[c.point] = 0;
+  const Hexahedron& last = network.cells.back();
+  const int apart = *std::find_if(last.begin(), last.end(), [&](int n) { return own[n]; });
+  bc.fixed[3 * apart + 1] = 1;
+  bc.prescribed(apart, 1) = 0.02;
   return bc;
 }
 
@@ -154,11 +165,12 @@ struct State {
 /// The steps of run_dynamics(), written out; supports move at the end of the first.
 State plain_steps(const MassSpringModel& model, const BoundaryConditions& bc, double dt, double damping, double time,
                   int steps) {
-  const Eigen::VectorXd mass = masses(model.network, 1000);
+  const Eigen::VectorXd mass = masses(model.network, 1000), per_mass = inverse_masses(model.network, 1000);
   State s{model.network.X, NodalVectors::Zero(mass.size(), 3), NodalVectors::Zero(mass.size(), 3), {}};
   for (; steps > 0; --steps) {
     NodalVectors f = forces(model, s.x);
     averaged_springs_of(model)->add_viscous_forces(model.network, s.x, s.v + s.of_supports, time, f);
+    hand_back(model.network.carried, f);
     f += bc.external;
     ForceNorms squares;
     for (Eigen::Index i = 0; i < f.size(); ++i) {
@@ -169,18 +181,21 @@ State plain_steps(const MassSpringModel& model, const BoundaryConditions& bc, do
         s.of_supports.data()[i] = (to - s.x.data()[i]) / dt;
         s.x.data()[i] = to;
       } else {
-        s.v.data()[i] = (s.v.data()[i] + dt * force / mass[i / 3]) / (1 + dt * damping);
+        s.v.data()[i] = (s.v.data()[i] + dt * force * per_mass[i / 3]) / (1 + dt * damping);
         s.x.data()[i] += dt * s.v.data()[i];
       }
     }
+    carry(model.network.carried, s.x);
+    carry(model.network.carried, s.v);
+    carry(model.network.carried, s.of_supports);
     s.norms = {std::sqrt(squares.unbalanced), std::sqrt(squares.support)};
   }
   return s;
 }
 
 template <class Real>
-void expect_plain_steps(double tolerance) {
-  const MassSpringModel model = bar(test::model("hybmss_avg"), 0.3, 60);
+void expect_plain_steps(double tolerance, int halved = 0) {
+  const MassSpringModel model = bar(test::model("hybmss_avg"), 0.3, halved > 0 ? 10 : 60, halved);
   const Network& network = model.network;
   const BoundaryConditions bc = pulled(network);
   const double dt = 0.2 * safe_time_step(model, 1000), damping = 0.3;
@@ -190,14 +205,16 @@ void expect_plain_steps(double tolerance) {
       NodalVectors first_x, first_v;
       for (const int threads : {1, 2, 3}) {
         ListMotion<Real> motion(std::make_unique<CellForces<Real>>(model, set, *averaged_springs_of(model), time),
-                                network.X, masses(network, 1000).cwiseInverse(),
+                                network.X, inverse_masses(network, 1000),
                                 {.time_step = dt, .damping = damping, .threads = threads});
         motion.load(bc);
         for (const long steps : {7, 1, 2}) motion.advance(steps);
         motion.set_state(motion.positions(), motion.velocities());
         const ForceNorms norms = motion.advance(31);
-        EXPECT_EQ(motion.threads(), threads);
-        const NodalVectors x = motion.positions(), v = motion.velocities();
+        EXPECT_EQ(motion.threads(), halved > 0 ? 1 : threads);
+        NodalVectors x = motion.positions(), v = motion.velocities();
+        carry(network.carried, x);
+        carry(network.carried, v);
         EXPECT_LE(worst(x - network.X, expected.x - network.X), tolerance) << name_of(set) << ", " << time << " s";
         EXPECT_LE(worst(v, expected.v), tolerance) << name_of(set) << ", " << time << " s";
         EXPECT_NEAR(norms.unbalanced, expected.norms.unbalanced, 10 * tolerance * expected.norms.unbalanced);
@@ -216,6 +233,8 @@ void expect_plain_steps(double tolerance) {
 }  // namespace
 
 TEST(CellMotion, IsThePlainMotionOnAnyNumberOfThreads) { expect_plain_steps<double>(1e-11); }
+
+TEST(CellMotion, OfCellsOfSeveralSizesIsThePlainMotion) { expect_plain_steps<double>(1e-11, 30); }
 
 TEST(CellMotion, OfSinglePrecisionIsNearIt) { expect_plain_steps<float>(1e-4); }
 
