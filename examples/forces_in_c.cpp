@@ -31,12 +31,16 @@ int main(int count, char** arguments) try {
   const auto moment = [&](const char* key) { return flat<double>(file.at("cells").value(key, json::array())); };
   const auto fraction = moment("fraction"), mean = moment("mean"), mixed = moment("mixed"),
              variance = moment("variance");
-  const auto energy = [&](const std::vector<double>& x, double* f) {
+  const json edge = file.at("cells").at("edge_m"), carried = file.value("carried", json::object());
+  const auto edges = edge.is_array() ? flat<double>(edge) : std::vector<double>(cells.size() / 8, edge);
+  const auto carried_nodes = flat<int>(carried.value("nodes", json::array())),
+             carried_by = flat<int>(carried.value("by", json::array()));
+  const auto energy = [&](std::vector<double> x, double* f) {
+    sp_carry(carried_nodes.size(), carried_nodes.data(), carried_by.data(), x.data());
     double W = sp_springs(k.size(), ends.data(), k.data(), L.data(), x.data(), f);
     if (laws.contains("volume_correction"))
-      W += sp_volume(cells.size() / 8, cells.data(), file.at("cells").at("edge_m"),
-                     laws.at("volume_correction").at("kappa_Pa"), laws.at("volume_correction").at("form") == "paper",
-                     x.data(), f);
+      W += sp_volume(cells.size() / 8, cells.data(), edges[0], laws.at("volume_correction").at("kappa_Pa"),
+                     laws.at("volume_correction").at("form") == "paper", x.data(), f);
     if (laws.contains("hourglass_correction"))
       W += sp_hourglass(cells.size() / 8, cells.data(),
                         {derived.at("hourglass_bending_N_m"), derived.at("hourglass_coupling_N_m"),
@@ -45,15 +49,22 @@ int main(int count, char** arguments) try {
     if (laws.contains("averaged_springs")) {
       const json& law = laws.at("averaged_springs");
       const std::string curve = law.at("curve");
-      W += sp_averaged_cut(cells.size() / 8, cells.data(), file.at("cells").at("edge_m"),
-                           {fraction.empty() ? nullptr : fraction.data(), mean.data(), mixed.data(), variance.data()},
-                           {curve == "hencky"      ? SP_HENCKY
-                            : curve == "neo_hooke" ? SP_NEO_HOOKE
-                                                   : SP_NEO_HOOKE_ISOCHORIC,
-                            law.at("shear_modulus_Pa"), law.at("lame_lambda_Pa"), law.at("bending"), law.at("coupling"),
-                            law.at("torsion"), law.at("twist"), law.at("warping")},
-                           x.data(), f);
+      const sp_parts parts = {fraction.empty() ? nullptr : fraction.data(), mean.data(), mixed.data(), variance.data()};
+      const struct sp_averaged springs = {curve == "hencky"      ? SP_HENCKY
+                                          : curve == "neo_hooke" ? SP_NEO_HOOKE
+                                                                 : SP_NEO_HOOKE_ISOCHORIC,
+                                          law.at("shear_modulus_Pa"),
+                                          law.at("lame_lambda_Pa"),
+                                          law.at("bending"),
+                                          law.at("coupling"),
+                                          law.at("torsion"),
+                                          law.at("twist"),
+                                          law.at("warping")};
+      const std::size_t count = cells.size() / 8;
+      W += edge.is_array() ? sp_averaged_sizes(count, cells.data(), edges.data(), parts, springs, x.data(), f)
+                           : sp_averaged_cut(count, cells.data(), edges[0], parts, springs, x.data(), f);
     }
+    if (f) sp_hand_back(carried_nodes.size(), carried_nodes.data(), carried_by.data(), f);
     return W;
   };
 
@@ -65,7 +76,7 @@ int main(int count, char** arguments) try {
   for (double force : wanted) largest = std::max(largest, std::abs(force));
   for (std::size_t i = 0; i < x.size(); ++i) off = std::max(off, std::abs(f[i] - wanted[i]));
   for (std::size_t i = 0; i < std::min<std::size_t>(30, x.size()); ++i) {
-    const double h = 1e-6 * file.at("cells").at("edge_m").get<double>(), at = x[i];
+    const double h = 1e-6 * edges[0], at = x[i];
     x[i] = at + h;
     const double above = energy(x, nullptr);
     x[i] = at - h;

@@ -235,7 +235,36 @@ static double sp_averaged_cell(struct sp_averaged law, double edge, struct sp_pa
   return energy;
 }
 
-/* Of all cells; nodes: cells x 8. */
+/* Of all cells, each with its edge; nodes: cells x 8.  Carried nodes are put into their places before (sp_carry), and
+ * the forces on them handed back after it (sp_hand_back). */
+static double sp_averaged_sizes(size_t cells, const int* nodes, const double* edges, struct sp_parts parts,
+                                struct sp_averaged law, const double* x, double* f) {
+  double energy = 0;
+  for (size_t cell = 0; cell < cells; ++cell)
+    energy += sp_averaged_cell(law, edges[cell], sp_part_of(parts, cell), nodes + 8 * cell, x, f);
+  return energy;
+}
+
+/* Nodes on edges and faces of larger cells, carried.nodes and .by of the file: each is in the mean of four.  by: count
+ * x 4. */
+static void sp_carry(size_t count, const int* nodes, const int* by, double* x) {
+  for (size_t k = 0; k < count; ++k)
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (size_t n = 4 * k; n < 4 * k + 4; ++n) sum += x[3 * by[n] + c];
+      x[3 * nodes[k] + c] = sum / 4;
+    }
+}
+
+static void sp_hand_back(size_t count, const int* nodes, const int* by, double* f) {
+  for (size_t k = count; k-- > 0;)
+    for (int c = 0; c < 3; ++c) {
+      for (size_t n = 4 * k; n < 4 * k + 4; ++n) f[3 * by[n] + c] += f[3 * nodes[k] + c] / 4;
+      f[3 * nodes[k] + c] = 0;
+    }
+}
+
+/* Of all cells of one size. */
 static double sp_averaged_cut(size_t cells, const int* nodes, double edge, struct sp_parts parts,
                               struct sp_averaged law, const double* x, double* f) {
   double energy = 0;
@@ -267,10 +296,11 @@ static double sp_anchors(size_t count, const int* nodes, const double* weights, 
 }
 
 /* One step of semi-implicit Euler, v += dt f / m, x += dt v, with damping in proportion to the mass [1/s], implicit.
- * Stable at rest for dt up to derived.safe_time_step_s. */
+ * Stable at rest for dt up to derived.safe_time_step_s.  Carried nodes, of no mass, stay: sp_carry. */
 static void sp_step(size_t nodes, const double* mass, const double* f, double dt, double damping, double* x,
                     double* v) {
   for (size_t i = 0; i < 3 * nodes; ++i) {
+    if (mass[i / 3] == 0) continue;
     v[i] = (v[i] + dt * f[i] / mass[i / 3]) / (1 + dt * damping);
     x[i] += dt * v[i];
   }

@@ -127,19 +127,17 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
   if (!e.body.cells.empty()) e.body.cells.resize(1);
   if (e.body.voxel_edges.size() > 1) e.body.voxel_edges.resize(1);
   if (e.body.voxel_counts.size() > 1) e.body.voxel_counts.resize(1);
-  if (!e.body.accuracies.empty() && !request.voxels)
-    throw InputError(
-        fmt::format("{}: body.accuracy: cells of several sizes are for compare (allowed: --voxels N, cells "
-                    "of one size)",
-                    request.what));
-  e.body.accuracies.clear();
+  if (e.body.accuracies.size() > 1) e.body.accuracies.resize(1);
   if (request.voxels) {
+    e.body.accuracies.clear();
     if (!e.body.is_voxels()) throw InputError("--voxels: is for bodies of voxels; this one has --cells NX NY NZ");
     e.body.voxel_edges.clear();
     e.body.voxel_counts = {*request.voxels};
   }
-  e.loads.clear();
-  e.load_locations.clear();
+  if (e.body.accuracies.empty()) {  // for the loads the cells of several sizes are refined
+    e.loads.clear();
+    e.load_locations.clear();
+  }
   e.probes.clear();
   e.measures.clear();
   e.elements.clear();
@@ -156,6 +154,7 @@ SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   }
   if (!cut) {
     e.body.cut = false;
+    e.body.accuracies.clear();
     for (ModelChoice& m : e.models) m.options.erase("cut");
   }
   Status status(false);

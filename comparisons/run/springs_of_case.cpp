@@ -16,11 +16,14 @@ EmbeddedSurface carried_surface(const PreparedCase& prepared, const EmbeddedMode
 
 EmbeddedSurface carried_surface(const PreparedCase& prepared, const CutBody& body) {
   EmbeddedSurface surface = surface_of_mesh(*prepared.tetrahedra.back());
+  const Carriers carriers = carriers_of(static_cast<int>(body.points.rows()), body.carried);
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < surface.vertices.rows(); ++v) {
     const CutBody::Place at = body.place(surface.vertices.row(v).transpose());
     for (int n = 0; n < 8; ++n)
-      if (at.weights[n] != 0) entries.emplace_back(v, body.cells[at.cell].corners[n], at.weights[n]);
+      if (at.weights[n] != 0)
+        for_each_carrier(carriers, body.cells[at.cell].corners[n],
+                         [&](int node, double share) { entries.emplace_back(v, node, share * at.weights[n]); });
   }
   surface.weights.resize(surface.vertices.rows(), body.points.rows());
   surface.weights.setFromTriplets(entries.begin(), entries.end());
@@ -40,7 +43,8 @@ void add_network(const PreparedCase& prepared, SpringsFile& file) {
   file.model = std::move(built.model);
 }
 
-/// Cut cells.  Every node has a mass: anchors are kept apart, each patch has beside them the nodes at it.
+/// Cut cells.  Every node that nothing carries has a mass: anchors are kept apart, each patch has beside them the nodes
+/// at it.  Loads and weights of carried nodes are handed to those that carry them.
 void add_cut_network(const PreparedCase& prepared, SpringsFile& file) {
   const Lattice& lattice = prepared.lattices.front();
   const CutBody& body = *lattice.cut;
@@ -49,6 +53,11 @@ void add_cut_network(const PreparedCase& prepared, SpringsFile& file) {
   Embedding loads = embed(body, {}, file.model.network, Mesh{});
   file.loads = std::move(loads.patches);
   file.volumes = std::move(loads.volumes);
+  hand_back(body.carried, file.volumes, 1);
+  for (auto& [name, shares] : file.loads) {
+    hand_back(body.carried, shares.area, 1);
+    hand_back(body.carried, shares.normal);
+  }
   for (const auto& [name, parts] : body.patches) {
     file.patches[name] = nodes_at_patch(body, name);
     file.anchors[name] = cut_lattice(body, {name}, file.material->youngs_modulus).anchors;

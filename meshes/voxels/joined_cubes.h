@@ -41,6 +41,13 @@ using Carriers = std::vector<std::vector<std::pair<int, double>>>;
 /// Of `points` points; empty if none is carried.
 Carriers carriers_of(int points, const std::vector<CarriedPoint>& carried);
 
+/// Calls act(point, weight) with those that carry a point in the end, or with itself.
+template <class Act>
+void for_each_carrier(const Carriers& carriers, int point, const Act& act) {
+  if (carriers.empty() || carriers[point].empty()) return act(point, 1.0);
+  for (const auto& [by, weight] : carriers[point]) act(by, weight);
+}
+
 /// Values of carried points from those of the others; a field of three values per point, one after the other.
 template <class Field>
 void carry(const std::vector<CarriedPoint>& carried, Field& field) {

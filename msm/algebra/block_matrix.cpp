@@ -23,12 +23,9 @@ BlockMatrix::BlockMatrix(const Network& network)
                   carriers_of(network.nodes(), network.carried)) {}
 
 void BlockMatrix::hand_on(int i, int j, const Eigen::Matrix3d& block) {
-  const auto for_each_carrier = [&](int n, const auto& act) {
-    if (carriers_[n].empty()) act(n, 1.0);
-    for (const auto& [p, w] : carriers_[n]) act(p, w);
-  };
-  for_each_carrier(
-      i, [&](int p, double v) { for_each_carrier(j, [&](int q, double w) { blocks_[find(p, q)] += v * w * block; }); });
+  for_each_carrier(carriers_, i, [&](int p, double v) {
+    for_each_carrier(carriers_, j, [&](int q, double w) { blocks_[find(p, q)] += v * w * block; });
+  });
 }
 
 void BlockMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Blocks::Zero()); }

@@ -156,14 +156,10 @@ class CellFrequencies {
     std::map<int, Eigen::VectorXd> shares;  // of the corners, per node that carries some
     bool some = false;
     for (int n = 0; n < 8; ++n) {
-      const auto add = [&](int node, double w) {
-        shares.try_emplace(node, Eigen::VectorXd::Zero(8)).first->second[n] += w;
-      };
       some = some || (!carriers.empty() && !carriers[corners[n]].empty());
-      if (carriers.empty() || carriers[corners[n]].empty())
-        add(corners[n], 1);
-      else
-        for (const auto& [node, w] : carriers[corners[n]]) add(node, w);
+      for_each_carrier(carriers, corners[n], [&](int node, double w) {
+        shares.try_emplace(node, Eigen::VectorXd::Zero(8)).first->second[n] += w;
+      });
     }
     if (!some) {
       for (const int corner : corners) nodes_[cell].push_back(network_.master(corner));

@@ -18,10 +18,8 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> surface_weights(const CutBody& body
     const std::array<double, 8> weights = body.weights(cell, position);
     for (int n = 0; n < 8; ++n) {
       if (std::abs(weights[n]) <= least_weight) continue;
-      const int corner = body.cells[cell].corners[n];
-      if (carriers.empty() || carriers[corner].empty()) entries.emplace_back(p, corner, weights[n]);
-      if (!carriers.empty())
-        for (const auto& [node, share] : carriers[corner]) entries.emplace_back(p, node, weights[n] * share);
+      for_each_carrier(carriers, body.cells[cell].corners[n],
+                       [&](int node, double share) { entries.emplace_back(p, node, weights[n] * share); });
     }
   }
   Eigen::SparseMatrix<double, Eigen::RowMajor> all(points, nodes);

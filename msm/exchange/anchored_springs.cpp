@@ -34,15 +34,23 @@ void embed_mesh(const Mesh& mesh, const Network& network, Embedding& embedding) 
   std::vector<char> done(static_cast<std::size_t>(mesh.nodes.rows()), 0);
   for (const Hexahedron& cube : mesh.hexahedra) {
     const Vec3 middle = (mesh.nodes.row(cube[0]) + mesh.nodes.row(cube[6])).transpose() / 2;
-    const Hexahedron& cell = network.cells[locator(middle).cell];
+    const auto of_cube = static_cast<std::size_t>(locator(middle).cell);
     for (const int n : cube) {
       if (done[n]) continue;
       done[n] = 1;
-      const Vec3 xi = (mesh.nodes.row(n) - network.X.row(cell[0])).transpose() / network.cell_edge;
-      for (int c = 0; c < 8; ++c) {
+      const Vec3 at = mesh.nodes.row(n).transpose();
+      const auto position = [&](std::size_t c) -> Vec3 {
+        return (at - network.X.row(network.cells[c][0]).transpose()) / network.edge(c);
+      };
+      std::size_t c = of_cube;  // of one size, cells continue to the nodes of their cube
+      if (!network.cell_edges.empty() && (position(c).array() - 0.5).abs().maxCoeff() > 0.5 + 1e-9)
+        c = static_cast<std::size_t>(locator(at).cell);
+      const Hexahedron& cell = network.cells[c];
+      const Vec3 xi = position(c);
+      for (int k = 0; k < 8; ++k) {
         double weight = 1;
-        for (int d = 0; d < 3; ++d) weight *= hexahedron_corners[c][d] ? xi[d] : 1 - xi[d];
-        if (weight != 0) entries.emplace_back(n, cell[c], weight);
+        for (int d = 0; d < 3; ++d) weight *= hexahedron_corners[k][d] ? xi[d] : 1 - xi[d];
+        if (weight != 0) entries.emplace_back(n, cell[k], weight);
       }
     }
   }

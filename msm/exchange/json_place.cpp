@@ -81,6 +81,8 @@ void JsonPlace::require_known(const std::vector<std::string>& known) const {
 
 bool JsonPlace::empty() const { return value_->empty(); }
 
+bool JsonPlace::is_list() const { return value_->is_array(); }
+
 bool JsonPlace::first_is_list() const { return value_->is_array() && !value_->empty() && value_->front().is_array(); }
 
 double JsonPlace::number(double least, double largest) const {

@@ -27,6 +27,7 @@ class JsonPlace {
   void require_known(const std::vector<std::string>& known) const;
 
   bool empty() const;
+  bool is_list() const;
   bool first_is_list() const;  ///< of a list that is not empty
 
   double number(double least, double largest) const;  ///< ends included

@@ -120,8 +120,9 @@ void read_nodes(const JsonPlace& document, SpringsFile& file) {
   Network& network = file.model.network;
   network.X = vectors(nodes.at("position_m"));
   if (network.nodes() == 0) nodes.at("position_m").refuse("is empty", "at least one node");
-  const std::vector<double> mass =
-      nodes.at("mass_kg").numbers(1, static_cast<std::size_t>(network.nodes()), "nodes", smallest_of_file);
+  const bool some_carried = document.find("carried").has_value();  // read_carried() sees to their masses
+  const std::vector<double> mass = nodes.at("mass_kg").numbers(1, static_cast<std::size_t>(network.nodes()), "nodes",
+                                                               some_carried ? 0 : smallest_of_file);
   network.volume =
       Eigen::Map<const Eigen::VectorXd>(mass.data(), static_cast<Eigen::Index>(mass.size())) / file.density;
 }
@@ -143,6 +144,50 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
   return springs;
 }
 
+/// Edges of the cells; of several sizes a list.
+void read_edges(const JsonPlace& place, Network& network) {
+  if (!place.is_list()) {
+    network.cell_edge = place.number(smallest_of_file, farthest_node);
+    return;
+  }
+  network.cell_edges = place.numbers(1, network.cells.size(), "cells", smallest_of_file, farthest_node);
+  if (network.cell_edges.empty()) place.refuse("is empty", "an edge for each cell");
+  network.cell_edge = *std::min_element(network.cell_edges.begin(), network.cell_edges.end());
+}
+
+/// Nodes that are the means of others, which have no mass, and no others without.
+void read_carried(const JsonPlace& document, Network& network) {
+  const auto place = document.find("carried");
+  if (!place) return;
+  place->require_known({"nodes", "by"});
+  const std::vector<int> nodes = place->at("nodes").integers(1, network.nodes() - 1),
+                         by = place->at("by").integers(4, network.nodes() - 1, nodes.size(), "nodes");
+  std::vector<char> later(static_cast<std::size_t>(network.nodes()), 0);
+  for (const int node : nodes)
+    if (later[node]++) place->at("nodes").refuse(fmt::format("node {} is carried twice", node), "each node once");
+  for (std::size_t c = 0; c < nodes.size(); ++c) {
+    Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
+    CarriedPoint carried{nodes[c], {}};
+    for (std::size_t n = 4 * c; n < 4 * c + 4; ++n) {
+      if (later[by[n]])
+        place->at("by").refuse(
+            fmt::format("number {} names node {}, which is carried itself, and not before", c, by[n]),
+            "nodes that are not carried, or further up in the list");
+      carried.by.push_back(by[n]);
+      mean += network.X.row(by[n]) / 4;
+    }
+    later[nodes[c]] = 0;
+    if (!((mean - network.X.row(nodes[c])).cwiseAbs().maxCoeff() <= 1e-6 * network.cell_edge))
+      place->at("by").refuse(fmt::format("node {} is not in the mean of its four", nodes[c]),
+                             "four nodes, or two of them twice, whose mean it is at rest");
+    if (network.volume[nodes[c]] != 0)
+      place->refuse(fmt::format("node {} has a mass", nodes[c]), "0 kg; the nodes that carry it have its share");
+    network.carried.push_back(std::move(carried));
+  }
+  if ((network.volume.array() == 0).count() != static_cast<Eigen::Index>(nodes.size()))
+    document.at("nodes").at("mass_kg").refuse("has nodes of 0 kg that nothing carries", "a mass, or a row in /carried");
+}
+
 void read_cells(const JsonPlace& document, Network& network) {
   const int last = network.nodes() - 1;
   if (const auto triangles = document.find("triangles")) network.triangles = rows<3>(*triangles, last);
@@ -150,18 +195,18 @@ void read_cells(const JsonPlace& document, Network& network) {
   if (!cells) return;
   cells->require_known({"nodes", "edge_m", "fraction", "mean", "mixed", "variance"});
   network.cells = rows<8>(cells->at("nodes"), last);
-  network.cell_edge = cells->at("edge_m").number(smallest_of_file, farthest_node);
+  read_edges(cells->at("edge_m"), network);
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     for (int n = 0; n < 8; ++n) {
       const Vec3 corner(hexahedron_corners[n][0], hexahedron_corners[n][1], hexahedron_corners[n][2]);
       const Vec3 at = (network.X.row(network.cells[c][n]) - network.X.row(network.cells[c][0])).transpose();
-      if ((at - network.cell_edge * corner).cwiseAbs().maxCoeff() > 1e-6 * network.cell_edge)
+      if ((at - network.edge(c) * corner).cwiseAbs().maxCoeff() > 1e-6 * network.cell_edge)
         cells->at("nodes").refuse(fmt::format("cell {} is no cube of edge_m in the order of corners", c),
                                   "axis-aligned cubes, corners (0,0,0) (1,0,0) (1,1,0) (0,1,0) (0,0,1) (1,0,1) (1,1,1) "
                                   "(0,1,1)");
     }
   read_filled(*cells, network);
-  if (!network.cells.empty() && network.filled.empty()) recognise_lattice(network);
+  if (!network.cells.empty() && network.filled.empty() && network.cell_edges.empty()) recognise_lattice(network);
 }
 
 /// Calls `act` with a default value of each law of the list.
@@ -173,8 +218,11 @@ void for_each_law(std::variant<Laws...>*, const Act& act) {
 void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
   if (traits(law).reach == Reach::cells && network.cells.empty())
     place.refuse("has no cells to act on", "beside cells");
+  const bool several = !network.cell_edges.empty() || !network.carried.empty();
   if (traits(law).reach == Reach::cells && !network.filled.empty() && !std::holds_alternative<AveragedSprings>(law))
     place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
+  if (several && !std::holds_alternative<AveragedSprings>(law))
+    place.refuse("acts on cells of one size", "averaged_springs alone in cells of several sizes");
   if (std::holds_alternative<MacroSprings>(law)) place.refuse("has no macro-cells to act on", "averaged_springs");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
@@ -215,8 +263,8 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
     scale[s.j] += s.stiffness * s.rest_length;
   }
   if (const AveragedSprings* averaged = averaged_springs_of(model))
-    for (const Hexahedron& cell : network.cells)
-      for (const int n : cell) scale[n] += averaged->shear_modulus * network.cell_edge * network.cell_edge;
+    for (std::size_t c = 0; c < network.cells.size(); ++c)
+      for (const int n : network.cells[c]) scale[n] += averaged->shear_modulus * network.edge(c) * network.edge(c);
   const NodalVectors f = forces(model, network.X);
   for (int n = 0; n < network.nodes(); ++n)
     if (const double force = f.row(n).norm(); !(force <= unbalanced * scale[n]))
@@ -265,10 +313,10 @@ void read_surface(const JsonPlace& document, SpringsFile& file) {
 void require_format(const JsonPlace& document) {
   if (const auto format = document.find("format"); !format || format->text() != springs_format)
     document.refuse("is no springs file", fmt::format("\"format\": \"{}\"", springs_format));
-  document.at("version").number(springs_version, springs_version_of_cut_cells);
+  document.at("version").number(springs_version, springs_version_of_several_sizes);
   document.require_known({"format", "version", "origin", "material", "density_kg_m3", "grip_m", "grip_from", "derived",
-                          "laws", "nodes", "springs", "cells", "triangles", "patches", "anchors", "loads", "surface",
-                          "check"});
+                          "laws", "nodes", "springs", "cells", "carried", "triangles", "patches", "anchors", "loads",
+                          "surface", "check"});
 }
 
 SpringsFile read_document(const JsonPlace& document) {
@@ -293,6 +341,7 @@ SpringsFile read_document(const JsonPlace& document) {
           fmt::format("springs {} and {} connect the same nodes", order.number(s - 1), order.number(s)),
           "one spring for each pair of nodes");
   read_cells(document, network);
+  read_carried(document, network);
   read_laws(document, order, file.model);
   require_rest(document, file.model);
   read_patches(document, file);

@@ -135,9 +135,22 @@ void add_network(const Network& network, double density, DocumentWriter& out) {
   out.numbers({"springs", "stiffness_N_m"}, std::move(stiffness));
   out.numbers({"springs", "rest_length_m"}, std::move(rest_length));
   if (!network.cells.empty()) {
-    out.at({"cells", "edge_m"}) = network.cell_edge;
+    if (network.cell_edges.empty())
+      out.at({"cells", "edge_m"}) = network.cell_edge;
+    else
+      out.numbers({"cells", "edge_m"}, network.cell_edges);
     out.rows({"cells", "nodes"}, network.cells);
     if (!network.filled.empty()) add_filled(network.filled, out);
+  }
+  if (!network.carried.empty()) {
+    std::vector<int> nodes;
+    std::vector<std::array<int, 4>> by;
+    for (const CarriedPoint& c : network.carried) {
+      nodes.push_back(c.point);
+      for (std::array<int, 4>& of = by.emplace_back(); int& node : of) node = c.by[(&node - of.data()) % c.by.size()];
+    }
+    out.indices({"carried", "nodes"}, nodes);
+    out.rows({"carried", "by"}, by);
   }
   if (!network.triangles.empty()) out.rows({"triangles"}, network.triangles);
 }
@@ -233,10 +246,11 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
-  require_cells_of_one_size(network, "springs file");
   require_no_macro_cells(network, "springs file");
   out.document.head = {{"format", springs_format},
-                       {"version", network.filled.empty() ? springs_version : springs_version_of_cut_cells}};
+                       {"version", !network.carried.empty()  ? springs_version_of_several_sizes
+                                   : !network.filled.empty() ? springs_version_of_cut_cells
+                                                             : springs_version}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material)
     out.at({"material"}) = {{"youngs_modulus_Pa", springs.material->youngs_modulus},

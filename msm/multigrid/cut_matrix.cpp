@@ -13,13 +13,6 @@ namespace {
 
 using CellStiffnessMatrix = Eigen::Matrix<double, 24, 24>;
 
-/// Calls act(point, weight) for the point, or those that carry it.
-template <class Act>
-void for_each_carrier(const Carriers& carriers, int point, const Act& act) {
-  if (carriers.empty() || carriers[point].empty()) return act(point, 1.0);
-  for (const auto& [p, w] : carriers[point]) act(p, w);
-}
-
 /// Lists of numbers, one after the other.
 struct Lists {
   std::vector<int> begin, value;

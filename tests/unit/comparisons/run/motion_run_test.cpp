@@ -126,7 +126,7 @@ damping_1_s = 15
 
 TEST(MotionRun, BodiesMoveInCutCells) { expect_equilibrium_of_a_ball("voxels = 200"); }
 
-TEST(MotionRun, BodiesMoveInCellsOfSeveralSizes) { expect_equilibrium_of_a_ball("voxels = 60\naccuracy = 0.08"); }
+TEST(MotionRun, BodiesMoveInCellsOfSeveralSizes) { expect_equilibrium_of_a_ball("voxels = 60\naccuracy = 0.05"); }
 
 /// A ball of cut cells falls 5 mm; `more` is the rest of [dynamics].
 Experiment falling_ball(const std::string& more, const std::string& cells = "voxels = 200") {
