@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "msm/dynamics/list_motion.h"
+#include "msm/dynamics/plain_motion.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/kernels/cell_forces.h"
 #include "msm/kernels/list_forces.h"
@@ -71,97 +72,6 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
 }
 
 namespace {
-
-/// Time integration of any model by the plain force loops.
-class PlainMotion : public Motion {
- public:
-  PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step,
-              const DynamicsOptions& options)
-      : model_(model),
-        dispersion_(options.lagged ? dispersion_of(model) : nullptr),
-        inverse_mass_(inverse_mass),
-        dt_(time_step),
-        damping_(options.damping),
-        viscosity_(options.viscosity),
-        average_(model.network, options.mass_consistency),
-        x_(model.network.X),
-        v_(NodalVectors::Zero(x_.rows(), 3)),
-        of_supports_(v_) {}
-
-  void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
-
-  void move_supports() override {
-    for (Eigen::Index i = 0; i < x_.size(); ++i)
-      if (conditions_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
-  }
-
-  void set_state(const NodalVectors& x, const NodalVectors& v) override {
-    x_ = x;
-    v_ = v;
-  }
-
-  ForceNorms advance(long steps) override {
-    ForceNorms norms;
-    for (; steps > 0; --steps) norms = step();
-    return norms;
-  }
-
-  NodalVectors positions() const override { return x_; }
-  NodalVectors velocities() const override { return v_; }
-  std::string description() const override { return "plain loops"; }
-
- private:
-  ForceNorms step() {
-    NodalVectors f = forces_at_x();
-    if (viscosity_.acts()) viscosity_.add_forces(model_.network, x_, moving(), f);
-    double unbalanced = 0, support = 0;
-    for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      const double force = f.data()[i] + conditions_.external.data()[i];
-      (conditions_.fixed[i] ? support : unbalanced) += force * force;
-      double& speed = v_.data()[i];
-      speed = conditions_.fixed[i] ? 0 : (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
-    }
-    if (viscosity_.acts() || average_.acts())
-      for (Eigen::Index i = 0; i < x_.size(); ++i)
-        if (conditions_.fixed[i])
-          of_supports_.data()[i] = (model_.network.X.data()[i] + conditions_.prescribed.data()[i] - x_.data()[i]) / dt_;
-    carry(model_.network.carried, of_supports_);
-    const NodalVectors averaged = average_.acts() ? moving() : NodalVectors();
-    const NodalVectors& v = average_.acts() ? averaged : v_;
-    for (Eigen::Index i = 0; i < x_.size(); ++i)
-      if (!conditions_.fixed[i]) x_.data()[i] += dt_ * v.data()[i];
-    move_supports();
-    carry(model_.network.carried, x_);
-    carry(model_.network.carried, v_);
-    return {std::sqrt(unbalanced), std::sqrt(support)};
-  }
-
-  /// Velocities of the nodes, supports included.
-  NodalVectors moving() const { return average_.velocities(v_ + of_supports_, conditions_.fixed); }
-
-  /// Internal forces at x_; lagged: with the J of the previous step.
-  NodalVectors forces_at_x() {
-    if (!dispersion_) return forces(model_, x_);
-    NodalVectors f = NodalVectors::Zero(x_.rows(), 3);
-    for (const ForceLaw& law : model_.laws)
-      if (!std::holds_alternative<MomentumDispersion>(law))
-        std::visit([&](const auto& l) { l.add_forces(model_.network, x_, f); }, law);
-    const Eigen::VectorXd J = dispersion_->inflow(model_.network, x_);
-    dispersion_->add_forces(model_.network, x_, J_.size() > 0 ? J_ : J, f);
-    J_ = J;
-    return f;
-  }
-
-  const MassSpringModel& model_;
-  const MomentumDispersion* dispersion_;  ///< nullptr: dispersion is not lagged
-  Eigen::VectorXd inverse_mass_, J_;
-  double dt_, damping_;
-  Viscosity viscosity_;
-  MassAverage average_;
-  NodalVectors x_, v_;
-  NodalVectors of_supports_;  ///< velocities of moved unknowns [m/s], zero on free ones
-  BoundaryConditions conditions_;
-};
 
 /// Networks of springs, with or without momentum dispersion, and bodies of cut cells.
 template <class Real>

@@ -1,0 +1,43 @@
+// Time integration of any model by the plain force loops.
+#pragma once
+
+#include "msm/dynamics/dynamics.h"
+
+namespace springproof {
+
+/// The steps of run_dynamics() as they are written: for models that have no kernel, and what kernels are held against.
+class PlainMotion : public Motion {
+ public:
+  /// At rest at X.  Keeps a reference to the model.
+  /// @param model a model
+  /// @param inverse_mass inverse_masses() [1/kg]
+  /// @param time_step [s]
+  /// @param options of which damping, viscosity, mass_consistency and lagged are read
+  PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step,
+              const DynamicsOptions& options);
+
+  void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
+  void move_supports() override;
+  void set_state(const NodalVectors& x, const NodalVectors& v) override;
+  ForceNorms advance(long steps) override;
+  NodalVectors positions() const override { return x_; }
+  NodalVectors velocities() const override { return v_; }
+  std::string description() const override { return "plain loops"; }
+
+ private:
+  ForceNorms step();
+  NodalVectors moving() const;
+  NodalVectors forces_at_x();
+
+  const MassSpringModel& model_;
+  const MomentumDispersion* dispersion_;  ///< nullptr: dispersion is not lagged
+  Eigen::VectorXd inverse_mass_, J_;
+  double dt_, damping_;
+  Viscosity viscosity_;
+  MassAverage average_;
+  NodalVectors x_, v_;
+  NodalVectors of_supports_;  ///< velocities of moved unknowns [m/s], zero on free ones
+  BoundaryConditions conditions_;
+};
+
+}  // namespace springproof
