@@ -144,7 +144,8 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
 
 NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta,
                            int count) {
-  require_cells_of_one_size(model.network, "natural modes");
+  if (!model.network.carried.empty())
+    throw std::invalid_argument("natural modes: the cells are of several sizes (allowed: one size)");
   require_no_macro_cells(model.network, "natural modes");
   const double start = cpu_seconds();
   NaturalModes modes;

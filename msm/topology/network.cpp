@@ -49,11 +49,6 @@ std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fix
   return fixed;
 }
 
-void require_cells_of_one_size(const Network& network, const std::string& what) {
-  if (!network.carried.empty())
-    throw std::invalid_argument(what + ": the cells are of several sizes, which stand still (allowed: one size)");
-}
-
 Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Network& network, const NodalVectors& x) {
   Eigen::Matrix<double, 24, 1> u;
   for (int n = 0; n < 8; ++n) u.segment<3>(3 * n) = (x.row(cell[n]) - network.X.row(cell[n])).transpose();

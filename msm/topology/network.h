@@ -76,12 +76,6 @@ std::vector<Spring> merge_springs(std::vector<Spring> springs);
 /// @return the same, with the carried nodes'
 std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fixed);
 
-/// Cells of several sizes are for bodies at rest.
-/// @param network of any model
-/// @param what needs cells of one size, for the message
-/// @throws std::invalid_argument if some nodes are carried.
-void require_cells_of_one_size(const Network& network, const std::string& what);
-
 /// Displacement of the corners of a cell.
 /// @param cell its corners
 /// @param network that it is in
