@@ -14,8 +14,6 @@ using Mat3 = Eigen::Matrix3d;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 constexpr double least_volume = 1e-3;  // det B over that of an isotropic B of the same trace
 
-Vec3 between(const Spring& s, const NodalVectors& x) { return (x.row(s.j) - x.row(s.i)).transpose(); }
-
 /// Those of a lattice of cells; of other networks all directions alike.
 std::vector<SpringDirection> directions_of(const Network& network) {
   const auto all = spring_directions();

@@ -9,6 +9,9 @@
 
 namespace springproof {
 
+/// From one end of a spring to the other, of a nodal field.
+inline Vec3 between(const Spring& s, const NodalVectors& x) { return (x.row(s.j) - x.row(s.i)).transpose(); }
+
 /// What Dispersion::finite_strain adds to the springs:
 ///
 ///     sum_n V_n [ W(F_n) - W_springs(F_n) ] ,   F_n = sum of d (x) g over the spring ends whose inflow n receives,

@@ -9,11 +9,10 @@
 #include <stdexcept>
 
 #include "msm/algebra/dense.h"
+#include "msm/laws/nodal_gradients.h"
 
 namespace springproof {
 namespace {
-
-Vec3 between(const Spring& s, const NodalVectors& x) { return (x.row(s.j) - x.row(s.i)).transpose(); }
 
 void add(const std::vector<double>& more, std::vector<double>& sum) {
   for (std::size_t s = 0; s < sum.size(); ++s) sum[s] += more[s];
