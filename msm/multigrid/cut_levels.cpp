@@ -258,6 +258,7 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
   finest.edge = network.cell_edge;
   finest.corners = network.cells;
   finest.filled = network.filled;
+  finest.filled.resize(network.cells.size());  // whole cubes have none
   const Vec3 lower = network.X.topRows(nodes.corners).colwise().minCoeff().transpose();
   for (int n = 0; n < nodes.corners; ++n) {
     std::array<int, 3> at;

@@ -1,7 +1,10 @@
 #include "msm/parallel/parted_equations.h"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
+
+#include "msm/parallel/lattice_multigrid.h"
 
 namespace springproof {
 namespace {
@@ -13,12 +16,15 @@ constexpr const char* solver_options =
     "-mixed_fieldsplit_u_ksp_type preonly -mixed_fieldsplit_u_pc_type gamg -mixed_fieldsplit_u_pc_gamg_threshold 0.01 "
     "-mixed_fieldsplit_u_mg_levels_ksp_type chebyshev -mixed_fieldsplit_u_mg_levels_pc_type jacobi "
     "-mixed_fieldsplit_u_mg_levels_ksp_max_it 2 "
-    "-mixed_fieldsplit_p_ksp_type preonly -mixed_fieldsplit_p_pc_type jacobi";
+    "-mixed_fieldsplit_p_ksp_type preonly -mixed_fieldsplit_p_pc_type jacobi "
+    "-lattice_mg_levels_ksp_type chebyshev -lattice_mg_levels_ksp_max_it 1 "
+    "-mixed_lattice_mg_levels_ksp_type richardson -mixed_lattice_mg_levels_ksp_max_it 2 "
+    "-anchored_ksp_type preonly -anchored_pc_type lu -anchored_pc_factor_shift_type nonzero -mat_inode_limit 3";
 
 /// Blocks of a tangent row by row: those between coupled nodes, and those of the dispersion's flow.
-class BlockRows {
+class TangentRows {
  public:
-  BlockRows(const Tangent& K, const Network& network)
+  TangentRows(const Tangent& K, const Network& network)
       : K_(K), coupled_(coupled_through(carriers_of(network.nodes(), network.carried), coupled_nodes(network))) {
     if (K.dispersive()) flow_ = NodalForms(K.outflow.transpose()) * K.inflow;
   }
@@ -106,7 +112,7 @@ EquationNumbers number_equations(const std::vector<int>& owner, const std::vecto
 
 PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNumbers& nodes,
                       const std::vector<char>& fixed, MPI_Comm communicator) {
-  const BlockRows rows(K, network);
+  const TangentRows rows(K, network);
   RowLengths lengths(3 * nodes.own.size());
   for (std::size_t i = 0; i < nodes.own.size(); ++i)
     for (const int other : rows.columns(nodes.own[i]))
@@ -216,29 +222,41 @@ PetscOutcome solve(KSP solver, Mat A, Vec b, Vec x, double tolerance, int max_it
   return outcome;
 }
 
-PetscSolver displacement_solver(Mat A, MPI_Comm communicator) {
+namespace {
+
+PetscSolver krylov_solver(Mat A, const char* prefix, KSPType type, MPI_Comm communicator) {
   PetscSolver solver;
   require(KSPCreate(communicator, &solver));
-  require(KSPSetOptionsPrefix(solver, "displacement_"));
+  require(KSPSetOptionsPrefix(solver, prefix));
   require(KSPSetOperators(solver, A, A));
-  require(KSPSetType(solver, KSPCG));
+  require(KSPSetType(solver, type));
+  require(KSPGMRESSetRestart(solver, 60));
+  require(KSPSetPCSide(solver, std::strcmp(type, KSPGMRES) == 0 ? PC_RIGHT : PC_LEFT));
   require(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
+  return solver;
+}
+
+}  // namespace
+
+PetscSolver displacement_solver(Mat A, const LatticeTransfers& transfers, MPI_Comm communicator) {
+  const bool of_lattice = !transfers.displacements.empty();
+  PetscSolver solver = krylov_solver(A, of_lattice ? "lattice_" : "displacement_", KSPCG, communicator);
+  if (of_lattice) set_lattice_multigrid(solver, A, transfers, communicator);
   require(KSPSetFromOptions(solver));
   return solver;
 }
 
-PetscSolver mixed_solver(Mat system, Mat schur, MPI_Comm communicator) {
-  PetscSolver solver;
+PetscSolver mixed_solver(Mat system, Mat schur, const LatticeTransfers& transfers, MPI_Comm communicator) {
+  if (!transfers.displacements.empty()) {
+    PetscSolver solver = krylov_solver(system, "mixed_lattice_", KSPGMRES, communicator);
+    set_mixed_lattice_multigrid(solver, system, transfers, communicator);
+    require(KSPSetFromOptions(solver));
+    return solver;
+  }
+  PetscSolver solver = krylov_solver(system, "mixed_", KSPGMRES, communicator);
   PC preconditioner;
   IS fields[2];
   require(MatNestGetISs(system, fields, nullptr));
-  require(KSPCreate(communicator, &solver));
-  require(KSPSetOptionsPrefix(solver, "mixed_"));
-  require(KSPSetOperators(solver, system, system));
-  require(KSPSetType(solver, KSPGMRES));
-  require(KSPGMRESSetRestart(solver, 60));
-  require(KSPSetPCSide(solver, PC_RIGHT));
-  require(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
   require(KSPGetPC(solver, &preconditioner));
   require(PCSetType(preconditioner, PCFIELDSPLIT));
   require(PCFieldSplitSetIS(preconditioner, "u", fields[0]));

@@ -3,7 +3,7 @@
 
 #include "msm/algebra/tangent.h"
 #include "msm/distribution/model_part.h"
-#include "msm/parallel/petsc.h"
+#include "msm/parallel/lattice_transfers.h"
 
 namespace springproof {
 
@@ -51,12 +51,12 @@ struct PetscOutcome {
 /// Solves A x = b, again from x where the residual that the iteration kept was not the true one.
 PetscOutcome solve(KSP solver, Mat A, Vec b, Vec x, double tolerance, int max_iterations);
 
-/// Conjugate gradients with smoothed aggregation.
-PetscSolver displacement_solver(Mat A, MPI_Comm communicator);
+/// Conjugate gradients with the multigrid of a lattice's cells; without transfers, with smoothed aggregation.
+PetscSolver displacement_solver(Mat A, const LatticeTransfers& transfers, MPI_Comm communicator);
 
-/// GMRES for [A B^T; B -C] with a block-triangular preconditioner: smoothed aggregation for A, `schur` in place of the
-/// Schur complement.
-PetscSolver mixed_solver(Mat system, Mat schur, MPI_Comm communicator);
+/// GMRES for [A B^T; B -C] with the multigrid of both on a lattice; without transfers, with a block-triangular
+/// preconditioner: smoothed aggregation for A, `schur` in place of the Schur complement.
+PetscSolver mixed_solver(Mat system, Mat schur, const LatticeTransfers& transfers, MPI_Comm communicator);
 
 /// The options of these solvers, to be overridden by the environment variable PETSC_OPTIONS.
 void set_solver_options();

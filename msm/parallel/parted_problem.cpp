@@ -73,8 +73,10 @@ PartedProblem::PartedProblem(const MassSpringModel& model, const BoundaryConditi
     for (std::size_t n = 0; n < owner.size(); ++n)
       if (fixed[3 * n] && fixed[3 * n + 1] && fixed[3 * n + 2]) with_equations[n] = -1;
     nodes_ = number_equations(with_equations, part_.nodes, communicator);
+    const std::vector<int> of_pressures = mixed_ ? owners_of_pressures(model, owner) : std::vector<int>{};
+    if (!mixed_ || !has_nodal_pressures(model))
+      transfers_ = lattice_transfers(model.network, fixed, with_equations, of_pressures, communicator);
     if (!mixed_) return;
-    const std::vector<int> of_pressures = owners_of_pressures(model, owner);
     all_pressures_ = static_cast<long>(of_pressures.size());
     pressures_ = number_equations(of_pressures, has_nodal_pressures(model) ? part_.nodes : part_.cells, communicator);
   });
@@ -92,6 +94,10 @@ Eigen::VectorXd PartedProblem::own_load(const Eigen::VectorXd& internal) const {
 
 NodalVectors PartedProblem::own_positions() const { return part_.model.network.X(nodes_.own, Eigen::all); }
 
+std::string PartedProblem::multigrid_name() const {
+  return transfers_.displacements.empty() ? "smoothed aggregation" : "multigrid of the lattice";
+}
+
 PartedProblem::Solution PartedProblem::solve_displacements(double tolerance, int max_iterations) const {
   PetscMatrix A;
   PetscVector b;
@@ -103,11 +109,11 @@ PartedProblem::Solution PartedProblem::solve_displacements(double tolerance, int
     A = matrix_of(K, part_.model.network, nodes_, fixed_, communicator_);
   }
   set_rigid_motions(A, own_positions(), communicator_);
-  const PetscSolver solver = displacement_solver(A, communicator_);
+  const PetscSolver solver = displacement_solver(A, transfers_, communicator_);
   PetscVector x;
   require(VecDuplicate(b, &x));
   const PetscOutcome outcome = springproof::solve(solver, A, b, x, tolerance, max_iterations);
-  return {values_of(x), {}, outcome, "CG + smoothed aggregation"};
+  return {values_of(x), {}, outcome, "CG + " + multigrid_name()};
 }
 
 PartedProblem::Solution PartedProblem::solve_mixed(double tolerance, int max_iterations) const {
@@ -141,13 +147,13 @@ PartedProblem::Solution PartedProblem::solve_mixed(double tolerance, int max_ite
   require(MatCreateTranspose(B, &B_transposed));
   Mat blocks[4] = {A, B_transposed, B, minus_C};
   require(MatCreateNest(communicator_, 2, nullptr, 2, nullptr, blocks, &system));
-  const PetscSolver solver = mixed_solver(system, schur, communicator_);
+  const PetscSolver solver = mixed_solver(system, schur, transfers_, communicator_);
   PetscVector x;
   require(VecDuplicate(b, &x));
   const PetscOutcome outcome = springproof::solve(solver, system, b, x, tolerance, max_iterations);
   const Eigen::VectorXd both = values_of(x);
   const auto n = static_cast<Eigen::Index>(3 * nodes_.own.size());
-  return {both.head(n), unit * both.tail(both.size() - n), outcome, "GMRES + smoothed aggregation with pressures"};
+  return {both.head(n), unit * both.tail(both.size() - n), outcome, "GMRES + " + multigrid_name() + " with pressures"};
 }
 
 Equilibrium PartedProblem::solve(double tolerance, int max_iterations) {

@@ -12,10 +12,10 @@ namespace springproof {
 inline constexpr double parted_mixed_above_kappa = 8;
 
 /// The linear equations of a model, each process with the rows of its own nodes.  Displacement form: conjugate
-/// gradients with smoothed aggregation (PETSc's GAMG), which knows the rigid motions.  With momentum dispersion above
-/// nu = 1/4, and with a volume term that adds more than parted_mixed_above_kappa G to lambda, with pressures
-/// (PressureForm): GMRES with a block-triangular preconditioner, smoothed aggregation for the springs and
-/// C (1 + kappa / 3G) in place of the Schur complement.
+/// gradients.  With momentum dispersion above nu = 1/4, and with a volume term that adds more than
+/// parted_mixed_above_kappa G to lambda, with pressures (PressureForm): GMRES.  Lattices are preconditioned by the
+/// multigrid of their cells, unless pressures are those of nodes; all else by smoothed aggregation (PETSc's GAMG),
+/// which knows the rigid motions, with C (1 + kappa / 3G) in place of the Schur complement.
 class PartedProblem {
  public:
   /// Finds the partition and takes this process' part; the whole model is not needed afterwards.
@@ -39,7 +39,7 @@ class PartedProblem {
     std::string solver;
   };
 
-  void number(const MassSpringModel& model, const std::vector<int>& owner);
+  std::string multigrid_name() const;
   Solution solve_displacements(double tolerance, int max_iterations) const;
   Solution solve_mixed(double tolerance, int max_iterations) const;
   Eigen::VectorXd part_pressures(const Eigen::VectorXd& own) const;
@@ -55,6 +55,7 @@ class PartedProblem {
   std::vector<char> fixed_;                ///< per unknown of the part, carried ones included
   Eigen::VectorXd prescribed_, external_;  ///< of the part
   EquationNumbers nodes_, pressures_;
+  LatticeTransfers transfers_;  ///< empty: smoothed aggregation
   NodalVectors all_prescribed_;
   std::vector<CarriedPoint> all_carried_;
   long unknowns_ = 0, all_pressures_ = 0;
