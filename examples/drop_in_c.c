@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   FILE* file = argc == 2 ? fopen(argv[1], "rb") : NULL;
   if (!file) return fprintf(stderr, "usage: drop_in_c FILE.json\n"), 2;
   text[fread(text, 1, sizeof text - 1, file)] = 0;
+  if (strstr(text, "\n \"carried\"")) return fprintf(stderr, "cells of several sizes: forces_in_c.cpp shows how\n"), 2;
   const char *nodes = "\n \"nodes\"", *cells = "\n \"cells\"", *surface = "\n \"surface\"";
   size_t n, n3, c8, vertices, one;
   const double *X = numbers(nodes, "\"position_m\"", &n3), *mass = numbers(nodes, "\"mass_kg\"", &n);

@@ -12,7 +12,7 @@ int main(int count, char** arguments) try {
   if (count != 2) return std::fprintf(stderr, "usage: drop_springs FILE.json\n"), 2;
   const SpringsFile file = read_springs(arguments[1]);
   const Network& network = file.model.network;
-  const Eigen::VectorXd mass = masses(network, file.density);
+  const Eigen::VectorXd mass = masses(network, file.density), per_mass = inverse_masses(network, file.density);
   const double dt = 0.95 * safe_time_step(file.model, file.density);
   const double size = (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()).maxCoeff();
   const double floor = network.X.col(2).minCoeff() - size / 10;  // it falls a tenth of its size
@@ -24,13 +24,15 @@ int main(int count, char** arguments) try {
   while (time < 1 && (touched == 0 || time < 2 * touched + 0.05)) {
     const NodalVectors f = forces(file.model, x);
     for (Eigen::Index n = 0; n < x.rows(); ++n) {  // semi-implicit Euler
-      v.row(n) += dt * (f.row(n) / mass[n] + gravity);
+      v.row(n) += dt * (f.row(n) * per_mass[n] + gravity);
       x.row(n) += dt * v.row(n);
       if (x(n, 2) >= floor) continue;
       x(n, 2) = floor;  // the plane takes the momentum of what meets it
       v(n, 2) = std::max(v(n, 2), 0.0);
       if (touched == 0) touched = time;
     }
+    carry(network.carried, x);  // of cells of several sizes: nodes that follow others
+    carry(network.carried, v);
     time += dt;
     if (height(x) < lowest) {
       lowest = height(x);

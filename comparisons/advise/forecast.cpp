@@ -62,7 +62,8 @@ Forecast forecast_from(const std::vector<Measurement>& measured, const Loading& 
   out.predict = at;
   out.predict_element = at;
   if (loading.body == "round")
-    out.notes.push_back("models without a suffix are in cut cells (at rest only), 'cut=false' in whole cubes");
+    out.notes.push_back(
+        "models without a suffix are in cut cells (but for hybmss_avg at rest only), 'cut=false' in whole cubes");
   return out;
 }
 

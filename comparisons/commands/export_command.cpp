@@ -153,8 +153,12 @@ SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
     e.body.cells = {cells_of_option(request.cells)};
   }
   if (!cut) {
+    if (!e.body.accuracies.empty())
+      throw InputError(
+          fmt::format("{}: body.accuracy: cells of several sizes are cut cells (allowed: --to springs without "
+                      "--whole-cubes, or --voxels N)",
+                      request.what));
     e.body.cut = false;
-    e.body.accuracies.clear();
     for (ModelChoice& m : e.models) m.options.erase("cut");
   }
   Status status(false);

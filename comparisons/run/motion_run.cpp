@@ -138,8 +138,9 @@ class Recorder {
         forces(built_.model, x) + viscous_forces(x, average_.velocities(v, conditions.fixed)) + conditions.external;
     for (Eigen::Index i = 0; i < v.size(); ++i)
       if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_[i / 3] - damping_ * v.data()[i]);
+    if (contact_) v = contact_->stopped(conditions.fixed, v);
     carry(built_.model.network.carried, v);
-    return contact_ ? contact_->stopped(conditions.fixed, v) : v;
+    return v;
   }
 
   NodalVectors viscous_forces(const NodalVectors& x, const NodalVectors& v) const {

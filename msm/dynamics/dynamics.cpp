@@ -56,7 +56,7 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
   if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
   if (implicit && options.contact && options.contact->plane().friction > 0)
     throw InputError("integrator: large steps have a plane without friction (allowed: friction = 0, or explicit)");
-  if (implicit && options.contact && !options.contact->of_nodes())
+  if (implicit && options.contact && (!options.contact->of_nodes() || !model.network.carried.empty()))
     throw InputError(
         "integrator: large steps have contact of nodes, not of the surface of cut cells (allowed: cut = false, or "
         "explicit)");
@@ -232,7 +232,6 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (!bc.fixed[i] && explicit_steps)
       v.data()[i] -= dt / 2 * (f.data()[i] * per_mass[i / 3] - options.damping * v.data()[i]);
-  carry(model.network.carried, v);
   return v;
 }
 
@@ -255,8 +254,7 @@ DynamicsResult run_dynamics(const MassSpringModel& model, double density, const 
   BoundaryConditions bc = load_path(options.course.factor(0));
   motion->set_conditions(bc);
   if (options.start.size() > 0 || options.velocity.size() > 0) {
-    NodalVectors x = options.start.size() > 0 ? options.start : X;
-    carry(model.network.carried, x);
+    const NodalVectors x = options.start.size() > 0 ? options.start : X;
     motion->set_state(x, velocity_before(model, density, x, bc, dt, options));
   }
   motion->move_supports();

@@ -83,6 +83,8 @@ void ImplicitMotion::move_supports() {
 void ImplicitMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
   x_ = x;
   v_ = v;
+  carry(model_.network.carried, x_);
+  carry(model_.network.carried, v_);
   steps_ = 0;
 }
 

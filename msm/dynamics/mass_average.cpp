@@ -21,7 +21,7 @@ MassAverage::MassAverage(const Network& network, double theta) : theta_(theta), 
 
 std::string MassAverage::lacks(const Network& network) {
   if (network.cells.empty()) return "its network has no cells";
-  if (!network.carried.empty()) return "its cells are of several sizes";
+  if (!network.cell_edges.empty()) return "its cells are of several sizes";
   return network.image_of.empty() ? "" : "its network is periodic";
 }
 

@@ -144,7 +144,7 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
 
 NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta,
                            int count) {
-  if (!model.network.carried.empty())
+  if (!model.network.cell_edges.empty())
     throw std::invalid_argument("natural modes: the cells are of several sizes (allowed: one size)");
   require_no_macro_cells(model.network, "natural modes");
   const double start = cpu_seconds();

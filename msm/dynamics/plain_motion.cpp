@@ -25,6 +25,8 @@ void PlainMotion::move_supports() {
 void PlainMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
   x_ = x;
   v_ = v;
+  carry(model_.network.carried, x_);
+  carry(model_.network.carried, v_);
 }
 
 ForceNorms PlainMotion::advance(long steps) {

@@ -12,7 +12,8 @@
 
 namespace springproof {
 
-/// Supports and loads of nodes, as solvers take them.  A program may fill it itself (examples/own_model.cpp).
+/// Supports and loads of nodes, as solvers take them; carried nodes (Network::carried) have neither: hand_back() passes
+/// forces on them on.  A program may fill it itself (examples/own_model.cpp).
 struct BoundaryConditions {
   std::vector<char> fixed;  ///< per unknown 3 * node + axis: displacement prescribed
   std::vector<int> owner;   ///< per unknown: number of the load that prescribes it, -1 = free

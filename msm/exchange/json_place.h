@@ -10,6 +10,7 @@
 namespace springproof {
 
 inline constexpr double largest_number_of_file = 1e30;  ///< products of a few numbers of a file do not overflow
+inline constexpr double smallest_of_file = 1e-30, farthest_node = 1e9;  ///< [m]
 
 class JsonPlace {
  public:

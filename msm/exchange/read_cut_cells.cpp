@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msm/exchange/springs_document.h"
+
 namespace springproof {
 namespace {
 
@@ -47,6 +49,17 @@ PatchShares read_load(const JsonPlace& place, int nodes_of_network) {
 
 }  // namespace
 
+void read_edges(const JsonPlace& cells, double version, Network& network) {
+  const JsonPlace place = cells.at("edge_m");
+  if (version < springs_version_of_several_sizes || !place.is_list()) {
+    network.cell_edge = place.number(smallest_of_file, farthest_node);
+    return;
+  }
+  network.cell_edges = place.numbers(1, network.cells.size(), "cells", smallest_of_file, farthest_node);
+  if (network.cell_edges.empty()) place.refuse("is empty", "an edge for each cell");
+  network.cell_edge = *std::min_element(network.cell_edges.begin(), network.cell_edges.end());
+}
+
 void read_filled(const JsonPlace& cells, Network& network) {
   const auto fraction = cells.find("fraction");
   if (!fraction) return;
@@ -59,6 +72,39 @@ void read_filled(const JsonPlace& cells, Network& network) {
   for (std::size_t c = 0; c < count; ++c)
     network.filled.push_back({alpha[c], Eigen::Map<const Vec3>(&mean[3 * c]), Eigen::Map<const Vec3>(&mixed[3 * c]),
                               Eigen::Map<const Vec3>(&variance[3 * c])});
+}
+
+void read_carried(const JsonPlace& document, Network& network) {
+  const auto place = document.find("carried");
+  if (!place) return;
+  if (network.cell_edges.empty()) place->refuse("is beside cells of one size", "version 3 with a list edge_m");
+  place->require_known({"nodes", "by"});
+  const std::vector<int> nodes = place->at("nodes").integers(1, network.nodes() - 1),
+                         by = place->at("by").integers(4, network.nodes() - 1, nodes.size(), "nodes");
+  std::vector<char> later(static_cast<std::size_t>(network.nodes()), 0);
+  for (const int node : nodes)
+    if (later[node]++) place->at("nodes").refuse(fmt::format("node {} is carried twice", node), "each node once");
+  for (std::size_t c = 0; c < nodes.size(); ++c) {
+    Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
+    CarriedPoint carried{nodes[c], {}};
+    for (std::size_t n = 4 * c; n < 4 * c + 4; ++n) {
+      if (later[by[n]])
+        place->at("by").refuse(
+            fmt::format("number {} names node {}, which is carried itself, and not before", c, by[n]),
+            "nodes that are not carried, or further up in the list");
+      carried.by.push_back(by[n]);
+      mean += network.X.row(by[n]) / 4;
+    }
+    later[nodes[c]] = 0;
+    if (!((mean - network.X.row(nodes[c])).cwiseAbs().maxCoeff() <= 1e-6 * network.cell_edge))
+      place->at("by").refuse(fmt::format("node {} is not in the mean of its four", nodes[c]),
+                             "four nodes, or two of them twice, whose mean it is at rest");
+    if (network.volume[nodes[c]] != 0)
+      place->refuse(fmt::format("node {} has a mass", nodes[c]), "0 kg; the nodes that carry it have its share");
+    network.carried.push_back(std::move(carried));
+  }
+  if ((network.volume.array() == 0).count() != static_cast<Eigen::Index>(nodes.size()))
+    document.at("nodes").at("mass_kg").refuse("has nodes of 0 kg that nothing carries", "a mass, or a row in /carried");
 }
 
 void read_supports_and_loads(const JsonPlace& document, SpringsFile& file) {

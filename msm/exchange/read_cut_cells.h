@@ -1,10 +1,19 @@
-// What a springs file says of cut cells: filled parts, anchors and shares in loads.
+// What a springs file says of cut cells: their sizes, filled parts, anchors and shares in loads.
 #pragma once
 
 #include "msm/exchange/json_place.h"
 #include "msm/exchange/springs_file.h"
 
 namespace springproof {
+
+/// `edge_m` of the cells; of several sizes, from version 3 on, a list.
+/// @param cells with their nodes in `network`
+/// @param version of the file
+void read_edges(const JsonPlace& cells, double version, Network& network);
+
+/// `carried` of the document: nodes that are the means of others, which have no mass, and no others without.
+/// @throws InputError unless each is in its mean at rest, and follows none that comes later.
+void read_carried(const JsonPlace& document, Network& network);
 
 /// The moments beside the cells' nodes, if there are any.
 /// @throws InputError unless they can be those of a part of a cube.

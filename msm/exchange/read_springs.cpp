@@ -20,9 +20,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double smallest_of_file = 1e-30, farthest_node = 1e9;  // [m]
-constexpr std::size_t largest_file = std::size_t{1} << 31;       // bytes
-constexpr double unbalanced = 1e-6;                              // force at rest over the sum of k L at a node
+constexpr std::size_t largest_file = std::size_t{1} << 31;  // bytes
+constexpr double unbalanced = 1e-6;                         // force at rest over the sum of k L at a node
 
 /// Reads the parameters that a law names by its function `fields`.
 class LawReader {
@@ -144,48 +143,8 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
   return springs;
 }
 
-/// Edges of the cells; of several sizes a list.
-void read_edges(const JsonPlace& place, Network& network) {
-  if (!place.is_list()) {
-    network.cell_edge = place.number(smallest_of_file, farthest_node);
-    return;
-  }
-  network.cell_edges = place.numbers(1, network.cells.size(), "cells", smallest_of_file, farthest_node);
-  if (network.cell_edges.empty()) place.refuse("is empty", "an edge for each cell");
-  network.cell_edge = *std::min_element(network.cell_edges.begin(), network.cell_edges.end());
-}
-
-/// Nodes that are the means of others, which have no mass, and no others without.
-void read_carried(const JsonPlace& document, Network& network) {
-  const auto place = document.find("carried");
-  if (!place) return;
-  place->require_known({"nodes", "by"});
-  const std::vector<int> nodes = place->at("nodes").integers(1, network.nodes() - 1),
-                         by = place->at("by").integers(4, network.nodes() - 1, nodes.size(), "nodes");
-  std::vector<char> later(static_cast<std::size_t>(network.nodes()), 0);
-  for (const int node : nodes)
-    if (later[node]++) place->at("nodes").refuse(fmt::format("node {} is carried twice", node), "each node once");
-  for (std::size_t c = 0; c < nodes.size(); ++c) {
-    Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
-    CarriedPoint carried{nodes[c], {}};
-    for (std::size_t n = 4 * c; n < 4 * c + 4; ++n) {
-      if (later[by[n]])
-        place->at("by").refuse(
-            fmt::format("number {} names node {}, which is carried itself, and not before", c, by[n]),
-            "nodes that are not carried, or further up in the list");
-      carried.by.push_back(by[n]);
-      mean += network.X.row(by[n]) / 4;
-    }
-    later[nodes[c]] = 0;
-    if (!((mean - network.X.row(nodes[c])).cwiseAbs().maxCoeff() <= 1e-6 * network.cell_edge))
-      place->at("by").refuse(fmt::format("node {} is not in the mean of its four", nodes[c]),
-                             "four nodes, or two of them twice, whose mean it is at rest");
-    if (network.volume[nodes[c]] != 0)
-      place->refuse(fmt::format("node {} has a mass", nodes[c]), "0 kg; the nodes that carry it have its share");
-    network.carried.push_back(std::move(carried));
-  }
-  if ((network.volume.array() == 0).count() != static_cast<Eigen::Index>(nodes.size()))
-    document.at("nodes").at("mass_kg").refuse("has nodes of 0 kg that nothing carries", "a mass, or a row in /carried");
+double version_of(const JsonPlace& document) {
+  return document.at("version").number(springs_version, springs_version_of_several_sizes);
 }
 
 void read_cells(const JsonPlace& document, Network& network) {
@@ -195,7 +154,7 @@ void read_cells(const JsonPlace& document, Network& network) {
   if (!cells) return;
   cells->require_known({"nodes", "edge_m", "fraction", "mean", "mixed", "variance"});
   network.cells = rows<8>(cells->at("nodes"), last);
-  read_edges(cells->at("edge_m"), network);
+  read_edges(*cells, version_of(document), network);
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     for (int n = 0; n < 8; ++n) {
       const Vec3 corner(hexahedron_corners[n][0], hexahedron_corners[n][1], hexahedron_corners[n][2]);
@@ -206,6 +165,8 @@ void read_cells(const JsonPlace& document, Network& network) {
                                   "(0,1,1)");
     }
   read_filled(*cells, network);
+  if (!network.cell_edges.empty() && network.filled.empty())
+    cells->at("edge_m").refuse("is a list, of whole cells", "one edge; or with fraction, mean, mixed and variance");
   if (!network.cells.empty() && network.filled.empty() && network.cell_edges.empty()) recognise_lattice(network);
 }
 
@@ -222,7 +183,7 @@ void require_its_parts(const ForceLaw& law, const Network& network, const JsonPl
   if (traits(law).reach == Reach::cells && !network.filled.empty() && !std::holds_alternative<AveragedSprings>(law))
     place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
   if (several && !std::holds_alternative<AveragedSprings>(law))
-    place.refuse("acts on cells of one size", "averaged_springs alone in cells of several sizes");
+    place.refuse("is beside cells of several sizes", "averaged_springs alone");
   if (std::holds_alternative<MacroSprings>(law)) place.refuse("has no macro-cells to act on", "averaged_springs");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
@@ -283,6 +244,10 @@ void read_patches(const JsonPlace& document, SpringsFile& file) {
     std::vector<int> nodes = patches->at(name).integers(1, file.model.network.nodes() - 1);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    for (const CarriedPoint& c : file.model.network.carried)
+      if (std::binary_search(nodes.begin(), nodes.end(), c.point))
+        patches->at(name).refuse(fmt::format("node {} follows others and cannot be held", c.point),
+                                 "nodes that are not carried");
     file.patches[name] = std::move(nodes);
   }
 }
@@ -313,7 +278,8 @@ void read_surface(const JsonPlace& document, SpringsFile& file) {
 void require_format(const JsonPlace& document) {
   if (const auto format = document.find("format"); !format || format->text() != springs_format)
     document.refuse("is no springs file", fmt::format("\"format\": \"{}\"", springs_format));
-  document.at("version").number(springs_version, springs_version_of_several_sizes);
+  if (const double version = version_of(document); version != std::floor(version))
+    document.at("version").refuse("is no whole number", "1, 2 or 3");
   document.require_known({"format", "version", "origin", "material", "density_kg_m3", "grip_m", "grip_from", "derived",
                           "laws", "nodes", "springs", "cells", "carried", "triangles", "patches", "anchors", "loads",
                           "surface", "check"});

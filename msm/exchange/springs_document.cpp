@@ -248,9 +248,9 @@ SpringsDocument document_of(const SpringsFile& springs) {
   const Network& network = springs.model.network;
   require_no_macro_cells(network, "springs file");
   out.document.head = {{"format", springs_format},
-                       {"version", !network.carried.empty()  ? springs_version_of_several_sizes
-                                   : !network.filled.empty() ? springs_version_of_cut_cells
-                                                             : springs_version}};
+                       {"version", !network.cell_edges.empty() ? springs_version_of_several_sizes
+                                   : !network.filled.empty()   ? springs_version_of_cut_cells
+                                                               : springs_version}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material)
     out.at({"material"}) = {{"youngs_modulus_Pa", springs.material->youngs_modulus},

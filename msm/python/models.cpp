@@ -67,8 +67,9 @@ std::shared_ptr<BodyModel> read(const std::string& text, const std::string& name
 void write(const BodyModel& model, const fs::path& file) {
   require_springs_ending(file);
   if (!model.network().filled.empty())
-    throw InputError(fmt::format("{}: cut = True: springs files hold whole cubes (allowed: cut = False)",
-                                 model.parameters.row.name));
+    throw InputError(
+        fmt::format("{}: cut = True: is not written from here (allowed: cut = False; or springproof export)",
+                    model.parameters.row.name));
   long_call([&] {
     SpringsFile springs = model.springs;
     if (model.body)

@@ -171,8 +171,13 @@ BoundaryConditions conditions_of(const BodyModel& model, const std::vector<Load>
       bc.owner[unknown] = static_cast<int>(loads.size());
       bc.prescribed(nodes.held[h], d) = factor * u;
     }
+  for (const CarriedPoint& c : network.carried)
+    for (int d = 0; d < 3; ++d)
+      if (bc.fixed[3 * static_cast<std::size_t>(c.point) + static_cast<std::size_t>(d)])
+        throw InputError(fmt::format("held: node {} follows others (allowed: nodes with a mass)", c.point));
   if (nodes.forces.size() > 0) bc.external += factor * nodes.forces;
-  if (model.parameters.hold_rigid_motions) hold_free_motions(network.X, bc);
+  hand_back(network.carried, bc.external);
+  if (model.parameters.hold_rigid_motions) hold_free_motions(network.X, bc, network.carried);
   return bc;
 }
 

@@ -230,6 +230,9 @@ carried '/carried/by: node [0-9]+ is not in the mean of its four' "d['carried'][
 carried '/carried: node [0-9]+ has a mass' "d['nodes']['mass_kg'][d['carried']['nodes'][0]] = 1e-3"
 carried '/carried/nodes: node [0-9]+ is carried twice' "d['carried']['nodes'][1] = d['carried']['nodes'][0]"
 carried '/nodes/mass_kg: has nodes of 0 kg that nothing carries' "d['carried'] = {'nodes': d['carried']['nodes'][:-1], 'by': d['carried']['by'][:-1]}"
+carried '/cells/edge_m: ' "d['version'] = 2"
+carried '/patches/low: node [0-9]+ follows others' "d['patches']['low'].append(d['carried']['nodes'][0])"
+carried '/carried: is beside cells of one size' "d['cells']['edge_m'] = d['cells']['edge_m'][0]"
 carried '/cells/edge_m: has [0-9]+ numbers' "d['cells']['edge_m'] = d['cells']['edge_m'][:-1]"
 
 # A changed file is another input: its part is not taken back.
