@@ -1,4 +1,5 @@
 """Motion in time, long calls, Ctrl-C."""
+import json
 import signal
 import threading
 import time
@@ -132,3 +133,45 @@ def test_long_calls_leave_the_interpreter_free_and_hear_ctrl_c():
     steps = motion.steps
     motion.step()  # as usable as before
     assert motion.steps == steps + 1 > 4
+
+
+def cells_of_two_sizes(file):
+    """A cube of 2 m beside eight of 1 m, full of matter; five nodes of their common face follow its corners."""
+    corner = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+    origins = [((0, 0, 0), 2)] + [((2 + i, j, k), 1) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+    nodes, cells = {}, []
+    for origin, edge in origins:
+        cells.append([nodes.setdefault(tuple(int(a) for a in np.add(origin, edge * c)), len(nodes)) for c in corner])
+    mass = np.zeros(len(nodes))
+    for (_, edge), cell in zip(origins, cells):
+        mass[cell] += 1000 * edge**3 / 8
+    at = lambda y, z: nodes[2, y, z]
+    carried = {at(1, 0): (at(0, 0), at(2, 0)), at(1, 2): (at(0, 2), at(2, 2)), at(0, 1): (at(0, 0), at(0, 2)),
+               at(2, 1): (at(2, 0), at(2, 2)), at(1, 1): (at(0, 0), at(2, 0), at(0, 2), at(2, 2))}
+    for node, by in carried.items():
+        for other in by:
+            mass[other] += mass[node] / len(by)
+        mass[node] = 0
+    law = dict(shear_modulus_Pa=4e4, lame_lambda_Pa=6e4, bending=0.5, coupling=0.2, torsion=0.1, twist=0, warping=0.1, shift=0, contraction=0.5, curve="hencky")
+    full = dict(fraction=[1.0] * 9, mean=[[0.0] * 3] * 9, mixed=[[0.0] * 3] * 9, variance=[[1 / 12] * 3] * 9)
+    json.dump({"format": "springproof springs", "version": 3, "density_kg_m3": 1000, "laws": {"averaged_springs": law},
+               "nodes": {"position_m": [list(map(float, x)) for x in nodes], "mass_kg": mass.tolist()},
+               "springs": {"nodes": [], "stiffness_N_m": [], "rest_length_m": []},
+               "cells": {"nodes": cells, "edge_m": [float(edge) for _, edge in origins], **full},
+               "carried": {"nodes": list(carried), "by": [list(by) * (4 // len(by)) for by in carried.values()]}}, open(file, "w"))
+    return at(1, 1)
+
+
+@pytest.mark.parametrize("integrator", ["explicit", "energy_momentum"])
+def test_what_pulls_at_a_carried_node_moves_the_body(tmp_path, integrator):
+    carried = cells_of_two_sizes(tmp_path / "two.json")
+    model = sp.read_springs(tmp_path / "two.json")
+    assert model.masses[carried] == 0 and model.masses.sum() == pytest.approx(16000)
+    force = np.zeros(model.positions.shape)
+    force[carried] = (10, 20, -30)
+    motion = model.motion(forces=force, integrator=integrator)
+    motion.step(40)
+    momentum = model.masses @ motion.velocities
+    np.testing.assert_allclose(momentum, np.multiply(motion.time, force[carried]), rtol=1e-8)
+    with pytest.raises(sp.InputError, match="follows others"):
+        model.motion(held=[carried])
