@@ -232,7 +232,8 @@ carried '/carried/nodes: node [0-9]+ is carried twice' "d['carried']['nodes'][1]
 carried '/nodes/mass_kg: has nodes of 0 kg that nothing carries' "d['carried'] = {'nodes': d['carried']['nodes'][:-1], 'by': d['carried']['by'][:-1]}"
 carried '/cells/edge_m: ' "d['version'] = 2"
 carried '/patches/low: node [0-9]+ follows others' "d['patches']['low'].append(d['carried']['nodes'][0])"
-carried '/carried: is beside cells of one size' "d['cells']['edge_m'] = d['cells']['edge_m'][0]"
+carried '/cells/nodes: cell [0-9]+ is no cube' "d['cells']['edge_m'] = d['cells']['edge_m'][0]"
+carried '/carried: is beside cells of one size' "d = json.load(open('cut.json')); d['carried'] = {'nodes': [0], 'by': [[1, 2, 3, 4]]}"
 carried '/cells/edge_m: has [0-9]+ numbers' "d['cells']['edge_m'] = d['cells']['edge_m'][:-1]"
 
 # A changed file is another input: its part is not taken back.
