@@ -153,18 +153,16 @@ class CellFrequencies {
 
   void find_nodes(std::size_t cell, const Carriers& carriers) {
     const Hexahedron& corners = network_.cells[cell];
-    std::map<int, Eigen::VectorXd> shares;  // of the corners, per node that carries some
-    bool some = false;
-    for (int n = 0; n < 8; ++n) {
-      some = some || (!carriers.empty() && !carriers[corners[n]].empty());
-      for_each_carrier(carriers, corners[n], [&](int node, double w) {
-        shares.try_emplace(node, Eigen::VectorXd::Zero(8)).first->second[n] += w;
-      });
-    }
-    if (!some) {
+    const auto is_carried = [&](int corner) { return !carriers.empty() && !carriers[corner].empty(); };
+    if (std::none_of(corners.begin(), corners.end(), is_carried)) {
       for (const int corner : corners) nodes_[cell].push_back(network_.master(corner));
       return;
     }
+    std::map<int, Eigen::VectorXd> shares;  // of the corners, per node that carries some
+    for (int n = 0; n < 8; ++n)
+      for_each_carrier(carriers, corners[n], [&](int node, double w) {
+        shares.try_emplace(node, Eigen::VectorXd::Zero(8)).first->second[n] += w;
+      });
     Eigen::MatrixXd W = Eigen::MatrixXd::Zero(24, 3 * static_cast<Eigen::Index>(shares.size()));
     for (const auto& [node, w] : shares) {
       const auto column = 3 * static_cast<Eigen::Index>(nodes_[cell].size());

@@ -28,13 +28,8 @@ Weights weights_of_points(const CutLevel& fine, const CutLevel& coarse) {
   Weights weights(fine.point.size());
   for (std::size_t i = 0; i < weights.size(); ++i) {
     std::map<int, double> sum;
-    for (int e = fine.weight_begin[i]; e < fine.weight_begin[i + 1]; ++e) {
-      const int point = fine.weight_point[e];
-      if (carriers.empty() || carriers[point].empty())
-        sum[point] += fine.weight[e];
-      else
-        for (const auto& [p, w] : carriers[point]) sum[p] += w * fine.weight[e];
-    }
+    for (int e = fine.weight_begin[i]; e < fine.weight_begin[i + 1]; ++e)
+      for_each_carrier(carriers, fine.weight_point[e], [&](int p, double w) { sum[p] += w * fine.weight[e]; });
     weights[i].assign(sum.begin(), sum.end());
   }
   return weights;
@@ -119,8 +114,7 @@ std::vector<char> points_at_anchors(const CutLevel& level, const std::vector<Anc
   for (const Anchor& a : level.anchors)
     for (const int corner : a.corners) {
       marked[corner] = 1;
-      if (!carriers.empty())
-        for (const auto& [p, w] : carriers[corner]) marked[p] = 1;
+      for_each_carrier(carriers, corner, [&](int p, double) { marked[p] = 1; });
     }
   for (const Anchor& a : nodes) marked[a.node] = 1;
   return marked;
