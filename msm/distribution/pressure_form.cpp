@@ -45,14 +45,9 @@ void set_pressures_of_cells(const MassSpringModel& model, PressureForm& form) {
     const int row = static_cast<int>(c);
     const Eigen::Matrix<double, 24, 1> gradient = volume_gradient(model, c);
     for (int n = 0; n < 8; ++n) {
-      const int corner = network.cells[c][n];
-      const auto hand = [&](int node, double weight) {
+      for_each_carrier(carriers, network.cells[c][n], [&](int node, double weight) {
         for (int d = 0; d < 3; ++d) entries.emplace_back(row, 3 * node + d, weight * gradient[3 * n + d]);
-      };
-      if (carriers.empty() || carriers[corner].empty())
-        hand(corner, 1);
-      else
-        for (const auto& [node, weight] : carriers[corner]) hand(node, weight);
+      });
     }
     const double filled = network.filled.empty() ? 1 : network.filled[c].fraction;
     form.C[row] = filled * std::pow(network.edge(c), 3) / kappa;

@@ -143,11 +143,7 @@ void CutLevel::invert_anchored() {
   const Carriers carriers = carriers_of(static_cast<int>(point.size()), carried);
   for (const Anchor& a : anchors) {
     std::vector<int>& points = anchored.emplace_back();
-    for (const int n : a.corners) {
-      if (carriers.empty() || carriers[n].empty()) points.push_back(n);
-      if (!carriers.empty())
-        for (const auto& [p, w] : carriers[n]) points.push_back(p);
-    }
+    for (const int n : a.corners) for_each_carrier(carriers, n, [&](int p, double) { points.push_back(p); });
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
   }

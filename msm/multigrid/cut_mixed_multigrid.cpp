@@ -87,12 +87,10 @@ void CutMixedMultigrid::set_up_schur(std::size_t l) {
   };
   for (int c = 0; c < cells; ++c)
     for (int n = 0; n < 8; ++n) {
-      const int point = lattice.corners[c][n];
       const Eigen::Vector3f b =
           Eigen::Map<const Eigen::Vector3f>(&level.gradient[24 * static_cast<std::size_t>(c) + 3 * n]);
-      if (carriers.empty() || carriers[point].empty()) hand(point, c, b);
-      if (!carriers.empty())
-        for (const auto& [p, w] : carriers[point]) hand(p, c, static_cast<float>(w) * b);
+      for_each_carrier(carriers, lattice.corners[c][n],
+                       [&](int p, double w) { hand(p, c, static_cast<float>(w) * b); });
     }
   level.begin = {0};
   std::vector<int> place(cells, -1);  // of each column in the row
@@ -109,11 +107,7 @@ void CutMixedMultigrid::set_up_schur(std::size_t l) {
     };
     add(c, level.compliance[c]);
     points.clear();
-    for (const int q : lattice.corners[c]) {
-      if (carriers.empty() || carriers[q].empty()) points.insert(q);
-      if (!carriers.empty())
-        for (const auto& [p, w] : carriers[q]) points.insert(p);
-    }
+    for (const int q : lattice.corners[c]) for_each_carrier(carriers, q, [&](int p, double) { points.insert(p); });
     for (const int p : points)
       for (const Entry& own : at[p])
         if (own.cell == c)
