@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "problem/system/input_error.h"
+#include "problem/system/mpi_start.h"
 
 namespace springproof::fem {
 
@@ -36,6 +37,7 @@ void start_mpi() {
   static char name[] = "springproof-fem";
   static char* arguments[] = {name, nullptr};
   static char** argv = arguments;
+  start_mpi_without_network();
   static const dealii::Utilities::MPI::MPI_InitFinalize session(argc, argv, 1);
 }
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/tangent.h"
+#include "problem/system/mpi_start.h"
 #include "problem/system/run_cost.h"
 
 #ifdef SPRINGPROOF_PETSC
@@ -85,6 +86,7 @@ bool has_gamg() { return true; }
 
 GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
                       const NodalVectors& other) {
+  start_mpi_without_network();
   require(PetscInitializeNoArguments());
   int free;
   const std::vector<int> number = free_nodes(conditions, model.network.nodes(), free);

@@ -10,6 +10,7 @@
 #include "comparisons/parallel/slab_run.h"
 #include "msm/parallel/parted_equations.h"
 #include "problem/system/input_error.h"
+#include "problem/system/mpi_start.h"
 
 namespace springproof {
 namespace {
@@ -119,6 +120,7 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   int none = 0, status = 1;
+  springproof::start_mpi_without_network();
   PetscInitialize(&none, nullptr, nullptr, nullptr);
   PetscPopSignalHandler();
   try {
