@@ -137,9 +137,7 @@ fs::path adapters_folder() { return data_folder("engines", SPRINGPROOF_ENGINES_D
 
 fs::path packages_folder() {
   if (const char* given = std::getenv("SPRINGPROOF_ENGINES")) return given;
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  return (cache && *cache ? fs::path(cache) : fs::path(home ? home : ".") / ".cache") / "springproof" / "engines";
+  return cache_folder() / "engines";
 }
 
 std::string missing_for(const std::string& adapter) {

@@ -88,6 +88,9 @@ constexpr std::array environment = {
     Variable{"SPRINGPROOF_BENCH_PROGRAM", "the bench, instead of springproof-bench beside springproof"},
     Variable{"SPRINGPROOF_PROGRAM", "the springproof that the bench measures, instead of the one beside it"},
     Variable{"SPRINGPROOF_MESH_SECONDS", "time limit of the mesher [s] (default: 300)"},
+    Variable{"SPRINGPROOF_MESH_CACHE",
+             "folder in which meshes are kept between runs, up to 1 GB (default: $XDG_CACHE_HOME/springproof/meshes; "
+             "empty: none are kept)"},
     Variable{"SPRINGPROOF_NO_SCRIPTS",
              "if set, .geo scripts other than the built-in ones are refused, as by --no-scripts"},
     Variable{"SPRINGPROOF_INSTRUCTION_SET",

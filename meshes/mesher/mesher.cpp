@@ -11,6 +11,7 @@
 #include <map>
 #include <mutex>
 
+#include "meshes/mesher/mesh_cache.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "problem/system/child.h"
 #include "problem/system/progress.h"
@@ -97,26 +98,30 @@ std::string list_of_bodies(const fs::path& folder) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+fs::path built_in_bodies() { return data_folder("geo", SPRINGPROOF_GEO_DIR); }
+
 /// @throws InputError at a script that is not built in, where such are not wanted.
-void refuse_own_script(const Body& body, const fs::path& file, const fs::path& built_in) {
-  std::error_code ignored;
-  if (!std::getenv("SPRINGPROOF_NO_SCRIPTS") || !body.is_script() ||
-      fs::equivalent(fs::weakly_canonical(file, ignored).parent_path(), built_in, ignored))
-    return;
+void refuse_own_script(const Body& body, const fs::path& file) {
+  if (!std::getenv("SPRINGPROOF_NO_SCRIPTS") || !body.is_script() || is_built_in(file)) return;
   throw InputError(body.where, fmt::format("body.geo: '{}' is a script, which may run any command, and --no-scripts is "
                                            "set (allowed: .stl, .msh, .step, .stp, "
                                            ".brep files, and the built-in {})",
-                                           body.geo, list_of_bodies(built_in)));
+                                           body.geo, list_of_bodies(built_in_bodies())));
 }
 
 }  // namespace
 
+bool is_built_in(const fs::path& file) {
+  std::error_code ignored;
+  return fs::equivalent(fs::weakly_canonical(file, ignored).parent_path(), built_in_bodies(), ignored);
+}
+
 fs::path find_geo(const Body& body, const fs::path& case_file) {
-  const fs::path built_in = data_folder("geo", SPRINGPROOF_GEO_DIR);
+  const fs::path built_in = built_in_bodies();
   for (const fs::path& candidate : {case_file.parent_path() / body.geo, built_in / body.geo}) {
     std::error_code ignored;
     if (body.geo.empty() || !fs::is_regular_file(candidate, ignored)) continue;
-    refuse_own_script(body, candidate, built_in);
+    refuse_own_script(body, candidate);
     return candidate;
   }
   throw InputError(body.where, fmt::format("body.geo: no file '{}' beside the case file or among the built-in "
@@ -136,6 +141,12 @@ double size_ratio(const Mesh& coarse, const Mesh& fine) {
 MeshedBody mesh_body(const MeshRequest& request) {
   check(request);
   const double seconds = time_limit();
+  const fs::path program = find_program("springproof-mesh", "SPRINGPROOF_MESH_PROGRAM");
+  if (program.empty())
+    throw std::runtime_error(
+        "the program springproof-mesh is neither beside this one nor named by SPRINGPROOF_MESH_PROGRAM");
+  const MeshCache cache(request, program);
+  if (std::optional<MeshedBody> kept = cache.find()) return std::move(*kept);
   progress::detail("meshing " + request.file.filename().string());
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor",
@@ -144,10 +155,6 @@ MeshedBody mesh_body(const MeshRequest& request) {
   out << to_cbor(request);
   out.close();
   if (!out) folder.require_room();
-  const fs::path program = find_program("springproof-mesh", "SPRINGPROOF_MESH_PROGRAM");
-  if (program.empty())
-    throw std::runtime_error(
-        "the program springproof-mesh is neither beside this one nor named by SPRINGPROOF_MESH_PROGRAM");
   const ChildEnd end = run_child({program, {question.string(), answer.string()}, {}, log, log, seconds});
   if (end.kind == ChildEnd::out_of_time)
     refuse(request.file,
@@ -155,7 +162,10 @@ MeshedBody mesh_body(const MeshRequest& request) {
   if (!end.ok()) folder.require_room();
   if (!end.ok()) refuse(request.file, fmt::format("the mesher {} {}", words_for(end), trimmed(text_of_file(log))));
   try {
-    return answer_from_cbor(text_of_file(answer));
+    const std::string bytes = text_of_file(answer);
+    MeshedBody body = answer_from_cbor(bytes);
+    cache.keep(bytes);
+    return body;
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {

@@ -17,6 +17,9 @@ namespace springproof {
 /// @throws InputError listing the built-in bodies; at another script where $SPRINGPROOF_NO_SCRIPTS is set.
 std::filesystem::path find_geo(const Body& body, const std::filesystem::path& case_file);
 
+/// Whether the file is one of the built-in bodies.
+bool is_built_in(const std::filesystem::path& file);
+
 /// What a .geo is to be cut into.
 struct MeshKind {
   bool tetrahedra = false;    ///< else hexahedra
@@ -60,7 +63,8 @@ double size_ratio(const Mesh& coarse, const Mesh& fine);
 /// Extensions of the files that can be read: ".geo", ...
 const std::vector<std::string>& mesh_file_extensions();
 
-/// Meshes a body under a time limit: 300 s, or $SPRINGPROOF_MESH_SECONDS.  Thread-safe.
+/// Meshes a body under a time limit: 300 s, or $SPRINGPROOF_MESH_SECONDS; or finds the mesh that an earlier run kept
+/// (mesh_cache.h).  Thread-safe.
 /// @throws InputError "FILE: ..." when the file cannot be meshed: unreadable, no body, several parts, mixed or inverted
 /// cells, no coarser meshes by least_ratio, a mesher that crashed or took too long.
 /// @throws std::runtime_error if the program cannot be run.

@@ -239,6 +239,13 @@ fs::path find_program(const std::string& name, const char* variable) {
   return access(beside.c_str(), X_OK) == 0 ? beside : fs::path();
 }
 
+fs::path cache_folder() {
+  const auto variable = [](const char* name) { return fs::path(std::getenv(name) ? std::getenv(name) : ""); };
+  const fs::path given = variable("XDG_CACHE_HOME"), home = variable("HOME");
+  if (!given.empty()) return given / "springproof";
+  return home.empty() ? home : home / ".cache" / "springproof";
+}
+
 fs::path data_folder(const std::string& name, const fs::path& source) {
   const fs::path installed = own_folder().parent_path() / "share/springproof" / name;
   std::error_code ignored;

@@ -80,6 +80,9 @@ std::filesystem::path find_program(const std::string& name, const char* variable
 /// `source`, that of the source tree.
 std::filesystem::path data_folder(const std::string& name, const std::filesystem::path& source);
 
+/// For what can be made again: $XDG_CACHE_HOME/springproof or ~/.cache/springproof; empty: there is no home.
+std::filesystem::path cache_folder();
+
 /// The program of that name on PATH; empty: there is none.
 std::filesystem::path program_on_path(const std::string& name);
 

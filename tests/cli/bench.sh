@@ -32,9 +32,9 @@ SPRINGPROOF_LAMMPS=/bin/false "$program" bench dynamics --quick >"$work/out" 2>&
 [ $? -eq 2 ] || fail "an unknown bench is accepted"
 
 # Interrupted: what is measured is kept.
-"$program" bench dynamics --json "$work/half.json" >"$work/out" 2>&1 &
+"$program" bench dynamics --quick --json "$work/half.json" >"$work/out" 2>&1 &
 pid=$!
-while kill -0 $pid 2>/dev/null && ! grep -q "HybMSS-CF, 15" "$work/out"; do sleep 0.2; done  # ctest has the time limit
+while kill -0 $pid 2>/dev/null && ! grep -q "HybMSS over HybMSS-FD" "$work/out"; do sleep 0.2; done  # ctest has the time limit
 kill -INT $pid
 wait $pid
 [ $? -eq 130 ] || fail "an interrupted bench ended with $?"
