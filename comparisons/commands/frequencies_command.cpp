@@ -32,7 +32,7 @@ std::string name_of(const ModelFrequencies& m) {
 
 std::string supports_words(const Experiment& e) {
   std::vector<std::string> patches;
-  for (const Load& load : e.loads)
+  for (const Load& load : supports_of(e))
     if (const std::string& on = *patch_of(load); std::find(patches.begin(), patches.end(), on) == patches.end())
       patches.push_back(on);
   return patches.empty() ? "free" : fmt::format("held on {}", fmt::join(patches, ", "));

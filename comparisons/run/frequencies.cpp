@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "comparisons/run/reference_grids.h"
 #include "fem_reference/case_request.h"
@@ -26,7 +27,7 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   const Experiment& e = prepared.experiment;
   fem::Request request = fem::request_of(e, material);
   request.law = "linear";
-  request.loads = e.loads;
+  request.loads = supports_of(e);
   request.modes = modes;
   if (e.body.is_voxels()) {
     request.points = prepared.body_points;
@@ -42,14 +43,14 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   const Cells fine =
       divisible_cells(e.body.size, elements > 0 ? std::min(elements, most_mode_elements) : most_mode_elements);
   for (const int divisor : {4, 2, 1})
-    request.grids.push_back({divided(fine, divisor), "q2", e.loads.empty() ? 1.0 : e.reference.grading});
+    request.grids.push_back({divided(fine, divisor), "q2", request.loads.empty() ? 1.0 : e.reference.grading});
   return request;
 }
 
 /// A free block: no edge at which stresses are singular.
 bool has_smooth_modes(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
-  return e.loads.empty() && !e.body.is_voxels() &&
+  return supports_of(e).empty() && !e.body.is_voxels() &&
          std::abs(volume(*prepared.lattices[0].mesh, prepared.lattices[0].mesh->nodes) / e.body.size.prod() - 1) < 1e-9;
 }
 
@@ -122,8 +123,8 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
   out.label = prepared.experiment.models[number].label;
   out.consistency = theta;
   const auto [model, embedding] = build_on(prepared, lattice, prepared.models[number], material, false);
-  const BoundaryConditions supports = transfer(prepared.experiment.loads, *lattice.mesh, embedding, model.network,
-                                               material.density, Kinematics::linear);
+  const BoundaryConditions supports = transfer(supports_of(prepared.experiment), *lattice.mesh, embedding,
+                                               model.network, material.density, Kinematics::linear);
   const NaturalModes found = natural_modes(model, supports.fixed, material.density, theta, modes + modes_beside);
   out.message = found.message;
   out.solver = found.solver;
@@ -143,20 +144,21 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
 
 }  // namespace
 
-Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
-  if (!e.body.accuracies.empty())
-    throw InputError(
-        e.body.where,
-        "body.accuracy: cells of several sizes have no frequencies (allowed: voxels, or voxel_edge_m, alone)");
+std::vector<Load> supports_of(const Experiment& e) {
   std::vector<Load> supports;
-  std::vector<SourceLocation> locations;
-  for (std::size_t i = 0; !options.free && i < e.loads.size(); ++i)
-    if (prescribes_displacement(e.loads[i])) {
-      supports.push_back(e.loads[i]);
-      locations.push_back(e.load_locations[i]);
-    }
-  e.loads = supports;
-  e.load_locations = locations;
+  std::copy_if(e.loads.begin(), e.loads.end(), std::back_inserter(supports), prescribes_displacement);
+  return supports;
+}
+
+Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
+  if (options.free && !e.body.accuracies.empty())
+    throw InputError(e.body.where,
+                     "body.accuracy: cells are halved where the loads strain the body at rest, and --free leaves them "
+                     "out (allowed: voxels, or voxel_edge_m, alone)");
+  if (options.free) {
+    e.loads.clear();
+    e.load_locations.clear();
+  }
   e.measures.clear();
   e.expectations.clear();
   e.elements.clear();

@@ -48,7 +48,11 @@ struct FrequencyTable {
   std::vector<ModelFrequencies> models;
 };
 
-/// The case without what its modes do not depend on: loads that hold nothing (free: all loads), measures, expectations.
+/// The loads of a case that hold the body.
+std::vector<Load> supports_of(const Experiment& experiment);
+
+/// The case without what its modes do not depend on: measures, expectations; free: all loads.
+/// @throws InputError for cells of several sizes in a free body: they are halved for its loads.
 Experiment case_of_modes(Experiment experiment, const FrequencyOptions& options);
 
 /// Solves a case made by prepare_lattices(case_of_modes()) at one of its materials: a table per lattice.

@@ -26,13 +26,13 @@ constexpr int inner_iterations = 100, outer_iterations = 60;
 
 using NodalMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>;
 
-/// Rigid motions that the supports leave, as columns over all unknowns.
-Eigen::MatrixXd left_motions(const std::vector<char>& fixed, const NodalVectors& X) {
+/// Rigid motions that the supports leave, as columns over all unknowns; 0 where there is no equation.
+Eigen::MatrixXd left_motions(const std::vector<char>& fixed, const std::vector<char>& none, const NodalVectors& X) {
   const RigidMotions rigid{X};
   const auto motions = free_motions(fixed, rigid);
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(fixed.size()), motions.cols());
-  for (int i = 0; i < static_cast<int>(fixed.size()); ++i)
-    if (!fixed[i]) columns.row(i) = rigid.at(i).transpose() * motions;
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(none.size()), motions.cols());
+  for (int i = 0; i < static_cast<int>(none.size()); ++i)
+    if (!none[i]) columns.row(i) = rigid.at(i).transpose() * motions;
   return columns;
 }
 
@@ -50,15 +50,16 @@ void clear(const std::vector<char>& fixed, Eigen::VectorXd& v) {
     if (fixed[i]) v[static_cast<Eigen::Index>(i)] = 0;
 }
 
-void compute(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta, int count,
+void compute(const MassSpringModel& model, const std::vector<char>& supported, double density, double theta, int count,
              NaturalModes& modes) {
   const Network& network = model.network;
+  const std::vector<char> fixed = fixed_or_carried(network, supported);
   const Eigen::SparseMatrix<double> mass = mass_matrix(network, density, theta);
   // Residuals are in equilibrium with themselves: held at just enough unknowns, a body answers them without reactions.
   BoundaryConditions held;
-  held.fixed = fixed;
-  hold_free_motions(network.X, held);
-  TangentSolver stiffness(model, held.fixed, modes_direct_limit);
+  held.fixed = supported;
+  hold_free_motions(network.X, held, network.carried);
+  TangentSolver stiffness(model, fixed_or_carried(network, held.fixed), modes_direct_limit);
   modes.solver = "LOBPCG + " + stiffness.name();
   if (!stiffness.take(network.X)) {
     modes.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
@@ -76,7 +77,7 @@ void compute(const MassSpringModel& model, const std::vector<char>& fixed, doubl
   const Operator solve = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     stiffness.solve(r, inner_residual, inner_iterations, z);
   };
-  const Eigen::MatrixXd rigid = orthonormalised(M, left_motions(fixed, network.X), {});
+  const Eigen::MatrixXd rigid = orthonormalised(M, left_motions(supported, fixed, network.X), {});
   const long unknowns = std::count(fixed.begin(), fixed.end(), 0) - rigid.cols();
   const auto wanted = static_cast<int>(std::min<long>(count, unknowns));
   Eigen::MatrixXd start = scattered(3 * network.X.rows(), std::min<long>(wanted + guards, unknowns));
@@ -98,7 +99,7 @@ void compute(const MassSpringModel& model, const std::vector<char>& fixed, doubl
         fmt::format("{}: residual {:.2e} after {} iterations", modes.solver, found.residual, found.iterations);
   for (int j = 0; modes.ok && j < wanted; ++j) {
     modes.frequencies.push_back(std::sqrt(found.values[j]) / (2 * std::numbers::pi));
-    modes.shapes.emplace_back(NodalMap(found.vectors.col(j).data(), network.X.rows(), 3));
+    carry(network.carried, modes.shapes.emplace_back(NodalMap(found.vectors.col(j).data(), network.X.rows(), 3)));
   }
 }
 
@@ -124,14 +125,18 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
   if (!(theta >= 0 && theta <= 1))
     throw std::invalid_argument(fmt::format("share of consistent mass {:g} (allowed: 0 to 1)", theta));
   std::vector<Eigen::Triplet<double>> entries;
+  const Carriers carriers = carriers_of(network.nodes(), network.carried);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const auto C =
-        consistent_mass(network.filled.empty() ? FilledPart{} : network.filled[c], density * network.cell_volume());
-    for (int a = 0; a < 8; ++a) {
-      entries.emplace_back(network.cells[c][a], network.cells[c][a], (1 - theta) * C.row(a).sum());
-      for (int b = 0; theta > 0 && b < 8; ++b)
-        entries.emplace_back(network.cells[c][a], network.cells[c][b], theta * C(a, b));
-    }
+    const Hexahedron& cell = network.cells[c];
+    const auto C = consistent_mass(network.filled.empty() ? FilledPart{} : network.filled[c],
+                                   density * std::pow(network.edge(c), 3));
+    for (int a = 0; a < 8; ++a)
+      for_each_carrier(carriers, cell[a], [&](int i, double v) {
+        entries.emplace_back(i, i, (1 - theta) * v * C.row(a).sum());
+        for (int b = 0; theta > 0 && b < 8; ++b)
+          for_each_carrier(carriers, cell[b],
+                           [&](int j, double w) { entries.emplace_back(i, j, theta * v * w * C(a, b)); });
+      });
   }
   if (network.cells.empty()) {
     const Eigen::VectorXd lumped = masses(network, density);
@@ -144,8 +149,6 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
 
 NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta,
                            int count) {
-  if (!model.network.cell_edges.empty())
-    throw std::invalid_argument("natural modes: the cells are of several sizes (allowed: one size)");
   require_no_macro_cells(model.network, "natural modes");
   const double start = cpu_seconds();
   NaturalModes modes;

@@ -16,7 +16,8 @@ Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full)
 /// Mass between nodes [kg], n x n, the same for each axis: M = theta C + (1 - theta) L.  C: the consistent mass of the
 /// trilinear displacement in each cell, over the part that the body fills: of its mass, its first moments and its
 /// second along the axes.  L: the sums of the rows of C; of whole cells an eighth of the cell's mass per corner.
-/// Networks without cells have the lumped mass alone, masses().
+/// What belongs to carried nodes is handed to those that carry them.  Networks without cells have the lumped mass
+/// alone, masses().
 /// @param network of a model
 /// @param density [kg/m^3]
 /// @param theta share of consistent mass, 0 to 1

@@ -8,6 +8,7 @@
 
 #include "msm/algebra/lobpcg.h"
 #include "msm/embedding/boundary.h"
+#include "support/refined_cells.h"
 #include "support/solids.h"
 #include "support/zoo.h"
 
@@ -187,6 +188,62 @@ TEST(NaturalModes, OfCutCellsHaveNoSlowCornersOutsideOfTheBody) {
     found.push_back(modes.frequencies);
   }
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(found[0][i] / found[1][i], 1, 0.03) << i;
+}
+
+/// A round bar that lies anyhow, in cut cells of which some are halved twice.
+MassSpringModel halved_bar() {
+  const Mesh bar = test::mapped(test::cylinder(2, 16, 8), test::random_placement(1, 0.25));
+  const VoxelGrid grid = test::halved_at_random(test::grid_about(bar, 0.25), 2, 12);
+  return build_cut(test::model("hybmss_bt"), cut_body(grid, bar), {}, Mesh{}, {youngs_modulus, 0.3, density}).model;
+}
+
+TEST(MassMatrix, OfCellsOfSeveralSizesHasTheirMassesAndNoneAtCarriedNodes) {
+  const Network network = halved_bar().network;
+  ASSERT_GT(network.carried.size(), 20u);
+  double mass = 0;
+  Vec3 first = Vec3::Zero();
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const double l = network.edge(c), m = density * network.filled[c].fraction * l * l * l;
+    const Vec3 middle = (network.X.row(network.cells[c][0]) + network.X.row(network.cells[c][6])).transpose() / 2;
+    mass += m;
+    first += m * (middle + l * network.filled[c].mean);
+  }
+  for (const double theta : {0.0, 1.0}) {
+    const Eigen::SparseMatrix<double> M = mass_matrix(network, density, theta);
+    const Eigen::VectorXd rows = M * Eigen::VectorXd::Ones(network.nodes());
+    EXPECT_NEAR(rows.sum(), mass, 1e-12 * mass);
+    EXPECT_LT((network.X.transpose() * rows - first).norm(), 1e-12 * mass);
+    for (const CarriedPoint& c : network.carried) EXPECT_EQ(rows[c.point], 0);
+  }
+}
+
+TEST(NaturalModes, OfCellsOfSeveralSizesLieBesideThoseOfOneSize) {
+  const Mesh bar = test::mapped(test::cylinder(2, 16, 8), test::random_placement(1, 0.25));
+  const MassSpringModel fine = build_cut(test::model("hybmss_bt"), cut_body(test::grid_about(bar, 0.125), bar), {},
+                                         Mesh{}, {youngs_modulus, 0.3, density})
+                                   .model;
+  const NaturalModes small = natural_modes(fine, nothing_fixed(fine.network), density, 1, 6);
+  const MassSpringModel model = halved_bar();
+  const Network& network = model.network;
+  for (const double theta : {0.5, 1.0}) {
+    const NaturalModes modes = natural_modes(model, nothing_fixed(network), density, theta, 6);
+    ASSERT_TRUE(modes.ok) << modes.message;
+    EXPECT_EQ(modes.rigid_motions, 6);
+    const Eigen::SparseMatrix<double> M = mass_matrix(network, density, theta);
+    for (int i = 0; i < 6; ++i) {
+      if (theta == 1) {
+        EXPECT_NEAR(modes.frequencies[i] / small.frequencies[i], 1, 0.03) << i;
+      }
+      // The force of a small displacement along a mode is its inertia, and carried nodes follow.
+      const NodalVectors& u = modes.shapes[i];
+      NodalVectors followed = u, force = -forces(model, network.X + 1e-7 * u) / 1e-7;
+      carry(network.carried, followed);
+      EXPECT_EQ(followed, u);
+      hand_back(network.carried, force);
+      const NodalVectors inertia = std::pow(2 * std::numbers::pi * modes.frequencies[i], 2) * (M * u);
+      EXPECT_LT((force - inertia).norm(), 1e-4 * inertia.norm()) << i;
+    }
+  }
 }
 
 TEST(NaturalModes, OfForcesWithoutAPotentialAreRefused) {
