@@ -47,7 +47,7 @@ RefinedBody refine_until(const PreparedCase& prepared, VoxelGrid grid, const Mes
     refined.promised = energies.promised_error();
     refined.reached = refined.promised <= accuracy;
     if (refined.reached || refined.cut.cells.size() > most_cells ||
-        !halve_worst_cells(refined.cut, energies.error, grid))
+        !halve_worst_cells(refined.cut, energies.larger(), grid))
       return refined;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -58,12 +59,27 @@ Strains nodal_strains(const Network& network, const Strains& of_cells) {
   return sum;
 }
 
+/// Energy of the anchors of each cell.
+std::vector<double> anchor_energies(const Network& network, const NodalVectors& u) {
+  std::map<Hexahedron, std::size_t> cell_of;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) cell_of[network.cells[c]] = c;
+  std::vector<double> energies(network.cells.size());
+  for (const Anchor& anchor : network.anchors) {
+    Eigen::RowVector3d gap = -u.row(anchor.node);
+    for (int n = 0; n < 8; ++n) gap += anchor.weights[n] * u.row(anchor.corners[n]);
+    energies[cell_of.at(anchor.corners)] += anchor.stiffness / 2 * gap.squaredNorm();
+  }
+  return energies;
+}
+
+double sum_of(const std::vector<double>& energies) { return std::accumulate(energies.begin(), energies.end(), 0.0); }
+
 /// The cells whose errors, the largest first, make up this share of the error.
 std::vector<int> worst_cells(const std::vector<double>& errors, double share) {
   std::vector<int> order(errors.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return errors[a] > errors[b]; });
-  const double enough = share * std::accumulate(errors.begin(), errors.end(), 0.0);
+  const double enough = share * sum_of(errors);
   double sum = 0;
   std::size_t taken = 0;
   while (taken < order.size() && sum < enough) sum += errors[order[taken++]];
@@ -74,8 +90,12 @@ std::vector<int> worst_cells(const std::vector<double>& errors, double share) {
 }  // namespace
 
 double CellEnergies::promised_error() const {
-  return elastic > 0 ? std::accumulate(error.begin(), error.end(), 0.0) / elastic : 0;
+  double sum = 0;
+  for (std::size_t c = 0; c < error.size(); ++c) sum += std::max(error[c], anchors[c]);
+  return elastic > 0 ? sum / elastic : 0;
 }
+
+const std::vector<double>& CellEnergies::larger() const { return sum_of(error) < sum_of(anchors) ? anchors : error; }
 
 CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) {
   const AveragedSprings* law = averaged_springs_of(model);
@@ -83,6 +103,8 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
   const Network& network = model.network;
   const Strains of_cells = cell_strains(network, u), of_nodes = nodal_strains(network, of_cells);
   CellEnergies energies;
+  energies.anchors = anchor_energies(network, u);
+  energies.elastic = sum_of(energies.anchors);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const FilledPart& part = filled_part(network, c);
     double mean = 0;  // over eight points with the moments of the filled part along each axis

@@ -10,12 +10,16 @@ namespace springproof {
 
 /// Energies of cells in a small displacement.
 struct CellEnergies {
-  std::vector<double> error;  ///< of each cell's stress against that recovered at its nodes [J]
-  double elastic = 0;         ///< of all cells [J]
+  std::vector<double> error;    ///< of each cell's stress against that recovered at its nodes [J]
+  std::vector<double> anchors;  ///< of those that hold each cell: a support does not give way [J]
+  double elastic = 0;           ///< of all cells and anchors [J]
 
-  /// Promised relative error of the displacement: the energy of the error over that of the displacement.  Under given
-  /// forces the displacement in their direction is too small by exactly that fraction, if the energy of the error is.
+  /// Promised relative error of the displacement: of each cell the larger of the two energies, over that of the
+  /// displacement.  Under given forces the displacement in their direction is too small by the cells' fraction, if
+  /// their energy of the error is right, and too large by the anchors'.
   double promised_error() const;
+  /// Those of the two energies that sum to more: to be made smaller first.
+  const std::vector<double>& larger() const;
 };
 
 /// Zienkiewicz and Zhu's estimate (1987): the strain recovered at a node is the mean of the strains of its cells by
