@@ -12,12 +12,6 @@ namespace springproof {
 
 namespace {
 
-/// In flight all nodes fall alike.
-void fall_freely(const Network& network, Embedding& embedding) {
-  embedding.volumes = network.volume;
-  embedding.free_fall = true;
-}
-
 /// Whether the loads prescribe all components on a patch.
 bool holds_wholly(const std::vector<Load>& loads, const std::string& patch) {
   std::array<bool, 3> held{};
@@ -42,7 +36,6 @@ EmbeddedModel build_cut_in_motion(const PreparedCase& prepared, const ModelParam
   auto anchor = built.model.network.anchors.begin();
   for (const std::string& name : anchored)
     for (const PatchInCell& p : body.patches.at(name)) anchor++->stiffness *= body.cells[p.cell].filled.fraction;
-  if (held.empty()) fall_freely(built.model.network, built.embedding);
   for (const std::string& name : held)
     if (!built.embedding.held.contains(name)) built.embedding.held[name] = nodes_at_patch(body, name);
   return built;
@@ -61,7 +54,6 @@ EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelPa
   if (in_motion) {
     embedding.held = file.patches;
     embedding.surface = file.surface.weights;
-    if (held.empty()) fall_freely(model.network, embedding);
   }
   return {std::move(model), std::move(embedding)};
 } catch (const InputError& e) {
@@ -75,6 +67,20 @@ EmbeddedModel build_on_tetrahedra(const Lattice& lattice, const ModelParameters&
   EmbeddedModel built = build_on_vertices(parameters, tetrahedra, material, lattice.fits->of(parameters, tetrahedra));
   built.embedding.weights = embed(*lattice.mesh, built.model.network, 0).weights;
   return built;
+}
+
+/// On the lattice as the model takes it.
+EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                       const std::set<std::string>& held, const IsotropicMaterial& material, bool in_motion) {
+  if (parameters.springs && !parameters.springs->model.network.filled.empty()) {
+    require_material(parameters, material);
+    return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
+  }
+  if (passes_patch_test(parameters.row) && lattice.tetrahedra)
+    return build_on_tetrahedra(lattice, parameters, material);
+  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
+  if (in_motion) return build_cut_in_motion(prepared, parameters, lattice, held, material);
+  return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
 }
 
 }  // namespace
@@ -92,15 +98,12 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
   std::set<std::string> held;
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
-  if (parameters.springs && !parameters.springs->model.network.filled.empty()) {
-    require_material(parameters, material);
-    return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
+  EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
+  if (in_motion && held.empty()) {  // in flight all nodes fall alike
+    built.embedding.free_fall = true;
+    if (!built.embedding.patches.empty()) built.embedding.volumes = built.model.network.volume;
   }
-  if (passes_patch_test(parameters.row) && lattice.tetrahedra)
-    return build_on_tetrahedra(lattice, parameters, material);
-  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
-  if (in_motion) return build_cut_in_motion(prepared, parameters, lattice, held, material);
-  return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
+  return built;
 }
 
 void add_lattice(Lattice lattice, PreparedCase& prepared) {

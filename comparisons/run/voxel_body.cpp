@@ -210,6 +210,11 @@ Vec3 centroid(const Mesh& mesh) {
   return mesh.nodes.transpose() * volumes / volumes.sum();
 }
 
+/// Whether nothing holds a body in motion: all of it falls alike, whatever its weight.
+bool flies(const Experiment& e) {
+  return e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement);
+}
+
 void set_wrenches(PreparedCase& prepared) {
   const Mesh& body = *prepared.tetrahedra.back();
   const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
@@ -221,7 +226,7 @@ void set_wrenches(PreparedCase& prepared) {
       q->wrench = of_pressure(parts(q->on), q->pressure);
     } else if (auto* f = std::get_if<PatchForce>(&load)) {
       f->wrench = at_centroid(f->force, centroid(parts(f->on)));
-    } else if (auto* g = std::get_if<Gravity>(&load)) {
+    } else if (auto* g = std::get_if<Gravity>(&load); g && !flies(prepared.experiment)) {
       const double mass = prepared.experiment.materials.front().density * volume(body, body.nodes);
       g->wrench = at_centroid(mass * g->acceleration, centroid(body));
     }
@@ -252,7 +257,7 @@ void set_load_spread(PreparedCase& prepared) {
     const std::string* on = patch_of(load);
     const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load) ||
                          (prescribes_displacement(load) && has_ragged_border(e, *on));
-    if (!by_area && !std::holds_alternative<Gravity>(load)) continue;
+    if (!by_area && (!std::holds_alternative<Gravity>(load) || flies(e))) continue;
     const double off = spread(prepared, !on || !has_ragged_border(e, *on), [&](const Mesh& m) {
       return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes);
     });

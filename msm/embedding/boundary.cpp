@@ -152,23 +152,26 @@ std::optional<NodalVectors> true_forces(const Load& load, const Embedding& e, co
   }
   if (const auto* g = std::get_if<Gravity>(&load)) force = factor * density * e.volumes * g->acceleration.transpose();
   if (force.rows() == 0) return {};
-  if (const auto* wrench = wrench_of(load); wrench && *wrench && (patch_of(load) || !e.free_fall))
+  if (const auto* wrench = wrench_of(load); wrench && *wrench)
     complete(*wrench, factor, X, patch_of(load) ? e.patches.at(*patch_of(load)).area : e.volumes, force);
   return force;
 }
 
 /// Forces on the nodes of a network [N].
-NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& e, const NodalVectors& X,
-                            double density, double factor) {
-  if (e.patches.empty()) return e.weights.transpose() * mesh_forces(loads, mesh, density, factor);
+NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& e,
+                            const Network& network, double density, double factor) {
   NodalVectors external = NodalVectors::Zero(e.weights.cols(), 3);
+  std::vector<Load> on_mesh;
   for (const Load& load : loads) {
-    if (const auto forces = true_forces(load, e, X, density, factor))
+    const auto* gravity = std::get_if<Gravity>(&load);
+    if (gravity && e.free_fall)
+      external += factor * density * network.volume * gravity->acceleration.transpose();
+    else if (const auto forces = e.patches.empty() ? std::nullopt : true_forces(load, e, network.X, density, factor))
       external += *forces;
     else
-      external += e.weights.transpose() * mesh_forces({load}, mesh, density, factor);
+      on_mesh.push_back(load);
   }
-  return external;
+  return external + e.weights.transpose() * mesh_forces(on_mesh, mesh, density, factor);
 }
 
 }  // namespace
@@ -195,7 +198,7 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
           "no node of the network is near enough to patch '{}' to be held; choose a larger grip", *patch_of(load)));
     prescribe(load, number, held, network.X, kinematics, factor, bc);
   });
-  bc.external = network_forces(loads, mesh, embedding, network.X, density, factor);
+  bc.external = network_forces(loads, mesh, embedding, network, density, factor);
   hand_back(network.carried, bc.external);
   if (!network.triangles.empty())
     for (int n = 0; n < network.nodes(); ++n) bc.fixed[3 * n + 2] = 1;

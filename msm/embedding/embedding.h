@@ -25,7 +25,7 @@ struct Embedding {
   std::map<std::string, std::vector<int>> held;  ///< patch -> the network nodes that its supports hold, ascending
   std::map<std::string, PatchShares> patches;    ///< of the true body; empty: loads are those on the mesh's nodes
   Eigen::VectorXd volumes;                       ///< integral of N_n over the true body [m^3]; empty likewise
-  bool free_fall = false;  ///< gravity acts on `volumes` as they are, not with the wrench of the true body's weight
+  bool free_fall = false;  ///< gravity acts on the nodes' masses, not with the wrench of the true body's weight
   /// Points of the true surface, by which the body touches others, as `weights`: points x nodes.  Empty: the nodes.
   Eigen::SparseMatrix<double, Eigen::RowMajor> surface;
 };

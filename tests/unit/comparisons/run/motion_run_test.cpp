@@ -173,6 +173,42 @@ TEST(MotionRun, ABallOfCutCellsFallsOnAPlane) {
   EXPECT_GT(h.measured.at("restitution"), 0.6);
 }
 
+// Whatever the cells or nodes at random make of its mass and its centroid.
+TEST(MotionRun, InFlightEveryModelOfABodyFallsWithoutTurning) {
+  const Part part = run_of(parse_experiment(R"(kinematics = "hencky"
+[body]
+geo = "l_bracket.geo"
+size_m = [0.1, 0.05, 0.1]
+voxels = 300
+[material]
+youngs_modulus_Pa = 1e5
+poisson_ratio = 0.3
+density_kg_m3 = 1000
+[[load]]
+gravity_m_s2 = [0, 0, -9.81]
+[[probe]]
+name = "end"
+at_m = [0.095, 0.025, 0.01]
+[compare]
+models = ["hybmss_avg", "hybmss", "emsm", "emsm_random"]
+measures = ["motion"]
+[reference]
+elements = []
+[dynamics]
+equilibrium = false
+duration_s = 0.4
+samples = 40
+)",
+                                            "bracket.toml"));
+  EXPECT_EQ(part.histories.size(), 4u);
+  for (const HistoryRecord& h : part.histories) {
+    const double t = h.time.back(), fall = 9.81 * t * t / 2;
+    EXPECT_NEAR(values_of(h, "displacement.end.z").back(), -fall, 4e-3 * fall) << h.model;  // of the step
+    EXPECT_NEAR(values_of(h, "displacement.end.x").back(), 0, 1e-10 * fall) << h.model;
+    EXPECT_LT(values_of(h, "elastic_energy").back(), 1e-20) << h.model;
+  }
+}
+
 void expect_refused(const Experiment& e, const std::string& reason) {
   try {
     prepare(e);
