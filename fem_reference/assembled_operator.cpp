@@ -58,8 +58,9 @@ struct AssembledOperator::Spaces {
         values(*system.body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values),
         u_dofs(u),
         u_indices(u.get_fe().n_dofs_per_cell()),
-        is_constrained(u.n_dofs()) {
-    for (const unsigned int i : constrained) is_constrained[i] = true;
+        held(u.n_dofs()) {
+    held.add_indices(constrained.begin(), constrained.end());
+    held.compress();
     for (unsigned int i = 0; i < u_indices.size(); ++i) {
       const auto [component, node] = u.get_fe().system_to_component_index(i);
       place.push_back(3 * int(node) + int(component));
@@ -141,7 +142,7 @@ struct AssembledOperator::Spaces {
   // Adds a cell matrix with constrained rows and columns eliminated; their diagonal entries are kept.
   void add_free(CellMatrix K, SparseMatrix& matrix) const {
     for (std::size_t i = 0; i < u_indices.size(); ++i) {
-      if (!is_constrained[u_indices[i]]) continue;
+      if (!held.is_element(u_indices[i])) continue;
       const double diagonal = K(i, i);
       K.row(i).setZero();
       K.col(i).setZero();
@@ -152,7 +153,7 @@ struct AssembledOperator::Spaces {
   // Adds a coupling block, one row per pressure.
   void add_coupling(CellMatrix B, SparseMatrix& matrix) const {
     for (std::size_t i = 0; i < u_indices.size(); ++i)
-      if (is_constrained[u_indices[i]]) B.col(i).setZero();
+      if (held.is_element(u_indices[i])) B.col(i).setZero();
     matrix.add(p_indices, u_indices, B.data());
   }
 
@@ -167,7 +168,7 @@ struct AssembledOperator::Spaces {
   std::optional<DofSets> p_dofs;
   std::vector<PetscInt> u_indices, p_indices;  // of the cell being visited; 3 a + i for component i of node a
   std::vector<int> place;                      // deal.II's local number -> 3 a + i
-  std::vector<bool> is_constrained;
+  dealii::IndexSet held;                       // degrees of freedom with prescribed value
   CellShape shape;
 };
 
@@ -183,10 +184,10 @@ struct AssembledOperator::CoarseSpaces {
       for (unsigned int i = 0; i < fine_dofs.size(); ++i) {
         if (!fine.u_dofs.owned.is_element(fine_dofs[i])) continue;
         std::vector<double> row(columns.size(), 0.0);
-        if (!fine.is_constrained[fine_dofs[i]])
+        if (!fine.held.is_element(fine_dofs[i]))
           for (unsigned int j = 0; j < columns.size(); ++j)
             if (linear.system_to_component_index(j).first == fe.system_to_component_index(i).first &&
-                !spaces.is_constrained[columns[j]])
+                !spaces.held.is_element(columns[j]))
               row[j] = linear.shape_value(j, fe.unit_support_point(i));
         interpolation->insert({PetscInt(fine_dofs[i])}, columns, row.data());
       }
@@ -217,12 +218,12 @@ struct AssembledOperator::CoarseSpaces {
 
   // The vertex degrees of freedom of a cell come first in both elements.
   std::vector<unsigned int> shared_constraints(const Spaces& fine) const {
-    std::set<unsigned int> held;
+    std::set<unsigned int> shared;
     for_each_pair(fine, [&](const auto& fine_dofs, const auto& coarse_dofs) {
       for (std::size_t i = 0; i < coarse_dofs.size(); ++i)
-        if (fine.is_constrained[fine_dofs[i]]) held.insert(coarse_dofs[i]);
+        if (fine.held.is_element(fine_dofs[i])) shared.insert(coarse_dofs[i]);
     });
-    return {held.begin(), held.end()};
+    return {shared.begin(), shared.end()};
   }
 
   // Restriction by injection: the values at the vertices.

@@ -193,7 +193,7 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
   std::map<unsigned int, Prescribed> by_dof;
   std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
   const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
-  const double size = low.distance(high);
+  const double size = dealii::Utilities::MPI::max(low.distance(high), dof_handler.get_communicator());
   const auto value = [&](const Prescribed& p) {
     return *prescribed_displacement(loads[p.load], p.X, Kinematics::linear)[p.component];
   };

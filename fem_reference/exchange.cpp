@@ -31,8 +31,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Motion, duration, damping, course, released, 
                                    energy_momentum)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions,
                                    volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,
-                                   iterations, residual, seconds, times, memory_MiB, frequencies, shapes, rigid_motions,
-                                   time, path, kinetic_energy, elastic_energy, angular_momentum)
+                                   cells, cells_per_process, iterations, residual, seconds, times, memory_MiB,
+                                   frequencies, shapes, rigid_motions, time, path, kinetic_energy, elastic_energy,
+                                   angular_momentum)
 
 nlohmann::json to_json(const Request& r) {
   nlohmann::json meshes = nlohmann::json::array();

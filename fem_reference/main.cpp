@@ -19,6 +19,24 @@
 namespace springproof::fem {
 namespace {
 
+// The request that the first process makes.  The others have of its meshes those that every process needs.
+Request shared(const std::function<Request()>& make) {
+  Request request;
+  std::string bytes;
+  together([&] {
+    if (process_rank() > 0) return;
+    request = make();
+    if (process_count() == 1) return;
+    Request others = request;
+    for (auto& mesh : others.meshes)
+      if (!every_process_needs(*mesh)) mesh = std::make_shared<Mesh>();
+    nlohmann::json::to_cbor(to_json(others), bytes);
+  });
+  if (process_count() == 1) return request;
+  bytes = from_first(bytes);
+  return process_rank() == 0 ? request : request_from_json(nlohmann::json::from_cbor(bytes));
+}
+
 Solution solve_one(const Request& request, const Discretisation& grid, Method method) {
   GridProblem problem;
   problem.method = method;
@@ -91,8 +109,10 @@ std::vector<Solution> solve_all(const Request& request, Method method = Method::
 }
 
 void answer_request(const std::string& request_file, const std::string& answer_file) {
-  std::ifstream in(request_file, std::ios::binary);
-  const std::vector<Solution> solutions = solve_all(request_from_json(nlohmann::json::from_cbor(in)));
+  const std::vector<Solution> solutions = solve_all(shared([&] {
+    std::ifstream in(request_file, std::ios::binary);
+    return request_from_json(nlohmann::json::from_cbor(in));
+  }));
   together([&] {
     if (process_rank() > 0) return;
     std::ofstream out(answer_file, std::ios::binary);
@@ -109,6 +129,9 @@ void print(const std::vector<Probe>& probes, const Solution& s, int digits) {
   if (!s.ok) fmt::print("  FAILED                {}\n", s.message);
   fmt::print("  solver                {} iterations, relative residual {:.1e}, {:.2f} CPU s, {:.0f} MiB\n",
              s.iterations, s.residual, s.seconds, s.memory_MiB);
+  if (process_count() > 1)
+    fmt::print("  processes             {}, which store up to {} of {} cells each\n", process_count(),
+               s.cells_per_process, s.cells);
   const auto number = [&](double x) { return fmt::format("{:.{}g}", x, digits); };
   const auto vector = [&](const auto& v) { return fmt::format("{} {} {}", number(v[0]), number(v[1]), number(v[2])); };
   fmt::print("  volume change         {} (first order {}), smallest det F {:.6g}\n", number(s.volume_change),
@@ -153,11 +176,14 @@ bool solve_case(const Options& options) {
   }
   bool ok = true;
   for (const IsotropicMaterial& material : materials) {
-    Request request = request_of(experiment, material);
-    request.grids = {grid};
-    request.points = request.stress_points = points;
-    request.tolerance = options.tolerance;
-    mesh_grids(request);
+    const Request request = shared([&] {
+      Request r = request_of(experiment, material);
+      r.grids = {grid};
+      r.points = r.stress_points = points;
+      r.tolerance = options.tolerance;
+      mesh_grids(r);
+      return r;
+    });
     fmt::print("{}, Poisson's ratio {}: ", experiment.name, material.poisson_ratio);
     for (const Solution& s : solve_all(request, options.method)) {
       print(experiment.probes, s, options.digits);

@@ -57,6 +57,8 @@ void together(const std::function<void()>& f) {
   }
 }
 
+std::string from_first(const std::string& bytes) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, bytes); }
+
 bool all_failed() {
   if (process_count() == 1) return true;
   MPI_Request request;

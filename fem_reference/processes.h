@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 namespace springproof::fem {
 
@@ -19,6 +20,9 @@ void start_mpi();
 /// these.
 /// @throws InputError, std::runtime_error
 void together(const std::function<void()>& f);
+
+/// The bytes of the first process.
+std::string from_first(const std::string& bytes);
 
 /// True if every process calls this within seconds, that is, if all have failed.
 bool all_failed();

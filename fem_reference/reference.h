@@ -80,6 +80,8 @@ struct Solution {
   double min_jacobian = 1;               ///< min det F at quadrature points
   long degrees_of_freedom = 0;           ///< of the displacement, including constrained ones
   long unknowns = 0;                     ///< unconstrained degrees of freedom
+  long cells = 0;                        ///< of the finest mesh
+  long cells_per_process = 0;            ///< of them in the memory of the largest process, with ghost cells
   int iterations = 0;                    ///< of the linear solver, all steps together
   double residual = 0;                   ///< relative, of the final state
   double seconds = 0;                    ///< CPU time of this grid, of all processes

@@ -6,26 +6,11 @@
 #include <optional>
 
 #include "fem_reference/elastic_system.h"
+#include "fem_reference/locate.h"
 #include "fem_reference/reference.h"
 #include "problem/vector.h"
 
 namespace springproof::fem {
-
-/// A rest position inside a cell.  Of the processes that own a cell containing the point, one evaluates it (`answers`).
-struct Location {
-  dealii::Triangulation<3>::active_cell_iterator cell;
-  dealii::Point<3> unit;
-  bool answers = true;
-
-  bool is_here() const { return cell.state() == dealii::IteratorState::valid; }
-};
-
-/// The degrees of freedom of the cell of a location.
-std::vector<dealii::types::global_dof_index> dofs_at(const Location& place, const dealii::DoFHandler<3>& dof_handler);
-
-/// @throws InputError naming the first point that is further outside the body than half the adjacent cell (tetrahedra
-/// on one process: 0.2 of the body's extent).
-std::vector<Location> locate(const Body3& body, const NodalVectors& points);
 
 /// n x 3 [m].  The displacement must have current ghost values, here and below.
 NodalVectors displacement_at(const std::vector<Location>& places, const dealii::DoFHandler<3>& dof_handler,

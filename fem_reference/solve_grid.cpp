@@ -78,12 +78,12 @@ constexpr unsigned int smallest_grid_for_coarse_space = 300;
 
 // The linear coarse space is for small strain and one process.
 bool has_linear_coarse_space(const GridProblem& problem, const Body3& body) {
-  return body.triangulation.n_cells(0) > smallest_grid_for_coarse_space &&
-         (problem.coarse.grid || problem.coarse.curved.size() > 0) && problem.law == "linear" && process_count() == 1;
+  return body.triangulation.n_cells(0) > smallest_grid_for_coarse_space && (problem.coarse.grid || body.curved) &&
+         problem.law == "linear" && process_count() == 1;
 }
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
-  const bool few_cells = body.triangulation.n_cells(0) <= largest_coarse_grid && problem.coarse.curved.size() == 0;
+  const bool few_cells = body.triangulation.n_cells(0) <= largest_coarse_grid && !body.curved;
   return problem.method == Method::automatic && !body.has_tetrahedra() &&
          (few_cells || has_linear_coarse_space(problem, body));
 }
@@ -227,6 +227,9 @@ Solution solve_grid(const GridProblem& problem) {
   Solution solution;
   solution.law = problem.law;
   solution.degrees_of_freedom = dof_handler.n_dofs();
+  solution.cells = long(body->triangulation.n_global_active_cells());
+  solution.cells_per_process =
+      dealii::Utilities::MPI::max(long(body->triangulation.n_active_cells()), body->triangulation.get_communicator());
   if (problem.modes > 0)
     solve_modes(problem, *body, dof_handler, solution);
   else if (problem.motion)

@@ -17,7 +17,7 @@ enum class Method {
 };
 
 struct GridProblem {
-  Mesh coarse;                             ///< cells of one kind, with named patches
+  Mesh coarse;                             ///< cells of one kind, with named patches (every_process_needs())
   int refinements = 0;                     ///< each cell is cut into 8 this many times
   std::function<Vec3(const Vec3&)> place;  ///< moves the vertices of the finest mesh; empty: not moved
   int degree = 2;                          ///< 1 or 2
@@ -37,6 +37,10 @@ struct GridProblem {
   VtuNotes vtu_notes;       ///< what it says of itself
   bool own_memory = false;  ///< Solution::memory_MiB is the growth due to this grid
 };
+
+/// True of straight hexahedra, which are refined: each of several processes stores the whole mesh.  Of any other, which
+/// is divided, the first process has the mesh and the others one without cells.
+bool every_process_needs(const Mesh& mesh);
 
 /// The caller sets Solution::grid.  A solver that fails gives ok = false.
 /// @throws InputError if the problem cannot be used: unknown patch or law, unconstrained body, point outside

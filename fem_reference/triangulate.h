@@ -21,18 +21,19 @@ struct Body3 {
   explicit Body3(std::unique_ptr<dealii::Triangulation<3>> cells) : owned(std::move(cells)), triangulation(*owned) {}
 
   std::unique_ptr<dealii::Triangulation<3>> owned;
-  dealii::Triangulation<3>& triangulation;      ///< with several processes: locally owned and ghost cells
-  std::unique_ptr<dealii::Mapping<3>> mapping;  ///< straight edges, or those of Mesh::curved
+  dealii::Triangulation<3>& triangulation;  ///< with several processes: locally owned and ghost cells
+  std::unique_ptr<dealii::Mapping<3>> mapping;
+  bool curved = false;  ///< edges are those of Mesh::curved; else straight
   std::map<std::string, std::set<dealii::types::boundary_id>> patches;  ///< a facet may belong to several patches
 
   bool has_tetrahedra() const { return triangulation.get_reference_cells().front().is_simplex(); }
 };
 
-/// Refines `coarse` `refinements` times; then every vertex X [m] of the finest mesh is moved to place(X), if
-/// given.  Curved meshes and tetrahedra are not refined; for those every process stores the whole mesh, and owns part
-/// of the degrees of freedom.  Every process must be given the same mesh.
-/// @throws InputError if the mesh has inverted cells, no cells, or both kinds.
-std::unique_ptr<Body3> triangulate(const Mesh& coarse, int refinements, const std::function<Vec3(const Vec3&)>& place);
+/// Refines the mesh `refinements` times; then every vertex X [m] of the finest mesh is moved to place(X), if given.
+/// Curved meshes and tetrahedra are not refined; of several processes only the first is given such a mesh, which it
+/// divides, and the others one without cells.  Any other is given to all (every_process_needs()).
+/// @throws InputError on every process if the mesh has inverted cells, no cells, or both kinds.
+std::unique_ptr<Body3> triangulate(const Mesh& mesh, int refinements, const std::function<Vec3(const Vec3&)>& place);
 
 /// Lagrange elements of degree 1 or 2.
 std::unique_ptr<dealii::FiniteElement<3>> scalar_element(const Body3& body, int degree);

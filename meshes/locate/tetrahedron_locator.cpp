@@ -85,9 +85,9 @@ TetrahedronLocator::Place TetrahedronLocator::place_in(std::size_t c, const Vec3
 TetrahedronLocator::Place TetrahedronLocator::operator()(const Vec3& p) const {
   const auto middle = box_of(p);
   Place best{0, Eigen::Vector4d::Zero(), std::numeric_limits<double>::infinity()};
-  int found_at = std::numeric_limits<int>::max();
-  // One ring of boxes beyond the first that has any.
-  for (int ring = 0; best.outside > 0 && ring <= found_at + (found_at < 1 << 20); ++ring)
+  // Cells that reach into no box of the rings so far are at least (ring - 1) edges away.
+  const int rings = *std::max_element(count_.begin(), count_.end());
+  for (int ring = 0; ring < rings && best.outside > (ring - 1) * edge_; ++ring)
     for (int k = middle[2] - ring; k <= middle[2] + ring; ++k)
       for (int j = middle[1] - ring; j <= middle[1] + ring; ++j)
         for (int i = middle[0] - ring; i <= middle[0] + ring; ++i) {
@@ -97,9 +97,8 @@ TetrahedronLocator::Place TetrahedronLocator::operator()(const Vec3& p) const {
           const std::size_t box = (std::size_t(k) * count_[1] + j) * count_[0] + i;
           for (std::size_t at = start_[box]; at < start_[box + 1]; ++at) {
             const Place here = place_in(list_[at], p);
-            if (here.outside < best.outside) best = here;
-            found_at = std::min(found_at, ring);
-            if (best.outside == 0) return best;
+            if (here.outside == 0) return here;
+            if (here.outside < best.outside || (here.outside == best.outside && here.cell < best.cell)) best = here;
           }
         }
   return best;

@@ -20,7 +20,7 @@ class TetrahedronLocator {
     double outside;           ///< distance from the cell [m]; 0: inside
   };
 
-  /// The cell that holds the point (of several the first), or the nearest of those in the boxes nearest to the point.
+  /// The cell that holds the point, or the nearest; of several the first.
   Place operator()(const Vec3& point) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "meshes/mesher/mesher.h"
@@ -41,6 +42,35 @@ TEST(TetrahedronLocator, PointsOutsideGetACellThatTheyAreNear) {
   EXPECT_NEAR(above.outside, 0.2, 1e-12);
   EXPECT_LT((at(mesh, above) - Vec3(0.3, 0.7, 3.2)).norm(), 1e-12);  // continued linearly
   EXPECT_NEAR(locate({-5, 1, 1}).outside, 5, 1e-12);
+}
+
+// So that processes that look among parts of a mesh find together what one finds.
+TEST(TetrahedronLocator, FindsTheNearestCellAndOfSeveralTheFirst) {
+  const Mesh mesh = tetrahedral_block();
+  std::vector<Tetrahedron> scattered;
+  std::vector<TetrahedronLocator> alone;
+  for (std::size_t c = 0; c < mesh.tetrahedra.size(); c += 9) {
+    scattered.push_back(mesh.tetrahedra[c]);
+    alone.emplace_back(mesh.nodes, std::vector{mesh.tetrahedra[c]});
+  }
+  const TetrahedronLocator locate(mesh.nodes, scattered);
+  std::vector<Vec3> points;
+  for (const auto& node : mesh.nodes.rowwise()) points.emplace_back(node.transpose());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> x(-1, 2);
+  for (int i = 0; i < 2000; ++i) points.emplace_back(x(random), 2 * x(random), 3 * x(random));
+  for (const Vec3& p : points) {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < alone.size(); ++c)
+      if (const double outside = alone[c](p).outside; outside < least) {
+        least = outside;
+        nearest = c;
+      }
+    const auto place = locate(p);
+    EXPECT_EQ(place.outside, least);
+    EXPECT_EQ(place.cell, nearest);
+  }
 }
 
 TEST(TetrahedronLocator, NeedsTetrahedra) {
