@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "msm/measure/promised_error.h"
 #include "msm/statics/equilibrium.h"
+#include "problem/system/child.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -28,6 +30,7 @@ CellEnergies worst_energies(const PreparedCase& prepared, const CutBody& cut, co
     if (parameters->hold_rigid_motions)
       hold_free_motions(built.model.network.X, conditions, built.model.network.carried);
     require_supported(conditions, built.model.network.X);
+    if (children_interrupted()) throw std::runtime_error("interrupted");
     const Equilibrium state = solve_linear(built.model, conditions);
     if (!state.ok) throw InputError(fmt::format("body.accuracy: {}", state.message));
     CellEnergies energies = cell_energies(built.model, state.displacement);

@@ -1,6 +1,7 @@
 #include "comparisons/run/suite.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -36,8 +37,9 @@ namespace fs = std::filesystem;
 
 std::atomic<bool> interrupted = false;
 
+/// The first ends the children, and the run as soon as a model has been solved; the second ends it at once.
 void on_interrupt(int) {
-  interrupted = true;
+  if (interrupted.exchange(true)) _exit(130);
   fem::interrupt();
 }
 

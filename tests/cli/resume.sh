@@ -57,6 +57,23 @@ cp "$work/out/results.csv" "$work/resumed.csv"
 "$program" compare "$work/case.toml" --out "$work/out" 2>"$work/log" >/dev/null || fail "running afresh failed"
 cmp -s "$work/resumed.csv" "$work/out/results.csv" || fail "a resumed run gives other numbers than a fresh one"
 
+# A first interrupt waits for the model that is being solved, a second does not.
+sed -e '/^\[reference\]/,$d' -e 's/^models.*/&\nmeasures = ["motion"]/' "$work/case.toml" >"$work/long.toml"
+printf '[reference]\nelements = []\n[dynamics]\nduration_s = 1e6\nequilibrium = false\n' >>"$work/long.toml"
+sed -i -e '1i kinematics = "hencky"' -e 's/^poisson_ratio.*/&\ndensity_kg_m3 = 1000/' "$work/long.toml"
+"$program" compare "$work/long.toml" --out "$work/long" --jobs 1 >"$work/log" 2>&1 &
+pid=$!
+until [ -e "$work/long/parts" ]; do kill -0 $pid 2>/dev/null || fail "a long motion ended at once"; sleep 0.05; done
+sleep 1
+kill -INT $pid
+sleep 0.5
+kill -0 $pid 2>/dev/null || fail "a first interrupt should wait for the model"
+kill -INT $pid
+for _ in $(seq 20); do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
+kill -0 $pid 2>/dev/null && { kill -9 $pid; fail "a second interrupt should end a run at once"; }
+wait $pid
+[ $? -eq 130 ] || fail "a run that is interrupted twice should end with 130"
+
 # A flipped bit is found wherever it lies, and the part computed anew; the others are kept.
 part=$(ls "$work"/out/parts/*nu0.25* | head -1)
 size=$(stat -c %s "$part")
