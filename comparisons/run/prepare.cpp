@@ -136,14 +136,6 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   // No network with this material's moduli: the run will report it.
 }
 
-/// The loads that can be checked on a lattice before the work starts: all but the body forces of exact fields.
-std::vector<Load> lattice_loads(const PreparedCase& prepared) {
-  std::vector<Load> loads;
-  for (const Load& load : prepared.loads)
-    if (!std::holds_alternative<FieldBodyForce>(load)) loads.push_back(load);
-  return loads;
-}
-
 /// @throws InputError for a lattice too large for a workstation's memory.
 void check_fineness(const Body& body, const Cells& c) {
   if (const double total = double(c[0]) * c[1] * c[2]; total > largest_lattice)

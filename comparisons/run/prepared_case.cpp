@@ -111,6 +111,12 @@ void add_lattice(Lattice lattice, PreparedCase& prepared) {
   prepared.lattices.push_back(std::move(lattice));
 }
 
+std::vector<Load> lattice_loads(const PreparedCase& prepared) {
+  std::vector<Load> loads = prepared.loads;
+  std::erase_if(loads, [](const Load& load) { return std::holds_alternative<FieldBodyForce>(load); });
+  return loads;
+}
+
 std::size_t finest_lattice(const PreparedCase& prepared) {
   const auto& all = prepared.lattices;
   const auto finer = [](const Lattice& a, const Lattice& b) {

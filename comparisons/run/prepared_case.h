@@ -91,6 +91,9 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
 /// Adds the next lattice.
 void add_lattice(Lattice lattice, PreparedCase& prepared);
 
+/// The loads that transfer() takes: all but the body forces of exact fields.
+std::vector<Load> lattice_loads(const PreparedCase& prepared);
+
 /// Number of the lattice with the most cells.
 std::size_t finest_lattice(const PreparedCase& prepared);
 

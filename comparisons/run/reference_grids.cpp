@@ -9,6 +9,7 @@
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
 #include "fem_reference/case_request.h"
+#include "msm/embedding/boundary.h"
 #include "problem/case_file/measures.h"
 #include "problem/exact_field.h"
 #include "problem/system/child.h"
@@ -92,14 +93,24 @@ void fall_back(const PreparedCase& prepared, fem::Request request, const VtuOutp
   }
 }
 
+/// Sum of the magnitudes of the loads' nodal forces [N]: it does not vanish where the loads balance each other.
+double force_of_loads(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  return transfer(lattice_loads(prepared), *prepared.lattices.front().mesh, e.materials.front().density,
+                  e.model_kinematics())
+      .external.rowwise()
+      .norm()
+      .sum();
+}
+
 /// Scale of the values of a measure: the largest displacement, the strain, the largest force (also of those that
-/// balance torques, and times the body's size for torques), or the largest stress.
+/// balance torques, and times the body's size for torques; the loads at least), or the largest stress.
 double scale_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
-                double largest_displacement) {
+                double largest_displacement, double loads) {
   if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return largest_displacement;
   if (measure.starts_with("volume_change")) return largest_displacement / body_size;
   const bool is_stress = measure.starts_with("stress.");
-  double force = 0, stress = 0;
+  double force = loads, stress = 0;
   for (const auto& [name, value] : values) {
     if (name.starts_with("force.")) force = std::max(force, std::abs(value));
     if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body_size);
@@ -266,10 +277,11 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
   const double largest_displacement = e.grids[2].displacement.rowwise().norm().maxCoeff();
+  const double loads = force_of_loads(prepared);
   const Experiment& experiment = prepared.experiment;
   std::map<std::string, ReferenceValue> limits;
   for (const auto& [measure, fine] : values[2]) {
-    const double scale = scale_of(measure, values[2], prepared.size.norm(), largest_displacement);
+    const double scale = scale_of(measure, values[2], prepared.size.norm(), largest_displacement, loads);
     ReferenceValue& limit = limits[measure];
     limit = extrapolate({values[0].at(measure), values[1].at(measure), fine}, solver_noise * scale,
                         trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));

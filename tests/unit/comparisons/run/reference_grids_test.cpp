@@ -200,6 +200,43 @@ TEST(ReferenceGrids, RoundOffOfATorqueDoesNotMatter) {
   EXPECT_FALSE(limits.at("torque.z_max.z").matters);
 }
 
+/// Beside the load they are nothing, and they alone would say that nothing converges.
+TEST(ReferenceGrids, ReactionsThatVanishByEquilibriumAreRoundOffOfTheLoad) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
+  const PreparedCase prepared = prepare(parse_experiment(R"(
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [2, 2, 2]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
+pressure_Pa = 10
+[compare]
+models = []
+measures = ["reaction"]
+[reference]
+cells = [8, 8, 8]
+elements = ["q2"]
+)",
+                                                         "pressed.toml"));
+  const ReferenceGrids grids = solve_grids(prepared, prepared.experiment.materials[0]);
+  ASSERT_EQ(grids.elements.size(), 1u) << grids.failure;
+  const auto limits = limits_of(prepared, grids.elements[0]);
+  for (const char* measure : {"force.z_min.x", "force.z_min.z", "force.z_min.magnitude", "torque.z_min.z"}) {
+    const ReferenceValue& limit = limits.at(measure);
+    EXPECT_LT(std::abs(limit.value), 1e-6) << measure;
+    EXPECT_FALSE(limit.matters) << measure << " " << limit.value << " " << limit.note;
+    EXPECT_EQ(limit.sequence, Sequence::equal) << measure << " " << limit.value << " " << limit.note;
+  }
+  EXPECT_EQ(doubt_of(limits), 0);
+}
+
 TEST(ReferenceGrids, WhatFailsOnUniformGridsTooSaysBoth) {
   if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
   const PreparedCase prepared = squeezed_cube("\"q2\"", 0.6);
