@@ -100,13 +100,19 @@ ModelChoice read_model(const TomlValue& value) {
   return choice;
 }
 
+/// Whether finite elements are run where there is no model: at rest by those that are named, or in time.
+bool has_reference_alone(const TomlTable& document) {
+  const auto reference = document.find("reference");
+  const toml::table* table = reference ? reference->node->as_table() : nullptr;
+  const toml::node* elements = table ? table->get("elements") : nullptr;
+  return elements && (!elements->is_array() || !elements->as_array()->empty() || (*table)["in_time"].value_or(false));
+}
+
 /// An empty list means a case of the reference alone; [reference] must then name its elements.
 std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& document) {
   std::vector<ModelChoice> models;
   if (const auto* array = value.node->as_array(); array && array->empty()) {
-    const auto reference = document.find("reference");
-    if (reference && reference->node->as_table()->contains("elements")) return models;
-    if (document.find("external")) return models;
+    if (has_reference_alone(document) || document.find("external")) return models;
     refuse(value, "is an empty list",
            "model names, or none where [reference] has elements = [\"q2\", ...] or there is an [[external]]");
   }

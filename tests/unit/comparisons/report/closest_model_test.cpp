@@ -1,6 +1,8 @@
 // Which model the headline names, how sure of the reference it is, and what is no success.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "unit/comparisons/report/headline_cases.h"
 
 namespace springproof::closest_model_test {
@@ -166,6 +168,19 @@ TEST(ClosestModel, NothingComparedIsNoSuccess) {
       << h.failures[0];
   EXPECT_NE(terminal_text(h).find("FAILED: cube: nothing was compared"), std::string::npos);
   c.published.push_back({{"emsm", 0.3, {1, 1, 1}}, "moduli.poisson_ratio", "1", 0.3, 0.31, "Fig. 1", ""});
+  EXPECT_TRUE(success(headline_of({c})));
+}
+
+TEST(ClosestModel, AReferenceAtRestComparesNothing) {
+  CaseResult c = with_models("cube", 0.3, std::nan(""), {{"emsm", std::nan("")}});
+  add_row(c, "emsm", 0.3, "volume_change", 0, 0);
+  c.deformations = {{0.3, 0, 0}};
+  const Headline h = headline_of({c});
+  EXPECT_FALSE(success(h));
+  EXPECT_EQ(h.failures,
+            std::vector<std::string>{"cube: nothing was compared, since nothing moves in the reference: every load is "
+                                     "zero, or acts where the body is held"});
+  c.deformations = {{0.3, 1e-3, 0}};
   EXPECT_TRUE(success(headline_of({c})));
 }
 
