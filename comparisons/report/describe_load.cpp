@@ -61,7 +61,11 @@ std::string sentence(const FieldBodyForce& load) {
   return fmt::format("whole body: the body force of the exact field '{}'", load.field);
 }
 
-std::string sentence(const Pressure& load) { return fmt::format("{}: pressed by {:.6g} Pa", load.on, load.pressure); }
+std::string sentence(const Pressure& load, Kinematics kinematics) {
+  return fmt::format(
+      "{}: pressed by {:.6g} Pa{}", load.on, load.pressure,
+      kinematics == Kinematics::linear ? "" : ", a dead load: per area at rest, against the outward normals at rest");
+}
 
 std::string sentence(const Traction& load) {
   return fmt::format("{}: loaded by a traction of {} Pa", load.on, text(load.traction));
@@ -100,8 +104,15 @@ LoadMark mark(const Load& load) {
   return std::visit([](const auto& l) { return mark_of(l); }, load);
 }
 
-std::string describe(const Load& load) {
-  return std::visit([](const auto& l) { return sentence(l); }, load);
+std::string describe(const Load& load, Kinematics kinematics) {
+  return std::visit(
+      [&](const auto& l) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(l)>, Pressure>)
+          return sentence(l, kinematics);
+        else
+          return sentence(l);
+      },
+      load);
 }
 
 }  // namespace springproof

@@ -115,6 +115,8 @@ class Collector {
     append(headline_.motions, motion_lines(result));
     if (const auto warning = deformation_warning(result, case_number)) headline_.warnings.push_back(*warning);
     for (Warning& warning : stability_warnings(result, case_number)) headline_.warnings.push_back(std::move(warning));
+    for (const Json& caution : list_of(result, "cautions"))
+      headline_.notes.push_back({case_number, case_name_ + ": " + caution.get<std::string>(), ""});
     if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
     for (const Json& model : list_of(experiment, "models"))
       models_for(string_of(model, "label"), number_of(model, "own_poisson_ratio"));

@@ -21,6 +21,8 @@ struct Warning {
   std::size_t case_number = 0;  ///< among the results' cases
   std::string brief;            ///< "ear: rotations of 31° are too large for linear theory (up to 5°)"
   std::string advice;           ///< "divide the load by at least 6.2, or set ..."; empty: none
+
+  std::string text() const { return advice.empty() ? brief : brief + "; " + advice; }
 };
 
 struct Headline {
@@ -34,6 +36,7 @@ struct Headline {
   std::vector<std::string> deformations;  ///< per case the reference's largest principal strain and rotation at each nu
   std::vector<std::string> motions;       ///< period and amplitude, drift of energy and momentum; one line each
   std::vector<Warning> warnings;          ///< that linear theory does not apply, and lost equilibria
+  std::vector<Warning> notes;             ///< on loads and laws of large strain
   std::vector<std::string> verification;  ///< of cases without models: value, target, error, verdict; one line each
   int held = 0, failed = 0, reference_too_coarse = 0, no_reference = 0, no_result = 0;  ///< expectations
   std::vector<std::string> failed_checks;  ///< one line each, with expected and computed value

@@ -67,7 +67,7 @@ Json table_of(const Json& rows) {
 }
 
 /// The results as the page reads them: short, with the titles and meanings of the measures, and in a case that has a
-/// warning that.
+/// note or warning that.
 Json packed(Json results, const std::vector<Warning>& warnings) {
   results["measures"] = measures_json();
   for (const MotionMeasure& m : motion_measures()) results["motion_measures"].push_back({m.name, m.heading});
@@ -76,7 +76,7 @@ Json packed(Json results, const std::vector<Warning>& warnings) {
     shorten(result);
     result["rows"] = table_of(result["rows"]);
   }
-  for (const Warning& w : warnings) results["cases"][w.case_number]["warnings"].push_back(w.brief + "; " + w.advice);
+  for (const Warning& w : warnings) results["cases"][w.case_number]["warnings"].push_back(w.text());
   return results;
 }
 
@@ -135,6 +135,13 @@ std::string answer_html(const Headline& head) {
   return fmt::format("<p class=\"answer\">{} {}</p>\n", xml_escaped(unbroken(head.answer)), doubt);
 }
 
+/// Notes and warnings, in this order.
+std::vector<Warning> told(const Headline& head) {
+  std::vector<Warning> all = head.notes;
+  all.insert(all.end(), head.warnings.begin(), head.warnings.end());
+  return all;
+}
+
 /// Up to three at sight, more of them folded.
 std::string warnings_html(const std::vector<Warning>& warnings) {
   std::string items;
@@ -142,7 +149,8 @@ std::string warnings_html(const std::vector<Warning>& warnings) {
   if (items.empty()) return "";
   const std::string list = "<ul class=\"warnings\">\n" + items + "</ul>\n";
   if (warnings.size() <= 3) return list;
-  return fmt::format("<details class=\"words\"><summary>{} warnings</summary>\n{}</details>\n", warnings.size(), list);
+  return fmt::format("<details class=\"words\"><summary>{} notes and warnings</summary>\n{}</details>\n",
+                     warnings.size(), list);
 }
 
 std::string count_html(const char* verdict, int count, const char* words) {
@@ -170,7 +178,7 @@ std::string headline_html(const Headline& head) {
   return "<div class=\"first\">\n" + answer_html(head) +
          fmt::format("<div id=\"first-bodies\" data-closest=\"{}\"></div>\n",
                      xml_escaped(fmt::format("{}", fmt::join(head.closest, "\n")))) +
-         "<div>\n<dl id=\"first-facts\"></dl>\n" + counts_html(head) + warnings_html(head.warnings) +
+         "<div>\n<dl id=\"first-facts\"></dl>\n" + counts_html(head) + warnings_html(told(head)) +
          "</div>\n</div>\n<div id=\"first-plot\"></div>\n" + failures_html(head) + words_html(head);
 }
 
@@ -183,7 +191,7 @@ void write_report(const std::filesystem::path& file, const Json& results, const 
   write_file(file, filled(template_html, {{"style_css", std::string(style_css)},
                                           {"headline", headline_html(head)},
                                           {"live_link", live ? "<a href=\"live.html\">Pull the bodies</a>" : ""},
-                                          {"results", script_json(packed(results, head.warnings))},
+                                          {"results", script_json(packed(results, told(head)))},
                                           {"pictures", script_json(pictures)},
                                           {"chart_js", std::string(chart_js)},
                                           {"three_js", std::string(three_js)},

@@ -222,7 +222,7 @@ Json json_of(const CaseResult& result) {
   const Experiment& e = result.experiment;
   Json poisson_ratios = Json::array(), loads = Json::array();
   for (const auto& m : e.materials) poisson_ratios.push_back(number(m.poisson_ratio));
-  for (const auto& load : e.loads) loads.push_back(describe(load));
+  for (const auto& load : e.loads) loads.push_back(describe(load, e.model_kinematics()));
   return {
       {"name", e.name},
       {"folder", e.folder},
@@ -296,7 +296,7 @@ Json to_json(const CaseResult& result) {
           {"lines", list(result.lines)},   {"histories", list(result.histories)},
           {"splits", list(result.splits)}, {"deformations", list(result.deformations)},
           {"cracks", list(result.cracks)}, {"limits", list(result.limits)},
-          {"notes", result.notes}};
+          {"cautions", cautions(result)},  {"notes", result.notes}};
 }
 
 std::string csv_text(const std::string& field) {

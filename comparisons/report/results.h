@@ -214,7 +214,7 @@ struct CaseResult : Part {
   Vec3 size = Vec3::Zero();  ///< of the body [m]; for a body of voxels that of its bounding box
   std::vector<Cells> cells;  ///< of its lattices
   std::map<std::string, double>
-      own_poisson_ratios;  ///< of the models, by label, that are solids of one Poisson's ratio only
+      own_poisson_ratios;                   ///< of the models, by label, that are solids of one Poisson's ratio only
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
   std::vector<std::string> notes;  ///< what was repaired or left out of the body
@@ -229,8 +229,11 @@ std::string cells_text(const Cells& cells, std::string_view times = "x");
 /// Number of hexahedra or tetrahedra.
 double cell_count(const Cells& cells);
 
+/// Of a case of large strain one clause each on loads and on models that follow another law than the reference.
+std::vector<std::string> cautions(const CaseResult& result);
+
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".
-std::string describe(const Load& load);
+std::string describe(const Load& load, Kinematics kinematics = Kinematics::linear);
 
 /// How a load is drawn.
 struct LoadMark {

@@ -28,6 +28,12 @@ std::string marked(const char* mark, const std::vector<std::string>& lines) {
   return out;
 }
 
+std::vector<std::string> texts(const std::vector<Warning>& warnings) {
+  std::vector<std::string> out;
+  for (const Warning& w : warnings) out.push_back(w.text());
+  return out;
+}
+
 }  // namespace
 
 std::string terminal_text(const Headline& h) {
@@ -39,10 +45,9 @@ std::string terminal_text(const Headline& h) {
   out +=
       group("Largest principal strain and rotation of the reference (99 % of the volume stay below)", h.deformations);
   out += group("Motion in time", h.motions);
-  std::vector<std::string> warnings;
-  for (const Warning& w : h.warnings) warnings.push_back(w.brief + "; " + w.advice);
-  const std::string marks = marked("warning", warnings) + marked("no result", h.failed_runs) +
-                            marked("FAILED", h.failed_checks) + marked("FAILED", h.failures);
+  const std::string marks = marked("note", texts(h.notes)) + marked("warning", texts(h.warnings)) +
+                            marked("no result", h.failed_runs) + marked("FAILED", h.failed_checks) +
+                            marked("FAILED", h.failures);
   return out + (marks.empty() ? "" : "\n" + marks) + "\n" + expectations_sentence(h) + "\n";
 }
 

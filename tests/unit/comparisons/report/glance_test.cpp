@@ -155,8 +155,8 @@ TEST_F(Glance, WarningsFollowTheAnswerAndTheFacts) {
 
 TEST_F(Glance, ManyWarningsAreFolded) {
   const std::vector<CaseResult> three(3, doubtful_case()), four(4, doubtful_case());
-  EXPECT_EQ(write(three).find(" warnings</summary>"), std::string::npos);
-  EXPECT_NE(write(four).find("<summary>4 warnings</summary>"), std::string::npos);
+  EXPECT_EQ(write(three).find(" notes and warnings</summary>"), std::string::npos);
+  EXPECT_NE(write(four).find("<summary>4 notes and warnings</summary>"), std::string::npos);
 }
 
 TEST_F(GlanceInBrowser, AWarningLeadsToItsCase) {

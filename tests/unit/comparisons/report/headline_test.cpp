@@ -228,6 +228,21 @@ TEST(Headline, NothingRunIsNothingSaid) {
   EXPECT_EQ(expectations_sentence(h), "No expectations are stated.");
 }
 
+TEST(Headline, APressureAtLargeStrainIsSaidToBeADeadLoad) {
+  CaseResult c = with_errors("tube", "hybmss", {{0.3, 8, 0.1}});
+  c.experiment.loads = {Pressure{"inner", 120}};
+  EXPECT_TRUE(headline_of({c}).notes.empty());
+  c.experiment.kinematics = "neo_hooke";
+  const Headline h = headline_of({with_errors("bar", "hybmss", {{0.3, 8, 0.1}}), c});
+  ASSERT_EQ(h.notes.size(), 1u);
+  EXPECT_EQ(h.notes[0].case_number, 1u);
+  EXPECT_NE(
+      terminal_text(h).find("\nnote: tube: pressure_Pa is a dead load, per area at rest and against the normals at "
+                            "rest; a pressure that follows"),
+      std::string::npos)
+      << terminal_text(h);
+}
+
 TEST(Headline, ALostEquilibriumIsToldWithWhatHappenedAndWhatHolds) {
   CaseResult c = with_errors("press", "hybmss_fd", {});
   c.experiment.kinematics = "hencky";

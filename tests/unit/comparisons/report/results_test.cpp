@@ -102,6 +102,9 @@ TEST(DescribeLoad, AffineNamesTheRowsOfTheGradient) {
 
 TEST(DescribeLoad, ForcesCarryTheirUnits) {
   EXPECT_EQ(describe(Traction{"x_max", {1e3, 0, 0}}), "x_max: loaded by a traction of (1000, 0, 0) Pa");
+  EXPECT_EQ(describe(Pressure{"inner", 120}), "inner: pressed by 120 Pa");
+  EXPECT_EQ(describe(Pressure{"inner", 120}, Kinematics::finite),
+            "inner: pressed by 120 Pa, a dead load: per area at rest, against the outward normals at rest");
   EXPECT_EQ(describe(PatchForce{"x_max", {0, 0, -2}}), "x_max: loaded by a total force of (0, 0, -2) N");
   EXPECT_EQ(describe(Gravity{{0, 0, -9.81}}), "whole body: gravity of (0, 0, -9.81) m/s²");
   EXPECT_EQ(describe(PointForce{{1, 2, 3}, {0, 4, 0}}), "point (1, 2, 3) m: loaded by a force of (0, 4, 0) N");

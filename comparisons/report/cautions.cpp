@@ -1,0 +1,24 @@
+// What to know of a case of large strain before its errors are read.
+#include <algorithm>
+
+#include "comparisons/report/results.h"
+
+namespace springproof {
+namespace {
+
+bool is_pressure(const Load& load) { return std::holds_alternative<Pressure>(load); }
+
+}  // namespace
+
+std::vector<std::string> cautions(const CaseResult& result) {
+  const Experiment& e = result.experiment;
+  std::vector<std::string> out;
+  if (e.model_kinematics() == Kinematics::linear) return out;
+  if (std::any_of(e.loads.begin(), e.loads.end(), is_pressure))
+    out.push_back(
+        "pressure_Pa is a dead load, per area at rest and against the normals at rest; a pressure that follows the "
+        "surface, as that of a gas, gives another result");
+  return out;
+}
+
+}  // namespace springproof
