@@ -1,4 +1,6 @@
 // What to know of a case of large strain before its errors are read.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "comparisons/report/results.h"
@@ -18,6 +20,15 @@ std::vector<std::string> cautions(const CaseResult& result) {
     out.push_back(
         "pressure_Pa is a dead load, per area at rest and against the normals at rest; a pressure that follows the "
         "surface, as that of a gas, gives another result");
+  if (e.reference.elements.empty()) return out;
+  std::map<std::string, std::vector<std::string>> others;
+  for (const auto& [label, law] : result.laws)
+    if (law != e.kinematics) others[law].push_back(label);
+  for (const auto& [law, labels] : others)
+    out.push_back(
+        fmt::format("{} follow{} the law \"{}\", the reference \"{}\": what these differ by at large strain counts "
+                    "among the errors",
+                    fmt::join(labels, ", "), labels.size() == 1 ? "s" : "", law, e.kinematics));
   return out;
 }
 

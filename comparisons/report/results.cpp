@@ -289,6 +289,8 @@ Json to_json(const CaseResult& result) {
   for (Json& model : experiment["models"]) {
     const auto own = result.own_poisson_ratios.find(model["label"]);
     model["own_poisson_ratio"] = own == result.own_poisson_ratios.end() ? Json(nullptr) : number(own->second);
+    const auto law = result.laws.find(model["label"]);
+    model["law"] = law == result.laws.end() ? Json(nullptr) : Json(law->second);
   }
   return {{"experiment", experiment},      {"runs", list(result.runs)},
           {"rows", list(result.rows)},     {"references", list(result.references)},

@@ -215,6 +215,8 @@ struct CaseResult : Part {
   std::vector<Cells> cells;  ///< of its lattices
   std::map<std::string, double>
       own_poisson_ratios;                   ///< of the models, by label, that are solids of one Poisson's ratio only
+  std::map<std::string, std::string> laws;  ///< of the models, by label, whose springs follow a law of finite strain:
+                                            ///< its name among `kinematics`; none in linear cases
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
   std::vector<std::string> notes;  ///< what was repaired or left out of the body

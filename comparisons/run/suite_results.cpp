@@ -8,6 +8,7 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <thread>
 
 #include "comparisons/judge/calibration.h"
@@ -61,6 +62,21 @@ nlohmann::json document(const std::vector<CaseResult>& results, const std::vecto
           {"calibration", calibration_json(known)}};
 }
 
+/// The law, as `kinematics` names it, that a curve follows or is tuned to.
+const char* law_of(StrainCurve curve) {
+  switch (curve) {
+    case StrainCurve::hencky:
+    case StrainCurve::springs_hencky:
+      return "hencky";
+    case StrainCurve::neo_hooke:
+      return "neo_hooke";
+    case StrainCurve::neo_hooke_isochoric:
+    case StrainCurve::springs_neo_hooke:
+      return "neo_hooke_isochoric";
+  }
+  throw std::invalid_argument("no such curve");
+}
+
 }  // namespace
 
 std::string key_of(const fs::path& file) {
@@ -75,9 +91,12 @@ CaseResult case_of(const PreparedCase& p) {
   result.size = p.size;
   for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
   result.notes = p.notes;
-  for (std::size_t m = 0; m < p.models.size(); ++m)
-    if (const auto own = own_poisson_ratio(p.models[m].row))
-      result.own_poisson_ratios[p.experiment.models[m].label] = *own;
+  for (std::size_t m = 0; m < p.models.size(); ++m) {
+    const std::string& label = p.experiment.models[m].label;
+    if (const auto own = own_poisson_ratio(p.models[m].row)) result.own_poisson_ratios[label] = *own;
+    if (p.models[m].curve && p.experiment.model_kinematics() == Kinematics::finite)
+      result.laws[label] = law_of(*p.models[m].curve);
+  }
   return result;
 }
 

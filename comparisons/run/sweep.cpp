@@ -116,7 +116,8 @@ void save_meshed(const fs::path& folder, const std::string& key, const CaseResul
                 {{"size", meshed.size},
                  {"cells", meshed.cells},
                  {"notes", meshed.notes},
-                 {"own_poisson_ratios", meshed.own_poisson_ratios}});
+                 {"own_poisson_ratios", meshed.own_poisson_ratios},
+                 {"laws", meshed.laws}});
 }
 
 bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& result) try {
@@ -125,6 +126,7 @@ bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& res
   meshed.at("cells").get_to(result.cells);
   meshed.at("notes").get_to(result.notes);
   meshed.at("own_poisson_ratios").get_to(result.own_poisson_ratios);
+  meshed.at("laws").get_to(result.laws);
   return true;
 } catch (const DamagedFile&) {
   return false;

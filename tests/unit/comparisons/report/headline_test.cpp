@@ -243,6 +243,19 @@ TEST(Headline, APressureAtLargeStrainIsSaidToBeADeadLoad) {
       << terminal_text(h);
 }
 
+TEST(Headline, ModelsThatFollowAnotherLawThanTheReferenceAreNamed) {
+  CaseResult c = with_models("bar", 0.3, 1e-4, {{"hybmss", 0.03}, {"hybmss_avg", 0.02}});
+  c.experiment.kinematics = "hencky";
+  c.laws = {{"hybmss_avg", "hencky"}};
+  EXPECT_TRUE(headline_of({c}).notes.empty());
+  c.experiment.kinematics = "log_cauchy";
+  EXPECT_EQ(headline_of({c}).notes.at(0).text(),
+            "bar: hybmss_avg follows the law \"hencky\", the reference \"log_cauchy\": what these differ by at large "
+            "strain counts among the errors");
+  EXPECT_EQ(to_json(c)["experiment"]["models"][1]["law"], "hencky");
+  EXPECT_TRUE(to_json(c)["experiment"]["models"][0]["law"].is_null());
+}
+
 TEST(Headline, ALostEquilibriumIsToldWithWhatHappenedAndWhatHolds) {
   CaseResult c = with_errors("press", "hybmss_fd", {});
   c.experiment.kinematics = "hencky";

@@ -8,12 +8,14 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/folder_lock.h"
 #include "comparisons/run/part_file.h"
 #include "comparisons/run/prepare.h"
+#include "comparisons/run/suite_results.h"
 #include "problem/system/child.h"
 
 namespace springproof::case_run_test {
@@ -179,6 +181,31 @@ TEST(PartFile, ComesBackWholeOrNotAtAll) {
 }
 
 // In the comparison's program, which links everything that a network is made with.
+TEST(CaseRun, SpringsWithoutTheCasesLawFollowHenckys) {
+  for (const auto& [kinematics, law] : std::map<std::string, std::string>{
+           {"st_venant_kirchhoff", "hencky"}, {"log_cauchy", "hencky"}, {"neo_hooke", "neo_hooke"}}) {
+    const PreparedCase prepared = prepare(parse_experiment("kinematics = \"" + kinematics + "\"" + R"(
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [2, 2, 2]
+[material]
+youngs_modulus_Pa = 1e5
+poisson_ratio = 0.3
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[compare]
+models = ["hybmss_avg", "msm_18", { model = "hybmss_avg", curve = "springs_neo_hooke" }]
+)",
+                                                           "cube.toml"));
+    const std::map<std::string, std::string> laws = case_of(prepared).laws;
+    EXPECT_EQ(laws.size(), 2u);
+    EXPECT_EQ(laws.at("hybmss_avg"), law);
+    EXPECT_EQ(laws.at(prepared.experiment.models[2].label), "neo_hooke_isochoric");
+  }
+}
+
 TEST(Prepare, ANetworkThatJamsIsRefusedAtItsModel) {
   const Experiment e = parse_experiment(R"([body]
 geo = "block.geo"

@@ -137,6 +137,7 @@ TEST(Sweep, KeepsWhatMeshingToldOfACase) {
   meshed.cells = {{4, 4, 4}, {8, 8, 8}};
   meshed.notes = {"a note"};
   meshed.own_poisson_ratios = {{"msm_18", 0.25}};
+  meshed.laws = {{"hybmss_avg", "hencky"}};
   EXPECT_FALSE(load_meshed(folder.path, "a", back));
   save_meshed(folder.path, "a", meshed);
   EXPECT_TRUE(load_meshed(folder.path, "a", back));
@@ -144,6 +145,7 @@ TEST(Sweep, KeepsWhatMeshingToldOfACase) {
   EXPECT_EQ(back.cells, meshed.cells);
   EXPECT_EQ(back.notes, meshed.notes);
   EXPECT_EQ(back.own_poisson_ratios, meshed.own_poisson_ratios);
+  EXPECT_EQ(back.laws, meshed.laws);
 }
 
 TEST(Sweep, PlanThatIsNotWholeIsRefused) {
