@@ -15,7 +15,8 @@ struct Wrinkles {
 
 /// The hourglass strain of a cell is what its corners do beyond an affine motion; bending has it too, but alike in
 /// neighbours.  The share of a smooth field is of the order (edge over its length)^2; the wave (-1)^(i+j) across x and
-/// y, in which the two diagonals of each face grow and shrink in turn (Golec et al. 2019, Figs. 3 and 6), has 0.8.
+/// y, in which the two diagonals of each face grow and shrink in turn (Golec et al. 2019, Figs. 3 and 6), has 0.8.  A
+/// field whose strain is round-off of the positions, as of a body that flies, has none.
 /// @param mesh of hexahedra
 /// @param displacement of its nodes [m], n x 3
 Wrinkles wrinkles(const Mesh& mesh, const NodalVectors& displacement);

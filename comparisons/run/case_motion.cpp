@@ -3,11 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "comparisons/report/picture.h"
+#include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 
 namespace springproof {
+namespace {
+
+/// Whether nothing moves: all kinetic energy is below the round-off of the elastic energy, eps E V.
+bool is_at_rest(const HistoryRecord& history, const IsotropicMaterial& material, const Mesh& mesh) {
+  const std::vector<double>& kinetic = *series(history, "kinetic_energy");
+  const double digits = std::numeric_limits<double>::epsilon() * material.youngs_modulus * volume(mesh, mesh.nodes);
+  return *std::max_element(kinetic.begin(), kinetic.end()) < digits;
+}
+
+}  // namespace
 
 const Reference* reference_at_rest(const PartRun& run, std::size_t lattice, const std::string& model) {
   const auto& models = run.experiment().models;
@@ -19,6 +31,8 @@ const Reference* reference_at_rest(const PartRun& run, std::size_t lattice, cons
 void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Field field, MotionRecord motion) {
   const RunKey key = run.key(model, lattice);
   static_cast<RunKey&>(motion.history) = key;
+  if (is_at_rest(motion.history, run.material, run.mesh(lattice)))
+    std::erase_if(motion.history.measured, [](const auto& entry) { return entry.first.ends_with("_drift"); });
   if (run.in_time) {
     motion.history.measured["motion_error"] = history_error(motion.history, run.in_time->history);
     motion.history.probe = run.in_time->history.probe;  // the same component

@@ -43,5 +43,15 @@ TEST(Wrinkles, TheWaveWithoutEnergyHasMost) {
   EXPECT_GT(wrinkles(block(), field(block(), on_top)).share(), 0.5);
 }
 
+TEST(Wrinkles, RoundOffOfABodyThatFliesIsNone) {
+  const auto flown = [](const Vec3& X) {
+    const double at = X.dot(Vec3(0.3, 0.7, 0.9));
+    return Vec3((at + 700.1) - at, (at - 0.3) - at, 0);
+  };
+  EXPECT_EQ(wrinkles(block(), field(block(), flown)).share(), 0);
+  const auto wave = [](const Vec3& X) { return Vec3(0, 0, 1e-9 * (std::lround(4 * (X[0] + X[1])) % 2 == 0 ? 1 : -1)); };
+  EXPECT_NEAR(wrinkles(block(), field(block(), wave)).share(), std::sqrt(2 / 3.0), 0.03);
+}
+
 }  // namespace
 }  // namespace springproof::wrinkles_test

@@ -206,6 +206,31 @@ models = ["hybmss_avg", "msm_18", { model = "hybmss_avg", curve = "springs_neo_h
   }
 }
 
+TEST(CaseRun, WhatRestsHasNeitherRipplesNorDrifts) {
+  const Part part = run_part(prepare(parse_experiment(R"(kinematics = "hencky"
+[body]
+geo = "block.geo"
+size_m = [0.2, 0.1, 0.1]
+cells = [8, 4, 4]
+[material]
+youngs_modulus_Pa = 1e5
+poisson_ratio = 0.3
+[compare]
+models = ["hybmss_avg"]
+[reference]
+elements = []
+[dynamics]
+duration_s = 0.05
+equilibrium = false
+)",
+                                                      "rest.toml")),
+                             0, {});
+  ASSERT_EQ(part.histories.size(), 1u);
+  for (const auto& [name, value] : part.histories[0].measured) EXPECT_FALSE(name.ends_with("_drift")) << value;
+  ASSERT_EQ(part.runs.size(), 1u);
+  EXPECT_EQ(part.runs[0].stability.value().wrinkles, 0);
+}
+
 TEST(Prepare, ANetworkThatJamsIsRefusedAtItsModel) {
   const Experiment e = parse_experiment(R"([body]
 geo = "block.geo"
