@@ -9,6 +9,7 @@
 
 #include "comparisons/advise/check.h"
 #include "comparisons/advise/measure.h"
+#include "comparisons/commands/number_checks.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/status.h"
 #include "msm/parameters/model_table.h"
@@ -71,21 +72,21 @@ void AdviseCommand::add_options(CLI::App& command) {
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   command.add_option("--budget-ms-per-step", wish_.ms_per_step, "milliseconds of one core per explicit step")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--budget-seconds", wish_.seconds, "CPU seconds of a static solve")->check(CLI::PositiveNumber);
-  command.add_option("--budget-memory", wish_.MiB, "MiB of a static solve")->check(CLI::PositiveNumber);
+      ->check(positive());
+  command.add_option("--budget-seconds", wish_.seconds, "CPU seconds of a static solve")->check(positive());
+  command.add_option("--budget-memory", wish_.MiB, "MiB of a static solve")->check(positive());
   command.add_option("--cells-across", wish_.cells_across, "predict for about so many cells across the thinnest part")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--models", wish_.models, "only these rows of the model table (default: seven of them)")
       ->delimiter(',');
   command.add_option(
       "--nu", poisson_ratios_,
       "Poisson's ratio, a range FIRST:LAST or a list; the worst counts (default: 0.3, or the case's ends)");
   command.add_option("-E,--youngs-modulus", youngs_modulus_, "Young's modulus [Pa], for the time step; without a case")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--density", density_, "density [kg/m^3]; without a case")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--load", loading_.load, "without a case: what is done to the body")
       ->check(CLI::IsMember({"bending", "axial", "shear", "torsion"}))
@@ -100,7 +101,7 @@ void AdviseCommand::add_options(CLI::App& command) {
       ->check(CLI::Range(0.0, 0.6))
       ->capture_default_str();
   command.add_option("--thickness", thickness_, "without a case: of the body [m], for the time step")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_flag("--json", json_, "print JSON");
   command.add_option("--measure", measure_, "measure anew what is predicted from, into this file (resumes)");

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "comparisons/commands/number_checks.h"
 #include "comparisons/run/find_cases.h"
 
 namespace springproof {
@@ -26,7 +27,7 @@ void CrossCheckCommand::add_options(CLI::App& command) {
       ->expected(3)
       ->check(CLI::Range(4, 1000));
   command.add_option("--time-limit", options_.time_limit, "per run of ccx [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.footer(
       "Exit status: 0 every quantity agrees within the two uncertainties, 1 one does not or has no answer, 2 "

@@ -11,6 +11,7 @@
 #include "comparisons/calculix/cross_check.h"
 #include "comparisons/calculix/deck.h"
 #include "comparisons/commands/export_engines.h"
+#include "comparisons/commands/number_checks.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/springs_of_case.h"
@@ -286,15 +287,13 @@ void ExportCommand::add_options(CLI::App& command) {
   command.add_flag("--whole-cubes", r.whole_cubes,
                    "springs: whole cubes of a body that is no block (default: cells cut along its surface)");
   command.add_option("--youngs-modulus,-E", r.moduli.youngs_modulus, "of a body alone: Young's modulus [Pa]");
-  command.add_option("--density", r.density, "of a body alone [kg/m^3]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  command.add_option("--density", r.density, "of a body alone [kg/m^3]")->check(positive())->capture_default_str();
   command.add_option("--scale", r.scale, "of a body alone: its coordinates are multiplied by it")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--size", r.size, "of a script for gmsh (*.geo): its size_x size_y size_z [m]")
       ->expected(3)
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
 }
 
 int ExportCommand::run() const {

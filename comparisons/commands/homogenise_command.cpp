@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "comparisons/commands/number_checks.h"
 #include "comparisons/run/status.h"
 #include "msm/algebra/dense.h"
 #include "msm/measure/statistics.h"
@@ -160,7 +161,7 @@ void HomogeniseCommand::add_options(CLI::App& command) {
   command.add_option("--lame-lambda", moduli_.lame_lambda, "Lame's first parameter [Pa]");
   command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
   command.add_option("--spacing", spacing_, "cell edge, or mean distance (V/N)^(1/3) of random nodes [m]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command
       .add_option(

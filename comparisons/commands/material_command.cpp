@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/commands/number_checks.h"
 #include "comparisons/engines/engine_facts.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
@@ -330,7 +331,7 @@ void MaterialCommand::add_options(CLI::App& command) {
   command.add_option("--lame-lambda", moduli_.lame_lambda, "Lame's first parameter [Pa]");
   command.add_option("--density", density_, "density [kg/m^3]")->capture_default_str();
   command.add_option("--cell-size", cell_size_, "edge of the cubic cells [m]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
   command.add_option("--face-to-cube", face_to_cube_, "A = k_f / k_c");
@@ -340,7 +341,7 @@ void MaterialCommand::add_options(CLI::App& command) {
                      "eMSM, symmetric or finite_strain: volume or kL (default: by the sign of q)");
   command.add_option("--springs-per-node", springs_per_node_, "random: mean number of springs at a node (default 15)");
   command.add_option("--frequency", frequency_, "a vibration [Hz] whose damping by implicit Euler is printed")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_flag("--json", json_, "print JSON");
 }

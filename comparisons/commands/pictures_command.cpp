@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 
+#include "comparisons/commands/number_checks.h"
 #include "comparisons/judge/differences.h"
 #include "comparisons/report/png_page.h"
 #include "comparisons/run/status.h"
@@ -31,7 +32,7 @@ void PicturesCommand::add_options(CLI::App& command) {
   command.add_option("--only", only_,
                      "only pictures with this in their name: shapes, error, convergence, split, line, nu0.4, ...");
   command.add_option("--time-limit", time_limit_, "for the pictures of one case [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.footer(
       "Writes FOLDER/png/CASE-FIGURE-nu....png: every chart, and every 3D view in every colouring, at every Poisson's "

@@ -39,7 +39,7 @@ void ReproduceCommand::add_options(CLI::App& command) {
   command.add_option("--out", options_.out,
                      "folder for the figures, and for the results of the cases (default: PAPER-redone)");
   command.add_option("--from", from_, "results folders of the cases; nothing is computed")->take_all();
-  command.add_option("--jobs", options_.jobs, "parts to run at once (0: one per core)")->check(CLI::NonNegativeNumber);
+  command.add_option("--jobs", options_.jobs, "parts to run at once (0: one per core)");
   command.add_flag("--resume", options_.resume, "keep the parts that an interrupted run finished");
   command.add_flag("--quiet", options_.quiet, "say nothing of what is under way");
   command.footer(

@@ -309,7 +309,7 @@ int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   constexpr int most_jobs = 1024;
-  if (options.jobs > most_jobs)
+  if (options.jobs < 0 || options.jobs > most_jobs)
     throw InputError(fmt::format("--jobs: is {} (allowed: 0 to {})", options.jobs, most_jobs));
   check_names(cases);
   return options.shard ? run_shard(cases, options) : run_all(cases, options);

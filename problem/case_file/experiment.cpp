@@ -80,7 +80,9 @@ template <class T>
 std::vector<T> read_each_once(const TomlValue& value, const Range& range) {
   std::vector<T> numbers;
   for (const TomlValue& item : one_or_several(value)) {
-    const T number = static_cast<T>(as_number(item, range));
+    const double given = as_number(item, range);
+    const T number = static_cast<T>(given);
+    if (number != given) refuse(item, fmt::format("is {}", given), range.words);
     if (std::find(numbers.begin(), numbers.end(), number) != numbers.end())
       refuse(item, fmt::format("{} is named twice", number), "each once");
     numbers.push_back(number);
@@ -114,7 +116,8 @@ Body read_body(const TomlValue& value) {
   if (said > 1) refuse(value, "says twice how fine the lattices are", fineness);
   if (cells) body.cells = read_resolutions(*cells);
   if (voxels)
-    body.voxel_counts = read_each_once<int>(*voxels, {"a number from 1 to 4e6, or a list of such", 1, 4e6, true, true});
+    body.voxel_counts =
+        read_each_once<int>(*voxels, {"a whole number from 1 to 4e6, or a list of such", 1, 4e6, true, true});
   if (edges) body.voxel_edges = read_each_once<double>(*edges, positive_number);
   if (const auto cut = table.find("cut")) {
     if (cells) refuse(*cut, "is for bodies of voxels", "voxels or voxel_edge_m");

@@ -98,6 +98,9 @@ expect "mistake in a Latin-1 folder" "case.toml:4:1: " compare "$work/$latin/cas
 # More than a parser, a machine or a person can hold.
 { printf 'a.%.0s' $(seq 50000); echo 'a = 1'; echo "$good"; } >"$work/case.toml"
 expect "50,000 dotted keys" "case.toml:1:1: more than 16 parts of a key" compare "$work/case.toml" --out "$work/out"
+expect "fewer jobs than none" "jobs: is -1 .allowed: 0 to 1024" compare "$work/good.toml" --jobs -1 --out "$work/out"
+"$program" material -E 1 --nu 0.3 --cell-size -1 2>&1 | grep -qxF -e "--cell-size: is -1 (allowed: a finite number > 0)" ||
+  { echo "FAILED: cells of no size"; failures=$((failures + 1)); }
 expect "100,000 jobs" "jobs.*1024" compare "$work/good.toml" --jobs 100000 --out "$work/out"
 expect "export of a thousand million cells" "1e\+09 cells .allowed: up to" export "$work/good.toml" --to calculix --cells 1000 1000 1000 --out "$work/out"
 edited "a lattice of a thousand million cells" "case.toml:2:7: cells: .*1e\+09 cells .allowed" 's/\[2, 2, 2\]/[1000, 1000, 1000]/'

@@ -66,6 +66,7 @@ TEST(VoxelBody, MistakesAreRefused) {
         Mistake{"geo = \"a.stl\"\nvoxels = 5\nvoxel_edge_m = 1", "says twice how fine the lattices are"},
         Mistake{"geo = \"a.stl\"\nvoxels = 0", "case.toml:3:10: body.voxels"},
         Mistake{"geo = \"a.stl\"\nvoxels = [5, 5]", "5 is named twice"},
+        Mistake{"geo = \"a.stl\"\nvoxels = [5, 300.5]", "body.voxels: is 300.5 (allowed: a whole number from 1"},
         Mistake{"geo = \"a.stl\"\nsize_m = [1, 1, 1]\nvoxels = 5", "is a parameter of .geo scripts (allowed: scale"},
         Mistake{"geo = \"a.stl\"\nscale = -1\nvoxels = 5", "body.scale"},
         Mistake{"geo = \"a.geo\"\nsize_m = [1, 1, 1]\nscale = 2\nvoxels = 5", "is for files"},
