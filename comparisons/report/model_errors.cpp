@@ -114,6 +114,16 @@ std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
       e.parts ? ", of bodies of voxels the springs' own part," : "", percent(uncertainty), where_text(tied.front()));
 }
 
+// A reference with a larger uncertainty ranks no model.
+constexpr double telling_uncertainty = 0.2;
+
+std::string untold_text(const Candidate& best, double uncertainty) {
+  return fmt::format(
+      "Which spring model comes closest the reference does not tell, {}: it is uncertain by {} %. Refine it: in "
+      "[reference] a smaller edge_m (bodies of voxels), more cells (blocks).",
+      where_text(best), percent(uncertainty));
+}
+
 /// States that every model was run only at Poisson's ratios other than the one it is valid for; or nothing.
 std::string no_claim_text(const std::map<ModelKey, ModelErrors>& models) {
   std::vector<std::string> names;
@@ -144,6 +154,11 @@ std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::
     tied.push_back(c);
     closest.push_back(c.name);
     uncertainty = std::max(uncertainty, doubt);
+  }
+  const bool on_same_cubes = best.errors->parts && !best.errors->wholes;
+  if (uncertainty > telling_uncertainty && !(tied.size() == 1 && on_same_cubes)) {
+    closest.clear();
+    return untold_text(best, uncertainty);
   }
   return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
 }

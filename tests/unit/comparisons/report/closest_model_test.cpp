@@ -75,6 +75,21 @@ TEST(ClosestModel, WithinTheReferencesUncertaintyModelsAreNotRanked) {
             0u);
 }
 
+TEST(ClosestModel, AReferenceUncertainByAFifthDoesNotTell) {
+  const auto headline_at = [](double uncertainty, double other) {
+    return headline_of({with_models("lobes", 0.3, uncertainty, {{"emsm", 0.05}, {"hybmss", other}})});
+  };
+  for (const double other : {0.07, 9.0}) {
+    const Headline h = headline_at(2.37, other);
+    EXPECT_EQ(
+        h.answer,
+        "Which spring model comes closest the reference does not tell, at ν = 0.3, in 1 linear case: it is "
+        "uncertain by 237 %. Refine it: in [reference] a smaller edge_m (bodies of voxels), more cells (blocks).");
+    EXPECT_TRUE(h.closest.empty());
+  }
+  EXPECT_EQ(headline_at(0.19, 0.7).answer.find("Of the spring models emsm comes closest"), 0u);
+}
+
 TEST(ClosestModel, ReactionsOfMovedSupportsCount) {
   CaseResult bar = with_models("bar", 0.3, 1e-4, {{"emsm", 0.0005}, {"hybmss_bt", 0.001}});
   add_row(bar, "emsm", 0.3, "reaction_error", 0.77, 1e-3);
