@@ -142,7 +142,7 @@ echo '{"cases": 1}' >"$work/results.json"
 expect "differences of other files" "results.json: not the results" diff "$work" "$work"
 
 # What is no fault of the case.
-TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
+SPRINGPROOF_MESH_CACHE=$work/cache TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
 
 if "$program" bench gpu --quick 2>&1 | grep -q "built without SPRINGPROOF_CUDA"; then
   SPRINGPROOF_DEVICE=gpu expect "a GPU of a build without" "^error: SPRINGPROOF_DEVICE = .gpu. cannot be used here: built without SPRINGPROOF_CUDA" compare "$work/good.toml" --out "$work/out"
