@@ -56,7 +56,12 @@ std::vector<std::string> holding(const Json& result, const Json& of) {
 
 std::string advice(const Json& result, const Json& run) {
   const std::vector<std::string> names = holding(result, run);
-  if (names.empty()) return "no model of the case holds: apply less, or take hybmss_avg";
+  if (names.empty()) {
+    const Json& runs = list_of(result, "runs");
+    const bool tried = std::any_of(runs.begin(), runs.end(),
+                                   [](const Json& r) { return string_of(r, "model").starts_with("hybmss_avg"); });
+    return std::string("no model of the case holds: apply less") + (tried ? "" : ", or take hybmss_avg");
+  }
   return fmt::format("{} {} the whole load there", listed(names), names.size() == 1 ? "bears" : "bear");
 }
 

@@ -70,7 +70,8 @@ std::vector<LatticeLimit> lattice_limits(const PreparedCase& prepared) {
         auto limit = limit_of(prepared.models[m], material, strain);
         if (!limit) continue;
         limit->model = e.models[m].label;
-        if (!limit_of(recommended, material, strain)) limit->instead = recommended.row.name;
+        if (prepared.models[m].row.name != recommended.row.name && !limit_of(recommended, material, strain))
+          limit->instead = recommended.row.name;
         limits.push_back(*limit);
       }
   }

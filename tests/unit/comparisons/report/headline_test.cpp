@@ -307,6 +307,9 @@ TEST(Headline, AStateWithWrinklesIsNoStateOfTheMaterial) {
             "lattice, not of the material");
   EXPECT_EQ(h.warnings[0].advice, "no model of the case holds: apply less, or take hybmss_avg");
 
+  c.runs.back().model = "hybmss_avg";  // what else would be recommended
+  EXPECT_EQ(headline_of({c}).warnings[0].advice, "no model of the case holds: apply less");
+
   c.runs.back().model = "hybmss in motion";
   const Headline moving = headline_of({c});
   ASSERT_EQ(moving.warnings.size(), 1u);
