@@ -71,7 +71,7 @@ void choose_cut_cells(PreparedCase& prepared) {
         e.body.where,
         "body.accuracy: cells of several sizes are for models of cut cells (allowed: no [fracture], and one such "
         "model)");
-  if (e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement))
+  if (flies(e))
     throw InputError(e.body.where,
                      "body.accuracy: cells are halved where the loads strain the body at rest, and nothing holds this "
                      "one (allowed: a load with displacement_m; or voxels, or voxel_edge_m, alone)");

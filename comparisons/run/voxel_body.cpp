@@ -210,11 +210,6 @@ Vec3 centroid(const Mesh& mesh) {
   return mesh.nodes.transpose() * volumes / volumes.sum();
 }
 
-/// Whether nothing holds a body in motion: all of it falls alike, whatever its weight.
-bool flies(const Experiment& e) {
-  return e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement);
-}
-
 void set_wrenches(PreparedCase& prepared) {
   const Mesh& body = *prepared.tetrahedra.back();
   const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
@@ -329,6 +324,10 @@ void prepare_body(PreparedCase& prepared, std::string& hint) {
 }
 
 }  // namespace
+
+bool flies(const Experiment& e) {
+  return e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement);
+}
 
 void prepare_voxel_body(PreparedCase& prepared) {
   std::string hint;

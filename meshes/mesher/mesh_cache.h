@@ -15,8 +15,8 @@ namespace springproof {
 class MeshCache {
  public:
   /// @param program the mesher.  The place changes with it, with the request, and with each file behind the body, by
-  /// size and time of change.  There is none for scripts that are not built in, as they may do anything, and none where
-  /// the variable is empty.
+  /// place, inode, size and time of change.  There is none for scripts that are not built in, as they may do anything,
+  /// and none where the variable is empty.
   MeshCache(const MeshRequest& request, const std::filesystem::path& program);
 
   /// Nothing: it was never kept, or is damaged.

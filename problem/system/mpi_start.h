@@ -5,7 +5,7 @@
 
 namespace springproof {
 
-/// Without mpirun: keeps Open MPI from starting a daemon and from looking for networks, for which it waits .4 s at each
+/// Without mpirun: keeps Open MPI from starting a daemon and from looking for networks, for which it waits .3 s at each
 /// start.  What the user has set stays.
 inline void start_mpi_without_network() {
   for (const char* several : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
