@@ -69,7 +69,7 @@ PATH="$work/other:$PATH" "$program" cross-check golec_2019/compression --poisson
 
 # An interrupt ends ccx and leaves nothing behind.
 mkdir "$work/tmp"
-printf '#!/bin/sh\nexec sleep 100\n' >"$work/other/ccx"
+printf '#!/bin/sh\n[ "$1" = -v ] || exec sleep 100\n' >"$work/other/ccx"
 PATH="$work/other:$PATH" TMPDIR="$work/tmp" "$program" cross-check golec_2019/compression >"$work/out" 2>"$work/err" &
 pid=$!
 for _ in $(seq 100); do

@@ -71,7 +71,7 @@ fi
 
 # By hand, without the flags that CMake passes on, it is refused at once.
 for eigen in /usr/include/eigen3 /usr/local/include/eigen3; do
-  [ -d $eigen ] && g++ -std=c++20 -fsyntax-only -I"$prefix/include/springproof" -isystem $eigen other/embed_msm.cpp 2>log
+  [ -d $eigen ] && g++ -std=c++20 -E -o /dev/null -I"$prefix/include/springproof" -isystem $eigen other/embed_msm.cpp 2>log
 done
 grep -q '#error "compile with -DEIGEN_MAX_ALIGN_BYTES=64' log || fail "another alignment of Eigen is not refused"
 exit $((failures > 0))

@@ -168,14 +168,14 @@ open(sys.argv[1], "wb").write(request)' "\$2"
 exec "$program" "\$@"
 SH
 chmod +x "$work/fem"
-for processes in 1 3; do
+for processes in 1 2; do
   PROCESSES=$processes SPRINGPROOF_FEM_PROGRAM=$work/fem "$springproof" compare "$work/ball.toml" --jobs 1 --out "$work/ball$processes" >"$work/out" 2>&1 ||
     grep -q "No expectations" "$work/out" || { echo "FAILED: ball, $processes processes"; cat "$work/out"; failed=1; }
   # The components of one measure on all meshes in one line.
   awk -F, 'NR > 1 { name = $6; sub(/[.](x|y|z|magnitude)$/, "", name); name = $3 " nu=" $4 " " name; at[name] = at[name] " " $7 }
            END { for (name in at) print name at[name] }' "$work/ball$processes/results.csv" | sort >"$work/numbers$processes"
 done
-same_numbers "$work/numbers1" "$work/numbers3" . 1e-9 12 && echo "same: 3 processes, ball" || { echo "FAILED: ball"; failed=1; }
+same_numbers "$work/numbers1" "$work/numbers2" . 1e-9 12 && echo "same: 2 processes, ball" || { echo "FAILED: ball"; failed=1; }
 
 # gmsh runs as often as for one process.
 cat >"$work/mesh" <<SH

@@ -60,7 +60,7 @@ for options in '' ', weights = "kL"'; do  # momentum dispersion of finite strain
 done
 # A body that is no block: cut cells, of the models that take them; whole cubes on demand.
 cp "$source/comparisons/experiments/calibration/icosahedron.stl" .
-body=(icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 300 --to springs)
+body=(icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 100 --to springs)
 export_to "${body[@]}" --out cut.json
 grep -q '"model": "hybmss_avg"' cut.json || fail "a body alone gets another model than the recommended one"
 grep -q '"version": 2' cut.json && grep -q '"fraction": ' cut.json && grep -q '"anchors": ' cut.json || fail "a body has no cut cells"
@@ -78,7 +78,7 @@ if [ -n "$numpy" ]; then
   done
 fi
 # Cells of several sizes, refined for the loads of a case.
-{ sed -e 's/^geo = .*/geo = "icosahedron.stl"\nscale = 0.01/; s/^size_m = .*/voxels = 60\naccuracy = 0.03/; /^cells = /d; s/x_min/low/; s/x_max/high/' \
+{ sed -e 's/^geo = .*/geo = "icosahedron.stl"\nscale = 0.01/; s/^size_m = .*/voxels = 30\naccuracy = 0.05/; /^cells = /d; s/x_min/low/; s/x_max/high/' \
       -e 's/^models = .*/models = ["hybmss_avg"]/; s/0\.25, 0\.4/0.4/' case.toml
   printf '[[patch]]\nname = "low"\nbeyond = { point_m = [0, 0, -0.005], normal = [0, 0, -1] }\n[[patch]]\nname = "high"\nbeyond = { point_m = [0, 0, 0.005], normal = [0, 0, 1] }\n'; } >refined.toml
 for form in json npz vtu; do export_to refined.toml --to springs --out "refined.$form"; done
@@ -158,7 +158,7 @@ for model in hybmss_bt emsm_random emsm_centred; do same_rows voxels.toml $model
 sed '/^cut = false/d' voxels.toml >cut.toml
 same_rows cut.toml hybmss_avg
 grep -q '"version": 2' hybmss_avg.json || fail "a case of a body has no cut cells"
-sed 's/^voxels = .*/voxels = 60\naccuracy = 0.03/' cut.toml >several.toml
+sed 's/^voxels = .*/voxels = 30\naccuracy = 0.05/' cut.toml >several.toml
 same_rows several.toml hybmss_avg
 grep -q '"version": 3' hybmss_avg.json || fail "a refined body has no cells of several sizes"
 cp hybmss_avg.json several.json
