@@ -66,6 +66,8 @@ std::string sentence(const ModelErrors& errors) {
   if (!errors.springs.empty())
     out += fmt::format("; its springs within {} % of FEM on the same cubes",
                        percent(largest(errors.springs).second.error));
+  if (!errors.promised.empty())
+    out += fmt::format("; its cells promise {} %", percent(largest(errors.promised).second.error));
   if (!errors.reaction.empty())
     out += fmt::format("; reactions of moved supports within {} %", percent(largest(errors.reaction).second.error));
   if (!errors.volume.empty())
@@ -188,6 +190,8 @@ class Collector {
     if (nu && error && measure == "motion_error")
       in_time_[model][*nu].take(*error, number_of(row, "reference_uncertainty").value_or(0), case_name_);
     const bool displacement = measure == "displacement_error", reaction = measure == "reaction_error";
+    if (const auto value = number_of(row, "value"); nu && value && measure == "promised_error")
+      models_[{large_, model}].promised[*nu].take(*value, 0, case_name_);
     if (!nu || !error || !(displacement || reaction || measure == "volume_change")) return;
     if (motions_.contains(model)) return;
     const double uncertainty = number_of(row, "reference_uncertainty").value_or(0);

@@ -90,17 +90,24 @@ std::string where_text(const Candidate& c) {
                      cases == 1 ? "" : "s", c.large_deformation ? " of large deformation" : "");
 }
 
-/// The one error that ranks the best model, in words.
+/// The one error that ranks the best model, in words; of its springs alone never without the whole.
 std::string closest_text(const Candidate& best) {
   const ModelErrors& e = *best.errors;
-  std::string of = "finite elements";
-  if (e.parts)
-    of += !e.wholes ? fmt::format(" on the same cubes ({} % of the reference with coarse cells and staircase)",
-                                  percent(largest(ranked(e, e.displacement)).second.error))
-                    : " (on bodies of voxels: of those on the same cubes)";
-  return fmt::format("Of the spring models {} comes closest: its displacements {}stay within {} % of {} {}{}.",
-                     best.name, e.reaction.empty() ? "" : "and the reactions of moved supports ", percent(best.error()),
-                     of, where_text(best), auxetic_clause(e));
+  const std::string within = percent(best.error()), where = where_text(best) + auxetic_clause(e) + ".",
+                    whole = e.parts ? percent(largest(ranked(e, e.displacement)).second.error) : "";
+  if (e.parts && !e.wholes)
+    return fmt::format(
+        "Of the spring models {} comes closest: its springs stay within {} % of finite elements on the same cubes, its "
+        "displacements, coarse cells included, within {} % of the reference, {}",
+        best.name, within, whole, where);
+  return fmt::format(
+      "Of the spring models {} comes closest: its displacements {}stay within {} % of finite elements{} {}", best.name,
+      e.reaction.empty() ? "" : "and the reactions of moved supports ", within,
+      e.parts ? fmt::format(", counting on bodies that are no blocks its springs alone ({} % with the "
+                            "coarse cells),",
+                            whole)
+              : "",
+      where);
 }
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {

@@ -26,6 +26,7 @@ using ByNu = std::map<double, Worst>;
 struct ModelErrors {
   ByNu displacement, volume, reaction;
   ByNu springs;                        ///< displacement: the springs' own part of it, on bodies of voxels
+  ByNu promised;                       ///< displacement: what cut cells estimate of themselves
   ByNu rank;                           ///< errors by which the closest model is found
   std::set<std::string> cases;         ///< in which a displacement or a reaction was compared
   std::optional<double> own_nu;        ///< the only Poisson's ratio that the model is valid for, if any

@@ -89,7 +89,7 @@ const shortNames = {displacement_error: 'displacement', reaction_error: 'reactio
 const isMoving = (result, model) => (result.experiment.models || []).some(m => m.label === model && m.in_motion);
 
 /// Errors of a model in a case at those of these Poisson's ratios that the model claims: `error` [%], by which models are
-/// ranked, and `whole`, which on a body of voxels includes coarse cells and staircase.
+/// ranked, and `whole`, which on a body that is no block includes its coarse cells.
 function errorsOf(result, model, nus, measures = rankedMeasures) {
   return measures.filter(measure => !isMoving(result, model) || measure === 'motion_error').flatMap(measure => rowsAt(result, measure)).filter(row => row.model === model && nus.includes(row.poisson_ratio) &&
     claims(result, model, row.poisson_ratio)).map(row => {
@@ -158,7 +158,7 @@ function dotPlot() {
         el('div', {class: closest.includes(model) ? 'dot-name closest' : 'dot-name'}, modelName(model), claimText(dots[0].result, model)),
         el('div', {class: 'dot-track'}, marks(), dots.map(dot => whisker(dot, model)), dots.map(({result, row, error, own, whole}) => {
           const text = `${model}, ${result.name}: ${percent(error)}${compared.length > 1 ? ` (${shortNames[row.measure]})` : ''} at ν = ${nuText(row.poisson_ratio)}` +
-            (own === null ? '' : ` by its springs, ${percent(whole)} with coarse cells and staircase`);
+            (own === null ? '' : ` by its springs, ${percent(whole)} with coarse cells`);
           const mark = (at, kind) => el('span', {class: kind, role: 'img', title: text, 'aria-label': text, style: {left: at, color: modelPaint(model)}},
                                         caseGlyphs[shown.indexOf(result) % caseGlyphs.length]);
           return [own === null ? null : mark(at(whole), 'dot pale'), mark(at(error), 'dot')];
@@ -174,7 +174,7 @@ function dotPlot() {
          el('span', {}, el('i', {class: 'whisker-sample'}), 'uncertainty of the reference'))),
     axis,
     el('p', {class: 'note'}, 'Models of most cases and Poisson’s ratios come first, then by their largest error, on the right.' +
-      (shown.some(result => result.splits.length > 0) ? ' On a body of cubes a dot is the springs’ own part of the error, the pale one the whole with coarse cells and staircase.' : '')));
+      (shown.some(result => result.splits.length > 0) ? ' On a body that is no block a dot is the springs’ own part of the error, the pale one the whole with coarse cells.' : '')));
   draw();
 }
 

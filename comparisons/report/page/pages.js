@@ -143,6 +143,7 @@ function problemPart(result) {
     definition('Question', e.what),
     definition('Source', e.cite),
     definition('Body', e.body ? bodyText(e.body) : ''),
+    definition('Meshes and cells', bullets(result.notes)),
     definition('Material', (e.materials || []).length > 0 ? materialText(e.materials, (e.loads || []).some(load => load.includes('gravity'))) : ''),
     definition('Loads', bullets(e.loads || [])),
     definition('Kinematics', e.kinematics ? kinematicsText(result) : ''),

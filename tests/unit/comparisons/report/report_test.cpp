@@ -104,13 +104,17 @@ TEST_F(Report, AFolderThatIsNotThereIsAnError) {
 // ---- in a browser, where there is one
 
 TEST_F(ReportInBrowser, ShowsTheCase) {
-  const std::string dom = open({sample_case()}, "#case-golec_2019-compress");
+  CaseResult sample = sample_case();
+  sample.notes = {"4439 cells promise 5.3 %; 6 % were asked for"};
+  const std::string dom = open({sample}, "#case-golec_2019-compress");
   expect_no_complaint(dom);
   const std::string body = dom.substr(dom.find("<main>"), dom.find("</main>") - dom.find("<main>"));
   EXPECT_EQ(count(body, "<canvas"), 5u) << "three figures, the deformed shapes, the picture of the case";
   EXPECT_EQ(count(body, "class=\"panel\""), 6u) << "undeformed, FEM and hybmss; problem, FEM and hybmss";
   EXPECT_NE(body.find("<td class=\"number tint2\">2.0 %<small>ν = 0.4</small>"), std::string::npos) << "table of cases";
   EXPECT_NE(body.find("z_max: moved by -0.05 m in z"), std::string::npos) << "problem";
+  EXPECT_NE(body.find("<li>4439 cells promise 5.3 %; 6 % were asked for</li>"), std::string::npos)
+      << "meshes and cells";
   EXPECT_NE(body.find("<td class=\"number\">2.60</td>"), std::string::npos) << "observed order of the reference";
   EXPECT_NE(body.find("<td class=\"number\">≤ 1 %</td>"), std::string::npos) << "expectation";
   EXPECT_NE(body.find("force on z_min, magnitude [N]"), std::string::npos) << "results";
