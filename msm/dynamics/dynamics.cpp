@@ -78,8 +78,8 @@ template <class Real>
 class MotionOfList : public Motion {
  public:
   MotionOfList(std::unique_ptr<BlockForces<Real>> forces, const Network& network, const Eigen::VectorXd& inverse_mass,
-               const ListMotionOptions& options)
-      : motion_(std::move(forces), network.X, inverse_mass, options), carried_(network.carried) {}
+               const ListMotionOptions& options, const MassAverage& average)
+      : motion_(std::move(forces), network.X, inverse_mass, options, average), carried_(network.carried) {}
 
   void set_conditions(const BoundaryConditions& conditions) override { motion_.load(conditions); }
   void move_supports() override { motion_.place_prescribed(); }
@@ -149,7 +149,7 @@ class MotionInLargeSteps : public Motion {
 /// Forces of the kernels for lists of springs and of cells; nullptr: these lack the model or an option.
 template <class Real>
 std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, const DynamicsOptions& options) {
-  if (options.mass_consistency > 0) return nullptr;
+  if (options.mass_consistency > 0 && options.viscosity.acts()) return nullptr;
   const AveragedSprings& dashpots = options.viscosity.cells();
   if (CellForces<Real>::covers(model) && !options.viscosity.along_springs() && dashpots.shift == 0)
     return std::make_unique<CellForces<Real>>(model, instruction_set(), dashpots, options.viscosity.time());
@@ -164,7 +164,8 @@ std::unique_ptr<Motion> motion_by_lists(const MassSpringModel& model, const Eige
   std::unique_ptr<BlockForces<Real>> forces = block_forces<Real>(model, options);
   if (!forces) return nullptr;
   const ListMotionOptions of_list{dt, options.damping, options.lagged, options.threads};
-  return std::make_unique<MotionOfList<Real>>(std::move(forces), model.network, inverse_mass, of_list);
+  return std::make_unique<MotionOfList<Real>>(std::move(forces), model.network, inverse_mass, of_list,
+                                              MassAverage(model.network, options.mass_consistency));
 }
 
 }  // namespace

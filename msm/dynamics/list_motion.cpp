@@ -17,11 +17,13 @@ int useful_threads(const Wavefront& wavefront, int wanted) {
 
 template <class Real>
 ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const NodalVectors& X,
-                             const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options)
+                             const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options,
+                             const MassAverage& average)
     : forces_(std::move(forces)),
       order_(forces_->plan().order),
       wavefront_(forces_->plan()),
-      workers_(std::make_unique<Workers>(forces_->coupled() ? 1 : useful_threads(wavefront_, options.threads))),
+      workers_(std::make_unique<Workers>(
+          forces_->coupled() || average.acts() ? 1 : useful_threads(wavefront_, options.threads))),
       X_(X),
       origin_(forces_->origin()),
       options_(options),
@@ -34,6 +36,25 @@ ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const No
       external_[p].v[gain] = static_cast<Real>(options_.time_step * inverse_mass[n] * decay_);
     if (forces_->viscous()) x_[p].v[3] = external_[p].v[gain] / static_cast<Real>(decay_);
   }
+  if (average.acts()) set_up(average);
+}
+
+template <class Real>
+void ListMotion<Real>::set_up(const MassAverage& average) {
+  const std::vector<Hexahedron>& cells = average.network().cells;
+  std::vector<int> place(order_.size());
+  for (std::size_t p = 0; p < order_.size(); ++p) place[order_[p]] = static_cast<int>(p);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const std::size_t first = corners_.size();
+    corners_.resize(first + 8);
+    for (int n = 0; n < 8; ++n) {
+      const auto& at = hexahedron_corners[n];
+      corners_[first + at[0] + 2 * at[1] + 4 * at[2]] = place[cells[c][n]];
+    }
+    factors_.push_back(static_cast<Real>(options_.time_step * average.part(c)));
+  }
+  for (const int node : order_) shares_.push_back(static_cast<Real>(average.share(node)));
+  v_.assign(order_.size(), Padded<Real>{});
 }
 
 template <class Real>
@@ -107,17 +128,37 @@ typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bo
   return sum;
 }
 
+/// Moves the nodes by what averaged momenta add to a step.  Supports, whose velocities have part in it, stay.
 template <class Real>
-typename ListMotion<Real>::Squares ListMotion<Real>::coupled_step() {
-  forces_->add(x_.data(), s_.data(), f_.data(), options_.lagged);
-  return move(0, static_cast<int>(order_.size()), true);
+void ListMotion<Real>::move_by_averages() {
+  for (std::size_t p = 0; p < order_.size(); ++p)
+    for (int d = 0; d < 3; ++d) v_[p].v[d] = s_[p].v[d] * external_[p].v[gain] / static_cast<Real>(decay_);
+  for (const Held& h : held_)
+    v_[h.place].v[h.component] =
+        moved_ ? (h.x - x_[h.place].v[h.component]) / static_cast<Real>(options_.time_step) : 0;
+  std::vector<Real> stay;
+  for (const Held& h : held_) stay.push_back(x_[h.place].v[h.component]);
+  forces_->kernels().average(
+      {static_cast<long>(factors_.size()), corners_.data(), factors_.data(), shares_.data(), v_.data(), x_.data()});
+  for (std::size_t h = 0; h < held_.size(); ++h) x_[held_[h].place].v[held_[h].component] = stay[h];
+}
+
+template <class Real>
+typename ListMotion<Real>::Squares ListMotion<Real>::whole_step() {
+  if (forces_->coupled())
+    forces_->add(x_.data(), s_.data(), f_.data(), options_.lagged);
+  else
+    forces_->add_blocks(0, wavefront_.begin.back(), x_.data(), s_.data(), f_.data());
+  const Squares sum = move(0, static_cast<int>(order_.size()), true);
+  if (!factors_.empty()) move_by_averages();
+  return sum;
 }
 
 template <class Real>
 typename ListMotion<Real>::Squares ListMotion<Real>::run(long steps) {
   Squares sum;
-  if (forces_->coupled()) {
-    for (; steps > 0; --steps) sum = coupled_step();
+  if (forces_->coupled() || !factors_.empty()) {
+    for (; steps > 0; --steps) sum = whole_step();
     return sum;
   }
   run_steps(wavefront_, steps, *workers_, [&](long step, long piece) {

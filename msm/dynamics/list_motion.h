@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/mass_average.h"
 #include "msm/dynamics/wavefront.h"
 #include "msm/kernels/block_forces.h"
 
@@ -12,7 +13,8 @@ struct ListMotionOptions {
   double damping = 0;    ///< [1/s]
   bool lagged = false;   ///< dispersion uses the J of the previous step
   int threads = 1;       ///< they take the steps of advance() in turn, so a single step has one; at most one per three
-                         ///< layers or so of nodes; momentum dispersion and carried nodes use one
+                         ///< layers or so of nodes; momentum dispersion, carried nodes and a share of consistent
+                         ///< mass use one
 };
 
 /// Time integration: the steps of run_dynamics() (semi-implicit Euler, damping implicit) in the kernels' order.  A node
@@ -20,9 +22,10 @@ struct ListMotionOptions {
 template <class Real>
 class ListMotion {
  public:
-  /// At rest at X [m].  Nodes without mass [1/kg] must be held.
+  /// At rest at X [m].  Nodes without mass [1/kg] must be held.  With a share of consistent mass velocities are momenta
+  /// over lumped masses.
   ListMotion(std::unique_ptr<BlockForces<Real>> forces, const NodalVectors& X, const Eigen::VectorXd& inverse_mass,
-             const ListMotionOptions& options);
+             const ListMotionOptions& options, const MassAverage& average = {});
 
   /// Sets the loads of the following steps; prescribed unknowns are moved at the end of the next step.
   void load(const BoundaryConditions& conditions);
@@ -45,7 +48,9 @@ class ListMotion {
   };
 
   Squares run(long steps);
-  Squares coupled_step();
+  Squares whole_step();
+  void set_up(const MassAverage& average);
+  void move_by_averages();
   Squares move(int begin, int end, bool apart);
   void move_prescribed();
   NodalVectors in_network_order(const std::vector<Padded<Real>>& v) const;
@@ -60,6 +65,10 @@ class ListMotion {
   bool moved_ = false;
   std::vector<Padded<Real>> x_, s_, f_, external_;
   std::vector<Held> held_;  ///< sorted by place
+  // Of a share of consistent mass; empty without.
+  std::vector<int> corners_;  ///< CellAverages
+  std::vector<Real> factors_, shares_;
+  std::vector<Padded<Real>> v_;  ///< velocities over the step [m/s]
 };
 
 extern template class ListMotion<double>;

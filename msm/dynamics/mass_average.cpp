@@ -33,11 +33,10 @@ NodalVectors MassAverage::velocities(const NodalVectors& s, const std::vector<ch
   NodalVectors v = s;
   for (std::size_t c = 0; c < network_->cells.size(); ++c) {
     const Hexahedron& cell = network_->cells[c];
-    const double part = theta_ * (network_->filled.empty() ? 1 : network_->filled[c].fraction);
     Eigen::Matrix<double, 8, 3> of_corners;
     for (int a = 0; a < 8; ++a) of_corners.row(a) = s.row(cell[a]);
     const Eigen::Matrix<double, 8, 3> less = of_corners - A * of_corners;
-    for (int a = 0; a < 8; ++a) v.row(cell[a]) += part * share_[cell[a]] * less.row(a);
+    for (int a = 0; a < 8; ++a) v.row(cell[a]) += part(c) * share_[cell[a]] * less.row(a);
   }
   for (std::size_t i = 0; i < fixed.size(); ++i)
     if (fixed[i]) v.data()[i] = s.data()[i];

@@ -33,6 +33,14 @@ class MassAverage {
   bool acts() const { return theta_ > 0; }
   double theta() const { return theta_; }
 
+  /// Of W, corner by corner, for kernels: v = s + sum over the cells of part() share() (s - average of s over the
+  /// cell).
+  const Network& network() const { return *network_; }
+  double part(std::size_t cell) const {
+    return theta_ * (network_->filled.empty() ? 1 : network_->filled[cell].fraction);
+  }
+  double share(int node) const { return share_[node]; }
+
   /// Velocities of the nodes.
   /// @param s momenta over lumped masses [m/s], n x 3; of supports their velocities
   /// @param fixed unknowns, three of each node, whose velocity is s; none: all are free

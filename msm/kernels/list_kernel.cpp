@@ -149,6 +149,24 @@ double step(const ListStep<Real>& s) {
 }
 
 template <class Real>
+void average(const CellAverages<Real>& a) {
+  for (long c = 0; c < a.cells; ++c) {
+    const int* corners = a.corners + 8 * c;
+    Four<Real> v[8], sum[8];  // sum: 27 times the average, one axis after the other
+    for (int n = 0; n < 8; ++n) sum[n] = v[n] = four(a.v, corners[n]);
+    for (int axis = 1; axis <= 4; axis *= 2)
+      for (int n = 0; n < 8; ++n) {
+        if (n & axis) continue;
+        const Four<Real> both = sum[n] + sum[n + axis];
+        sum[n] += both;
+        sum[n + axis] += both;
+      }
+    for (int n = 0; n < 8; ++n)
+      four(a.x, corners[n]) += a.factors[c] * a.shares[corners[n]] * (v[n] - Real(1.0 / 27) * sum[n]);
+  }
+}
+
+template <class Real>
 void stiffness(const ListPattern& p, const Padded<Real>* m, const Padded<Real>* u, Padded<Real>* y) {
   for (long b = 0; b < p.blocks; b += group<Real>) {
     const Group<Real> at(p, b, u);
@@ -194,8 +212,9 @@ void smooth(const ListSmoothing<Real>& s) {
 }
 
 template <class Real>
-constexpr ListKernels<Real> kernels = {spring_forces<Real>, inflow<Real>,        dispersed_forces<Real>, step<Real>,
-                                       stiffness<Real>,     linear_inflow<Real>, linear_forces<Real>,    smooth<Real>};
+constexpr ListKernels<Real> kernels = {spring_forces<Real>, inflow<Real>,        dispersed_forces<Real>,
+                                       step<Real>,          average<Real>,       stiffness<Real>,
+                                       linear_inflow<Real>, linear_forces<Real>, smooth<Real>};
 
 }  // namespace
 

@@ -62,6 +62,18 @@ struct ListSmoothing {
   Padded<Real>* x = nullptr;
 };
 
+/// Correction of a step for a share of consistent mass: corners of cells move on, x += factor share (v - average of v
+/// over the cell), as a trilinear field is averaged with consistent mass.
+template <class Real>
+struct CellAverages {
+  long cells = 0;
+  const int* corners = nullptr;     ///< places; eight of each cell, at x + 2 y + 4 z
+  const Real* factors = nullptr;    ///< of cells [s]
+  const Real* shares = nullptr;     ///< of places
+  const Padded<Real>* v = nullptr;  ///< [m/s]
+  Padded<Real>* x = nullptr;
+};
+
 template <class Real>
 struct ListKernels {
   /// f += forces of the springs at x.
@@ -74,6 +86,7 @@ struct ListKernels {
                            const Padded<Real>* x, const Real* J, const Real* inverse_length, Padded<Real>* f);
   /// Sum of (f + external)^2 [N^2]; 0 without f.
   double (*step)(const ListStep<Real>&);
+  void (*average)(const CellAverages<Real>&);
 
   // Small displacements u about a state; m = sqrt(k) times the direction, per entry.
   /// y += sum m (m . du).

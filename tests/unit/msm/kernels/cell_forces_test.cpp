@@ -7,6 +7,7 @@
 
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/list_motion.h"
+#include "msm/dynamics/plain_motion.h"
 #include "msm/dynamics/time_step.h"
 #include "support/refined_cells.h"
 #include "support/solids.h"
@@ -238,6 +239,44 @@ TEST(CellMotion, OfCellsOfSeveralSizesIsThePlainMotion) { expect_plain_steps<dou
 
 TEST(CellMotion, OfSinglePrecisionIsNearIt) { expect_plain_steps<float>(1e-4); }
 
+/// Supports that move twice, a share of consistent mass, damping.
+template <class Real>
+void expect_plain_averages(double tolerance) {
+  const MassSpringModel model = bar(test::model("hybmss_avg"), 0.3, 60);
+  const Network& network = model.network;
+  DynamicsOptions options;
+  options.damping = 0.3;
+  options.mass_consistency = 0.6;
+  const double dt = 0.2 * safe_time_step(model, 1000, false, options.mass_consistency);
+  const Eigen::VectorXd inverse_mass = inverse_masses(network, 1000);
+  const BoundaryConditions bc = pulled(network);
+  BoundaryConditions further = bc;
+  further.prescribed *= 1.3;
+  PlainMotion plain(model, inverse_mass, dt, options);
+  plain.set_conditions(bc);
+  plain.advance(9);
+  plain.set_conditions(further);
+  plain.advance(20);
+  for (const InstructionSet set : usable_instruction_sets()) {
+    ListMotion<Real> motion(std::make_unique<CellForces<Real>>(model, set), network.X, inverse_mass,
+                            {.time_step = dt, .damping = options.damping, .threads = 2},
+                            MassAverage(network, options.mass_consistency));
+    motion.load(bc);
+    for (const long steps : {7, 2}) motion.advance(steps);
+    motion.load(further);
+    motion.set_state(motion.positions(), motion.velocities());
+    motion.advance(20);
+    EXPECT_EQ(motion.threads(), 1);
+    EXPECT_LE(worst(motion.positions() - network.X, plain.positions() - network.X), tolerance) << name_of(set);
+    EXPECT_LE(worst(motion.velocities(), plain.velocities()), tolerance) << name_of(set);
+  }
+}
+
+TEST(CellMotion, OfAveragedMassIsThePlainMotion) {
+  expect_plain_averages<double>(1e-11);
+  expect_plain_averages<float>(1e-4);
+}
+
 TEST(CellMotion, IsChosenWhereTheKernelsHaveTheModel) {
   const auto how = [](const MassSpringModel& model, const DynamicsOptions& options) {
     return make_motion(model, 1000, 1e-6, options)->description();
@@ -252,7 +291,9 @@ TEST(CellMotion, IsChosenWhereTheKernelsHaveTheModel) {
   options.precision = Precision::float32;
   EXPECT_NE(how(model, options).find("cell kernel, FP32"), std::string::npos);
   options.mass_consistency = 0.5;
-  EXPECT_EQ(how(model, options), "plain loops");
+  EXPECT_EQ(how(model, options), "plain loops") << "dashpots take averaged velocities";
+  options.viscosity = {};
+  EXPECT_NE(how(model, options).find("cell kernel, FP32"), std::string::npos);
   EXPECT_NE(how(build_model(averaged, test::notched_block(), {1e4, 0.3, 1000}), {}).find("lattice kernel"),
             std::string::npos);
   std::get<AveragedSprings>(model.laws[0]).shift = 0.4;
