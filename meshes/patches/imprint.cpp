@@ -14,6 +14,7 @@ namespace {
 constexpr double facets_across = 4;  // of a patch, and of a sphere's radius where its border runs; in the finest mesh
 constexpr double near_end = 0.3;     // of an edge: nodes so near to a border are moved onto it where they can
 constexpr double graze = 0.15;       // of an edge: what less of it reaches into a sphere is left there
+constexpr double sliver = 1e-3;      // of an edge: planes that cut it nearer to an end leave it whole
 constexpr int most_passes = 30, passes_with_moves = 4;
 
 struct Crossing {
@@ -96,10 +97,14 @@ class Imprint {
       const std::vector<Crossing> crossings = crossings_of(border);
       if (crossings.empty()) return;
       if (pass < passes_with_moves && move_onto(border, crossings)) continue;
+      bool cuts = false;
       for (const Crossing& c : crossings) {
+        if (!border.is_sphere() && std::min(c.t, 1 - c.t) < sliver) continue;
         const Vec3 along = X(c.b) - X(c.a);
         track_[mesh_.bisect(c.a, c.b, X(c.a) + c.t * along)] = along;
+        cuts = true;
       }
+      if (!cuts) return;
     }
   }
 
@@ -163,10 +168,13 @@ class Imprint {
     });
   }
 
+  /// Facets in the patch but for slivers.
   std::vector<std::size_t> facets_inside() const {
     std::vector<std::size_t> inside;
-    for_each_part([&](std::size_t f, const FacetPart&) {
-      if (in_sphere(f)) inside.push_back(f);
+    for_each_part([&](std::size_t f, const FacetPart& part) {
+      const auto& t = corners(f);
+      const bool all = region_.sphere || part.area.norm() > (X(t[1]) - X(t[0])).cross(X(t[2]) - X(t[0])).norm() / 4;
+      if (all && in_sphere(f)) inside.push_back(f);
     });
     return inside;
   }
