@@ -202,6 +202,11 @@ class Collector {
     errors.cases.insert(case_name_);
     const auto part = own_parts.find({model, *nu, measure});
     const bool has_part = part != own_parts.end();
+    // What is extrapolated has no springs of its own: not ranked beside models by theirs.
+    if (!has_part && std::any_of(own_parts.begin(), own_parts.end(), [&](const auto& other) {
+          return std::get<1>(other.first) == *nu && std::get<2>(other.first) == measure;
+        }))
+      return;
     (has_part ? errors.parts : errors.wholes) = true;
     if (has_part && displacement) errors.springs[*nu].take(part->second, uncertainty, case_name_);
     errors.rank[*nu].take(has_part ? part->second : *error, uncertainty, case_name_);

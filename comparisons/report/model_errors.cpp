@@ -90,11 +90,14 @@ std::string where_text(const Candidate& c) {
                      cases == 1 ? "" : "s", c.large_deformation ? " of large deformation" : "");
 }
 
+/// Of displacements, coarse cells included, in per cent.
+std::string whole_error(const ModelErrors& e) { return percent(largest(ranked(e, e.displacement)).second.error); }
+
 /// The one error that ranks the best model, in words; of its springs alone never without the whole.
 std::string closest_text(const Candidate& best) {
   const ModelErrors& e = *best.errors;
   const std::string within = percent(best.error()), where = where_text(best) + auxetic_clause(e) + ".",
-                    whole = e.parts ? percent(largest(ranked(e, e.displacement)).second.error) : "";
+                    whole = e.parts ? whole_error(e) : "";
   if (e.parts && !e.wholes)
     return fmt::format(
         "Of the spring models {} comes closest: its springs stay within {} % of finite elements on the same cubes, its "
@@ -112,13 +115,17 @@ std::string closest_text(const Candidate& best) {
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
   std::vector<std::string> names;
-  for (const Candidate& c : tied) names.push_back(fmt::format("{} ({} %)", c.name, percent(c.error())));
+  for (const Candidate& c : tied)
+    names.push_back(
+        fmt::format("{} ({} %{})", c.name, percent(c.error()),
+                    !c.errors->parts ? "" : fmt::format(", {} % with coarse cells", whole_error(*c.errors))));
   const ModelErrors& e = *tied.front().errors;
   return fmt::format(
       "Of the spring models {} come closest and cannot be told apart: their largest errors{}{} differ by no more than "
       "the {} % that the reference is uncertain by, {}.",
       listed(names), e.reaction.empty() ? "" : " of displacement and reactions",
-      e.parts ? ", of bodies of voxels the springs' own part," : "", percent(uncertainty), where_text(tied.front()));
+      e.parts ? ", on bodies that are no blocks those of their springs alone," : "", percent(uncertainty),
+      where_text(tied.front()));
 }
 
 // A reference with a larger uncertainty ranks no model.
