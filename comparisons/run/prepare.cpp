@@ -198,7 +198,7 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
       require_supported(transfer(lattice_loads(prepared), mesh, 1000, e.model_kinematics()), mesh.nodes);
     } catch (const InputError& error) {
       if (needs_supports(e)) throw;
-      throw InputError(fmt::format("{}, or leave out the equilibrium: elements = [] in [reference]", error.what()));
+      throw InputError(fmt::format("{}, or name no elements in [reference]: finite elements at rest", error.what()));
     }
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
     if (const Topology t = prepared.models[m].row.topology; t == Topology::cells || t == Topology::macro_cells ||

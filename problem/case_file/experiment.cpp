@@ -218,6 +218,14 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   return reference;
 }
 
+/// A case of motions alone has no equilibrium that finite elements would be compared at, unless it asks for them.
+void leave_out_equilibria(const TomlTable& document, Experiment& experiment) {
+  const auto& motion = experiment.dynamics;
+  if (!motion || motion->equilibrium || motion->released) return;
+  const auto reference = document.find("reference");
+  if (!reference || !TomlTable(*reference, reference_schema).find("elements")) experiment.reference.elements.clear();
+}
+
 /// Gravity requires a density.
 void require_density(const TomlTable& document, const Experiment& experiment) {
   const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
@@ -254,6 +262,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   settle_kelvin(experiment);
   read_line(document, experiment);
   read_dynamics(document, experiment);
+  leave_out_equilibria(document, experiment);
   read_fracture(document, experiment);
   read_compare(document, experiment);
   check_loads(experiment);

@@ -37,6 +37,17 @@ TEST(DynamicsTable, AddsTheMotionOfEveryModel) {
   EXPECT_EQ(labels("equilibrium = false\n"), (std::vector<std::string>{"hybmss in motion*", "classic in motion*"}));
 }
 
+TEST(DynamicsTable, WithoutEquilibriaHasNoFiniteElementsAtRest) {
+  const auto elements = [&](const std::string& lines) {
+    return parse_experiment(at_large_strain + "[dynamics]\nduration_s = 2\n" + lines, "case.toml").reference.elements;
+  };
+  EXPECT_FALSE(elements("").empty());
+  EXPECT_FALSE(elements("equilibrium = false\nstart = \"equilibrium\"\n").empty());
+  EXPECT_TRUE(elements("equilibrium = false\n").empty());
+  EXPECT_TRUE(elements("equilibrium = false\n[reference]\ngrading = 2\n").empty());
+  EXPECT_EQ(elements("equilibrium = false\n[reference]\nelements = [\"q1\"]\n"), std::vector<std::string>{"q1"});
+}
+
 TEST(DynamicsTable, HasOneCourseOfTheLoads) {
   const auto of = [](const std::string& lines) {
     return parse_experiment(at_large_strain + "[dynamics]\nduration_s = 2\n" + lines, "case.toml").dynamics;
