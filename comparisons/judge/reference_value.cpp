@@ -121,6 +121,8 @@ void raise_to_usual(std::map<std::string, ReferenceValue>& limits) {
     if (limit.sequence != Sequence::equal)
       limit.uncertainty =
           std::max(limit.uncertainty, median(relative[kind_of(measure)]) * size[without_component(measure)]);
+  for (auto& [measure, limit] : limits)
+    if (measure.ends_with(".magnitude")) limit.value = std::max(limit.value, 0.0);
 }
 
 double doubt_of(const std::map<std::string, ReferenceValue>& limits) {

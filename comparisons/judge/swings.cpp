@@ -1,8 +1,11 @@
 #include "comparisons/judge/swings.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "msm/algebra/dense.h"
 
 namespace springproof {
 namespace {
@@ -52,17 +55,40 @@ std::optional<Swings> swings_of(const std::vector<double>& t, const std::vector<
   }
   swings.count = static_cast<int>(crossings.size()) - 1;
   swings.period = (crossings.back().time - crossings.front().time) / swings.count;
-  double decrement = 0, weight = 0;  // least squares of the logarithms of the amplitudes
+  swings.begin = crossings.front().time;
   for (int s = 0; s < swings.count; ++s) {
     const auto [least, most] = std::minmax_element(u.begin() + static_cast<long>(crossings[s].after),
                                                    u.begin() + static_cast<long>(crossings[s + 1].after) + 1);
     swings.amplitude += (*most - *least) / 2 / swings.count;
-    const double from_middle = s - (swings.count - 1) / 2.0;
-    decrement -= from_middle * std::log(*most - *least);
-    weight += from_middle * from_middle;
   }
-  if (weight > 0) swings.damping_ratio = decrement / weight / std::hypot(2 * std::numbers::pi, decrement / weight);
   return swings;
+}
+
+std::optional<DampedSwings> damped_swings_of(const std::vector<double>& time, const std::vector<double>& value,
+                                             const Swings& swings) {
+  const auto first = std::lower_bound(time.begin(), time.end(), swings.begin) - time.begin();
+  const auto n = static_cast<Eigen::Index>(time.size()) - first;
+  const Eigen::ArrayXd t = Eigen::Map<const Eigen::ArrayXd>(time.data() + first, n) - swings.begin;
+  const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(value.data() + first, n);
+  // What is left of u beside the best amplitudes at decay d and frequency w of the zeros [1/s].
+  const auto rest = [&](double d, double w) -> Eigen::VectorXd {
+    Eigen::MatrixXd A(n, 3);
+    A << (-d * t).exp() * (w * t).cos(), (-d * t).exp() * (w * t).sin(), Eigen::ArrayXd::Ones(n);
+    return u - A * least_squares(A, u).X;
+  };
+  double w = 2 * std::numbers::pi / swings.period, d = 0;
+  for (int i = 0; i < 50; ++i) {  // Gauss-Newton
+    const double h = 1e-6 * w;
+    const Eigen::VectorXd r = rest(d, w);
+    Eigen::MatrixXd J(n, 2);
+    J << (rest(d + h, w) - rest(d - h, w)) / (2 * h), (rest(d, w + h) - rest(d, w - h)) / (2 * h);
+    const Eigen::Vector2d step = least_squares(J, -r).X;
+    if (!step.allFinite()) return {};
+    d += std::clamp(step[0], -0.1 * w, 0.1 * w);
+    w += std::clamp(step[1], -0.1 * w, 0.1 * w);
+    if (step.norm() < 1e-8 * w) return DampedSwings{2 * std::numbers::pi / w, d / std::hypot(d, w)};
+  }
+  return {};
 }
 
 std::optional<double> arrival_of(const std::vector<double>& t, const std::vector<double>& u) {

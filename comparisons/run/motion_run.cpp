@@ -283,7 +283,11 @@ std::map<std::string, double> measured_in_time(const MotionChoice& motion, const
   if (const auto swings = swings_of({h.time.begin() + first, h.time.end()}, {u.begin() + first, u.end()})) {
     out["period"] = swings->period;
     out["amplitude"] = swings->amplitude;
-    if (swings->count > 1 && (motion.damping > 0 || motion.viscosity > 0)) out["damping_ratio"] = swings->damping_ratio;
+    const bool damped = motion.damping > 0 || motion.viscosity > 0;
+    if (const auto mode = damped ? damped_swings_of(h.time, u, *swings) : std::nullopt) {
+      out["period"] = mode->period;
+      out["damping_ratio"] = mode->damping_ratio;
+    }
   }
   if (motion.course.pulse > 0)
     if (const auto arrival = arrival_of(h.time, u)) out["arrival"] = *arrival;

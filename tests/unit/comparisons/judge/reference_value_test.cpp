@@ -145,13 +145,15 @@ TEST(ReferenceValue, NoneIsSurerThanUsualOfItsKind) {
       {"displacement.A.x", {1, 0.01, 2, ""}},           {"displacement.A.y", {0, 0.01, 2, ""}},
       {"displacement.B.x", {3, 0.04, 2, ""}},           {"displacement.B.y", {4, 0.05, 2, ""}},
       {"displacement.C.x", {0.2, 1e-6, 2, ""}},         {"displacement.C.y", {0, 1e-9, {}, "", Sequence::equal}},
-      {"displacement.C.magnitude", {0.2, 1e-6, 2, ""}}, {"force.top.x", {7, 1e-5, 2, ""}}};
+      {"displacement.C.magnitude", {0.2, 1e-6, 2, ""}}, {"force.top.x", {7, 1e-5, 2, ""}},
+      {"force.base.magnitude", {-0.109, 0.465, 2, ""}}};
   raise_to_usual(limits);
   EXPECT_NEAR(limits.at("displacement.C.x").uncertainty, 0.01 * 0.2, 1e-15);
   EXPECT_NEAR(limits.at("displacement.C.magnitude").uncertainty, 0.01 * 0.2, 1e-15);
   EXPECT_EQ(limits.at("displacement.C.y").uncertainty, 1e-9);  // equal on all grids: known, not lucky
   EXPECT_NEAR(limits.at("displacement.B.x").uncertainty, 0.05, 1e-15);
   EXPECT_EQ(limits.at("force.top.x").uncertainty, 1e-5);  // forces are of another kind
+  EXPECT_EQ(limits.at("force.base.magnitude").value, 0) << "extrapolated below 0";
 }
 
 TEST(ReferenceField, RecoversTheLimitField) {

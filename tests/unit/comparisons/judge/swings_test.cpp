@@ -46,22 +46,37 @@ TEST(Arrival, IsWhereATenthOfTheLargestDepartureIsReached) {
   EXPECT_FALSE(arrival_of(time, {5, 5, 5, 5, 5}));
 }
 
-TEST(Swings, TellTheDamping) {
-  const auto damped = [](double ratio) {
-    std::vector<double> time, value;
-    for (int i = 0; i < 1000; ++i) {
-      const double t = 0.01 * i, w = 2 * pi;
-      time.push_back(t);
-      value.push_back(std::exp(-ratio * w * t) * std::cos(w * std::sqrt(1 - ratio * ratio) * t));
-    }
-    return swings_of(time, value);
-  };
-  for (const double ratio : {0.0, 0.01, 0.05, 0.1}) {
-    const auto swings = damped(ratio);
-    ASSERT_TRUE(swings) << ratio;
-    EXPECT_NEAR(swings->damping_ratio, ratio, 1e-3 + 0.02 * ratio);
+/// A damped cosine of period 1 about a place of rest, with an overtone that dies faster; ten swings.
+std::optional<DampedSwings> damped(double ratio, double rest, double overtone) {
+  std::vector<double> time, value;
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.01 * i, d = ratio / std::sqrt(1 - ratio * ratio) * 2 * pi;
+    time.push_back(t);
+    value.push_back(rest + std::exp(-d * t) * std::cos(2 * pi * t) +
+                    overtone * std::exp(-2 * d * t) * std::cos(6.3 * 2 * pi * t));
   }
-  EXPECT_FALSE(damped(0.2));  // a second swing of less than a tenth of the first deflection
+  const auto swings = swings_of(time, value);
+  return swings ? damped_swings_of(time, value, *swings) : std::nullopt;
+}
+
+TEST(Swings, TellTheDamping) {
+  for (const double ratio : {0.0, 0.01, 0.05, 0.1})
+    for (const double rest : {0.0, 0.1}) {
+      const auto swings = damped(ratio, rest, 0);
+      ASSERT_TRUE(swings) << ratio;
+      EXPECT_NEAR(swings->damping_ratio, ratio, 1e-7);
+      EXPECT_NEAR(swings->period, 1, 1e-7);
+    }
+  EXPECT_FALSE(damped(0.2, 0, 0));  // a second swing of less than a tenth of the first deflection
+}
+
+TEST(Swings, OvertonesHaveLittlePartInTheDamping) {
+  for (const double ratio : {0.01, 0.05, 0.1}) {
+    const auto swings = damped(ratio, 0.1, 0.1);
+    ASSERT_TRUE(swings) << ratio;
+    EXPECT_NEAR(swings->damping_ratio, ratio, 0.01 * ratio);
+    EXPECT_NEAR(swings->period, 1, 1e-3);
+  }
 }
 
 }  // namespace
