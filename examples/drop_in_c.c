@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   text[fread(text, 1, sizeof text - 1, file)] = 0;
   if (strstr(text, "\n \"carried\"")) return fprintf(stderr, "cells of several sizes: forces_in_c.cpp shows how\n"), 2;
   const char *nodes = "\n \"nodes\"", *cells = "\n \"cells\"", *surface = "\n \"surface\"";
+  if (strstr(text, "\"proportions\"")) return fprintf(stderr, "boxes: docs/springs_file.md has a program\n"), 2;
   size_t n, n3, c8, vertices, one;
   const double *X = numbers(nodes, "\"position_m\"", &n3), *mass = numbers(nodes, "\"mass_kg\"", &n);
   const int* corners = whole(cells, "\"nodes\"", &c8);

@@ -24,6 +24,8 @@ std::vector<T> flat(const json& rows) {
 int main(int count, char** arguments) try {
   if (count != 2) return std::fprintf(stderr, "usage: forces_in_c FILE.json\n"), 2;
   const json file = json::parse(std::ifstream(arguments[1])), laws = file.at("laws"), derived = file.at("derived");
+  if (file.value("cells", json::object()).contains("proportions"))
+    return std::fprintf(stderr, "boxes: docs/springs_file.md has a program for them\n"), 2;
   const auto X = flat<double>(file.at("nodes").at("position_m")), mass = flat<double>(file.at("nodes").at("mass_kg"));
   const auto ends = flat<int>(file.at("springs").at("nodes")), cells = flat<int>(file.at("cells").at("nodes"));
   const auto k = flat<double>(file.at("springs").at("stiffness_N_m")),

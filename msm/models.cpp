@@ -1,6 +1,7 @@
 #include "msm/models.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +31,25 @@ double mean_edge(const Mesh& mesh) {
   return mesh.grid ? mesh.grid->spacing.maxCoeff() : std::cbrt(volume(mesh, mesh.nodes) / cells);
 }
 
+/// @throws InputError if the cells are boxes and the model is one of cubes.
+void require_cubes(const ModelRow& row, const Mesh& mesh) {
+  const bool of_cubes = row.topology == cells || row.topology == macro_cells || row.topology == centres;
+  if (!of_cubes || takes_boxes(row) || !mesh.grid || has_cubes(*mesh.grid)) return;
+  std::vector<std::string> names;
+  for (const ModelRow& other : model_table())
+    if (takes_boxes(other)) names.push_back(other.name);
+  const Vec3& edge = mesh.grid->spacing;
+  throw InputError(
+      fmt::format("{}: needs cubes; the cells are {:.6g} x {:.6g} x {:.6g} m (allowed: cells in proportion to the "
+                  "size, or a model of boxes: {})",
+                  row.name, edge[0], edge[1], edge[2], fmt::join(names, ", ")));
+}
+
 Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* region) {
   switch (p.row.topology) {
     case cells:
-      return cubic_lattice(mesh, p.has(Extension::averaging) ? CubicPattern{} : isotropic_pattern(p.face_to_cube));
+      return takes_boxes(p.row) ? lattice_without_springs(mesh)
+                                : cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
     case macro_cells: {
       Network network = cubic_lattice(mesh, CubicPattern{});
       network.macro_cells = macro_cells_of(mesh);
@@ -154,6 +170,7 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   if (p.springs) return build_from_file(p, mesh, material, region);
   if (passes_patch_test(p.row) && !region && !mesh.tetrahedra.empty())
     return build_on_vertices(p, mesh, material, fitted_on_vertices(p, mesh));
+  require_cubes(p.row, mesh);
   EmbeddedModel built;
   auto& [network, laws, small_displacements_only] = built.model;
   network = network_of(p, mesh, region);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "msm/measure/validity.h"
+#include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
 
 namespace springproof {
@@ -60,6 +61,8 @@ std::vector<LatticeLimit> lattice_limits(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   std::vector<LatticeLimit> limits;
   if (e.model_kinematics() == Kinematics::linear || prepared.lattices.empty()) return limits;
+  const auto of_boxes = [](const Lattice& l) { return l.mesh->grid && !has_cubes(*l.mesh->grid); };
+  if (std::any_of(prepared.lattices.begin(), prepared.lattices.end(), of_boxes)) return limits;  // known of cubes
   const ImposedStrain imposed = imposed_strain(prepared);
   const ModelParameters recommended = resolve({"hybmss_avg", {}, "hybmss_avg", {}});
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {

@@ -103,6 +103,7 @@ class Selection {
     part.X = all.X(nodes_, Eigen::all);
     if (all.volume.size() > 0) part.volume = all.volume(nodes_);
     part.cell_edge = all.cell_edge;
+    part.proportions = all.proportions;
     part.cell_springs = all.cell_springs;
     for (const int s : springs_) {
       part.springs.push_back(all.springs[s]);

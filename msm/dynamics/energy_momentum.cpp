@@ -175,7 +175,7 @@ EnergyMomentum::EnergyMomentum(const MassSpringModel& model) : model_(model) {
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const FilledPart part = network.filled.empty() ? FilledPart{} : network.filled[c];
     const auto make = [&] {
-      forms_.push_back(cell_form(*law, network.edge(c), part));
+      forms_.push_back(cell_form(*law, network.edge(c), part, network.proportions));
       return static_cast<int>(forms_.size()) - 1;
     };
     if (part.fraction != 1)

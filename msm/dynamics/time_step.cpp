@@ -174,8 +174,7 @@ class CellFrequencies {
 
   /// Between the nodes of the cell, with its anchors, to points that are held.
   Eigen::MatrixXd stiffness(std::size_t cell) const {
-    CellMatrix K =
-        law_.cell_matrix(network_.edge(cell), network_.filled.empty() ? FilledPart{} : network_.filled[cell]);
+    CellMatrix K = law_.cell_matrix(network_.edge(cell), filled_part(network_, cell), network_.proportions);
     const auto [first, last] = anchors_.equal_range(static_cast<int>(cell));
     for (auto a = first; a != last; ++a)
       for (int m = 0; m < 8; ++m)
@@ -244,9 +243,10 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
   }
   if (averaged) {  // the smaller of two bounds
     const bool full = theta > 0 && network.filled.empty() && network.anchors.empty();
-    largest += full ? cell_frequency_squared(averaged->cell_matrix(network.cell_edge, FilledPart{}),
-                                             density * network.cell_volume(), theta)
-                    : gain * averaged_frequency_squared(*averaged, network, mass);
+    largest += full
+                   ? cell_frequency_squared(averaged->cell_matrix(network.cell_edge, FilledPart{}, network.proportions),
+                                            density * network.cell_volume(), theta)
+                   : gain * averaged_frequency_squared(*averaged, network, mass);
     if (!network.anchors.empty()) return 2 / std::sqrt(largest);
     add_norms(network, mass, *averaged, blocks);
     largest = std::min(largest, gain * largest_eigenvalue(blocks));

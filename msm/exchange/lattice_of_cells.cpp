@@ -73,7 +73,8 @@ void recognise_lattice(Network& network) {
   mesh.nodes = network.X;
   mesh.hexahedra = network.cells;
   const std::optional<Grid> grid = detect_grid(mesh);
-  if (!grid || (grid->spacing.array() - network.cell_edge).abs().maxCoeff() > 1e-6 * network.cell_edge) return;
+  const Vec3 edges = network.cell_edge * network.proportions;
+  if (!grid || ((grid->spacing - edges).array().abs() > 1e-6 * edges.array()).any()) return;
   double points = 1;  // kernels of lattices have a place for each
   for (const int n : grid->cells) points *= n + 1;
   if (points > most_points_per_node * network.nodes()) return;

@@ -60,6 +60,19 @@ void read_edges(const JsonPlace& cells, double version, Network& network) {
   network.cell_edge = *std::min_element(network.cell_edges.begin(), network.cell_edges.end());
 }
 
+void read_proportions(const JsonPlace& cells, double version, Network& network) {
+  const auto place = cells.find("proportions");
+  if (!place) return;
+  if (version < springs_version_of_boxes) place->refuse("is of boxes", "version 4");
+  const std::vector<double> p = place->numbers(1, 3, "axes", smallest_of_file, largest_number_of_file);
+  network.proportions = Vec3(p[0], p[1], p[2]);
+  if (!(std::abs(network.proportions.prod() - 1) <= 1e-9))
+    place->refuse(fmt::format("has the product {:.10g}", network.proportions.prod()),
+                  "three edges over that of the cube of their volume: a product of 1");
+  if (!network.cell_edges.empty() || cells.find("fraction"))
+    place->refuse("is beside cut cells", "boxes that are full, of one edge_m");
+}
+
 void read_filled(const JsonPlace& cells, Network& network) {
   const auto fraction = cells.find("fraction");
   if (!fraction) return;

@@ -15,6 +15,10 @@ void read_edges(const JsonPlace& cells, double version, Network& network);
 /// @throws InputError unless each is in its mean at rest, and follows none that comes later.
 void read_carried(const JsonPlace& document, Network& network);
 
+/// `proportions` of the cells: boxes instead of cubes, from version 4 on.
+/// @throws InputError unless their product is 1 and the cells are full and of one size.
+void read_proportions(const JsonPlace& cells, double version, Network& network);
+
 /// The moments beside the cells' nodes, if there are any.
 /// @throws InputError unless they can be those of a part of a cube.
 void read_filled(const JsonPlace& cells, Network& network);

@@ -144,7 +144,7 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
 }
 
 double version_of(const JsonPlace& document) {
-  return document.at("version").number(springs_version, springs_version_of_several_sizes);
+  return document.at("version").number(springs_version, springs_version_of_boxes);
 }
 
 void read_cells(const JsonPlace& document, Network& network) {
@@ -152,16 +152,19 @@ void read_cells(const JsonPlace& document, Network& network) {
   if (const auto triangles = document.find("triangles")) network.triangles = rows<3>(*triangles, last);
   const auto cells = document.find("cells");
   if (!cells) return;
-  cells->require_known({"nodes", "edge_m", "fraction", "mean", "mixed", "variance"});
+  cells->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance"});
   network.cells = rows<8>(cells->at("nodes"), last);
   read_edges(*cells, version_of(document), network);
+  read_proportions(*cells, version_of(document), network);
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     for (int n = 0; n < 8; ++n) {
       const Vec3 corner(hexahedron_corners[n][0], hexahedron_corners[n][1], hexahedron_corners[n][2]);
       const Vec3 at = (network.X.row(network.cells[c][n]) - network.X.row(network.cells[c][0])).transpose();
-      if ((at - network.edge(c) * corner).cwiseAbs().maxCoeff() > 1e-6 * network.cell_edge)
+      const Vec3 expected = network.edge(c) * network.proportions.cwiseProduct(corner);
+      if ((at - expected).cwiseAbs().maxCoeff() > 1e-6 * network.cell_edge * network.proportions.minCoeff())
         cells->at("nodes").refuse(fmt::format("cell {} is no cube of edge_m in the order of corners", c),
-                                  "axis-aligned cubes, corners (0,0,0) (1,0,0) (1,1,0) (0,1,0) (0,0,1) (1,0,1) (1,1,1) "
+                                  "axis-aligned cubes, or boxes of proportions, corners (0,0,0) (1,0,0) (1,1,0) "
+                                  "(0,1,0) (0,0,1) (1,0,1) (1,1,1) "
                                   "(0,1,1)");
     }
   read_filled(*cells, network);
@@ -184,6 +187,8 @@ void require_its_parts(const ForceLaw& law, const Network& network, const JsonPl
     place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
   if (several && !std::holds_alternative<AveragedSprings>(law))
     place.refuse("is beside cells of several sizes", "averaged_springs alone");
+  if (network.has_boxes() && traits(law).reach == Reach::cells && !std::holds_alternative<AveragedSprings>(law))
+    place.refuse("acts on cubes, the cells are boxes", "averaged_springs in boxes");
   if (std::holds_alternative<MacroSprings>(law)) place.refuse("has no macro-cells to act on", "averaged_springs");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");

@@ -139,6 +139,8 @@ void add_network(const Network& network, double density, DocumentWriter& out) {
       out.at({"cells", "edge_m"}) = network.cell_edge;
     else
       out.numbers({"cells", "edge_m"}, network.cell_edges);
+    if (network.has_boxes())
+      out.at({"cells", "proportions"}) = {network.proportions[0], network.proportions[1], network.proportions[2]};
     out.rows({"cells", "nodes"}, network.cells);
     if (!network.filled.empty()) add_filled(network.filled, out);
   }
@@ -248,9 +250,10 @@ SpringsDocument document_of(const SpringsFile& springs) {
   const Network& network = springs.model.network;
   require_no_macro_cells(network, "springs file");
   out.document.head = {{"format", springs_format},
-                       {"version", !network.cell_edges.empty() ? springs_version_of_several_sizes
-                                   : !network.filled.empty()   ? springs_version_of_cut_cells
-                                                               : springs_version}};
+                       {"version", network.has_boxes()           ? springs_version_of_boxes
+                                   : !network.cell_edges.empty() ? springs_version_of_several_sizes
+                                   : !network.filled.empty()     ? springs_version_of_cut_cells
+                                                                 : springs_version}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material)
     out.at({"material"}) = {{"youngs_modulus_Pa", springs.material->youngs_modulus},

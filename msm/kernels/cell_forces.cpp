@@ -1,6 +1,7 @@
 #include "msm/kernels/cell_forces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <type_traits>
 
@@ -41,6 +42,7 @@ bool CellForces<Real>::covers(const MassSpringModel& model) {
   const Network& network = model.network;
   if (averaged != 1 || anchors > 1 || averaged + anchors != static_cast<int>(model.laws.size())) return false;
   const AveragedSprings& law = *averaged_springs_of(model);
+  if (network.has_boxes() && !network.filled.empty()) return false;
   return !network.cells.empty() && network.image_of.empty() && law.shift == 0 &&
          lattice_curve(law.curve) != LatticeCurve::none;
 }
@@ -62,6 +64,11 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
     throw std::invalid_argument("cell forces are of averaged springs, without shift");
   list_.springs = averaged_constants<Real>(*averaged_springs_of(model), 1);
   list_.dashpots = averaged_constants<Real>(dashpots, time);
+  list_.boxes = model.network.has_boxes();
+  for (int i = 0; i < 3; ++i) {
+    list_.proportions[i] = static_cast<Real>(model.network.proportions[i]);
+    list_.per_proportion[i] = static_cast<Real>(1 / model.network.proportions[i]);
+  }
   store_cells(model.network);
   if (std::any_of(model.laws.begin(), model.laws.end(),
                   [](const ForceLaw& law) { return std::holds_alternative<Anchors>(law); }))
@@ -88,7 +95,8 @@ void CellForces<Real>::store_cells(const Network& network) {
     for (int i = 0; i < 3; ++i) {
       set(cell_number::mean + i, part.mean[i] / 2);
       set(cell_number::mixed + i, part.mixed[i]);
-      set(cell_number::variance + i, std::max(12 * part.variance[i], AveragedSprings::least_variance));
+      set(cell_number::variance + i,
+          std::max(12 * part.variance[i], AveragedSprings::least_variance) * std::pow(network.proportions[i], 2));
     }
   }
 }

@@ -53,6 +53,16 @@ SPRINGPROOF_INLINE void patterns_of_cells(const Corners<Real>& u, int at, const 
   }
 }
 
+/// From a cube of the same volume to a box: D per length along its edges, S as H_pq / (p_p p_q) (AveragedSprings).
+template <class Real>
+SPRINGPROOF_INLINE void stretch(const CellList<Real>& list, Lanes<Real> (&D)[3][3], Lanes<Real> (&S)[3][4]) {
+  for (int i = 0; i < 3; ++i)
+    for (int a = 0; a < 3; ++a) {
+      D[i][a] *= list.per_proportion[a];
+      S[i][a] *= list.proportions[a];
+    }
+}
+
 /// Those of a law times the volume over the edge of each cell.
 template <class Real>
 SPRINGPROOF_INLINE LatticeAveraged<Lanes<Real>> times_area(const LatticeAveraged<Real>& law, const Lanes<Real>& a) {
@@ -101,6 +111,7 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* 
   const Cells<Real> c(numbers + at);
   V D[3][3], S[3][4], F[3][3], inverse_transposed[3][3], dilatation, P[3][3], v[4][3], w[4][3];
   patterns_of_cells<Real>(u, at, c, D, S);
+  if (list.boxes) stretch(list, D, S);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
   invert(D, F, inverse_transposed, dilatation);
@@ -116,6 +127,7 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* 
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
     V rate[3][3], S_rate[3][4];
     patterns_of_cells<Real>(rates, at, c, rate, S_rate);
+    if (list.boxes) stretch(list, rate, S_rate);
     add_viscous_stress(dashpots, F, inverse_transposed, S, rate, S_rate, P, v);
     add_hourglass_forces(dashpots, c, v, w);
   }
@@ -125,6 +137,11 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* 
     for (int j = 0; j < 3; ++j)
       A[j] = P[i][j] + (S[i][0] * w[0][j] + S[i][1] * w[1][j]) + (S[i][2] * w[2][j] + S[i][3] * w[3][j]);
     for (int m = 0; m < 4; ++m) B[m] = F[i][0] * w[m][0] + F[i][1] * w[m][1] + F[i][2] * w[m][2];
+    if (list.boxes)
+      for (int a = 0; a < 3; ++a) {
+        A[a] *= list.per_proportion[a];
+        B[a] *= list.proportions[a];
+      }
     for (int x = 0; x < 3; ++x) {
       const int y = (x + 1) % 3, z = (x + 2) % 3;
       B[x] += c.mean[y] * A[z] + c.mean[z] * A[y];

@@ -22,6 +22,9 @@ struct CellList {
   const Real* numbers = nullptr;        ///< per block each of cell_number in turn
   LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
+  bool boxes = false;                   ///< full cells that are no cubes: l that of the cube of their volume, rho p_i^2
+  Real proportions[3] = {1, 1, 1};      ///< Network::proportions
+  Real per_proportion[3] = {1, 1, 1};
 };
 
 template <class Real>

@@ -23,7 +23,8 @@ std::vector<int> rows_of_layers(const Network& network) {
   std::vector<std::array<long, 3>> key(network.cells.size());
   for (std::size_t c = 0; c < key.size(); ++c)
     for (int d = 0; d < 3; ++d)
-      key[c][d] = std::lround((network.X(network.cells[c][0], axes[d]) - lower[axes[d]]) / network.cell_edge);
+      key[c][d] = std::lround((network.X(network.cells[c][0], axes[d]) - lower[axes[d]]) /
+                              (network.cell_edge * network.proportions[axes[d]]));
   std::vector<int> cells = one_by_one(key.size());
   std::stable_sort(cells.begin(), cells.end(), [&](int a, int b) { return key[a] < key[b]; });
   return cells;

@@ -295,7 +295,7 @@ LatticeCurve lattice_curve(StrainCurve curve) {
 
 bool is_lattice_of_springs(const MassSpringModel& model) {
   const Network& network = model.network;
-  if (!network.image_of.empty() || !network.triangles.empty() || !laws_fit(model)) return false;
+  if (!network.image_of.empty() || !network.triangles.empty() || network.has_boxes() || !laws_fit(model)) return false;
   const std::vector<Place> places = places_of(network);
   if (places.empty() || !springs_fit(network, places) || !cells_fit(network, places) || !one_node_per_place(places))
     return false;

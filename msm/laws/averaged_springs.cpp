@@ -41,16 +41,22 @@ const Pattern& patterns() {
   return all;
 }
 
+/// 12 S_i, in the square of the cell's edge.
+Vec3 second_moments(const FilledPart& part, const Vec3& proportions) {
+  const Vec3 rho = (12 * part.variance).cwiseMax(AveragedSprings::least_variance);
+  return rho.cwiseProduct(proportions.cwiseAbs2());
+}
+
 /// Quadratic form of 3 * pattern + axis, the stiffness of a cell's hourglass springs [N/m].
-HourglassMatrix hourglass_matrix(const AveragedSprings& law, double l, const FilledPart& part) {
+HourglassMatrix hourglass_matrix(const AveragedSprings& law, double l, const FilledPart& part,
+                                 const Vec3& proportions) {
   const auto third = [](int axis) -> HourglassRow { return HourglassRow::Unit(9 + axis); };
   // At the centroid: second differences of the trilinear field vary along the third axis.
   const auto second = [&](int p, int q, int axis) -> HourglassRow {
     const int r = 3 - p - q;
-    return HourglassRow::Unit(3 * r + axis) + part.mean[r] * third(axis);
+    return proportions[r] * (HourglassRow::Unit(3 * r + axis) + part.mean[r] * third(axis));
   };
-  Vec3 rho;
-  for (int i = 0; i < 3; ++i) rho[i] = std::max(12 * part.variance[i], AveragedSprings::least_variance);
+  const Vec3 rho = second_moments(part, proportions);
   const double unit = part.fraction * law.shear_modulus * l / 2;
   HourglassMatrix D = HourglassMatrix::Zero();
   for (int y = 0; y < 3; ++y) {  // the normal of the neutral plane
@@ -76,11 +82,12 @@ using Corners = Eigen::Matrix<double, 3, 8>;
 using InPatterns = Eigen::Matrix<double, 3, 4>;  // a vector per pattern
 
 /// The product of hourglass_matrix() with v [N], without the matrix.
-InPatterns hourglass_forces(const AveragedSprings& law, double l, const FilledPart& part, const InPatterns& v) {
+InPatterns hourglass_forces(const AveragedSprings& law, double l, const FilledPart& part, const Vec3& proportions,
+                            const InPatterns& v) {
   const HourglassStiffness& k = law.hourglass;
-  const Eigen::Matrix3d at_centroid = v.leftCols<3>() + v.col(3) * part.mean.transpose();
+  const Eigen::Matrix3d at_centroid = (v.leftCols<3>() + v.col(3) * part.mean.transpose()) * proportions.asDiagonal();
   const auto H = [&](int pattern, int axis) { return at_centroid(axis, pattern); };
-  const Vec3 rho = (12 * part.variance).cwiseMax(AveragedSprings::least_variance);
+  const Vec3 rho = second_moments(part, proportions);
   InPatterns w;
   for (int y = 0; y < 3; ++y) {
     const int z = (y + 1) % 3, x = (y + 2) % 3;
@@ -90,6 +97,7 @@ InPatterns hourglass_forces(const AveragedSprings& law, double l, const FilledPa
               k.twist * (rho[z] + rho[x]) / 2 * H(y, y);
     w(y, 3) = k.warping / 4 * (0.3 * rho[z] * rho[x] + rho[y] * (rho[z] + rho[x])) / 2.3 * v(y, 3);
   }
+  w.leftCols<3>() *= proportions.asDiagonal();
   w.col(3) += w.leftCols<3>() * part.mean;
   return part.fraction * law.shear_modulus * l / 2 * w;
 }
@@ -97,11 +105,13 @@ InPatterns hourglass_forces(const AveragedSprings& law, double l, const FilledPa
 /// What the forces of a cell depend on beside the positions of its corners.
 struct CellShape {
   FilledPart part;
+  Vec3 proportions;
   double edge, volume;
   Corners gradient;  ///< mean gradients of the corners' weights [1/m]
 
-  CellShape(double l, const FilledPart& filled) : part(filled), edge(l), volume(filled.fraction * l * l * l) {
-    const std::array<Vec3, 8> g = mean_gradients(l, filled);
+  CellShape(double l, const FilledPart& filled, const Vec3& of_box)
+      : part(filled), proportions(of_box), edge(l), volume(filled.fraction * l * l * l) {
+    const std::array<Vec3, 8> g = mean_gradients(l, filled, of_box);
     for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
   }
 };
@@ -124,7 +134,7 @@ struct Deformed {
       : F(x * shape.gradient.transpose()),
         q(x * patterns()),
         v(F.transpose() * q),
-        w(hourglass_forces(law, shape.edge, shape.part, v)) {
+        w(hourglass_forces(law, shape.edge, shape.part, shape.proportions, v)) {
     if (F.determinant() <= 0) {
       strain.value = std::numeric_limits<double>::infinity();
       strain.stress.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -176,20 +186,21 @@ void for_each_cell(const Network& network, const Make& make, const Act& act) {
 template <class Act>
 void for_each_shape(const Network& network, const Act& act) {
   for_each_cell(
-      network, [](double edge, const FilledPart& part) { return CellShape(edge, part); }, act);
+      network, [&](double edge, const FilledPart& part) { return CellShape(edge, part, network.proportions); }, act);
 }
 
 template <class Act>
 void for_each_stiffness(const AveragedSprings& law, const Network& network, const Act& act) {
   for_each_cell(
-      network, [&](double edge, const FilledPart& part) { return law.cell_matrix(edge, part); }, act);
+      network, [&](double edge, const FilledPart& part) { return law.cell_matrix(edge, part, network.proportions); },
+      act);
 }
 
 }  // namespace
 
-CellForm cell_form(const AveragedSprings& law, double l, const FilledPart& part) {
-  CellForm form{part.fraction * l * l * l, {}, hourglass_matrix(law, l, part)};
-  const std::array<Vec3, 8> g = mean_gradients(l, part);
+CellForm cell_form(const AveragedSprings& law, double l, const FilledPart& part, const Vec3& proportions) {
+  CellForm form{part.fraction * l * l * l, {}, hourglass_matrix(law, l, part, proportions)};
+  const std::array<Vec3, 8> g = mean_gradients(l, part, proportions);
   for (int n = 0; n < 8; ++n) form.gradient.col(n) = g[n];
   return form;
 }
@@ -213,14 +224,15 @@ HourglassStiffness HourglassStiffness::of_pattern(double face_to_cube, double nu
   return k;
 }
 
-Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(double l, const FilledPart& part) const {
+Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(double l, const FilledPart& part,
+                                                           const Vec3& proportions) const {
   const double G = shear_modulus, alpha = part.fraction, volume = alpha * l * l * l;
   const double bulk = lame_lambda + 2 * G / 3;
   const Vec3& c = part.mean;
   const auto H = second_difference;
 
   // Strain of the mean gradient; for the deviator shifted by assumed second derivatives q_i = d2u / dxi_i^2.
-  const std::array<Vec3, 8> g = mean_gradients(l, part);
+  const std::array<Vec3, 8> g = mean_gradients(l, part, proportions);
   Row normal[3], shear[3], trace = Row::Zero();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -251,7 +263,7 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(double l, const Fille
   for (int n = 0; n < 8; ++n)
     for (int m = 0; m < 4; ++m)
       for (int i = 0; i < 3; ++i) of_patterns(3 * m + i, 3 * n + i) = patterns()(n, m);
-  K += of_patterns.transpose() * hourglass_matrix(*this, l, part) * of_patterns;
+  K += of_patterns.transpose() * hourglass_matrix(*this, l, part, proportions) * of_patterns;
   return K;
 }
 
@@ -302,8 +314,8 @@ void AveragedSprings::add_viscous_forces(const Network& network, const NodalVect
     const Eigen::Matrix3d P =
         shear_modulus * F * twice + lame_lambda * (F_rate * inverse).trace() * inverse.transpose();
     const InPatterns q = at * patterns();
-    const InPatterns w =
-        hourglass_forces(*this, shape.edge, shape.part, F_rate.transpose() * q + F.transpose() * (rate * patterns()));
+    const InPatterns w = hourglass_forces(*this, shape.edge, shape.part, shape.proportions,
+                                          F_rate.transpose() * q + F.transpose() * (rate * patterns()));
     const Eigen::Matrix3d stress = time * (shape.volume * P + q * w.transpose());
     const InPatterns of_patterns = time * F * w;
     const Corners force = stress * shape.gradient + of_patterns * patterns().transpose();
@@ -322,7 +334,8 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
     for_each_cell(
         network,
         [&](double edge, const FilledPart& part) {
-          return std::pair(cell_form(*this, edge, part), CellShape(edge, part));
+          return std::pair(cell_form(*this, edge, part, network.proportions),
+                           CellShape(edge, part, network.proportions));
         },
         [&](const Hexahedron& cell, const auto& of) {
           add(cell, tangent_of(of.first, Deformed(*this, of.second, corners_of(cell, x), Derivative::second)));

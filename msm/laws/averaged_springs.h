@@ -1,4 +1,4 @@
-// Force law: springs averaged over a cubic cell, which the body may fill in part.
+// Force law: springs averaged over a cell, a cube that the body may fill in part, or a box.
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
@@ -31,6 +31,14 @@ struct HourglassStiffness {
 /// alpha and the second moments of that part (12 S_i, at least `least_variance`).  Uniform strain is exact in a body of
 /// cut cells, at any size, and so is, for circular and rectangular sections, the bending and torsional stiffness of the
 /// section; no constant is negative for -1 < nu < 1/2.  Cells: Network::cells and Network::filled.
+///
+/// Boxes: edges h_i = l p_i, p = Network::proportions of product one, so that V = l^3.  The springs' directions are
+/// those of a cube, so their part of the energy is the same function of F.  That of the patterns is the energy of the
+/// same fields: curvatures and twists H_pq of xi_p xi_q are second derivatives H_pq / (l^2 p_p p_q), and an energy of
+/// strains linear in X_i has the second moment V l^2 p_i^2 / 12.  Bending u_x = kappa x y: V E / (1 - nu^2) kappa^2
+/// h_y^2 / 24 per cell, the E I kappa^2 / 2 of a section of a plate h_y thick; torsion by shears x_i (t_j + t_k): V G
+/// (t_j + t_k)^2 h_i^2 / 24; the field xyz of component i: a weighted sum of h_j^2 h_k^2 and h_i^2 (h_j^2 + h_k^2).
+/// The form is that of a cube of edge l with H_pq / (p_p p_q) = p_r H_pq for H_pq and p_i^2 for 1 in rho_i.
 struct AveragedSprings {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"averaged springs", Reach::cells, true};
@@ -73,7 +81,11 @@ struct AveragedSprings {
                           NodalVectors& f) const;
 
   /// Stiffness of a cell of edge l at rest [N/m]; unknown 3 * corner + axis.
-  Eigen::Matrix<double, 24, 24> cell_matrix(double edge, const FilledPart& part) const;
+  /// @param edge l [m]
+  /// @param part that the body fills
+  /// @param proportions Network::proportions
+  Eigen::Matrix<double, 24, 24> cell_matrix(double edge, const FilledPart& part,
+                                            const Vec3& proportions = Vec3::Ones()) const;
 };
 
 /// What the energy of a cell depends on beside the positions of its corners.
@@ -82,8 +94,8 @@ struct CellForm {
   Eigen::Matrix<double, 3, 8> gradient;     ///< mean gradients of the corners' weights [1/m]
   Eigen::Matrix<double, 12, 12> hourglass;  ///< quadratic form of v, 3 * pattern + axis [N/m]
 };
-/// The form of a cell of edge l [m] of which the body fills `part`.
-CellForm cell_form(const AveragedSprings& law, double edge, const FilledPart& part);
+/// The form of a cell of edge l [m] of which the body fills `part`, of Network::proportions.
+CellForm cell_form(const AveragedSprings& law, double edge, const FilledPart& part, const Vec3& proportions);
 
 /// The four patterns of corner positions that F does not see: q = (positions of the corners, 3 x 8) times this.
 const Eigen::Matrix<double, 8, 4>& corner_patterns();

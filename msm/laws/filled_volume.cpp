@@ -9,7 +9,7 @@ namespace {
 using Gradients = std::array<Vec3, 8>;
 
 Gradients gradients_of(const Network& network, std::size_t cell) {
-  return mean_gradients(network.edge(cell), filled_part(network, cell));
+  return mean_gradients(network.edge(cell), filled_part(network, cell), network.proportions);
 }
 
 Eigen::Matrix3d sum_of(const Hexahedron& cell, const Gradients& g, const NodalVectors& field) {
@@ -29,14 +29,14 @@ double filled_volume(const Network& network, std::size_t cell) {
   return filled_part(network, cell).fraction * std::pow(network.edge(cell), 3);
 }
 
-std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part) {
+std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part, const Vec3& proportions) {
   Gradients g;
   for (int n = 0; n < 8; ++n)
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
       const double sj = corner_side(n, j), sk = corner_side(n, k);
-      g[n][i] =
-          corner_side(n, i) / edge * (0.25 + (sj * part.mean[j] + sk * part.mean[k]) / 2 + sj * sk * part.mixed[i]);
+      g[n][i] = corner_side(n, i) / (edge * proportions[i]) *
+                (0.25 + (sj * part.mean[j] + sk * part.mean[k]) / 2 + sj * sk * part.mixed[i]);
     }
   return g;
 }
@@ -76,7 +76,7 @@ void add_volume_curvature(const Network& network, std::size_t cell, const NodalV
 VolumeChange volume_change(const Network& network, const NodalVectors& u) {
   double volume = 0;
   VolumeChange change{0, 0};
-  const Gradients of_full = mean_gradients(network.cell_edge, {});
+  const Gradients of_full = mean_gradients(network.cell_edge, {}, network.proportions);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const bool known = filled_part(network, c).fraction == 1 && network.edge(c) == network.cell_edge;
     const Eigen::Matrix3d F =

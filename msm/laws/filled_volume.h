@@ -24,7 +24,10 @@ const FilledPart& filled_part(const Network& network, std::size_t cell);
 double filled_volume(const Network& network, std::size_t cell);
 
 /// Mean over the filled part of the gradients of the corners' trilinear weights [1/m].
-std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part);
+/// @param edge of the cell [m]; of a box that of the cube of its volume
+/// @param part that the body fills
+/// @param proportions Network::proportions
+std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part, const Vec3& proportions = Vec3::Ones());
 
 /// Mean gradient of a nodal field over the filled part of a cell: of positions, F [1].
 Eigen::Matrix3d mean_gradient(const Network& network, std::size_t cell, const NodalVectors& field);

@@ -123,7 +123,7 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
     energies.error.push_back(filled_volume(network, c) * mean);
     Eigen::Matrix<double, 24, 1> of_corners;
     for (int n = 0; n < 8; ++n) of_corners.segment<3>(3 * n) = u.row(network.cells[c][n]).transpose();
-    energies.elastic += of_corners.dot(law->cell_matrix(network.edge(c), part) * of_corners) / 2;
+    energies.elastic += of_corners.dot(law->cell_matrix(network.edge(c), part, network.proportions) * of_corners) / 2;
   }
   return energies;
 }

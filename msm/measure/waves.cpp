@@ -14,7 +14,8 @@ using std::numbers::pi;
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
 
 CellMatrix stiffness_of_cell(const MassSpringModel& model) {
-  if (!consists_of_cells(model)) throw std::invalid_argument("plane waves are those of a lattice of cells");
+  if (!consists_of_cells(model) || model.network.has_boxes())
+    throw std::invalid_argument("plane waves are those of a lattice of cubes");
   return cell_stiffness(model).total;
 }
 

@@ -70,9 +70,9 @@ void SaddlePointLevel::cycle(const std::function<void()>& add_coarse_correction)
   for (int s = 0; s < sweeps; ++s) sweep(false);
 }
 
-Eigen::VectorXd SaddlePointSystem::to_rows(const Eigen::VectorXd& u, const Eigen::VectorXd& p) {
+Eigen::VectorXd SaddlePointSystem::to_rows(Nodal kind, const Eigen::VectorXd& u, const Eigen::VectorXd& p) {
   Eigen::VectorXd u_rows, rows = Eigen::VectorXd::Zero(pressures_begin() + finest().p.size());
-  lattice().to_rows(u, u_rows);
+  lattice().to_rows(kind, u, u_rows);
   rows.head(pressures_begin()) = u_rows;
   const std::vector<int>& place = place_of_pressure();
   for (std::size_t i = 0; i < place.size(); ++i) rows[pressures_begin() + place[i]] = p[static_cast<Eigen::Index>(i)];
@@ -90,7 +90,7 @@ KrylovResult SaddlePointSystem::solve(const Eigen::VectorXd& f, const Eigen::Vec
                                       int max_iterations, Eigen::VectorXd& u, Eigen::VectorXd& p) {
   const LatticeLevel& level = lattice().levels[0];
   const Eigen::Index n = pressures_begin(), m = finest().p.size();
-  Eigen::VectorXd b = to_rows(f, g), x = Eigen::VectorXd::Zero(n + m);
+  Eigen::VectorXd b = to_rows(Nodal::forces, f, g), x = Eigen::VectorXd::Zero(n + m);
   level.clear_fixed(b);
   const Operator A = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
     y.resize(v.size());
@@ -106,7 +106,7 @@ KrylovResult SaddlePointSystem::solve(const Eigen::VectorXd& f, const Eigen::Vec
     z << top.u.cast<double>(), top.p.cast<double>();
   };
   const KrylovResult result = gmres(A, precondition, b, tolerance, max_iterations, 60, x);
-  lattice().from_rows(x, u);
+  lattice().from_rows(Nodal::displacements, x, u);
   p = pressures_of(x.data() + n);
   return result;
 }
@@ -114,25 +114,25 @@ KrylovResult SaddlePointSystem::solve(const Eigen::VectorXd& f, const Eigen::Vec
 void SaddlePointSystem::apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u,
                               Eigen::VectorXd& p) {
   SaddlePointLevel& top = finest();
-  const Eigen::VectorXd rows = to_rows(f, g);
+  const Eigen::VectorXd rows = to_rows(Nodal::forces, f, g);
   top.f = rows.head(pressures_begin()).cast<float>();
   top.g = rows.tail(top.p.size()).cast<float>();
   cycle();
-  lattice().from_rows(top.u.cast<double>(), u);
+  lattice().from_rows(Nodal::displacements, top.u.cast<double>(), u);
   p = pressures_of(top.p.cast<double>().eval().data());
 }
 
 Eigen::VectorXd SaddlePointSystem::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) {
-  const Eigen::VectorXd x = to_rows(u, p);
+  const Eigen::VectorXd x = to_rows(Nodal::displacements, u, p);
   Eigen::VectorXd y(x.size()), f;
   multiply_rows(x.data(), y.data());
-  lattice().from_rows(y, f);
+  lattice().from_rows(Nodal::forces, y, f);
   return f;
 }
 
 Eigen::VectorXd SaddlePointSystem::volume_change(const Eigen::VectorXd& u) {
   Eigen::VectorXd u_rows, J = Eigen::VectorXd::Zero(finest().p.size());
-  lattice().to_rows(u, u_rows);
+  lattice().to_rows(Nodal::displacements, u, u_rows);
   volume_change_rows(u_rows.data(), J.data());
   return pressures_of(J.data());
 }

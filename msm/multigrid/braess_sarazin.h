@@ -81,7 +81,7 @@ class SaddlePointSystem {
 
  private:
   Eigen::Index pressures_begin() const { return 3 * lattice().levels[0].stride(); }
-  Eigen::VectorXd to_rows(const Eigen::VectorXd& u, const Eigen::VectorXd& p);
+  Eigen::VectorXd to_rows(Nodal kind, const Eigen::VectorXd& u, const Eigen::VectorXd& p);
   Eigen::VectorXd pressures_of(const double* rows) const;
 };
 

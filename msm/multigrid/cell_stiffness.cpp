@@ -12,10 +12,12 @@ MassSpringModel one_cell(const MassSpringModel& model) {
   for (const ForceLaw& law : model.laws)
     if (traits(law).reach != Reach::second_neighbours) cell.laws.push_back(law);
   cell.network.cell_edge = model.network.cell_edge;
+  cell.network.proportions = model.network.proportions;
   cell.network.springs = model.network.cell_springs;
   cell.network.X.resize(8, 3);
   for (int n = 0; n < 8; ++n)
-    for (int d = 0; d < 3; ++d) cell.network.X(n, d) = model.network.cell_edge * hexahedron_corners[n][d];
+    for (int d = 0; d < 3; ++d)
+      cell.network.X(n, d) = model.network.cell_edge * model.network.proportions[d] * hexahedron_corners[n][d];
   cell.network.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
   return cell;
 }

@@ -258,7 +258,9 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
   const Vec3 lower = network.X.topRows(nodes.corners).colwise().minCoeff().transpose();
   for (int n = 0; n < nodes.corners; ++n) {
     std::array<int, 3> at;
-    for (int d = 0; d < 3; ++d) at[d] = static_cast<int>(std::lround((network.X(n, d) - lower[d]) / network.cell_edge));
+    for (int d = 0; d < 3; ++d)
+      at[d] =
+          static_cast<int>(std::lround((network.X(n, d) - lower[d]) / (network.cell_edge * network.proportions[d])));
     finest.point.push_back(at);
   }
   for (std::size_t c = 0; c < network.cells.size(); ++c)

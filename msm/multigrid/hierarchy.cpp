@@ -1,6 +1,7 @@
 #include "msm/multigrid/hierarchy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace springproof {
@@ -122,6 +123,7 @@ void lay_out_finest(const Network& network, const std::vector<char>& fixed, cons
       if (fixed[3 * n + all.axes[a]])
         level.fixed.push_back(static_cast<int>(a * level.stride() + all.point_of_node[n]));
   std::sort(level.fixed.begin(), level.fixed.end());
+  for (int a = 0; a < 3; ++a) level.arms[a] = std::pow(all.proportions[all.axes[a]], 2);
   all.levels.push_back(std::move(level));
 }
 
@@ -132,6 +134,7 @@ LatticeLevel coarsen(const LatticeLevel& fine) {
   Numbering cells({0, 0, 0}, size);
   for (const Index& cell : fine.cell_index) cells.at(half(cell)) = 0;
   LatticeLevel coarse = lay_out(cells, 2 * fine.edge_ratio);
+  coarse.arms = fine.arms;
   coarse.fill.assign(coarse.cell_index.size(), 0);
   for (std::size_t c = 0; c < fine.cell_index.size(); ++c)
     coarse.fill[cells.at(half(fine.cell_index[c]))] += (fine.fill.empty() ? 1 : fine.fill[c]) / 8;
@@ -190,18 +193,22 @@ long LatticeLevel::corner(const CellRow& row, int i, int c) {
   return row.point[at[1] + 2 * at[2]] + i + at[0];
 }
 
-void LatticeLevels::to_rows(const Eigen::VectorXd& nodal, Eigen::VectorXd& rows) const {
+void LatticeLevels::to_rows(Nodal kind, const Eigen::VectorXd& nodal, Eigen::VectorXd& rows) const {
   const long stride = levels[0].stride();
+  const Vec3 unit = kind == Nodal::forces ? proportions : proportions.cwiseInverse();
   rows.setZero(3 * stride);
   for (std::size_t n = 0; n < point_of_node.size(); ++n)
-    for (int a = 0; a < 3; ++a) rows[a * stride + point_of_node[n]] = nodal[3 * static_cast<long>(n) + axes[a]];
+    for (int a = 0; a < 3; ++a)
+      rows[a * stride + point_of_node[n]] = unit[axes[a]] * nodal[3 * static_cast<long>(n) + axes[a]];
 }
 
-void LatticeLevels::from_rows(const Eigen::VectorXd& rows, Eigen::VectorXd& nodal) const {
+void LatticeLevels::from_rows(Nodal kind, const Eigen::VectorXd& rows, Eigen::VectorXd& nodal) const {
   const long stride = levels[0].stride();
+  const Vec3 unit = kind == Nodal::forces ? proportions.cwiseInverse() : proportions;
   nodal.resize(3 * static_cast<long>(point_of_node.size()));
   for (std::size_t n = 0; n < point_of_node.size(); ++n)
-    for (int a = 0; a < 3; ++a) nodal[3 * static_cast<long>(n) + axes[a]] = rows[a * stride + point_of_node[n]];
+    for (int a = 0; a < 3; ++a)
+      nodal[3 * static_cast<long>(n) + axes[a]] = unit[axes[a]] * rows[a * stride + point_of_node[n]];
 }
 
 void link(const LatticeLevel& fine, LatticeLevel& coarse) {
@@ -227,6 +234,7 @@ LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fi
                              const std::vector<double>& fill) {
   if (!network.grid) throw std::invalid_argument("multigrid needs a network made from a lattice of cells");
   LatticeLevels all;
+  all.proportions = network.proportions;
   lay_out_finest(network, fixed, fill, all);
   add_coarser_levels(all, coarsest_unknowns);
   return all;

@@ -28,6 +28,7 @@ struct LatticeLevel {
   std::vector<double> fill;  ///< fraction of each cell that lies in the body, 0 < fill <= 1; empty: 1
   std::vector<int> fixed;    ///< indices of fixed unknowns in a nodal field, ascending
   double edge_ratio = 1;     ///< cell edge / finest cell edge
+  Vec3 arms = Vec3::Ones();  ///< p_i^2 along the level's axes: at x rotations displace by arms x, crossed
   std::vector<std::array<int, 3>> cell_index, point_index;  ///< (i,j,k) of each
 
   // Transfer to the next finer level; empty on the finest.
@@ -46,15 +47,20 @@ struct LatticeLevel {
   static long corner(const CellRow& row, int i, int c);
 };
 
+/// What a nodal field holds.  Displacements of the levels of a lattice of boxes are u_i / p_i, p its proportions, so
+/// that they change the volume of a cell by the same along each axis; forces are f_i p_i.
+enum class Nodal { displacements, forces };
+
 /// The levels of a lattice network, finest first, and the numbers of its nodes and cells on the finest.
 struct LatticeLevels {
   std::vector<LatticeLevel> levels;
   std::array<int, 3> axes{0, 1, 2};  ///< network axis of each of the levels' axes
+  Vec3 proportions = Vec3::Ones();   ///< those of the network
   std::vector<int> point_of_node, cell_of_cell;
 
   /// Converts the network's nodal field (3 values per node) to one of the finest level, and back.
-  void to_rows(const Eigen::VectorXd& nodal, Eigen::VectorXd& rows) const;
-  void from_rows(const Eigen::VectorXd& rows, Eigen::VectorXd& nodal) const;
+  void to_rows(Nodal kind, const Eigen::VectorXd& nodal, Eigen::VectorXd& rows) const;
+  void from_rows(Nodal kind, const Eigen::VectorXd& rows, Eigen::VectorXd& nodal) const;
 };
 
 /// Levels down to about `coarsest_unknowns` or a single cell per side.

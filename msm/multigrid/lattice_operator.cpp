@@ -30,6 +30,11 @@ CellMatrix reorder(const CellMatrix& cell, const std::array<int, 3>& axes) {
   return K;
 }
 
+CellMatrix cell_of_levels(const CellMatrix& cell, const LatticeLevels& lattice) {
+  const CellVector p = lattice.proportions.replicate<8, 1>();
+  return reorder(p.asDiagonal() * cell * p.asDiagonal(), lattice.axes);
+}
+
 template <class Real>
 CellBlocks<Real> cell_blocks(const CellMatrix& cell, double gradient) {
   CellMatrix H = CellMatrix::Zero();  // row 3 t + a: pattern t of component a

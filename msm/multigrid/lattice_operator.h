@@ -14,6 +14,9 @@ namespace springproof {
 /// A cell's stiffness, permuted from the network's axes to the level's.
 CellMatrix reorder(const CellMatrix& cell, const std::array<int, 3>& axes);
 
+/// The same between displacements of the levels (Nodal), which are others than the network's where cells are boxes.
+CellMatrix cell_of_levels(const CellMatrix& cell, const LatticeLevels& lattice);
+
 /// @throws std::invalid_argument if the cell lacks the mirror planes.
 template <class Real>
 CellBlocks<Real> cell_blocks(const CellMatrix& cell, double gradient);

@@ -6,15 +6,18 @@
 namespace springproof {
 namespace {
 
-double corner_gradient(const CellStiffness& cell) { return cell.volume_gradient.cwiseAbs().maxCoeff(); }
+/// |dV/du| of a corner by displacements of the levels, the same along each axis.
+double corner_gradient(const CellStiffness& of_network, const LatticeLevels& lattice) {
+  return of_network.volume_gradient.cwiseProduct(lattice.proportions.replicate<8, 1>()).cwiseAbs().maxCoeff();
+}
 
 /// B and K_s run over the cells in the same pass.
 class CellPressures : public SaddlePointLevel {
  public:
-  CellPressures(const LatticeLevel& lattice, const CellStiffness& cell, bool coarsest)
-      : SaddlePointLevel(lattice, cell.without_volume, corner_gradient(cell), lattice.cells() + array_slack,
-                         cell.kappa) {
-    const double h = lattice.edge_ratio, gradient = corner_gradient(cell);
+  /// `cell`: total and without_volume of the levels; `gradient`: corner_gradient().
+  CellPressures(const LatticeLevel& lattice, const CellStiffness& cell, double gradient, bool coarsest)
+      : SaddlePointLevel(lattice, cell.without_volume, gradient, lattice.cells() + array_slack, cell.kappa) {
+    const double h = lattice.edge_ratio;
     for (const CellRow& row : lattice.rows)
       for (int i = 0; i < row.length; ++i) {
         const double fill = lattice.fill.empty() ? 1 : lattice.fill[row.cell + i], b = fill * h * h * gradient;
@@ -82,13 +85,15 @@ class CellPressures : public SaddlePointLevel {
 
 MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_network, bool may_float)
     : lattice_(std::move(levels)),
-      K_(lattice_.levels[0], reorder(of_network.without_volume, lattice_.axes), corner_gradient(of_network)) {
+      K_(lattice_.levels[0], cell_of_levels(of_network.without_volume, lattice_),
+         corner_gradient(of_network, lattice_)) {
   if (!(of_network.kappa > 0)) throw std::invalid_argument("the mixed form needs kappa > 0 (nu > 1/4)");
   CellStiffness cell = of_network;
-  cell.total = reorder(of_network.total, lattice_.axes);
-  cell.without_volume = reorder(of_network.without_volume, lattice_.axes);
+  cell.total = cell_of_levels(of_network.total, lattice_);
+  cell.without_volume = cell_of_levels(of_network.without_volume, lattice_);
   for (const LatticeLevel& level : lattice_.levels)
-    levels_.push_back(std::make_unique<CellPressures>(level, cell, &level == &lattice_.levels.back()));
+    levels_.push_back(std::make_unique<CellPressures>(level, cell, corner_gradient(of_network, lattice_),
+                                                      &level == &lattice_.levels.back()));
   compliance_ = finest().compliance.cast<double>();
   const LatticeLevel& finest = lattice_.levels[0];
   for (long c = 0; c < finest.cells(); ++c)

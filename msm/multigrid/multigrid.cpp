@@ -88,16 +88,17 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
                      double mass)
     : lattice_(std::move(levels)),
       degree_(smoothing_degree),
-      K_(lattice_.levels[0], reorder(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_.axes)) {
-  const CellMatrix cell = reorder(cell_of_network, lattice_.axes);
+      K_(lattice_.levels[0], cell_of_levels(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_)) {
   // The stiffness of a cell grows with its edge, its mass with the cube.
-  const auto of_level = [&](const LatticeLevel& level) -> CellMatrix {
-    return cell + level.edge_ratio * level.edge_ratio * mass * CellMatrix::Identity();
+  const auto of_level = [&](const LatticeLevel& level) {
+    const double masses = level.edge_ratio * level.edge_ratio * mass;
+    return cell_of_levels(cell_of_network + CellMatrix(masses * CellMatrix::Identity()), lattice_);
   };
   const CellMatrix finest = of_level(lattice_.levels[0]);
   const double unit = finest.diagonal().mean();
   unit_ = 1 / unit;
-  largest_diagonal_ = diagonal(lattice_.levels[0], finest).maxCoeff();
+  const CellMatrix of_network = cell_of_network + CellMatrix(mass * CellMatrix::Identity());
+  largest_diagonal_ = diagonal(lattice_.levels[0], reorder(of_network, lattice_.axes)).maxCoeff();
   for (const LatticeLevel& level : lattice_.levels) {
     const CellMatrix here = of_level(level) / unit;
     SmoothingLevel& l = levels_.emplace_back(level, here);
@@ -240,22 +241,22 @@ void Multigrid::multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
 
 void Multigrid::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
   Eigen::VectorXd x_rows, y_rows;
-  lattice_.to_rows(x, x_rows);
+  lattice_.to_rows(Nodal::displacements, x, x_rows);
   multiply_rows(x_rows, y_rows);
-  lattice_.from_rows(y_rows, y);
+  lattice_.from_rows(Nodal::forces, y_rows, y);
 }
 
 void Multigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
   Eigen::VectorXd r_rows, z_rows;
-  lattice_.to_rows(r, r_rows);
+  lattice_.to_rows(Nodal::forces, r, r_rows);
   apply_rows(r_rows, z_rows);
-  lattice_.from_rows(z_rows, z);
+  lattice_.from_rows(Nodal::displacements, z_rows, z);
 }
 
 KrylovResult Multigrid::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u) {
   const LatticeLevel& finest = lattice_.levels[0];
   Eigen::VectorXd b_rows, u_rows;
-  lattice_.to_rows(b, b_rows);
+  lattice_.to_rows(Nodal::forces, b, b_rows);
   finest.clear_fixed(b_rows);
   u_rows.setZero(b_rows.size());
   const Operator K = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
@@ -264,7 +265,7 @@ KrylovResult Multigrid::solve(const Eigen::VectorXd& b, double tolerance, int ma
   };
   const Operator condition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { apply_rows(r, z); };
   const KrylovResult result = conjugate_gradients(K, condition, b_rows, tolerance, max_iterations, u_rows);
-  lattice_.from_rows(u_rows, u);
+  lattice_.from_rows(Nodal::displacements, u_rows, u);
   return result;
 }
 

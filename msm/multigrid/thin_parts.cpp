@@ -145,7 +145,8 @@ void ThinParts::form_blocks(const LatticeLevel& level) {
     const Index b = {at[0] / side, at[1] / side, at[2] / side};
     const long key = (long(b[2]) * (level.cells_per_side[1] + 1) + b[1]) * (level.cells_per_side[0] + 1) + b[0];
     point.block = block_at.emplace(key, static_cast<int>(block_at.size())).first->second;
-    for (int a = 0; a < 3; ++a) point.arm[a] = static_cast<float>(at[a] - (b[a] * side + (side - 1) / 2.0));
+    for (int a = 0; a < 3; ++a)
+      point.arm[a] = static_cast<float>(level.arms[a] * (at[a] - (b[a] * side + (side - 1) / 2.0)));
   }
   blocks_ = static_cast<long>(block_at.size());
 }

@@ -26,7 +26,7 @@ class ThinParts {
   struct Point {
     long place = 0;  ///< of its x component in a nodal field
     int block = 0;
-    Eigen::Vector3f arm = Eigen::Vector3f::Zero();  ///< from the block's centre, in cell edges
+    Eigen::Vector3f arm = Eigen::Vector3f::Zero();  ///< from the block's centre, LatticeLevel::arms
     bool free[3] = {true, true, true};
   };
 

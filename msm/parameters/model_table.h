@@ -84,6 +84,11 @@ inline bool holds_at_large_displacement(const ModelRow& row) {
 /// @return true for emsm_patch
 inline bool passes_patch_test(const ModelRow& row) { return row.calibration == Calibration::patch_test; }
 
+/// Whether the cells may be boxes that are no cubes.
+/// @param row of the table
+/// @return true: build_embedded() takes a mesh of equal boxes; false: if it takes cells, they are cubes
+inline bool takes_boxes(const ModelRow& row) { return row.extension == Extension::averaging; }
+
 /// A model choice with all options resolved.
 struct ModelParameters {
   ModelRow row;               ///< its row

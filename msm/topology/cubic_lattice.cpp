@@ -14,11 +14,23 @@ CubicPattern isotropic_pattern(double face_to_cube) {
   return {8.0 / 3.0 + face_to_cube, face_to_cube, 1.0};
 }
 
-double cube_edge(const Mesh& mesh) {
+namespace {
+
+const Grid& grid_of(const Mesh& mesh) {
   if (!mesh.grid || mesh.hexahedra.empty())
     throw std::invalid_argument("a cubic lattice needs a mesh of equal cubes; this mesh is not cut from one lattice");
-  const Vec3 edge = mesh.grid->spacing;
-  if ((edge.array() - edge[0]).abs().maxCoeff() > 1e-6 * edge[0])
+  return *mesh.grid;
+}
+
+}  // namespace
+
+bool has_cubes(const Grid& grid) {
+  return (grid.spacing.array() - grid.spacing[0]).abs().maxCoeff() <= 1e-6 * grid.spacing[0];
+}
+
+double cube_edge(const Mesh& mesh) {
+  const Vec3& edge = grid_of(mesh).spacing;
+  if (!has_cubes(*mesh.grid))
     throw std::invalid_argument(fmt::format(
         "a cubic lattice needs cubes; the cells are {:.6g} x {:.6g} x {:.6g} m (choose cells in proportion to size)",
         edge[0], edge[1], edge[2]));
@@ -65,15 +77,21 @@ std::vector<Spring> superposed(const Network& network) {
 
 }  // namespace
 
-Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
-  const double edge = cube_edge(mesh);
+Network lattice_without_springs(const Mesh& mesh) {
+  const Grid& grid = grid_of(mesh);
   Network network;
   network.X = mesh.nodes;
   network.cells = mesh.hexahedra;
-  network.cell_edge = edge;
+  network.cell_edge = has_cubes(grid) ? grid.spacing[0] : std::cbrt(grid.spacing.prod());
+  if (!has_cubes(grid)) network.proportions = grid.spacing / network.cell_edge;
   network.volume = nodal_volumes(mesh);
   network.grid = mesh.grid;
+  return network;
+}
 
+Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
+  const double edge = cube_edge(mesh);
+  Network network = lattice_without_springs(mesh);
   const double share[4] = {0, pattern.k_e / 4, pattern.k_f / 2, pattern.k_c};  // by number of differing axes
   for (int a = 0; a < 8; ++a)
     for (int b = a + 1; b < 8; ++b) {

@@ -21,9 +21,16 @@ struct CubicPattern {
 /// @throws std::invalid_argument if A < 0 or NaN.
 CubicPattern isotropic_pattern(double face_to_cube);
 
+/// Whether the cells of a grid are cubes, to 1e-6 of their edge.
+bool has_cubes(const Grid& grid);
+
 /// Edge [m] of the cubes that a mesh is cut into.
 /// @throws std::invalid_argument if it is not cut into equal cubes (the message gives the edge lengths).
 double cube_edge(const Mesh& mesh);
+
+/// The nodes and cells of a mesh of equal cubes or boxes, without springs.
+/// @throws std::invalid_argument if the mesh is not cut from one lattice.
+Network lattice_without_springs(const Mesh& mesh);
 
 /// Network of a mesh of equal cubes: each cell contributes edges k_e/4, face diagonals k_f/2 and cube diagonals k_c
 /// (Golec et al. 2019, sec. 5.4).

@@ -34,12 +34,13 @@ using MacroCell = std::array<int, 27>;
 
 /// Nodes, springs and cells of a body; laws (msm/laws/laws.h) say what forces they have.
 struct Network {
-  NodalVectors X;                      ///< rest positions [m], n x 3
-  std::vector<Spring> springs;         ///< each pair once, sorted by (i, j)
-  std::vector<Hexahedron> cells;       ///< cubic cells, empty for networks without
-  double cell_edge = 0;                ///< l [m] of the cells; of several sizes, of the smallest
-  std::vector<double> cell_edges;      ///< [m] of cells of several sizes, one per cell; empty: all are equal
-  std::vector<FilledPart> filled;      ///< of cut cells, one per cell; empty: all cells are full
+  NodalVectors X;                   ///< rest positions [m], n x 3
+  std::vector<Spring> springs;      ///< each pair once, sorted by (i, j)
+  std::vector<Hexahedron> cells;    ///< cubic cells, or boxes; empty for networks without
+  double cell_edge = 0;             ///< l [m] of the cells; of several sizes, of the smallest; of boxes of their cube
+  Vec3 proportions = Vec3::Ones();  ///< edges of boxes over those of the cube of their volume; cubes: 1
+  std::vector<double> cell_edges;   ///< [m] of cells of several sizes, one per cell; empty: all are equal
+  std::vector<FilledPart> filled;   ///< of cut cells, one per cell; empty: all cells are full
   std::vector<MacroCell> macro_cells;  ///< of cubes, eight each; empty for networks without
   std::vector<Anchor> anchors;         ///< of the supports of cut cells
   std::vector<Spring> cell_springs;    ///< contribution of one cell: springs between its corners 0..7
@@ -57,8 +58,10 @@ struct Network {
   /// @return the node that it is an image of; itself if it is none
   int master(int node) const { return image_of.empty() ? node : image_of[node]; }
   /// @param cell its number
-  /// @return its edge [m]
+  /// @return its edge [m], that of the cube of its volume
   double edge(std::size_t cell) const { return cell_edges.empty() ? cell_edge : cell_edges[cell]; }
+  /// @return whether the cells are boxes that are no cubes
+  bool has_boxes() const { return (proportions.array() != 1).any(); }
   /// @return of a full cell, the smallest if there are several sizes [m^3]
   double cell_volume() const { return cell_edge * cell_edge * cell_edge; }
 };

@@ -78,6 +78,34 @@ check_case fine 1e-8 20 hybmss_avg 0.49 1 2 3
 check_case fine 1e-8 14 "hybmss_avg cut=false" 0.3 2
 check_case fine 1e-8 20 "hybmss_avg cut=false" 0.49 2
 
+# Boxes are no slabs, but parts.
+cat >"$work/boxes.toml" <<TOML
+[body]
+geo = "block.geo"
+size_m = [4, 0.5, 1]
+cells = [16, 4, 8]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = [0.3, 0.49]
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "x_max"
+force_N = [1, 2, -1]
+[[probe]]
+name = "middle"
+at_m = [2.1, 0.2, 0.3]
+[compare]
+models = ["hybmss_avg"]
+measures = ["reaction", "probe"]
+[reference]
+elements = []
+TOML
+"$springproof" compare "$work/boxes.toml" --out "$work/boxes" >"$work/out" 2>&1
+check_case boxes 1e-8 30 hybmss_avg 0.3 1 2
+check_case boxes 1e-8 40 hybmss_avg 0.49 2
+
 # What is wrong is said once, with exit status 2.   refuse WHAT MESSAGE ARGUMENTS
 refuse() {
   local what=$1 message=$2

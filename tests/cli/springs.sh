@@ -89,6 +89,17 @@ if [ -n "$numpy" ]; then
     awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of refined.$form by docs/springs_file.md: off by '$off'"
   done
 fi
+# Boxes, of the model that has them.
+for form in json npz; do
+  export_to case.toml --to springs --model hybmss_avg --nu 0.4 --cells 4 3 1 --out "boxes.$form"
+  if [ -n "$numpy" ]; then
+    off=$("$numpy" springs.py "boxes.$form" | awk '{ print $3 }')
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of boxes.$form by docs/springs_file.md: off by '$off'"
+  fi
+done
+grep -q '"version": 4' boxes.json && grep -q '"proportions": ' boxes.json || fail "no boxes"
+"$program" export case.toml --to springs --model hybmss --nu 0.4 --cells 4 3 1 --out refused.json >log 2>&1
+[ $? -eq 2 ] && grep -q "hybmss: needs cubes.*a model of boxes: hybmss_avg" log || fail "boxes of hybmss: $(cat log)"
 models=$(ls -- *.json | wc -l)
 [ "$models" -ge 15 ] || fail "only $models models"
 [ -n "$numpy" ] || echo "without numpy: forces in Python are not checked"
@@ -253,7 +264,7 @@ refused() {
   [ $status -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log && [ ! -e refused ] || fail "$2: status $status: $(head -c 600 log)"
 }
 refused 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
-refused 'own.toml:16:.*hybmss.json: /version: is 4 \(allowed' 's/"version":  1/"version": 4/'
+refused 'own.toml:16:.*hybmss.json: /version: is 5 \(allowed' 's/"version":  1/"version": 5/'
 refused 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
 refused 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
 refused 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'

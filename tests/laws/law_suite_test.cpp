@@ -55,7 +55,8 @@ std::vector<Case> cases() {
     }
   }
   const Network cut = test::cut_network(), refined = test::refined_network(),
-                cells = cubic_lattice(mesh, CubicPattern{});
+                cells = cubic_lattice(mesh, CubicPattern{}),
+                boxes = lattice_without_springs(test::notched_block(Vec3(0.5, 0.9, 0.35)));
   for (double nu : {-0.9, 0.0, 0.4, 0.499})
     for (double shift : {0.0, 0.5}) {
       const IsotropicMaterial material{1e4, nu, 1000};
@@ -71,6 +72,7 @@ std::vector<Case> cases() {
         all.push_back({name + "_curve" + std::to_string(curve), {cut, {law}}, true});
         if (curve == 0) all.push_back({name + "_refined", {refined, {law}}, true});
         all.push_back({name + "_full_curve" + std::to_string(curve), {cells, {law}}, true});
+        all.push_back({name + "_boxes_curve" + std::to_string(curve), {boxes, {law}}, true});
       }
     }
   const Network macro = test::macro_network();

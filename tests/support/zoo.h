@@ -39,10 +39,11 @@ inline std::vector<ModelParameters> large_displacement_models() {
 }
 
 /// A block of 3 x 2 x 2 cells with an L-shaped piece missing: faces, edges and a re-entrant corner.
-inline Mesh notched_block(double edge = 0.5) {
-  return voxels_of(block_mesh(edge * Vec3(3, 2, 2), {3, 2, 2}),
+inline Mesh notched_block(const Vec3& edges) {
+  return voxels_of(block_mesh(edges.cwiseProduct(Vec3(3, 2, 2)), {3, 2, 2}),
                    [](int i, int j, int k) { return i + j + k != 0 && !(i == 2 && j == 1 && k == 1); });
 }
+inline Mesh notched_block(double edge = 0.5) { return notched_block(Vec3::Constant(edge)); }
 
 /// Repeatable noise in [-size, size] (the generator's raw bits, not a library distribution).
 inline NodalVectors noise(Eigen::Index nodes, double size, unsigned seed = 1) {

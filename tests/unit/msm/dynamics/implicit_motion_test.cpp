@@ -10,6 +10,7 @@
 #include "msm/algebra/dense.h"
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/topology/cubic_lattice.h"
 #include "support/zoo.h"
 
 namespace springproof::implicit_motion_test {
@@ -115,7 +116,7 @@ TEST(EnergyMomentum, ForcesDoTheWorkOfTheEnergyAndHaveNoTorque) {
       }
 }
 
-TEST(EnergyMomentum, HoldsForCutCellsTheirAnchorsAndEveryCurve) {
+TEST(EnergyMomentum, HoldsForBoxesCutCellsTheirAnchorsAndEveryCurve) {
   for (StrainCurve curve : {StrainCurve::hencky, StrainCurve::neo_hooke, StrainCurve::neo_hooke_isochoric,
                             StrainCurve::springs_hencky, StrainCurve::springs_neo_hooke})
     for (double size : {1e-3, 0.02, 0.7}) {
@@ -123,6 +124,8 @@ TEST(EnergyMomentum, HoldsForCutCellsTheirAnchorsAndEveryCurve) {
       law.hourglass = HourglassStiffness::of_pattern(2, 0.3, true, true);
       law.curve = curve;
       expect_exact({test::cut_network(), {law, Anchors{}}}, std::to_string(static_cast<int>(curve)), size);
+      const Network boxes = lattice_without_springs(test::notched_block(Vec3(0.5, 0.9, 0.35)));
+      expect_exact({boxes, {law}}, "boxes " + std::to_string(static_cast<int>(curve)), size);
     }
 }
 

@@ -237,6 +237,19 @@ TEST(MassAverage, TheSafeStepIsSafeAndNotWasteful) {
   }
 }
 
+TEST(MassAverage, TheSafeStepOfBoxesIsSafeAndNotWasteful) {
+  for (const double nu : {-0.5, 0.25, 0.45})
+    for (const Vec3& size : {Vec3(2.5, 4, 1.5), Vec3(10, 2, 1.5), Vec3(2.5, 0.5, 1.5)}) {
+      const MassSpringModel model =
+          build_model(test::model("hybmss_avg"), block_mesh(size, {5, 4, 3}), {1e4, nu, density});
+      for (const double theta : {0.0, 0.6, 1.0}) {
+        const double used = safe_time_step(model, density, false, theta) * std::sqrt(spectral_radius(model, theta)) / 2;
+        EXPECT_LE(used, 1 + 1e-9) << size.transpose() << ", nu = " << nu << ", " << theta;
+        EXPECT_GE(used, 0.7) << size.transpose() << ", nu = " << nu << ", " << theta;
+      }
+    }
+}
+
 TEST(MassAverage, CostsTheStepOfAnInfiniteLatticeNoMore) {
   for (const char* name : {"hybmss", "hybmss_avg"}) {
     const MassSpringModel model =

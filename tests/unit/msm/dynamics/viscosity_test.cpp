@@ -60,6 +60,12 @@ TEST(Viscosity, AtRestIsTheStiffnessTimesTheRetardation) {
     const NodalVectors viscous = viscous_forces(body.model, nu, X, v);
     EXPECT_LT((viscous - retardation * elastic).norm(), 1e-7 * viscous.norm()) << nu;
   }
+  const MassSpringModel boxes =
+      build_model(test::model("hybmss_avg"), block_mesh({1, 0.3, 0.6}, {3, 2, 1}), {1e4, 0.3, density});
+  const NodalVectors &of_boxes = boxes.network.X, speed = some_velocity(of_boxes);
+  const NodalVectors expected =
+      retardation * (forces(boxes, of_boxes + 1e-6 * speed) - forces(boxes, of_boxes - 1e-6 * speed)) / 2e-6;
+  EXPECT_LT((viscous_forces(boxes, 0.3, of_boxes, speed) - expected).norm(), 1e-7 * expected.norm());
   for (const char* model : {"msm_18", "msm_random"}) {
     const EmbeddedModel springs = bar(model, 0.25);
     const NodalVectors &X = springs.model.network.X, v = some_velocity(X);

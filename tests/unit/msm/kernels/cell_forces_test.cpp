@@ -40,6 +40,8 @@ std::vector<MassSpringModel> models() {
       all.push_back({test::cut_network(), all.back().laws});  // less than a vector of cells
     }
   all.push_back({all.back().network, {*averaged_springs_of(all.back())}});  // without its anchors
+  const Mesh boxes = block_mesh({1.2, 1.6, 0.7}, {4, 3, 5});
+  all.push_back(build_model(test::model("hybmss_avg"), boxes, {1e4, 0.3, 1000}));
   return all;
 }
 

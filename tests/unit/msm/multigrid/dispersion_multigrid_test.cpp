@@ -60,7 +60,7 @@ TEST(NodalVolumes, AreTheInflowsOfTheTangentAndItsTranspose) {
       const Eigen::VectorXd u = arbitrary(network.nodes(), 1), p = arbitrary(network.nodes(), 2).head(network.nodes());
       const Eigen::VectorXd J = K.inflow * u / (10 * G * l * l), pull = K.inflow.transpose() * p / (10 * G * l * l);
       Eigen::VectorXd u_rows, p_rows = Eigen::VectorXd::Zero(stride);
-      lattice.to_rows(u, u_rows);
+      lattice.to_rows(Nodal::displacements, u, u_rows);
       for (int n = 0; n < network.nodes(); ++n) p_rows[lattice.point_of_node[n]] = p[n];
       for (InstructionSet set : usable_instruction_sets()) {
         const NodalVolumeOperator<double> B(volumes, stride, set);
@@ -69,7 +69,7 @@ TEST(NodalVolumes, AreTheInflowsOfTheTangentAndItsTranspose) {
         for (int n = 0; n < network.nodes(); ++n)
           ASSERT_NEAR(found[lattice.point_of_node[n]], J[n], 1e-12) << name_of(set);
         B.add_forces(p_rows.data(), y.data());
-        lattice.from_rows(y, nodal);
+        lattice.from_rows(Nodal::forces, y, nodal);
         EXPECT_LE((nodal - pull).cwiseAbs().maxCoeff(), 1e-12) << name_of(set);
       }
     }
@@ -82,7 +82,7 @@ TEST(NodalVolumes, DiagonalOfTheSchurComplement) {
   const LatticeLevels lattice = lattice_levels(network, std::vector<char>(3 * network.nodes(), 0));
   const Eigen::VectorXd D = arbitrary(network.nodes(), 3).array() + 2;
   Eigen::VectorXd D_rows;
-  lattice.to_rows(D, D_rows);
+  lattice.to_rows(Nodal::displacements, D, D_rows);
   const Eigen::VectorXd found = NodalVolumes(model, lattice, G).schur_diagonal(lattice.levels[0], D_rows.cast<float>());
   const NodalForms B = tangent(model, network.X).inflow / (10 * G * l * l);
   for (int n = 0; n < network.nodes(); ++n) {

@@ -50,12 +50,12 @@ Eigen::VectorXd multiply(const LatticeLevels& lattice, const CellMatrix& cell, I
   const LatticeLevel& level = lattice.levels[0];
   LatticeOperator<Real> K(level, reorder(cell, lattice.axes), 0, set);
   Eigen::VectorXd rows, y_rows = Eigen::VectorXd::Zero(3 * level.stride()), y;
-  lattice.to_rows(u, rows);
+  lattice.to_rows(Nodal::displacements, u, rows);
   const Eigen::Matrix<Real, Eigen::Dynamic, 1> x = rows.cast<Real>();
   K.pass(x.data(), nullptr, nullptr, [&](int a, long begin, long n, const Real* values) {
     for (long i = 0; i < n; ++i) y_rows[a * level.stride() + begin + i] = values[i];
   });
-  lattice.from_rows(y_rows, y);
+  lattice.from_rows(Nodal::forces, y_rows, y);
   return y;
 }
 
@@ -88,7 +88,7 @@ TEST(LatticeOperator, DivergenceAndGradientAreThoseOfTheCells) {
   const double gradient = cell.volume_gradient.cwiseAbs().maxCoeff();
   const Eigen::VectorXd u = arbitrary(3 * model.network.nodes()), p = arbitrary(level.cells());
   Eigen::VectorXd u_rows, exact = Eigen::VectorXd::Zero(level.cells()), pull = Eigen::VectorXd::Zero(u.size());
-  lattice.to_rows(u, u_rows);
+  lattice.to_rows(Nodal::displacements, u, u_rows);
   for (long c = 0; c < level.cells(); ++c) {
     const MeanEdgeVolume v = mean_edge_volume(mesh.hexahedra[c], mesh.nodes);
     for (int n = 0; n < 8; ++n) {
@@ -108,13 +108,13 @@ TEST(LatticeOperator, DivergenceAndGradientAreThoseOfTheCells) {
       for (int a = 0; a < 3; ++a)
         for (long i = 0; i < n; ++i) y_rows[a * level.stride() + begin + i] = B.plane(k, a)[i];
     });
-    lattice.from_rows(y_rows, y);
+    lattice.from_rows(Nodal::forces, y_rows, y);
     EXPECT_LE((y - pull).cwiseAbs().maxCoeff(), 1e-13 * pull.cwiseAbs().maxCoeff()) << name_of(set);
     // Both at once, in the pass of the stiffness (zero here).
     B.pass(u_rows.data(), padded.data(), divergence.data(), [&](int a, long begin, long n, const double* values) {
       for (long i = 0; i < n; ++i) y_rows[a * level.stride() + begin + i] = values[i];
     });
-    lattice.from_rows(y_rows, y);
+    lattice.from_rows(Nodal::forces, y_rows, y);
     EXPECT_LE((y - pull).cwiseAbs().maxCoeff(), 1e-13 * pull.cwiseAbs().maxCoeff()) << name_of(set);
     EXPECT_LE((divergence.head(level.cells()) - exact).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff())
         << name_of(set);
@@ -136,7 +136,8 @@ TEST(LatticeLevels, InterpolationIsExactForLinearFieldsAndTransposed) {
   const LatticeLevel &fine = lattice.levels[0], &coarse = lattice.levels[1];
   // The position of coarse points, by the corners of their cells' children.
   Eigen::VectorXd X_rows;
-  lattice.to_rows(Eigen::Map<const Eigen::VectorXd>(model.network.X.data(), model.network.X.size()), X_rows);
+  lattice.to_rows(Nodal::displacements,
+                  Eigen::Map<const Eigen::VectorXd>(model.network.X.data(), model.network.X.size()), X_rows);
   Eigen::VectorXf X_coarse = Eigen::VectorXf::Constant(3 * coarse.stride(), NAN);
   std::vector<Vec3> corner(coarse.cells(), Vec3::Constant(1e9));
   const double h = model.network.cell_edge;
