@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -11,26 +12,42 @@
 namespace springproof {
 namespace {
 
-/// A cell's centre and mean strain, with the axis first: xx, xy and xz in the frame (axis, next, last).
+/// A cell's centre and mean strain, and how its strain varies: mixed second derivatives of the trilinear displacement,
+/// (p, q): d2 u_p / dx_p dx_q, the tilt of its faces across p, and twist_p, d2 u_p / dx_q dx_r.
 struct CellStrain {
-  Vec3 centre;
-  Eigen::Matrix3d strain;
+  Vec3 centre, edge;
+  Eigen::Matrix3d strain, tilt;
+  Vec3 twist;
 };
 
 CellStrain strain_of(const Mesh& mesh, const Hexahedron& cell, const NodalVectors& u) {
-  CellStrain out{Vec3::Zero(), Eigen::Matrix3d::Zero()};
   const Vec3 edge = (mesh.nodes.row(cell[6]) - mesh.nodes.row(cell[0])).transpose();
+  CellStrain out{Vec3::Zero(), edge, Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(), Vec3::Zero()};
   for (int n = 0; n < 8; ++n) {
     out.centre += mesh.nodes.row(cell[n]).transpose() / 8;
-    for (int d = 0; d < 3; ++d)
-      out.strain.col(d) += (hexahedron_corners[n][d] ? 1 : -1) / (4 * edge[d]) * u.row(cell[n]).transpose();
+    const auto side = [&](int d) { return hexahedron_corners[n][d] ? 1 : -1; };
+    for (int p = 0; p < 3; ++p) {
+      const int q = (p + 1) % 3, r = (p + 2) % 3;
+      out.strain.col(p) += side(p) / (4 * edge[p]) * u.row(cell[n]).transpose();
+      for (const int across : {q, r})
+        out.tilt(p, across) += side(p) * side(across) / (2 * edge[p] * edge[across]) * u(cell[n], p);
+      out.twist[p] += side(q) * side(r) / (2 * edge[q] * edge[r]) * u(cell[n], p);
+    }
   }
   out.strain = ((out.strain + out.strain.transpose()) / 2).eval();
   return out;
 }
 
-double energy_of(const Eigen::Matrix3d& e, const IsotropicMaterial& m) {
-  return shear_modulus(m) * e.squaredNorm() + lame_lambda(m) / 2 * e.trace() * e.trace();
+/// Per volume: of the mean strain, and of bending and torsion within the cell.
+double energy_of(const CellStrain& c, const IsotropicMaterial& m) {
+  const Eigen::Matrix3d& e = c.strain;
+  double sum = shear_modulus(m) * e.squaredNorm() + lame_lambda(m) / 2 * e.trace() * e.trace();
+  for (int p = 0; p < 3; ++p) {
+    const int q = (p + 1) % 3, r = (p + 2) % 3;
+    sum += m.youngs_modulus / 24 * c.tilt.row(p).transpose().cwiseProduct(c.edge).squaredNorm();
+    sum += shear_modulus(m) / 24 * std::pow((c.twist[q] + c.twist[r]) * c.edge[p], 2);
+  }
+  return sum;
 }
 
 /// Sum over the cells of a section, per unit of a cell's volume.
@@ -47,10 +64,12 @@ LoadShares section_energies(const std::vector<CellStrain>& cells, int axis, cons
   double polar = 0, turn = 0;
   for (const CellStrain& c : cells) {
     const Eigen::Vector2d r(c.centre[y] - centre[y], c.centre[z] - centre[z]);
+    const Eigen::Vector2d own = Eigen::Vector2d(c.edge[y], c.edge[z]).array().square() / 12;  // of the cell's section
     second += r * r.transpose();
-    first += r * (c.strain(axis, axis) - mean[0]);
-    polar += r.squaredNorm();
-    turn += 2 * (c.strain(axis, z) * r[0] - c.strain(axis, y) * r[1]);
+    second.diagonal() += own;
+    first += r * (c.strain(axis, axis) - mean[0]) + own.cwiseProduct(Eigen::Vector2d(c.tilt(axis, y), c.tilt(axis, z)));
+    polar += r.squaredNorm() + own.sum();
+    turn += 2 * (c.strain(axis, z) * r[0] - c.strain(axis, y) * r[1]) + own[0] * c.twist[z] - own[1] * c.twist[y];
   }
   const double E = m.youngs_modulus, G = shear_modulus(m);
   LoadShares out;
@@ -68,7 +87,7 @@ LoadShares shares_about(const Mesh& mesh, const std::vector<CellStrain>& cells, 
   const double edge = std::abs(mesh.nodes(mesh.hexahedra[0][6], axis) - mesh.nodes(mesh.hexahedra[0][0], axis));
   double whole = 0;
   for (const CellStrain& c : cells) {
-    whole += energy_of(c.strain, material);
+    whole += energy_of(c, material);
     sections[std::lround(2 * c.centre[axis] / edge)].push_back(c);
   }
   LoadShares sum;

@@ -19,6 +19,9 @@ constexpr double doubtful_uncertainty = 0.05;
 // A reference with a smaller uncertainty is accepted even if its grids do not converge.
 constexpr double harmless_uncertainty = 0.01;
 
+// Of the moments of inertia of a model in free flight, above the body's.
+constexpr double telling_inertia = 0.02;
+
 // Beyond these linear theory itself has errors of some per cent.
 constexpr double largest_linear_strain = 0.05, largest_linear_rotation_deg = 5;
 
@@ -207,6 +210,11 @@ std::vector<std::string> motion_lines(const Json& result) {
       line += fmt::format("; momentum within {:.1e}", *drift);
     if (const auto drift = number_of(measured, "angular_momentum_drift"))
       line += fmt::format("; angular momentum within {:.1e}", *drift);
+    if (const auto excess = number_of(measured, "inertia_excess"); excess && *excess > telling_inertia)
+      line += fmt::format(
+          "; its masses at corners of cells turn with up to {} % more inertia than the body "
+          "(mass_consistency, or more cells)",
+          percent(*excess));
     lines.push_back(line);
   }
   return lines;

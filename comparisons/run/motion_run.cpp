@@ -10,6 +10,7 @@
 #include "comparisons/run/voxel_body.h"
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/laws/filled_volume.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -204,8 +205,6 @@ void check_motion(const MotionChoice& motion, const MassSpringModel& model, cons
   steps_of(motion, model, material);
 }
 
-namespace {}  // namespace
-
 const std::vector<double>* series(const HistoryRecord& h, const std::string& name) {
   const auto at = std::find(h.names.begin(), h.names.end(), name);
   return at == h.names.end() ? nullptr : &h.values[at - h.names.begin()];
@@ -213,10 +212,32 @@ const std::vector<double>* series(const HistoryRecord& h, const std::string& nam
 
 namespace {
 
+/// By how much a body of corner masses turns too slowly: the largest excess of their moments of inertia about x, y and
+/// z over those of its cells, as a fraction of these.  A corner's mass has l^2 / 4 about the middle of a cell, the cell
+/// l^2 / 12; a share of consistent mass has the cell's.
+double inertia_excess(const Network& network, const Eigen::VectorXd& mass, double mass_consistency) {
+  double volume = 0;
+  Vec3 own = Vec3::Zero();
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const double V = filled_part(network, c).fraction * std::pow(network.edge(c), 3);
+    volume += V;
+    own += V * (network.edge(c) * network.proportions).array().square().matrix() / 6;
+  }
+  own *= mass.sum() / volume;
+  const Eigen::RowVector3d centre = mass.transpose() * network.X / mass.sum();
+  const Vec3 second = (network.X.rowwise() - centre).array().square().matrix().transpose() * mass;
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double excess = own.sum() - own[axis], all = second.sum() - second[axis];
+    most = std::max(most, (1 - mass_consistency) * excess / (all - excess));
+  }
+  return most;
+}
+
 /// Period and amplitude of the first probe, and what is conserved: the energy of undamped motions after the loads have
 /// their final size, the momentum along axes in which nothing is held or loaded.
-void measure(const Experiment& e, const MotionChoice& motion, double mass, double body_size,
-             const BoundaryConditions& last, HistoryRecord& h) {
+void measure(const Experiment& e, const MotionChoice& motion, const Network& network, const Eigen::VectorXd& masses,
+             double body_size, const BoundaryConditions& last, HistoryRecord& h) {
   std::size_t first = 0;
   const double settled = motion.course.settled();  // the loads of a sample are those of the step before it
   while (first < h.time.size() && settled > 0 && h.time[first] < settled + h.time_step) ++first;
@@ -236,8 +257,10 @@ void measure(const Experiment& e, const MotionChoice& motion, double mass, doubl
     }
     if (largest > 0) h.measured["energy_drift"] = drift / largest;
   }
-  const double scale = std::sqrt(2 * mass * *std::max_element(kinetic->begin(), kinetic->end()));
+  const double scale = std::sqrt(2 * masses.sum() * *std::max_element(kinetic->begin(), kinetic->end()));
   const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });
+  if (flies && !network.cells.empty())
+    h.measured["inertia_excess"] = inertia_excess(network, masses, motion.mass_consistency);
   if (flies && !motion.plane && last.external.isZero(0) && motion.damping == 0) {
     double drift = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -346,7 +369,7 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   }
   Equilibrium state = run_dynamics(built.model, material.density, in_time, options).state;
   record.history.integrator = name_of(steps.integrator);
-  measure(prepared.experiment, motion, mass.sum(), prepared.size.norm(), in_time(1.0), record.history);
+  measure(prepared.experiment, motion, built.model.network, mass, prepared.size.norm(), in_time(1.0), record.history);
   if (const auto bounce = contact ? contact->bounce() : std::nullopt) {
     record.history.measured["contact_time"] = bounce->end - bounce->begin;
     record.history.measured["restitution"] = -bounce->velocity_after / bounce->velocity_before;

@@ -127,6 +127,7 @@ const std::vector<MotionMeasure>& motion_measures() {
       {"energy_drift", "change of energy", false},
       {"momentum_drift", "of momentum", false},
       {"angular_momentum_drift", "of angular momentum", false},
+      {"inertia_excess", "excess of the moments of inertia", false},
   };
   return all;
 }
@@ -166,7 +167,7 @@ const std::vector<Measure>& measure_table() {
     {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
     {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
     {"motion", value, {{"motion.period", "s"}, {"motion.amplitude", "m"}, {"motion.arrival", "s"}, {"motion.contact_time", "s"}, {"motion", "1"}},
-     "of a motion: period [s], amplitude [m], of a pulse arrival [s] of the first probe; of a damped one damping_ratio; on a plane contact_time [s] and restitution; energy_drift, momentum_drift, angular_momentum_drift", "", "", motion_rows},
+     "of a motion: period [s], amplitude [m], of a pulse arrival [s] of the first probe; of a damped one damping_ratio; on a plane contact_time [s] and restitution; energy_drift, momentum_drift, angular_momentum_drift, inertia_excess of free bodies", "", "", motion_rows},
     {"motion_error", distance, {{"motion_error", "1"}},
      "relative L2 difference in time of the probes' displacements to finite elements in time; [reference] in_time",
      "difference in time", "|u − u_fem| of the probes in the L2 norm over time, divided by |u_fem|"},

@@ -209,6 +209,35 @@ samples = 40
   }
 }
 
+/// A block of 6 x 4 x 2 cells: l^2 / 6 more for each unit of mass and axis, and (4^2 + 2^2) l^2 / 12 are the body's
+/// about x.
+TEST(MotionRun, InFlightCornerMassesTurnTooSlowlyAndItIsSaid) {
+  for (const double theta : {0.0, 0.6}) {
+    const Part part = run_of(parse_experiment(R"(kinematics = "hencky"
+[body]
+geo = "block.geo"
+size_m = [0.3, 0.2, 0.1]
+cells = [6, 4, 2]
+[material]
+youngs_modulus_Pa = 1e5
+poisson_ratio = 0.3
+density_kg_m3 = 1000
+[compare]
+models = ["hybmss_avg"]
+measures = ["motion"]
+[dynamics]
+equilibrium = false
+duration_s = 0.02
+spin_rad_s = [10, 0, 0]
+mass_consistency = )" + std::to_string(theta) + "\n",
+                                              "block.toml"));
+    EXPECT_NEAR(history(part).measured.at("inertia_excess"), (1 - theta) * 0.2, 1e-9);
+    if (theta > 0) continue;
+    const double kinetic = values_of(history(part), "kinetic_energy").front(), mass = 6, inertia = mass * 0.05 / 12;
+    EXPECT_NEAR(kinetic, 1.2 * inertia * 100 / 2, 1e-9 * kinetic);
+  }
+}
+
 void expect_refused(const Experiment& e, const std::string& reason) {
   try {
     prepare(e);
