@@ -159,8 +159,8 @@ struct HistoryRecord : RunKey {
   std::vector<std::string> units;
   std::vector<std::vector<double>> values;  ///< of each quantity, one per time
   /// What was measured: "period" [s], "amplitude" [m] and, of a pulse, "arrival" [s], of a damped motion
-  /// "damping_ratio" of `probe`; "energy_drift", "momentum_drift", "angular_momentum_drift", "inertia_excess" [1]; "motion_error" of a
-  /// model, "uncertainty" of finite elements [1].
+  /// "damping_ratio" of `probe`; "energy_drift", "momentum_drift", "angular_momentum_drift", "inertia_excess" [1];
+  /// "motion_error" of a model, "uncertainty" of finite elements [1].
   std::map<std::string, double> measured;
   std::string probe;  ///< "displacement.tip.z"
 };
