@@ -82,8 +82,8 @@ check_case fine 1e-8 20 "hybmss_avg cut=false" 0.49 2
 cat >"$work/boxes.toml" <<TOML
 [body]
 geo = "block.geo"
-size_m = [4, 0.5, 1]
-cells = [16, 4, 8]
+size_m = [2, 1, 2]
+cells = [8, 8, 12]
 [material]
 youngs_modulus_Pa = 1e4
 poisson_ratio = [0.3, 0.49]
@@ -92,10 +92,10 @@ on = "x_min"
 displacement_m = [0, 0, 0]
 [[load]]
 on = "x_max"
-force_N = [1, 2, -1]
+displacement_m = [0.02, "free", -0.04]
 [[probe]]
 name = "middle"
-at_m = [2.1, 0.2, 0.3]
+at_m = [1.1, 0.2, 0.3]
 [compare]
 models = ["hybmss_avg"]
 measures = ["reaction", "probe"]
