@@ -14,7 +14,7 @@ namespace {
 constexpr double facets_across = 4;  // of a patch, and of a sphere's radius where its border runs; in the finest mesh
 constexpr double near_end = 0.3;     // of an edge: nodes so near to a border are moved onto it where they can
 constexpr double graze = 0.15;       // of an edge: what less of it reaches into a sphere is left there
-constexpr double sliver = 1e-3;      // of an edge: planes that cut it nearer to an end leave it whole
+constexpr double sliver = 1e-3;      // of an edge: a plane so near to a face, as a tolerance puts it, runs in the face
 constexpr int most_passes = 30, passes_with_moves = 4;
 
 struct Crossing {
@@ -99,13 +99,24 @@ class Imprint {
       if (pass < passes_with_moves && move_onto(border, crossings)) continue;
       bool cuts = false;
       for (const Crossing& c : crossings) {
-        if (!border.is_sphere() && std::min(c.t, 1 - c.t) < sliver) continue;
+        if (std::min(c.t, 1 - c.t) < sliver && on_face_beside(border, c.t < 0.5 ? c.a : c.b)) continue;
         const Vec3 along = X(c.b) - X(c.a);
         track_[mesh_.bisect(c.a, c.b, X(c.a) + c.t * along)] = along;
         cuts = true;
       }
       if (!cuts) return;
     }
+  }
+
+  /// Whether a facet at the node runs along the plane.
+  bool on_face_beside(const Border& plane, int node) const {
+    const auto& facets = mesh_.surface().triangles;
+    return !plane.is_sphere() && std::any_of(facets.begin(), facets.end(), [&](const std::array<int, 3>& t) {
+      if (std::find(t.begin(), t.end(), node) == t.end()) return false;
+      const double edge =
+          std::min({(X(t[0]) - X(t[1])).norm(), (X(t[1]) - X(t[2])).norm(), (X(t[2]) - X(t[0])).norm()});
+      return std::all_of(t.begin(), t.end(), [&](int n) { return std::abs(plane.depth(X(n))) < sliver * edge; });
+    });
   }
 
   /// Where the border cuts edges of facets that have a part of the patch.

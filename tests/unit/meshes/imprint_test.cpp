@@ -121,9 +121,8 @@ TEST_P(Imprint, HalfSpacesOfACube) {
   expect_imprinted(cube(GetParam()), {beyond({0, 0, 1 - 1e-11}, {0, 0, 1})}, {1});  // to round-off the face itself
 }
 
-/// A plane that runs beside a face, as a tolerance puts it, or beside a corner: what it cuts off is no sliver, but
-/// left.
-TEST_P(Imprint, PlanesBesideFacesAndCornersLeaveNoSlivers) {
+/// A plane that runs beside a face, as a tolerance puts it, cuts no slivers off the faces next to it.
+TEST_P(Imprint, PlanesBesideFacesLeaveNoSlivers) {
   const Mesh before = cube(GetParam());
   for (const double beside : {1e-8, 1e-6, 3e-5})
     for (const PatchRule& rule : {beyond({0, 0, 1 - beside}, {0, 0, 1}), beyond({beside, 0, 0}, {-1, 0, 0})}) {
@@ -132,11 +131,6 @@ TEST_P(Imprint, PlanesBesideFacesAndCornersLeaveNoSlivers) {
       EXPECT_NEAR(area(mesh, rule.name), 1, 1e-12) << beside;
       EXPECT_EQ(CutMesh(mesh).worst_shape(), CutMesh(before).worst_shape()) << beside;
     }
-  const PatchRule oblique = beyond({1 - 1e-5, 0, 0}, {1, 0.3, 0.2});
-  Mesh mesh = before;
-  select_patches({oblique}, mesh);
-  EXPECT_NEAR(area(mesh, oblique.name), area(parts_of(oblique, before)), 1e-3);
-  EXPECT_GT(CutMesh(mesh).worst_shape(), 1e-3);
 }
 
 TEST_P(Imprint, TiltedCube) {
