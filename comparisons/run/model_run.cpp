@@ -12,6 +12,7 @@
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
+#include "msm/laws/macro_springs.h"
 #include "msm/measure/block_moduli.h"
 #include "msm/measure/promised_error.h"
 #include "msm/measure/statistics.h"
@@ -143,8 +144,10 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
   sample.field =
       to_field(sample.state, mesh, built.embedding, network, prepared.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  if (!network.filled.empty()) {
-    const VolumeChange change = volume_change(network, sample.state.displacement);
+  if (!network.filled.empty() || !network.macro_cells.empty()) {  // of their own fields
+    const VolumeChange change = network.macro_cells.empty()
+                                    ? volume_change(network, sample.state.displacement)
+                                    : volume_change_of_macro_cells(network, sample.state.displacement);
     sample.field.volume_change = change.exact;
     sample.field.volume_change_first_order = change.first_order;
   }

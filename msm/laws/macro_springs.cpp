@@ -198,4 +198,20 @@ void add_to(BlockMatrix& K, const MacroCell& cell, const Eigen::Matrix<double, 8
     for (int b = 0; b < 27; ++b) K.add(cell[a], cell[b], matrix.block<3, 3>(3 * a, 3 * b));
 }
 
+VolumeChange volume_change_of_macro_cells(const Network& network, const NodalVectors& u) {
+  VolumeChange change{0, 0};
+  for (const MacroCell& cell : network.macro_cells) {
+    Nodes at;
+    for (int n = 0; n < 27; ++n) at.col(n) = u.row(cell[n]).transpose();
+    for (const Point& p : gauss_points()) {
+      const Eigen::Matrix3d H = at * p.gradient.transpose() / network.cell_edge;
+      change.exact += p.share * ((Eigen::Matrix3d::Identity() + H).determinant() - 1);
+      change.first_order += p.share * H.trace();
+    }
+  }
+  change.exact /= static_cast<double>(network.macro_cells.size());
+  change.first_order /= static_cast<double>(network.macro_cells.size());
+  return change;
+}
+
 }  // namespace springproof

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "msm/algebra/block_matrix.h"
+#include "msm/laws/filled_volume.h"
 #include "msm/laws/law_traits.h"
 #include "msm/laws/strain_energy.h"
 #include "msm/topology/network.h"
@@ -51,6 +52,11 @@ struct MacroSprings {
   /// Second derivatives of the energy of one cell, for solvers.
   MacroTangent tangent(const Network& network, const MacroCell& cell, const NodalVectors& x) const;
 };
+
+/// Of the triquadratic displacement in all macro-cells, relative.
+/// @param network with macro-cells
+/// @param displacement [m], n x 3
+VolumeChange volume_change_of_macro_cells(const Network& network, const NodalVectors& displacement);
 
 /// K += the matrix of a macro-cell, of unknown 3 * node + axis.
 void add_to(BlockMatrix& K, const MacroCell& cell, const Eigen::Matrix<double, 81, 81>& matrix);
