@@ -217,11 +217,14 @@ nlohmann::json json_of(const MaterialFacts& f) {
       {"safe_time_step_s", f.time_step},
       {"tension_limit_strain", {{"bounded", limit(f.limits.bounded_energy)}, {"paper", limit(f.limits.paper_energy)}}},
       {"measured", moduli_json(f.measured.youngs_modulus, f.measured.poisson_ratio, f.measured.shear_modulus)}};
+  const auto or_null = [](const std::optional<double>& stress) {
+    return stress ? nlohmann::json(*stress) : nlohmann::json(nullptr);
+  };
   for (const StressAtStretch& s : f.stresses)
     out["stress_of_free_bar"].push_back({{"stretch", s.stretch},
-                                         {"model_Pa", s.model ? nlohmann::json(*s.model) : nlohmann::json(nullptr)},
+                                         {"model_Pa", or_null(s.model)},
                                          {"hencky_Pa", s.hencky},
-                                         {"neo_hooke_Pa", s.neo_hooke}});
+                                         {"neo_hooke_Pa", or_null(s.neo_hooke)}});
   if (f.has_limits) {
     out["waves"] = waves_json(f);
     out["stable_strains"] = stable_strains_json(p, f.m);
@@ -293,9 +296,11 @@ void print_stresses(const MaterialFacts& f) {
   if (f.stresses.empty()) return;
   fmt::print("\nstress of a bar with free sides, force over area at rest [Pa]\n");
   fmt::print("  stretch {:>14} {:>14} {:>14}\n", f.p.row.name, "Hencky", "neo-Hooke");
+  const auto text = [](const std::optional<double>& stress) {
+    return stress ? fmt::format("{:.5g}", *stress) : "none found";
+  };
   for (const StressAtStretch& s : f.stresses)
-    fmt::print("  {:>7.2f} {:>14} {:>14.5g} {:>14.5g}\n", s.stretch,
-               s.model ? fmt::format("{:.5g}", *s.model) : "no equilibrium", s.hencky, s.neo_hooke);
+    fmt::print("  {:>7.2f} {:>14} {:>14.5g} {:>14}\n", s.stretch, text(s.model), s.hencky, text(s.neo_hooke));
 }
 
 void print_measured(const MaterialFacts& f) {

@@ -201,9 +201,12 @@ std::vector<std::string> motion_lines(const Json& result) {
       line += fmt::format("; energy within {:.1e} of the largest kinetic energy", *drift);
     if (const auto arrival = number_of(measured, "arrival"))
       line += fmt::format("; {} moves after {:.4g} s", string_of(h, "probe"), *arrival);
-    if (const auto contact = number_of(measured, "contact_time"))
-      line += fmt::format("; touches the plane for {:.4g} s and leaves with {} % of its velocity", *contact,
-                          percent(number_of(measured, "restitution").value_or(0)));
+    if (const auto contact = number_of(measured, "contact_time")) {
+      const double left = number_of(measured, "restitution").value_or(0);
+      line += fmt::format(
+          "; touches the plane for {:.4g} s and {}", *contact,
+          left > 0 ? fmt::format("leaves with {} % of its velocity", percent(left)) : "turns, still on its way to it");
+    }
     if (const auto ratio = number_of(measured, "damping_ratio"))
       line += fmt::format("; damped by {} % of critical", percent(*ratio));
     if (const auto drift = number_of(measured, "momentum_drift"))
@@ -213,7 +216,7 @@ std::vector<std::string> motion_lines(const Json& result) {
     if (const auto excess = number_of(measured, "inertia_excess"); excess && *excess > telling_inertia)
       line += fmt::format(
           "; its masses at corners of cells turn with up to {} % more inertia than the body "
-          "(mass_consistency, or more cells)",
+          "(more cells, or mass_consistency in explicit steps)",
           percent(*excess));
     lines.push_back(line);
   }

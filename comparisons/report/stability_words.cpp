@@ -27,7 +27,8 @@ std::string change_words(double strain) {
 std::string what_happens(const Json& stability) {
   const std::string lost = string_of(stability, "lost");
   if (lost == "inverted cell") return "a cell is turned inside out";
-  if (lost == "no convergence") return "no state was found beyond it";
+  if (lost == "no convergence")
+    return "Newton's method does not converge beyond it, which proves no loss of equilibrium";
   std::vector<std::string> axes;
   const Json& alternation = list_of(stability, "alternation");
   for (std::size_t axis = 0; axis < alternation.size() && axis < 3; ++axis)
@@ -143,10 +144,13 @@ std::vector<Warning> stability_warnings(const Json& result, std::size_t case_num
                                                      percent(*number_of(stability, "wrinkles"))));
   }
   for (const auto& [key, group] : lost)
-    warnings.push_back(
-        {case_number,
-         fmt::format("{}: {} loses its equilibrium, {}: {}", name, key.first, fmt::join(group.where, "; "), key.second),
-         advice(result, *group.first)});
+    warnings.push_back({case_number,
+                        fmt::format("{}: {} {}, {}: {}", name, key.first,
+                                    string_of(object_of(*group.first, "stability"), "lost") == "no convergence"
+                                        ? "was not followed to the whole load"
+                                        : "loses its equilibrium",
+                                    fmt::join(group.where, "; "), key.second),
+                        advice(result, *group.first)});
   for (const auto& [key, group] : waves) {
     const bool motion = moves(key.first);
     warnings.push_back(

@@ -42,12 +42,13 @@ double tension_limit(const ModelParameters& parameters, const IsotropicMaterial&
   return e.ok ? std::numeric_limits<double>::infinity() : largest * e.load_reached;
 }
 
-/// The law as it is, by Newton's method on the lateral stretch.
-double neo_hooke_stress(const IsotropicMaterial& m, double stretch) {
+/// The law as it is, by Newton's method on the lateral stretch; below nu = 0 there is no state far in compression.
+std::optional<double> neo_hooke_stress(const IsotropicMaterial& m, double stretch) {
   const double G = shear_modulus(m), lambda = lame_lambda(m);
+  const auto lateral = [&](double t) { return G * (t * t - 1) + lambda * std::log(stretch * t * t); };
   double t = std::pow(stretch, -m.poisson_ratio);
-  for (int i = 0; i < 50; ++i)
-    t -= (G * (t * t - 1) + lambda * std::log(stretch * t * t)) / (2 * G * t + 2 * lambda / t);
+  for (int i = 0; i < 50; ++i) t -= lateral(t) / (2 * G * t + 2 * lambda / t);
+  if (!(t > 0 && std::abs(lateral(t)) < 1e-9 * (G + std::abs(lambda)))) return {};
   return (G * (stretch * stretch - 1) + lambda * std::log(stretch * t * t)) / stretch;
 }
 

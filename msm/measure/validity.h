@@ -21,10 +21,10 @@ StrainLimits strain_limits(const ModelParameters& parameters, const IsotropicMat
 
 /// Stress [Pa], force over the area at rest, of a bar with free sides at one stretch (length over that at rest).
 struct StressAtStretch {
-  double stretch;               ///< [1]
-  std::optional<double> model;  ///< of one cell; empty: no stable equilibrium
-  double hencky;                ///< of Hencky's law
-  double neo_hooke;             ///< of the neo-Hookean law
+  double stretch;                   ///< [1]
+  std::optional<double> model;      ///< of one cell; empty: no stable equilibrium
+  double hencky;                    ///< of Hencky's law
+  std::optional<double> neo_hooke;  ///< of the neo-Hookean law; empty: it has no state there
 };
 
 /// Stretches of 0.6 to 1.4.

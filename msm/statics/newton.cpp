@@ -133,7 +133,8 @@ struct Newton {
       return fmt::format("{} unknowns, load step to {:.3g} %, {} Newton steps so far", K.unknowns(),
                          100 * factor_of_load, iterations);
     });
-    if (mixed) return mixed_step(bc, x, relative);
+    if (mixed)
+      if (const Loss loss = mixed_step(bc, x, relative); loss != Loss::no_convergence) return loss;
     NodalVectors trial = predict(x, bc);
     for (int i = 0; i < options.max_iterations; ++i) {
       Eigen::VectorXd r, du;
@@ -155,11 +156,15 @@ struct Newton {
 };
 
 std::string describe(Loss loss, double reached) {
-  const char* why = loss == Loss::unstable
-                        ? "the tangent stiffness is no longer positive definite (limit point or buckling)"
-                    : loss == Loss::inverted_cell ? "a cell is turned inside out"
-                                                  : "Newton's method does not converge";
-  return fmt::format("no stable equilibrium beyond {:.4g} of the load: {}", reached, why);
+  if (loss == Loss::no_convergence)
+    return fmt::format(
+        "no state was found beyond {:.4g} of the load: Newton's method does not converge, which proves "
+        "no loss of equilibrium",
+        reached);
+  return fmt::format("no stable equilibrium beyond {:.4g} of the load: {}", reached,
+                     loss == Loss::unstable
+                         ? "the tangent stiffness is no longer positive definite (limit point or buckling)"
+                         : "a cell is turned inside out");
 }
 
 }  // namespace
