@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   if (!file) return fprintf(stderr, "usage: drop_in_c FILE.json\n"), 2;
   text[fread(text, 1, sizeof text - 1, file)] = 0;
   if (strstr(text, "\n \"carried\"")) return fprintf(stderr, "cells of several sizes: forces_in_c.cpp shows how\n"), 2;
+  if (!strstr(text, "\n  \"averaged_springs\"")) return fprintf(stderr, "no averaged springs: forces_in_c.cpp shows springs\n"), 2;
   const char *nodes = "\n \"nodes\"", *cells = "\n \"cells\"", *surface = "\n \"surface\"";
   if (strstr(text, "\"proportions\"")) return fprintf(stderr, "boxes: docs/springs_file.md has a program\n"), 2;
   size_t n, n3, c8, vertices, one;
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
     rebound = height < fallen ? fallen = height : fmax(rebound, height);
     sp_step(n, mass, f, dt, 0, x, v);
   }
+  if (!isfinite(off)) return fprintf(stderr, "the motion diverged: a smaller step, or a stiffer body, which the fall presses less\n"), 1;
   printf("falls by %.4g m, rebounds by %.4g m, energy within %.1e of the fall's\n", -fallen, rebound - fallen, off);
   return rebound - fallen > -fallen / 4 && off < 1e-3 ? 0 : 1;
 }

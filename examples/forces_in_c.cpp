@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "springproof_forces.h"
@@ -24,8 +25,13 @@ std::vector<T> flat(const json& rows) {
 int main(int count, char** arguments) try {
   if (count != 2) return std::fprintf(stderr, "usage: forces_in_c FILE.json\n"), 2;
   const json file = json::parse(std::ifstream(arguments[1])), laws = file.at("laws"), derived = file.at("derived");
-  if (file.value("cells", json::object()).contains("proportions"))
-    return std::fprintf(stderr, "boxes: docs/springs_file.md has a program for them\n"), 2;
+  const json of_cells = file.value("cells", json::object());
+  const std::vector<std::string> known = {"springs", "volume_correction", "hourglass_correction", "averaged_springs",
+                                          "anchors"};
+  bool all = !of_cells.contains("proportions") && of_cells.contains("nodes");
+  for (const auto& [name, law] : laws.items()) all = all && std::find(known.begin(), known.end(), name) != known.end();
+  if (!all)
+    return std::fprintf(stderr, "boxes, no cells, or a law that is not here: docs/springs_file.md has a program\n"), 2;
   const auto X = flat<double>(file.at("nodes").at("position_m")), mass = flat<double>(file.at("nodes").at("mass_kg"));
   const auto ends = flat<int>(file.at("springs").at("nodes")), cells = flat<int>(file.at("cells").at("nodes"));
   const auto k = flat<double>(file.at("springs").at("stiffness_N_m")),

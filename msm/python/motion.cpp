@@ -28,6 +28,7 @@ class MovingModel {
   }
 
   void step(long n) {
+    if (n < 0) throw InputError(fmt::format("n: is {} steps (allowed: 0 or more)", n));
     const long chunk = std::max(1L, nodes_between_looks / std::max(1, model_->network().nodes()));
     while (n > 0) {
       const long now = std::min(n, chunk);
