@@ -69,7 +69,8 @@ LoadShares section_energies(const std::vector<CellStrain>& cells, int axis, cons
     second.diagonal() += own;
     first += r * (c.strain(axis, axis) - mean[0]) + own.cwiseProduct(Eigen::Vector2d(c.tilt(axis, y), c.tilt(axis, z)));
     polar += r.squaredNorm() + own.sum();
-    turn += 2 * (c.strain(axis, z) * r[0] - c.strain(axis, y) * r[1]) + own[0] * c.twist[z] - own[1] * c.twist[y];
+    turn += 2 * (c.strain(axis, z) * r[0] - c.strain(axis, y) * r[1]) + own[0] * (c.twist[z] + c.twist[axis]) -
+            own[1] * (c.twist[y] + c.twist[axis]);
   }
   const double E = m.youngs_modulus, G = shear_modulus(m);
   LoadShares out;
