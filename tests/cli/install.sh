@@ -37,7 +37,6 @@ mkdir other && cp "$source"/examples/*.cpp other
 cat >other/CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(other LANGUAGES C CXX)
-set(CMAKE_CXX_STANDARD 20)
 find_package(springproof REQUIRED)
 foreach(program embed_msm drop_springs own_model)
   add_executable(${program} ${program}.cpp)
