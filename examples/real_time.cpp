@@ -47,6 +47,8 @@ int main(int count, char** arguments) {
   std::vector<double> stiffness;
   for (int i = 1; i < count; ++i) stiffness.push_back(std::atof(arguments[i]));
   if (stiffness.empty()) stiffness = {1e4, 1e5, 1e6, 1e7};
+  for (const double E : stiffness)
+    if (!(E > 0)) return std::fprintf(stderr, "usage: real_time [E ...]   Young's moduli > 0 [Pa]\n"), 2;
   for (const double nu : {0.3, 0.49})
     for (const double E : stiffness)
       for (const Integrator integrator : {Integrator::explicit_euler, Integrator::energy_momentum}) {

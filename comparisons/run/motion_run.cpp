@@ -219,7 +219,7 @@ double inertia_excess(const Network& network, const Eigen::VectorXd& mass, doubl
   double volume = 0;
   Vec3 own = Vec3::Zero();
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const double V = filled_part(network, c).fraction * std::pow(network.edge(c), 3);
+    const double V = filled_volume(network, c);
     volume += V;
     own += V * (network.edge(c) * network.proportions).array().square().matrix() / 6;
   }

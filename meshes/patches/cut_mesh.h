@@ -17,6 +17,7 @@ class CutMesh {
 
   const std::vector<Vec3>& points() const { return surface_.points; }
   const Surface& surface() const { return surface_; }  ///< all nodes and the outer facets
+  const std::vector<int>& facets_at(int node) const { return facets_at_[node]; }
   std::size_t cells() const { return cells_.size(); }
 
   /// Puts a facet into a patch: the next number is that of a new one.

@@ -110,9 +110,9 @@ class Imprint {
 
   /// Whether a facet at the node runs along the plane.
   bool on_face_beside(const Border& plane, int node) const {
-    const auto& facets = mesh_.surface().triangles;
-    return !plane.is_sphere() && std::any_of(facets.begin(), facets.end(), [&](const std::array<int, 3>& t) {
-      if (std::find(t.begin(), t.end(), node) == t.end()) return false;
+    const std::vector<int>& facets = mesh_.facets_at(node);
+    return !plane.is_sphere() && std::any_of(facets.begin(), facets.end(), [&](int facet) {
+      const auto& t = corners(facet);
       const double edge =
           std::min({(X(t[0]) - X(t[1])).norm(), (X(t[1]) - X(t[2])).norm(), (X(t[2]) - X(t[0])).norm()});
       return std::all_of(t.begin(), t.end(), [&](int n) { return std::abs(plane.depth(X(n))) < sliver * edge; });

@@ -133,11 +133,11 @@ template <class Real>
 void ListMotion<Real>::move_by_averages() {
   for (std::size_t p = 0; p < order_.size(); ++p)
     for (int d = 0; d < 3; ++d) v_[p].v[d] = s_[p].v[d] * external_[p].v[gain] / static_cast<Real>(decay_);
-  for (const Held& h : held_)
-    v_[h.place].v[h.component] =
-        moved_ ? (h.x - x_[h.place].v[h.component]) / static_cast<Real>(options_.time_step) : 0;
   std::vector<Real> stay;
-  for (const Held& h : held_) stay.push_back(x_[h.place].v[h.component]);
+  for (const Held& h : held_) {
+    stay.push_back(x_[h.place].v[h.component]);
+    v_[h.place].v[h.component] = moved_ ? (h.x - stay.back()) / static_cast<Real>(options_.time_step) : 0;
+  }
   forces_->kernels().average(
       {static_cast<long>(factors_.size()), corners_.data(), factors_.data(), shares_.data(), v_.data(), x_.data()});
   for (std::size_t h = 0; h < held_.size(); ++h) x_[held_[h].place].v[held_[h].component] = stay[h];
