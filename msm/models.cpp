@@ -196,22 +196,26 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
 }
 
 bool has_cut_cells(const ModelRow& row) {
-  return row.topology == cells && row.extension != Extension::momentum_dispersion;
+  return (row.topology == cells && row.extension != Extension::momentum_dispersion) || row.topology == macro_cells;
 }
 
 EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std::vector<std::string>& held,
-                        const Mesh& mesh, const IsotropicMaterial& material) {
+                        const Mesh& mesh, const IsotropicMaterial& material) try {
   if (!has_cut_cells(p.row))
     throw InputError(
         fmt::format("{}: cannot be made of cut cells (allowed: lattices of cells without momentum "
                     "dispersion)",
                     p.row.name));
   EmbeddedModel built;
-  built.model.network = cut_lattice(body, held, material.youngs_modulus);
-  built.model.laws = {averaged_law(p, material), Anchors{}};
-  built.model.small_displacements_only = p.shift > 0 || !p.has(Extension::averaging);
+  const bool macro = p.row.topology == macro_cells;
+  built.model.network = (macro ? cut_macro_lattice : cut_lattice)(body, held, material.youngs_modulus);
+  built.model.laws = {macro ? ForceLaw(macro_law(p, material)) : averaged_law(p, material), Anchors{}};
+  built.model.small_displacements_only =
+      p.shift > 0 || !(p.has(Extension::averaging) || p.has(Extension::volume_modes));
   built.embedding = embed(body, held, built.model.network, mesh);
   return built;
+} catch (const std::invalid_argument& e) {
+  throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
 }
 
 }  // namespace springproof

@@ -48,19 +48,19 @@ void choose_cut_cells(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     ModelParameters& p = prepared.models[m];
+    const bool averaged = p.has(Extension::averaging), large = e.model_kinematics() != Kinematics::linear;
     const char* reason = !has_cut_cells(p.row)                                   ? "this model has none"
                          : !e.body.is_voxels()                                   ? "the body is a block"
                          : e.fracture                                            ? "the body breaks"
-                         : e.models[m].in_motion && !p.has(Extension::averaging) ? "it is to move in time"
-                         : e.model_kinematics() != Kinematics::linear && !p.has(Extension::averaging)
-                             ? "the displacements are large"
-                             : nullptr;
+                         : e.models[m].in_motion && !averaged                    ? "it is to move in time"
+                         : large && !averaged && !p.has(Extension::volume_modes) ? "the displacements are large"
+                                                                                 : nullptr;
     if (reason && p.cut.value_or(false))
       throw InputError(
           e.models[m].where,
           fmt::format("compare.models: {}: cut = true: {} (allowed: lattices of cells in a body of "
-                      "voxels, at rest under small displacements; averaged springs also under large ones and in "
-                      "motion)",
+                      "voxels, at rest under small displacements; hybmss_avg and hybmss_macro also under large ones, "
+                      "hybmss_avg in motion)",
                       p.row.name, reason));
     p.cut = p.cut.value_or(e.body.cut && !reason);
   }

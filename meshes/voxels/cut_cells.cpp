@@ -13,6 +13,7 @@
 
 #include "meshes/locate/outer_facets.h"
 #include "meshes/voxels/body_parts.h"
+#include "meshes/voxels/triquadratic.h"
 
 namespace springproof {
 namespace {
@@ -76,6 +77,16 @@ FilledPart filled_part(double volume, const Vec3& first, const Eigen::Matrix3d& 
     f.variance[i] = std::max(0.0, second(i, i) / volume - f.mean[i] * f.mean[i]);
   }
   return f;
+}
+
+Eigen::Matrix3d second_moments(const FilledPart& part) {
+  Eigen::Matrix3d second = (part.mean * part.mean.transpose()).eval();
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    second(i, i) += part.variance[i];
+    second(j, k) = second(k, j) = part.mixed[i];
+  }
+  return second;
 }
 
 double PatchInCell::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
@@ -161,12 +172,19 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
                             if (is_new) {
                               at->second.cell = cell;
                               at->second.normal.fill(Vec3::Zero());
+                              at->second.quadratic_normal.fill(Vec3::Zero());
                             }
                             for (const TrianglePoint& q : rule) {
                               const std::array<double, 8> N = out.weights(cell, position(q.at));
                               for (int n = 0; n < 8; ++n) {
                                 at->second.area[n] += q.weight * N[n] * normal.norm();
                                 at->second.normal[n] += q.weight * N[n] * normal;
+                              }
+                              const Vec3 xi = (position(q.at) - out.centre(cell)) / (l * out.cells[cell].size);
+                              const std::array<double, 27> quadratic = triquadratic_weights(2 * xi);
+                              for (int n = 0; n < 27; ++n) {
+                                at->second.quadratic_area[n] += q.weight * quadratic[n] * normal.norm();
+                                at->second.quadratic_normal[n] += q.weight * quadratic[n] * normal;
                               }
                             }
                           });

@@ -16,4 +16,7 @@ struct FilledPart {
 /// From the integrals of 1, xi and xi xi^T.
 FilledPart filled_part(double volume, const Vec3& first, const Eigen::Matrix3d& second);
 
+/// `<xi xi^T>`
+Eigen::Matrix3d second_moments(const FilledPart& part);
+
 }  // namespace springproof

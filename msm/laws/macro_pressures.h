@@ -14,11 +14,11 @@ struct MacroPressureForm {
 
 /// @param law of the cell
 /// @param network that it is in
-/// @param cell its nodes
+/// @param cell number of the macro-cell
 /// @param x positions [m], n x 3
 /// @param pressures p of its modes [Pa m^3]
 /// @return NaN if the cell is inverted at a point
-MacroPressureForm pressure_form(const MacroSprings& law, const Network& network, const MacroCell& cell,
+MacroPressureForm pressure_form(const MacroSprings& law, const Network& network, std::size_t cell,
                                 const NodalVectors& x, const Eigen::Vector4d& pressures);
 
 }  // namespace springproof

@@ -4,81 +4,59 @@
 #include <cmath>
 #include <limits>
 
+#include "meshes/voxels/triquadratic.h"
+#include "msm/laws/macro_points.h"
 #include "msm/laws/macro_pressures.h"
 
 namespace springproof {
 namespace {
 
-constexpr int points = 27;
 using Nodes = Eigen::Matrix<double, 3, 27>;
 using Modes = Eigen::Vector4d;
 
-/// A Gauss point of the macro-cell [-1, 1]^3.
-struct Point {
-  double share;    ///< of the volume
-  Nodes gradient;  ///< of the nodes' triquadratic functions
-  Modes modes;     ///< 1, sqrt(3) x, sqrt(3) y, sqrt(3) z: orthonormal in the mean over the cell
-};
-
-const std::array<Point, points>& gauss_points() {
-  static const std::array<Point, points> all = [] {
-    const double r = std::sqrt(0.6), at[3] = {-r, 0, r}, weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-    const auto value = [](int node, double t) {
-      return node == 0 ? t * (t - 1) / 2 : node == 1 ? 1 - t * t : t * (t + 1) / 2;
-    };
-    const auto slope = [](int node, double t) { return node == 0 ? t - 0.5 : node == 1 ? -2 * t : t + 0.5; };
-    std::array<Point, points> p;
-    for (int q = 0; q < points; ++q) {
-      const int i = q % 3, j = q / 3 % 3, k = q / 9;
-      const double x = at[i], y = at[j], z = at[k];
-      p[q].share = weight[i] * weight[j] * weight[k];
-      p[q].modes << 1, std::sqrt(3) * x, std::sqrt(3) * y, std::sqrt(3) * z;
-      for (int n = 0; n < 27; ++n) {
-        const int a = n % 3, b = n / 3 % 3, c = n / 9;
-        p[q].gradient.col(n) << slope(a, x) * value(b, y) * value(c, z), value(a, x) * slope(b, y) * value(c, z),
-            value(a, x) * value(b, y) * slope(c, z);
-      }
-    }
-    return p;
-  }();
-  return all;
+Nodes positions_of(const MacroCell& cell, const NodalVectors& x) {
+  Nodes at;
+  for (int n = 0; n < 27; ++n) at.col(n) = x.row(cell[n]).transpose();
+  return at;
 }
 
 /// State of a macro-cell.
 struct Deformed {
-  double edge, volume;  ///< of a cube [m], of the cell at rest [m^3]
-  std::array<Eigen::Matrix3d, points> F;
-  std::array<double, points> J, theta;
-  std::array<double, points> pressure;  ///< U'(theta), projected, at the points [1]
-  std::array<VolumeDensity, points> U;  ///< of theta
+  double edge, volume;  ///< of a cube [m], of the body in the cell at rest [m^3]
+  std::vector<MacroPoint> points;
+  std::vector<Eigen::Matrix3d> F;
+  std::vector<double> J, theta;
+  std::vector<double> pressure;  ///< U'(theta), projected, at the points [1]
+  std::vector<VolumeDensity> U;  ///< of theta
   bool inverted = false;
 
-  Deformed(const MacroSprings& law, const Network& network, const MacroCell& cell, const NodalVectors& x)
-      : edge(network.cell_edge), volume(8 * network.cell_volume()) {
-    Nodes at;
-    for (int n = 0; n < 27; ++n) at.col(n) = x.row(cell[n]).transpose();
-    const auto& p = gauss_points();
+  Deformed(const MacroSprings& law, const Network& network, std::size_t cell, const NodalVectors& x)
+      : edge(network.cell_edge) {
+    MacroPoints all = macro_points(network, cell);
+    volume = all.volume;
+    points = std::move(all.points);
+    const Nodes at = positions_of(network.macro_cells[cell], x);
     Modes mean = Modes::Zero(), slope = Modes::Zero();
-    for (int q = 0; q < points; ++q) {
-      F[q] = at * p[q].gradient.transpose() / edge;
-      J[q] = F[q].determinant();
-      mean += p[q].share * J[q] * p[q].modes;
-      inverted |= !(J[q] > 0);
+    for (const MacroPoint& p : points) {
+      F.emplace_back(at * p.gradient.transpose() / edge);
+      J.push_back(F.back().determinant());
+      mean += p.share * J.back() * p.modes;
+      inverted |= !(J.back() > 0);
     }
-    for (int q = 0; q < points; ++q) {
-      theta[q] = mean.dot(p[q].modes);
-      inverted |= !(theta[q] > 0);
+    for (const MacroPoint& p : points) {
+      theta.push_back(mean.dot(p.modes));
+      inverted |= !(theta.back() > 0);
     }
     if (inverted) return;
-    for (int q = 0; q < points; ++q) {
-      U[q] = volume_term(law.curve, theta[q]);
-      slope += p[q].share * U[q].slope * p[q].modes;
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      U.push_back(volume_term(law.curve, theta[q]));
+      slope += points[q].share * U[q].slope * points[q].modes;
     }
-    for (int q = 0; q < points; ++q) pressure[q] = slope.dot(p[q].modes);
+    for (const MacroPoint& p : points) pressure.push_back(slope.dot(p.modes));
   }
 
   /// dJ/dF
-  Eigen::Matrix3d cofactors(int q) const { return J[q] * F[q].inverse().transpose(); }
+  Eigen::Matrix3d cofactors(std::size_t q) const { return J[q] * F[q].inverse().transpose(); }
 };
 
 /// d2J/dF2, index of F(i, j) i + 3 j.
@@ -115,8 +93,8 @@ MacroTangent tangent_of(const MacroSprings& law, const Deformed& s, const Pressu
   K.springs.setConstant(s.inverted ? std::numeric_limits<double>::quiet_NaN() : 0);
   K.gradient.setZero();
   K.curvature.setZero();
-  for (int q = 0; q < points && !s.inverted; ++q) {
-    const Point& p = gauss_points()[q];
+  for (std::size_t q = 0; q < s.points.size() && !s.inverted; ++q) {
+    const MacroPoint& p = s.points[q];
     const Matrix9 T = distortion_energy(law.curve, law.shear_modulus, s.F[q], Derivative::second).tangent +
                       pressure(q) * curvature_of_volume(s.F[q]);
     add_point(s.volume * p.share * T, p.gradient / s.edge, K.springs);
@@ -131,8 +109,8 @@ MacroTangent tangent_of(const MacroSprings& law, const Deformed& s, const Pressu
 template <class Pressure>
 Nodes gradient_of(const MacroSprings& law, const Deformed& s, const Pressure& pressure) {
   Nodes gradient = Nodes::Constant(s.inverted ? std::numeric_limits<double>::quiet_NaN() : 0);
-  for (int q = 0; q < points && !s.inverted; ++q) {
-    const Point& p = gauss_points()[q];
+  for (std::size_t q = 0; q < s.points.size() && !s.inverted; ++q) {
+    const MacroPoint& p = s.points[q];
     const Eigen::Matrix3d P = distortion_energy(law.curve, law.shear_modulus, s.F[q], Derivative::first).stress +
                               pressure(q) * s.cofactors(q);
     gradient += s.volume * p.share / s.edge * P * p.gradient;
@@ -140,78 +118,120 @@ Nodes gradient_of(const MacroSprings& law, const Deformed& s, const Pressure& pr
   return gradient;
 }
 
+/// Difference of the displacements of two neighbours, each continued over the other, at their 54 Gauss points: their
+/// quadratic form in the nodes of the lower one, then of the upper; the mean of its square over a cell, twice.
+const Eigen::Matrix<double, 54, 54>& difference_of_neighbours(int axis) {
+  static const auto all = [] {
+    std::array<Eigen::Matrix<double, 54, 54>, 3> of_axis;
+    Network full;
+    full.cell_edge = 1;
+    for (int d = 0; d < 3; ++d) {
+      of_axis[d].setZero();
+      for (const MacroPoint& p : macro_points(full, 0).points)
+        for (const int side : {0, 1}) {
+          Vec3 in_lower = p.at, in_upper = p.at;
+          (side ? in_lower : in_upper)[d] += side ? 2 : -2;
+          const auto lower = triquadratic_weights(in_lower), upper = triquadratic_weights(in_upper);
+          Eigen::Matrix<double, 54, 1> row;
+          for (int n = 0; n < 27; ++n) row[n] = lower[n], row[27 + n] = -upper[n];
+          of_axis[d] += p.share * row * row.transpose();
+        }
+    }
+    return of_axis;
+  }();
+  return all[axis];
+}
+
+/// Positions of the nodes of both cells of a face, from one of them: round-off grows with their distance.
+Eigen::Matrix<double, 3, 54> positions_of(const Network& network, const MacroFace& face, const NodalVectors& x) {
+  Eigen::Matrix<double, 3, 54> at;
+  at << positions_of(network.macro_cells[face.lower], x), positions_of(network.macro_cells[face.upper], x);
+  return at.colwise() - Vec3(at.col(13));
+}
+
 }  // namespace
 
 double MacroSprings::energy(const Network& network, const NodalVectors& x) const {
   double sum = 0;
-  for (const MacroCell& cell : network.macro_cells) {
-    const Deformed s(*this, network, cell, x);
+  for (std::size_t c = 0; c < network.macro_cells.size(); ++c) {
+    const Deformed s(*this, network, c, x);
     if (s.inverted) return std::numeric_limits<double>::infinity();
-    for (int q = 0; q < points; ++q)
+    for (std::size_t q = 0; q < s.points.size(); ++q)
       sum +=
-          s.volume * gauss_points()[q].share *
+          s.volume * s.points[q].share *
           (distortion_energy(curve, shear_modulus, s.F[q], Derivative::none).value + volume_modulus() * s.U[q].value);
+  }
+  for (const MacroFace& face : network.macro_faces) {
+    const auto at = positions_of(network, face, x);
+    sum += bond_stiffness(network) / 2 * (at * difference_of_neighbours(face.axis)).cwiseProduct(at).sum();
   }
   return sum;
 }
 
 void MacroSprings::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
-  for (const MacroCell& cell : network.macro_cells) {
-    const Deformed s(*this, network, cell, x);
-    const Nodes gradient = gradient_of(*this, s, [&](int q) { return volume_modulus() * s.pressure[q]; });
-    for (int n = 0; n < 27; ++n) f.row(cell[n]) -= gradient.col(n).transpose();
+  for (std::size_t c = 0; c < network.macro_cells.size(); ++c) {
+    const Deformed s(*this, network, c, x);
+    const Nodes gradient = gradient_of(*this, s, [&](std::size_t q) { return volume_modulus() * s.pressure[q]; });
+    for (int n = 0; n < 27; ++n) f.row(network.macro_cells[c][n]) -= gradient.col(n).transpose();
+  }
+  add_bond_forces(network, x, f);
+}
+
+void MacroSprings::add_bond_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
+  for (const MacroFace& face : network.macro_faces) {
+    const Eigen::Matrix<double, 3, 54> gradient =
+        bond_stiffness(network) * positions_of(network, face, x) * difference_of_neighbours(face.axis);
+    for (int n = 0; n < 27; ++n) {
+      f.row(network.macro_cells[face.lower][n]) -= gradient.col(n).transpose();
+      f.row(network.macro_cells[face.upper][n]) -= gradient.col(27 + n).transpose();
+    }
   }
 }
 
-MacroTangent MacroSprings::tangent(const Network& network, const MacroCell& cell, const NodalVectors& x) const {
+MacroTangent MacroSprings::tangent(const Network& network, std::size_t cell, const NodalVectors& x) const {
   const Deformed s(*this, network, cell, x);
-  return tangent_of(*this, s, [&](int q) { return volume_modulus() * s.pressure[q]; });
+  return tangent_of(*this, s, [&](std::size_t q) { return volume_modulus() * s.pressure[q]; });
 }
 
 void MacroSprings::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
-  for (const MacroCell& cell : network.macro_cells) {
-    MacroTangent of_cell = tangent(network, cell, x);
+  for (std::size_t c = 0; c < network.macro_cells.size(); ++c) {
+    MacroTangent of_cell = tangent(network, c, x);
     of_cell.springs += volume_modulus() * of_cell.gradient.transpose() * of_cell.curvature * of_cell.gradient;
-    add_to(K, cell, of_cell.springs);
+    add_to(K, network.macro_cells[c], of_cell.springs);
+  }
+  add_bonds(network, K);
+}
+
+void MacroSprings::add_bonds(const Network& network, BlockMatrix& K) const {
+  const double k = bond_stiffness(network);
+  for (const MacroFace& face : network.macro_faces) {
+    const auto& S = difference_of_neighbours(face.axis);
+    const auto node = [&](int n) { return network.macro_cells[n < 27 ? face.lower : face.upper][n % 27]; };
+    for (int a = 0; a < 54; ++a)
+      for (int b = 0; b < 54; ++b) K.add(node(a), node(b), k * S(a, b) * Eigen::Matrix3d::Identity());
   }
 }
 
-MacroPressureForm pressure_form(const MacroSprings& law, const Network& network, const MacroCell& cell,
+MacroPressureForm pressure_form(const MacroSprings& law, const Network& network, std::size_t cell,
                                 const NodalVectors& x, const Eigen::Vector4d& pressures) {
   const Deformed s(law, network, cell, x);
   const double of_springs = springs_volume_modulus(law.curve, law.shear_modulus);
-  const auto pressure = [&](int q) {
-    return of_springs * s.pressure[q] + pressures.dot(gauss_points()[q].modes) / s.volume;
+  const auto pressure = [&](std::size_t q) {
+    return of_springs * s.pressure[q] + pressures.dot(s.points[q].modes) / s.volume;
   };
   MacroPressureForm form{tangent_of(law, s, pressure), {}, Eigen::Vector4d::Zero()};
   MacroTangent& K = form.tangent;
   K.springs += of_springs * K.gradient.transpose() * K.curvature * K.gradient;
   const Nodes gradient = gradient_of(law, s, pressure);
   form.gradient = Eigen::Map<const Eigen::Matrix<double, 81, 1>>(gradient.data());
-  for (int q = 0; q < points && !s.inverted; ++q)
-    form.slope += s.volume * gauss_points()[q].share * s.U[q].slope * gauss_points()[q].modes;
+  for (std::size_t q = 0; q < s.points.size() && !s.inverted; ++q)
+    form.slope += s.volume * s.points[q].share * s.U[q].slope * s.points[q].modes;
   return form;
 }
 
 void add_to(BlockMatrix& K, const MacroCell& cell, const Eigen::Matrix<double, 81, 81>& matrix) {
   for (int a = 0; a < 27; ++a)
     for (int b = 0; b < 27; ++b) K.add(cell[a], cell[b], matrix.block<3, 3>(3 * a, 3 * b));
-}
-
-VolumeChange volume_change_of_macro_cells(const Network& network, const NodalVectors& u) {
-  VolumeChange change{0, 0};
-  for (const MacroCell& cell : network.macro_cells) {
-    Nodes at;
-    for (int n = 0; n < 27; ++n) at.col(n) = u.row(cell[n]).transpose();
-    for (const Point& p : gauss_points()) {
-      const Eigen::Matrix3d H = at * p.gradient.transpose() / network.cell_edge;
-      change.exact += p.share * ((Eigen::Matrix3d::Identity() + H).determinant() - 1);
-      change.first_order += p.share * H.trace();
-    }
-  }
-  change.exact /= static_cast<double>(network.macro_cells.size());
-  change.first_order /= static_cast<double>(network.macro_cells.size());
-  return change;
 }
 
 }  // namespace springproof

@@ -26,6 +26,11 @@ struct MacroTangent {
 /// at small strain, all quadratic displacements are exact; the only motions without energy are rigid.  At small strain
 /// these are finite elements of quadratic displacement and linear, discontinuous pressure (Q2-P1) whose pressure
 /// carries all of K, not lambda alone (docs/decisions/msm.md).  Cells: Network::macro_cells.
+///
+/// Cells that a cut body fills in part have their points in it (msm/laws/macro_points.h), and bonds to their
+/// neighbours: springs of rest length zero between the places to which the displacements of the two, each continued
+/// over the other, bring a point.  One quadratic displacement of both costs nothing, so that nodes outside of the body
+/// follow those inside; in terms of finite elements a ghost penalty (Burman 2010).
 struct MacroSprings {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"macro-cell springs", Reach::second_neighbours};
@@ -33,6 +38,8 @@ struct MacroSprings {
   double shear_modulus = 0;                 ///< G [Pa]
   double lame_lambda = 0;                   ///< [Pa]
   StrainCurve curve = StrainCurve::hencky;  ///< the law at large strain
+  /// gamma of the bonds: stiffness gamma G 2l times the mean of the square over each of two neighbours.
+  static constexpr double bond = 0.03;
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
@@ -50,13 +57,13 @@ struct MacroSprings {
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 
   /// Second derivatives of the energy of one cell, for solvers.
-  MacroTangent tangent(const Network& network, const MacroCell& cell, const NodalVectors& x) const;
+  MacroTangent tangent(const Network& network, std::size_t cell, const NodalVectors& x) const;
+  double bond_stiffness(const Network& network) const {
+    return bond * shear_modulus * 2 * network.cell_edge;
+  }                                                                                            ///< [N/m]
+  void add_bond_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< those of the bonds
+  void add_bonds(const Network& network, BlockMatrix& K) const;                                ///< likewise, any x
 };
-
-/// Of the triquadratic displacement in all macro-cells, relative.
-/// @param network with macro-cells
-/// @param displacement [m], n x 3
-VolumeChange volume_change_of_macro_cells(const Network& network, const NodalVectors& displacement);
 
 /// K += the matrix of a macro-cell, of unknown 3 * node + axis.
 void add_to(BlockMatrix& K, const MacroCell& cell, const Eigen::Matrix<double, 81, 81>& matrix);

@@ -34,12 +34,7 @@ struct ChildMoments {
   void add_child(const FilledPart& part, const std::array<int, 3>& child) {
     const double v = part.fraction / 8;
     const Vec3 o(child[0] & 1 ? 0.25 : -0.25, child[1] & 1 ? 0.25 : -0.25, child[2] & 1 ? 0.25 : -0.25);
-    Eigen::Matrix3d own = (part.mean * part.mean.transpose()).eval();
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      own(i, i) = part.variance[i] + part.mean[i] * part.mean[i];
-      own(j, k) = own(k, j) = part.mixed[i];
-    }
+    const Eigen::Matrix3d own = second_moments(part);
     volume += v;
     first += v * (part.mean / 2 + o);
     second += v * (own / 4 + o * part.mean.transpose() / 2 + part.mean * o.transpose() / 2 + o * o.transpose());

@@ -6,6 +6,7 @@
 
 #include "msm/algebra/krylov.h"
 #include "msm/laws/laws.h"
+#include "msm/multigrid/cut_multigrid.h"
 #include "msm/multigrid/multigrid.h"
 
 namespace springproof {
@@ -15,10 +16,13 @@ namespace springproof {
 /// G.  Solved by conjugate gradients; for kappa much above G with four pressures per cell as unknowns,
 ///     A u + D^T p = f,   D u - (kappa C)^-1 p = g,
 /// by GMRES.  The preconditioner of A is one V-cycle of hybmss_avg with the same nodes, the Schur complement is taken
-/// as that of a volume term of G: its modes are orthogonal at rest.
+/// as that of a volume term of G: its modes are orthogonal at rest.  In cut bodies cubes without body count as filled
+/// to a part there.  Before and after that V-cycle each cell that the body fills in part is relaxed exactly, one after
+/// the other: its nodes outside of the body follow their neighbours in ways that the lattice does not know.  The Schur
+/// complement of its volume is that with the other cells held, times a constant.
 class MacroSolver {
  public:
-  /// Whether the model consists of the macro-cells of a block.
+  /// Whether the model consists of macro-cells, of a block or of a cut body, and anchors.
   static bool covers(const MassSpringModel& model);
 
   MacroSolver(const MassSpringModel& model, const std::vector<char>& fixed);
@@ -57,15 +61,31 @@ class MacroSolver {
   Eigen::Matrix<double, 81, 1> gathered(std::size_t cell, const Eigen::VectorXd& u) const;
   void scatter(std::size_t cell, const Eigen::Vector4d& p, Eigen::VectorXd& f) const;  ///< f += D^T p
   void clear_fixed(Eigen::VectorXd& v) const;
+  /// Unknowns of a macro-cell that the body fills in part, and the inverse of their part of A.
+  struct Patch {
+    int cell;
+    std::vector<int> unknowns;
+    Eigen::MatrixXf inverse;
+  };
+  void prepare_patches();  ///< for A and the volumes of this state
+  void assume_schur();
+  void relax(const Patch& patch, const Eigen::VectorXd& r, Eigen::VectorXd& z) const;  ///< exactly on the patch
+  void add_constant_parts();                                                           ///< A_ += bonds and anchors
+  void apply_lattice(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;              ///< one V-cycle
 
   const Network& network_;
   MacroSprings law_;
   std::vector<char> fixed_;
   double kappa_ = 0;  ///< [Pa]
   bool mixed_ = false;
-  BlockMatrix A_;  ///< [N/m]
+  double outside_ = 0;  ///< of kappa, what A does not hold [Pa]
+  BlockMatrix A_;       ///< [N/m]
   std::vector<Volume> volumes_;
-  std::unique_ptr<Multigrid> lattice_;
+  std::unique_ptr<Multigrid> lattice_;  ///< of blocks
+  std::vector<Patch> patches_;
+  std::vector<Eigen::Matrix4d> schur_;  ///< per cell, the inverse of the Schur complement that is assumed
+  double step_ = 1;                     ///< of the lattice's correction
+  std::unique_ptr<CutMultigrid> cut_;   ///< of cut bodies
 };
 
 }  // namespace springproof

@@ -23,7 +23,7 @@ bool has_inverted_cell(const Network& network, NodalVectors x) {
   carry(network.carried, x);
   if (network.filled.empty()) return min_relative_jacobian({network.X, network.cells, {}, {}, {}, {}}, x) <= 0;
   for (std::size_t c = 0; c < network.cells.size(); ++c)
-    if (cell_volume(network, c, x).value <= 0) return true;
+    if (network.filled[c].fraction > 0 && cell_volume(network, c, x).value <= 0) return true;
   return false;
 }
 

@@ -1,6 +1,7 @@
 // Macro-cells: eight cubes of a lattice, whose 27 nodes carry a triquadratic displacement.
 #pragma once
 
+#include "meshes/voxels/cut_cells.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -10,6 +11,20 @@ namespace springproof {
 /// @return one for every two cubes along each axis, the first from the lowest corner
 /// @throws std::invalid_argument unless the body is a block of an even number of cubes along each axis.
 std::vector<MacroCell> macro_cells_of(const Mesh& mesh);
+
+/// The macro-cells of a cut body: a connected part of the body in two cubes along each axis is one.
+struct CutMacroCells {
+  std::vector<MacroCell> cells;
+  std::vector<std::array<FilledPart, 8>> filled;  ///< of the eight cubes, x fastest; fraction 0: none
+  std::vector<MacroFace> faces;                   ///< between cells that are connected there, unless both are full
+  std::vector<std::array<int, 2>> place;          ///< per cell of the body: macro-cell, and which of its cubes
+  NodalVectors points;                            ///< of the nodes [m]
+};
+
+/// @param body of cells of one size
+/// @return its macro-cells; they share the nodes of a face through which they are connected
+/// @throws std::invalid_argument if the body has cells of several sizes.
+CutMacroCells macro_cells_of(const CutBody& body);
 
 /// Macro-cells are for bodies at rest, in one process.
 /// @param network of any model

@@ -86,6 +86,12 @@ inline Network cut_network(double edge = 0.5) {
   return network;
 }
 
+/// Macro-cells that a ball fills in part, with anchors.
+inline Network cut_macro_network(double edge = 0.5) {
+  const Mesh body = mapped(ball_of_tetrahedra(4), [&](const Vec3& x) -> Vec3 { return 2.2 * edge * x; });
+  return cut_macro_lattice(cut_body(grid_about(body, edge), body), {"surface"}, 100);
+}
+
 /// Eight cells beside one of twice their edge, cut at the top, with anchors at one end.
 inline Network refined_network(double edge = 0.5) {
   const Mesh body = solid_of(block_mesh(edge * Vec3(4, 2, 1.7), {2, 1, 1}));
