@@ -1,11 +1,8 @@
 #include "problem/system/files.h"
 
-#include <fmt/format.h>
-
 #include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <stdexcept>
+#include <system_error>
 
 namespace springproof {
 
@@ -32,9 +29,10 @@ void write_file(const std::filesystem::path& file, std::string_view bytes) {
     std::filesystem::rename(partial, file, error);
     if (!error) return;
   }
-  const std::string why = error ? error.message() : std::strerror(errno);
-  std::filesystem::remove(partial, error);
-  throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), why));
+  if (!error) error.assign(errno, std::generic_category());
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);
+  throw std::system_error(error, "cannot write " + file.string());
 }
 
 }  // namespace springproof

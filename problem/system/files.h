@@ -11,7 +11,7 @@ namespace springproof {
 std::string text_of_file(const std::filesystem::path& file);
 
 /// Writes all of it or nothing: into FILE.part, which is renamed when complete.
-/// @throws std::runtime_error naming the file and the reason.
+/// @throws std::system_error naming the file and the reason.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// The text without trailing white space.
