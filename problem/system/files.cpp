@@ -18,7 +18,24 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-void write_file(const std::filesystem::path& file, std::string_view bytes) {
+namespace {
+
+/// What a chain of symbolic links ends in, which may not exist yet.
+std::filesystem::path end_of_links(std::filesystem::path file) {
+  constexpr int most_links = 40;  // as Linux
+  for (int links = 0; links <= most_links; ++links) {
+    std::error_code no_link;
+    const std::filesystem::path to = std::filesystem::read_symlink(file, no_link);
+    if (no_link) return file;
+    file = file.parent_path() / to;
+  }
+  throw std::system_error(ELOOP, std::generic_category(), "cannot write " + file.string());
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& name, std::string_view bytes) {
+  const std::filesystem::path file = end_of_links(name);
   std::filesystem::path partial = file;
   partial += ".part";
   std::ofstream out(partial, std::ios::binary);
