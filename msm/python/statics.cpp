@@ -97,8 +97,9 @@ void bind_state(py::module_& m) {
           "body_displacement", [](const py::object& self) { return view(self.cast<SolvedState&>().on_body, self); },
           "of the body's nodes (Body.nodes), 3 columns [m]; a view; no rows for a model without a body")
       .def("at", &displacement_at_points, "points"_a, "Displacement of points of the body, k x 3 [m].")
-      .def_property_readonly("reactions", &reactions_of,
-                             "patch -> force [N] and torque about its centroid [N m] of its support, 2 x 3")
+      .def_property_readonly(
+          "reactions", &reactions_of,
+          "patch -> force [N] and torque [N m] of its support, about the centroid of the patch at rest, 2 x 3")
       .def_readonly("volume_change", &SolvedState::volume_change, "(V' - V)/V of the deformed cells")
       .def_property_readonly("solver", [](const SolvedState& s) { return s.equilibrium.solver; })
       .def_property_readonly(
