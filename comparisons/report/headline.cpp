@@ -54,15 +54,19 @@ std::string own_ratio_clause(const ModelErrors& errors) {
   return fmt::format("; a solid of ν = {} alone, {}", nu_text(errors.own_nu), there);
 }
 
-std::string sentence(const ModelErrors& errors) {
-  if (errors.displacement.empty()) return "no displacement could be compared.";
-  const auto& [nu, worst] = largest(errors.displacement);
+std::string displacement_clause(const ByNu& errors) {
+  const auto& [nu, worst] = largest(errors);
   std::string out = fmt::format("displacement within {} % of FEM {} (worst: {}", percent(worst.error),
-                                range_text(errors.displacement), at_nu(worst.case_name, nu));
+                                range_text(errors), at_nu(worst.case_name, nu));
   if (worst.error <= worst.uncertainty)
     out += fmt::format(", below the {} % uncertainty of the reference", percent(worst.uncertainty));
-  out += ")";
-  out += tighter_clause(errors.displacement, worst.error);
+  return out + ")" + tighter_clause(errors, worst.error);
+}
+
+std::string sentence(const ModelErrors& errors) {
+  std::string out = errors.displacement.empty()
+                        ? errors.asked ? "no displacement could be compared" : "displacement was not asked for"
+                        : displacement_clause(errors.displacement);
   if (!errors.springs.empty())
     out += fmt::format("; its springs within {} % of FEM on the same cubes",
                        percent(largest(errors.springs).second.error));
@@ -122,6 +126,10 @@ class Collector {
     if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
     for (const Json& model : list_of(experiment, "models"))
       models_for(string_of(model, "label"), number_of(model, "own_poisson_ratio"));
+    if (compares_displacement_)
+      for (const Json& run : list_of(result, "runs"))
+        if (const auto found = models_.find({large_, string_of(run, "model")}); found != models_.end())
+          found->second.asked = true;
   }
 
   Headline take() {

@@ -90,8 +90,12 @@ std::string where_text(const Candidate& c) {
                      cases == 1 ? "" : "s", c.large_deformation ? " of large deformation" : "");
 }
 
-/// Of displacements, coarse cells included, in per cent.
-std::string whole_error(const ModelErrors& e) { return percent(largest(ranked(e, e.displacement)).second.error); }
+/// Of displacements, or where none was compared of reactions, coarse cells included, in per cent.
+std::string whole_error(const ModelErrors& e) {
+  return percent(largest(ranked(e, e.displacement.empty() ? e.reaction : e.displacement)).second.error);
+}
+
+constexpr const char* reactions = "reactions of moved supports";
 
 /// The one error that ranks the best model, in words; of its springs alone never without the whole.
 std::string closest_text(const Candidate& best) {
@@ -101,16 +105,19 @@ std::string closest_text(const Candidate& best) {
   if (e.parts && !e.wholes)
     return fmt::format(
         "Of the spring models {} comes closest: its springs stay within {} % of finite elements on the same cubes, its "
-        "displacements, coarse cells included, within {} % of the reference, {}",
-        best.name, within, whole, where);
-  return fmt::format(
-      "Of the spring models {} comes closest: its displacements {}stay within {} % of finite elements{} {}", best.name,
-      e.reaction.empty() ? "" : "and the reactions of moved supports ", within,
-      e.parts ? fmt::format(", counting on bodies that are no blocks its springs alone ({} % with the "
-                            "coarse cells),",
-                            whole)
-              : "",
-      where);
+        "{}, coarse cells included, within {} % of the reference, {}",
+        best.name, within, e.displacement.empty() ? reactions : "displacements", whole, where);
+  return fmt::format("Of the spring models {} comes closest: its {} stay within {} % of finite elements{} {}",
+                     best.name,
+                     e.displacement.empty() ? reactions
+                     : e.reaction.empty()   ? "displacements"
+                                            : "displacements and the reactions of moved supports",
+                     within,
+                     e.parts ? fmt::format(", counting on bodies that are no blocks its springs alone ({} % with the "
+                                           "coarse cells),",
+                                           whole)
+                             : "",
+                     where);
 }
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
@@ -123,7 +130,10 @@ std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
   return fmt::format(
       "Of the spring models {} come closest and cannot be told apart: their largest errors{}{} differ by no more than "
       "the {} % that the reference is uncertain by, {}.",
-      listed(names), e.reaction.empty() ? "" : " of displacement and reactions",
+      listed(names),
+      e.reaction.empty()       ? ""
+      : e.displacement.empty() ? " of reactions of moved supports"
+                               : " of displacement and reactions",
       e.parts ? ", on bodies that are no blocks those of their springs alone," : "", percent(uncertainty),
       where_text(tied.front()));
 }

@@ -30,6 +30,7 @@ struct ModelErrors {
   ByNu rank;                           ///< errors by which the closest model is found
   std::set<std::string> cases;         ///< in which a displacement or a reaction was compared
   std::optional<double> own_nu;        ///< the only Poisson's ratio that the model is valid for, if any
+  bool asked = false;                  ///< for displacements
   bool parts = false, wholes = false;  ///< ranked by the springs' own part somewhere, by the whole error somewhere
 };
 

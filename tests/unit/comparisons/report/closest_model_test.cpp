@@ -117,6 +117,29 @@ TEST(ClosestModel, ReactionsOfMovedSupportsCount) {
       "displacement within 0.05 % of FEM at ν = 0.3 (worst: bar at ν = 0.3); reactions of moved supports within 77 %.");
 }
 
+TEST(ClosestModel, IsRankedAndWordedByWhatWasCompared) {
+  CaseResult bar = with_models("bar", 0.3, 1e-4, {{"emsm", 0}, {"hybmss", 0}});
+  bar.experiment.measures = {"reaction", "reaction_error"};
+  bar.rows.clear();
+  add_row(bar, "emsm", 0.3, "reaction_error", 0.054, 1e-3);
+  add_row(bar, "hybmss", 0.3, "reaction_error", 0.08, 1e-3);
+  const Headline h = headline_of({bar});
+  EXPECT_EQ(h.answer,
+            "Of the spring models emsm comes closest: its reactions of moved supports stay within 5.4 % of finite "
+            "elements at ν = 0.3, in 1 linear case.");
+  EXPECT_EQ(h.models[0].sentence, "displacement was not asked for; reactions of moved supports within 5.4 %.");
+  add_row(bar, "hybmss", 0.3, "reaction_error", 0.08, 0.03);
+  EXPECT_NE(headline_of({bar}).answer.find("their largest errors of reactions of moved supports differ by no more"),
+            std::string::npos);
+  bar.splits.push_back({{"emsm", 0.3, {10, 10, 10}}, 0.01, "reaction_error", "1", 0.054, 0.01, 0, 0, 0, 0});
+  bar.splits.push_back({{"hybmss", 0.3, {10, 10, 10}}, 0.01, "reaction_error", "1", 0.08, 0.06, 0, 0, 0, 0});
+  EXPECT_NE(
+      headline_of({bar}).answer.find("its reactions of moved supports, coarse cells included, within 5.4 % of the "
+                                     "reference"),
+      std::string::npos)
+      << headline_of({bar}).answer;
+}
+
 // ---- how sure the reference is
 
 TEST(ClosestModel, AReferenceThatDoesNotConvergeIsSaidAfterTheAnswer) {
