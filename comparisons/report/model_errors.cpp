@@ -141,11 +141,18 @@ std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
 // A reference with a larger uncertainty ranks no model.
 constexpr double telling_uncertainty = 0.2;
 
-std::string untold_text(const Candidate& best, double uncertainty) {
-  return fmt::format(
-      "Which spring model comes closest the reference does not tell, {}: it is uncertain by {} %. Refine it: in "
-      "[reference] a smaller edge_m (bodies of voxels), more cells (blocks).",
-      where_text(best), percent(uncertainty));
+/// Of one model alone: how close it comes.
+std::string untold_text(const Candidate& best, bool alone, double uncertainty) {
+  const auto& [nu, worst] = largest(best.rank);
+  const std::string what =
+      alone
+          ? fmt::format("How close {} comes the reference does not tell, {}: its largest error, {} % of the {} in {},",
+                        best.name, where_text(best), percent(worst.error), worst.of, at_nu(worst.case_name, nu))
+          : fmt::format("Which spring model comes closest the reference does not tell, {}: it", where_text(best));
+  return fmt::format("{} is uncertain by {} %. Refine it: in [reference] {}.", what, percent(uncertainty),
+                     !best.errors->voxels   ? "more cells"
+                     : !best.errors->blocks ? "a smaller edge_m"
+                                            : "a smaller edge_m (bodies of voxels), more cells (blocks)");
 }
 
 /// States that every model was run only at Poisson's ratios other than the one it is valid for; or nothing.
@@ -182,7 +189,7 @@ std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::
   const bool on_same_cubes = best.errors->parts && !best.errors->wholes;
   if (uncertainty > telling_uncertainty && !(tied.size() == 1 && on_same_cubes)) {
     closest.clear();
-    return untold_text(best, uncertainty);
+    return untold_text(best, all.size() == 1, uncertainty);
   }
   return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
 }

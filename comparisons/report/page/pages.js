@@ -53,13 +53,16 @@ function worstCell(result, model) {
   const failed = result.runs.filter(run => run.model === model && !run.ok).length;
   const lost = failed ? el('small', {class: 'lost'}, `${failed} without result`) : null;
   if (!worst) return el('td', {class: 'number'}, failed ? lost : '–');
-  return el('td', {class: 'number ' + tint(result, worst.row)}, percent(worst.error),
+  const reaction = worstReaction(result, model), worse = reaction && reaction.error > worst.error ? reaction : worst;
+  return el('td', {class: 'number ' + tint(result, worse.row)}, percent(worst.error),
             el('small', {}, `ν = ${nuText(worst.row.poisson_ratio)}`), reactionNote(result, model), lost);
 }
 
 /// The largest reaction error of a model, where a support is moved.
+const worstReaction = (result, model) => worstOf(result, rowsAt(result, 'reaction_error').filter(row => row.model === model));
+
 function reactionNote(result, model) {
-  const worst = worstOf(result, rowsAt(result, 'reaction_error').filter(row => row.model === model));
+  const worst = worstReaction(result, model);
   return worst && displacementRows(result).length > 0 ? el('small', {}, `reactions ${percent(worst.error)}`) : null;
 }
 
