@@ -100,7 +100,13 @@ constexpr const char* reactions = "reactions of moved supports";
 /// The one error that ranks the best model, in words; of its springs alone never without the whole.
 std::string closest_text(const Candidate& best) {
   const ModelErrors& e = *best.errors;
-  const std::string within = percent(best.error()), where = where_text(best) + auxetic_clause(e) + ".",
+  const bool doubtful = best.uncertainty() > 0.5 * best.error();  // not of the springs' own part on the same cubes
+  const std::string within = percent(best.error()),
+                    where =
+                        where_text(best) + auxetic_clause(e) +
+                        (doubtful && !(e.parts && !e.wholes)
+                             ? fmt::format("; the reference itself is uncertain by {} %.", percent(best.uncertainty()))
+                             : "."),
                     whole = e.parts ? whole_error(e) : "";
   if (e.parts && !e.wholes)
     return fmt::format(

@@ -169,6 +169,15 @@ TEST(ClosestModel, IsRankedAndWordedByWhatWasCompared) {
 
 // ---- how sure the reference is
 
+TEST(ClosestModel, AReferenceUncertainByHalfOfTheErrorIsSaidToBe) {
+  EXPECT_EQ(
+      headline_of({with_models("base", 0.3, 0.024, {{"hybmss_avg", 0.025}})}).answer,
+      "Of the spring models hybmss_avg comes closest: its displacements stay within 2.5 % of finite elements at ν "
+      "= 0.3, in 1 linear case; the reference itself is uncertain by 2.4 %.");
+  EXPECT_EQ(headline_of({with_models("base", 0.3, 0.012, {{"hybmss_avg", 0.025}})}).answer.find("uncertain"),
+            std::string::npos);
+}
+
 TEST(ClosestModel, AReferenceThatDoesNotConvergeIsSaidAfterTheAnswer) {
   CaseResult bunny = with_models("bunny", 0.45, 0.063, {{"emsm", 0.3}, {"hybmss", 0.1}});
   bunny.references[0].note = "not converging: finest grid, largest difference";
