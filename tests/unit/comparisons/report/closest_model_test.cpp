@@ -202,7 +202,9 @@ TEST(ClosestModel, LinearTheoryBeyondFivePerCentOrDegreesIsWarnedOf) {
   c.deformations = {{0.3, 0.02, 4.9}};
   EXPECT_TRUE(headline_of({c}).warnings.empty());
   EXPECT_EQ(headline_of({c}).deformations.at(0), "ear" + std::string(26, ' ') + "ν = 0.3: 2 %, 4.9°");
-  c.deformations.push_back({0.4, 0.03, 31});
+  c.deformations = {{0.3, 0, 0}};
+  EXPECT_EQ(headline_of({c}).deformations.at(0), "ear" + std::string(26, ' ') + "ν = 0.3: 0 %, 0°");
+  c.deformations = {{0.3, 0.02, 4.9}, {0.4, 0.03, 31}};
   const Warning turned = headline_of({with_models("cube", 0.3, 1e-4, {{"emsm", 0.03}}), c}).warnings.at(0);
   EXPECT_EQ(turned.case_number, 1u);
   EXPECT_EQ(turned.brief, "ear: rotations of 31° are too large for linear theory (up to 5°)");
