@@ -155,7 +155,7 @@ TEST(ClosestModel, IsRankedAndWordedByWhatWasCompared) {
             "Of the spring models emsm comes closest: its reactions of moved supports stay within 5.4 % of finite "
             "elements at ν = 0.3, in 1 linear case.");
   EXPECT_EQ(h.models[0].sentence, "displacement was not asked for; reactions of moved supports within 5.4 %.");
-  add_row(bar, "hybmss", 0.3, "reaction_error", 0.08, 0.03);
+  bar.rows.back().reference_uncertainty = 0.03;
   EXPECT_NE(headline_of({bar}).answer.find("their largest errors of reactions of moved supports differ by no more"),
             std::string::npos);
   bar.splits.push_back({{"emsm", 0.3, {10, 10, 10}}, 0.01, "reaction_error", "1", 0.054, 0.01, 0, 0, 0, 0});

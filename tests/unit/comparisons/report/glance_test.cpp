@@ -60,7 +60,7 @@ TEST_F(GlanceInBrowser, ThePlotNamesWhatWasCompared) {
   c.experiment.measures = {"reaction_error"};
   const std::string dom = open_with(document({c}), pictures({}), tools + R"js(
     say('head ' + document.querySelector('.dot-head b').textContent);
-    say('outcome ' + document.querySelector('.outcome').textContent);
+    say('outcome ' + outcome(cases[0]).textContent);
     endLoading();
   )js");
   expect_no_complaint(dom);
