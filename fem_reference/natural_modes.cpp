@@ -23,6 +23,7 @@ namespace springproof::fem {
 namespace {
 
 constexpr int modes_beyond = 6;            // computed beside those wanted: a gap for the inertia, whole multiplets
+constexpr int most_beyond = 48;            // where eigenvalues were missed, as copies of multiple ones are
 constexpr double eigen_tolerance = 1e-10;  // relative residual
 constexpr double rigid_below = 1e-7;       // of the largest eigenvalue computed: a rigid motion
 constexpr double least_gap = 1e-4;         // relative, between eigenvalues: none lies in it by accident
@@ -136,7 +137,7 @@ struct Eigensolver {
   }
 };
 
-void set_up(const Pencil& pencil, int count, double target, Eigensolver& solver) {
+void set_up(const Pencil& pencil, double target, Eigensolver& solver) {
   ST transformation = nullptr;
   KSP ksp = nullptr;
   PC factors = nullptr;
@@ -144,7 +145,6 @@ void set_up(const Pencil& pencil, int count, double target, Eigensolver& solver)
   succeed(EPSSetOperators(solver.eps, pencil.K->petsc(), pencil.M->petsc()));
   succeed(EPSSetProblemType(solver.eps, EPS_GHEP));
   succeed(EPSSetType(solver.eps, EPSKRYLOVSCHUR));
-  succeed(EPSSetDimensions(solver.eps, count, std::min<PetscInt>(pencil.unknowns, 3 * count), PETSC_DEFAULT));
   succeed(EPSSetTolerances(solver.eps, eigen_tolerance, 500));
   succeed(EPSSetTarget(solver.eps, target));
   succeed(EPSSetWhichEigenpairs(solver.eps, EPS_TARGET_MAGNITUDE));
@@ -156,6 +156,53 @@ void set_up(const Pencil& pencil, int count, double target, Eigensolver& solver)
   succeed(KSPGetPC(ksp, &factors));
   succeed(PCSetType(factors, PCCHOLESKY));
   succeed(PCFactorSetMatSolverType(factors, MATSOLVERMUMPS));
+}
+
+/// Computes `count` modes; the matrix is factorised once.  Iterations.
+int solve(const Pencil& pencil, int count, Eigensolver& solver) {
+  PetscInt iterations = 0;
+  succeed(EPSSetDimensions(solver.eps, count, std::min<PetscInt>(pencil.unknowns, 3 * count), PETSC_DEFAULT));
+  succeed(EPSSolve(solver.eps));
+  succeed(EPSGetIterationNumber(solver.eps, &iterations));
+  return int(iterations);
+}
+
+struct Spectrum {
+  std::vector<std::pair<double, PetscInt>> found;  ///< eigenvalues that rise, each with its number in the solver
+  std::size_t rigid = 0;                           ///< so many are rigid motions
+  std::size_t last = 0;                            ///< so many lie below the largest gap beyond those wanted
+  double gap = 0;                                  ///< relative
+};
+
+Spectrum spectrum_of(EPS eps, int wanted) {
+  Spectrum s;
+  PetscInt converged = 0;
+  succeed(EPSGetConverged(eps, &converged));
+  s.found.resize(converged);
+  for (PetscInt i = 0; i < converged; ++i) {
+    succeed(EPSGetEigenvalue(eps, i, &s.found[i].first, nullptr));
+    s.found[i].second = i;
+  }
+  if (s.found.empty()) return s;
+  std::sort(s.found.begin(), s.found.end());
+  const double largest = s.found.back().first;
+  s.rigid =
+      std::count_if(s.found.begin(), s.found.end(), [&](const auto& f) { return f.first < rigid_below * largest; });
+  s.last = s.found.size() - 1;
+  for (std::size_t i = s.rigid + wanted; i < s.found.size(); ++i)
+    if (const double g = s.found[i].first / s.found[i - 1].first - 1; g > s.gap) {
+      s.gap = g;
+      s.last = i;
+    }
+  return s;
+}
+
+/// States that more eigenvalues lie below the gap than were found there; or nothing.
+std::string missed(const Spectrum& s, const Pencil& pencil) {
+  if (s.gap <= least_gap) return "";
+  const PetscInt below = eigenvalues_below((s.found[s.last - 1].first + s.found[s.last].first) / 2, pencil);
+  return below == PetscInt(s.last) ? ""
+                                   : fmt::format("{} eigenvalues lie below one where {} were found", below, s.last);
 }
 
 }  // namespace
@@ -173,46 +220,26 @@ void solve_modes(const GridProblem& problem, const Body3& body, const dealii::Do
   start_mpi();
   progress::detail(fmt::format("{} unknowns, natural modes", dof_handler.n_dofs()));
   const Pencil pencil = assemble_pencil(problem, body, dof_handler, form);
-  const int count = int(std::min<PetscInt>(problem.modes + 6 + modes_beyond, pencil.unknowns));
   const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
   const double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
   Eigensolver solver;
-  set_up(pencil, count, -0.01 * slowest, solver);
-  succeed(EPSSolve(solver.eps));
-  PetscInt converged = 0, iterations = 0;
-  succeed(EPSGetConverged(solver.eps, &converged));
-  succeed(EPSGetIterationNumber(solver.eps, &iterations));
+  set_up(pencil, -0.01 * slowest, solver);
   solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form));
-  solution.iterations = int(iterations);
   solution.unknowns = pencil.unknowns;
-  if (converged < count) {
-    solution.message = fmt::format("{} of {} natural modes converged", converged, count);
-    return;
-  }
-  std::vector<std::pair<double, PetscInt>> found(converged);  // eigenvalue, its number
-  for (PetscInt i = 0; i < converged; ++i) {
-    succeed(EPSGetEigenvalue(solver.eps, i, &found[i].first, nullptr));
-    found[i].second = i;
-  }
-  std::sort(found.begin(), found.end());
-  const double largest = found.back().first;
-  const auto rigid =
-      std::count_if(found.begin(), found.end(), [&](const auto& f) { return f.first < rigid_below * largest; });
-  // The largest gap beyond the wanted: as many eigenvalues must lie below it as were found.
-  std::size_t last = found.size() - 1;
-  double gap = 0;
-  for (std::size_t i = rigid + problem.modes; i < found.size(); ++i)
-    if (const double g = found[i].first / found[i - 1].first - 1; g > gap) {
-      gap = g;
-      last = i;
-    }
-  if (gap > least_gap) {
-    const PetscInt below = eigenvalues_below((found[last - 1].first + found[last].first) / 2, pencil);
-    if (below != PetscInt(last)) {
-      solution.message = fmt::format("{} eigenvalues lie below one where {} were found", below, last);
+  Spectrum spectrum;
+  for (int beyond = modes_beyond; beyond <= most_beyond; beyond *= 2) {
+    const int count = int(std::min<PetscInt>(problem.modes + 6 + beyond, pencil.unknowns));
+    solution.iterations += solve(pencil, count, solver);
+    spectrum = spectrum_of(solver.eps, problem.modes);
+    if (int(spectrum.found.size()) < count) {
+      solution.message = fmt::format("{} of {} natural modes converged", spectrum.found.size(), count);
       return;
     }
+    solution.message = missed(spectrum, pencil);
+    if (solution.message.empty() || count == pencil.unknowns) break;
   }
+  if (!solution.message.empty()) return;
+  const auto& [found, rigid, last, gap] = spectrum;
   const std::vector<Location> places = locate(body, problem.points);
   succeed(MatCreateVecs(pencil.K->petsc(), &solver.vector, nullptr));
   for (std::size_t i = rigid; i < last; ++i) {

@@ -9,6 +9,8 @@
 namespace springproof {
 namespace {
 
+// Of moduli and densities: their products are finite.
+constexpr double least_constant = 1e-30, largest_constant = 1e30;
 constexpr const char* poisson_range = "-1 < poisson_ratio < 0.5";
 
 [[noreturn]] void refuse(const std::string& what, const std::string& allowed) {
@@ -16,8 +18,9 @@ constexpr const char* poisson_range = "-1 < poisson_ratio < 0.5";
 }
 
 void check_positive(const char* name, double value, const char* unit) {
-  if (!(value > 0) || !std::isfinite(value))
-    refuse(fmt::format("{} = {} {}", name, value, unit), fmt::format("{} > 0, finite", name));
+  if (!(value >= least_constant && value <= largest_constant))
+    refuse(fmt::format("{} = {} {}", name, value, unit),
+           fmt::format("{} > 0, from {:g} to {:g} {}", name, least_constant, largest_constant, unit));
 }
 
 void check_poisson_ratio(double nu) {
@@ -40,8 +43,9 @@ std::vector<std::string> checked_names(const Moduli& given) {
   positive("shear_modulus", given.shear_modulus);
   positive("bulk_modulus", given.bulk_modulus);
   if (given.lame_lambda) {
-    if (!std::isfinite(*given.lame_lambda))
-      refuse(fmt::format("lame_lambda = {} Pa", *given.lame_lambda), "a finite number");
+    if (!(std::abs(*given.lame_lambda) <= largest_constant))
+      refuse(fmt::format("lame_lambda = {} Pa", *given.lame_lambda),
+             fmt::format("up to {:g} Pa in size", largest_constant));
     names.push_back(fmt::format("lame_lambda = {} Pa", *given.lame_lambda));
   }
   return names;

@@ -7,7 +7,7 @@
 
 namespace springproof {
 
-/// Isotropic elastic solid.  Valid range: E > 0, -1 < nu < 1/2, rho > 0.
+/// Isotropic elastic solid.  Valid range: -1 < nu < 1/2, E and rho from 1e-30 to 1e30.
 struct IsotropicMaterial {
   double youngs_modulus;    ///< E [Pa]
   double poisson_ratio;     ///< nu [1]
@@ -33,12 +33,12 @@ struct Moduli {
 
 /// The material with exactly two given moduli.
 /// @throws std::invalid_argument naming the modulus, its value and the allowed range, if not exactly two are
-///   given, if one is not finite, or if they admit no solid with E > 0 and -1 < nu < 1/2.
+///   given, if one is out of range, or if they admit no solid with E > 0 and -1 < nu < 1/2.
 /// Two solids can share (E, lambda); the one with the larger shear modulus is returned (the other has E or nu
 /// out of range).
 IsotropicMaterial material_from(const Moduli& given, double density = 1000.0);
 
-/// @throws std::invalid_argument unless E > 0, -1 < nu < 1/2, rho > 0, all finite.
+/// @throws std::invalid_argument unless they are in the valid range of IsotropicMaterial.
 void check(const IsotropicMaterial& m);
 
 /// Whether two Poisson's ratios, either of which may come from a file, are equal to within 1e-9.

@@ -209,10 +209,10 @@ std::string text_of(const Advice& a) {
                     percent(p.error), fmt::format("{} - {}", percent(p.error / p.factor), percent(p.error * p.factor)),
                     c.ms_per_step ? fmt::format("{:.3g}", *c.ms_per_step) : "-",
                     c.ms_per_step ? fmt::format("{:.2g}", c.safe_step) : "-", c.seconds, c.MiB,
-                    c.accurate && c.affordable ? "reaches it"
-                    : c.accurate               ? "over the budget"
-                    : p.error <= a.wish.error  ? "by coincidence: finer lattices do not"
-                                               : "does not reach it",
+                    c.accurate && !c.affordable ? "over the budget"
+                    : c.accurate ? p.factor > 10 && p.error * p.factor > a.wish.error ? "uncertain" : "reaches it"
+                    : p.error <= a.wish.error ? "by coincidence: finer lattices do not"
+                                              : "does not reach it",
                     p.beyond ? ", extrapolated" : "");
   };
   for (const Choice& c : a.choices) line(c);

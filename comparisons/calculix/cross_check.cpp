@@ -262,10 +262,6 @@ void print_title(const Question& q) {
 
 Question question(const PreparedCase& prepared, const IsotropicMaterial& material, const CrossCheckOptions& options) {
   const Experiment& e = prepared.experiment;
-  if (e.body.is_voxels())
-    throw InputError(e.body.where,
-                     "a body of voxels has no cross-check of its own; `springproof export` writes its tetrahedra with "
-                     "the loads for CalculiX");
   Question q{prepared, material, three_grids(finest_cells(e, material, options.cells)), {}, options.time_limit};
   for (const Cells& cells : q.cells) {
     q.meshes.push_back(mesh_geo(prepared.geo, e.body.size, cells));
@@ -327,6 +323,10 @@ const IsotropicMaterial& material_of(const Experiment& experiment, std::optional
 int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options) try {
   const Experiment experiment = read_experiment(file);
   calculix::require_counterpart(experiment);
+  if (experiment.body.is_voxels())
+    throw InputError(experiment.body.where,
+                     "a body of voxels has no cross-check of its own; `springproof export` writes its tetrahedra with "
+                     "the loads for CalculiX");
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   const PreparedCase prepared = prepare(experiment);

@@ -18,6 +18,7 @@
 #include "comparisons/run/status.h"
 #include "meshes/mesher/mesher.h"
 #include "msm/exchange/lammps.h"
+#include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
 #include "problem/system/files.h"
 #include "problem/system/nearest_name.h"
@@ -146,6 +147,16 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
   return e;
 }
 
+/// @throws InputError for cells that are boxes where the other program gets springs or nodes of cubes.
+void require_cubes(const ExportRequest& request, const Mesh& mesh) {
+  if (!mesh.grid || has_cubes(*mesh.grid)) return;
+  const Vec3& edge = mesh.grid->spacing;
+  throw InputError(fmt::format(
+      "{}: the cells are {:.6g} x {:.6g} x {:.6g} m (allowed with --to {}: cubes, --cells NX NY NZ in proportion "
+      "to the size; boxes of hybmss_avg with --to springs)",
+      request.what, edge[0], edge[1], edge[2], request.to));
+}
+
 /// `cut`: of cut cells where the model has them and the case does not say otherwise.
 SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(read_case(request.what), request);
@@ -164,7 +175,11 @@ SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   }
   Status status(false);
   const Status::Working working(status, request.what);
-  return springs_of(prepare_lattices(e));
+  const PreparedCase prepared = prepare_lattices(e);
+  const Topology of = prepared.models.front().row.topology;
+  if (request.to != "springs" && (of == Topology::cells || of == Topology::centres))
+    require_cubes(request, *prepared.lattices.front().mesh);
+  return springs_of(prepared);
 }
 
 fs::path out_or(const ExportRequest& request, const std::string& ending) {

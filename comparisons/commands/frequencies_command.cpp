@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "comparisons/run/status.h"
 #include "fem_reference/reference.h"
 #include "meshes/field.h"
+#include "problem/system/child.h"
 #include "problem/system/files.h"
 
 namespace springproof {
@@ -24,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int frequencies_interrupted = 130;
-std::atomic<bool> frequencies_stopped = false;
 
 std::string name_of(const ModelFrequencies& m) {
   return m.consistency > 0 ? fmt::format("{} {:g}", m.label, m.consistency) : m.label;
@@ -179,17 +178,13 @@ void FrequenciesCommand::add_options(CLI::App& command) {
       "model has none, 2 the input is unusable, 130 interrupted.");
 }
 
-int FrequenciesCommand::run() const {
+int FrequenciesCommand::run() const try {
   if (vtu_ && out_.empty()) throw InputError("--vtu: needs a folder (allowed: with --out DIR)");
   const std::vector<fs::path> found = find_cases({case_});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
   const Experiment experiment =
       with_materials(case_of_modes(read_experiment(found.front()), options_), poisson_ratios_);
-  for (const int signal : {SIGINT, SIGTERM})
-    std::signal(signal, [](int) {
-      frequencies_stopped = true;
-      fem::interrupt();
-    });
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { fem::interrupt(); });
   Status status;
   bool all = true;
   nlohmann::json tables = nlohmann::json::array();
@@ -203,7 +198,6 @@ int FrequenciesCommand::run() const {
       const Status::Working working(status, fmt::format("{}, nu = {:g}", experiment.name, material.poisson_ratio));
       return natural_frequencies(prepared, material, options_);
     }();
-    if (frequencies_stopped) return frequencies_interrupted;
     for (const FrequencyTable& t : solved) {
       print(experiment, t, options_.modes);
       std::fflush(stdout);
@@ -221,6 +215,9 @@ int FrequenciesCommand::run() const {
             2) +
             "\n");
   return all ? 0 : 1;
+} catch (const std::runtime_error&) {
+  if (children_interrupted()) return frequencies_interrupted;
+  throw;
 }
 
 }  // namespace springproof

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "comparisons/commands/number_checks.h"
 #include "comparisons/parallel/parted_run.h"
 #include "comparisons/parallel/slab_run.h"
 #include "msm/parallel/parted_equations.h"
@@ -50,9 +51,10 @@ void print(const nlohmann::json& r) {
 
 void add_options(CLI::App& app, ParallelOptions& options) {
   app.add_option("CASE", options.case_file, "case file")->required();
-  app.add_option("--cells", options.cells, "of a block along x, y, z, instead of the case's last");
+  app.add_option("--cells", options.cells, "of a block along x, y, z, instead of the case's last")
+      ->check(CLI::Range(1, 1000));
   app.add_option("--voxels", options.voxels, "about so many cubes, instead of the case's last")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 4000000));
   app.add_option("--poisson-ratio", options.poisson_ratio, "instead of the case's first")
       ->check(CLI::Range(-0.999, 0.4999));
   app.add_option("--model", options.model, "label of a model of the case, or a row of the table of models")
@@ -62,12 +64,10 @@ void add_options(CLI::App& app, ParallelOptions& options) {
       ->check(CLI::Range(1e-13, 1e-2));
   app.add_option("--max-iterations", options.max_iterations, "of the Krylov method")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000000));
   app.add_option("--steps", options.steps, "so many explicit steps (large displacements) instead of equilibrium")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--damping", options.damping, "of explicit steps [1/s]")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1000000000));
+  app.add_option("--damping", options.damping, "of explicit steps [1/s]")->capture_default_str()->check(positive(true));
   app.add_option("--json", options.json_file, "write the result as JSON too");
 }
 
@@ -94,7 +94,8 @@ int parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return rank == 0 ? app.exit(e) : (e.get_exit_code() ? 2 : 0);
+    if (rank == 0) app.exit(e);
+    return e.get_exit_code() ? 2 : 0;
   }
   try {
     const nlohmann::json result = run(options, PETSC_COMM_WORLD);

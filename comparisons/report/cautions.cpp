@@ -1,4 +1,4 @@
-// What to know of a case of large strain before its errors are read.
+// What to know of a case of large strain or in motion before its errors are read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +20,11 @@ std::vector<std::string> cautions(const CaseResult& result) {
     out.push_back(
         "pressure_Pa is a dead load, per area at rest and against the normals at rest; a pressure that follows the "
         "surface, as that of a gas, gives another result");
+  if (e.dynamics && e.dynamics->damping > 0 && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement))
+    out.push_back(fmt::format(
+        "damping in proportion to the mass (loss_factor, damping_1_s) also brakes what the free body does as "
+        "a whole, its fall and its turning, at a rate of {:.3g}/s; viscosity_s alone does not",
+        e.dynamics->damping));
   if (e.reference.elements.empty()) return out;
   std::map<std::string, std::vector<std::string>> others;
   for (const auto& [label, law] : result.laws)

@@ -54,15 +54,19 @@ std::string own_ratio_clause(const ModelErrors& errors) {
   return fmt::format("; a solid of ν = {} alone, {}", nu_text(errors.own_nu), there);
 }
 
-std::string sentence(const ModelErrors& errors) {
-  if (errors.displacement.empty()) return "no displacement could be compared.";
-  const auto& [nu, worst] = largest(errors.displacement);
+std::string displacement_clause(const ByNu& errors) {
+  const auto& [nu, worst] = largest(errors);
   std::string out = fmt::format("displacement within {} % of FEM {} (worst: {}", percent(worst.error),
-                                range_text(errors.displacement), at_nu(worst.case_name, nu));
+                                range_text(errors), at_nu(worst.case_name, nu));
   if (worst.error <= worst.uncertainty)
     out += fmt::format(", below the {} % uncertainty of the reference", percent(worst.uncertainty));
-  out += ")";
-  out += tighter_clause(errors.displacement, worst.error);
+  return out + ")" + tighter_clause(errors, worst.error);
+}
+
+std::string sentence(const ModelErrors& errors) {
+  std::string out = errors.displacement.empty()
+                        ? errors.asked ? "no displacement could be compared" : "displacement was not asked for"
+                        : displacement_clause(errors.displacement);
   if (!errors.springs.empty())
     out += fmt::format("; its springs within {} % of FEM on the same cubes",
                        percent(largest(errors.springs).second.error));
@@ -73,6 +77,34 @@ std::string sentence(const ModelErrors& errors) {
   if (!errors.volume.empty())
     out += fmt::format("; volume change within {} percentage points", percent(largest(errors.volume).second.error));
   return out + own_ratio_clause(errors) + ".";
+}
+
+/// "force on z_max": which reaction a reaction error is of, where they were measured.
+std::string largest_reaction(const Json& rows, const Json& error_row) {
+  struct Difference {
+    double squared = 0, size = 0;
+  };
+  std::map<std::string, Difference> all;  // by "force.z_max"
+  for (const Json& row : rows) {
+    const std::string measure = string_of(row, "measure");
+    const auto dot = measure.rfind('.');
+    if (dot == std::string::npos || !(measure.starts_with("force.") || measure.starts_with("torque."))) continue;
+    if (row.at("model") != error_row.at("model") || row.at("cells") != error_row.at("cells") ||
+        row.at("poisson_ratio") != error_row.at("poisson_ratio"))
+      continue;
+    Difference& d = all[measure.substr(0, dot)];
+    if (measure.ends_with(".magnitude"))
+      d.size = number_of(row, "reference").value_or(0);
+    else
+      d.squared += std::pow(number_of(row, "error").value_or(0), 2);
+  }
+  const double error = number_of(error_row, "error").value_or(0);
+  for (const auto& [name, d] : all)
+    if (d.size > 0 && std::abs(std::sqrt(d.squared) / d.size - error) < 1e-2 * error) {
+      const auto dot = name.find('.');
+      return name.substr(0, dot) + " on " + name.substr(dot + 1);
+    }
+  return "reactions of moved supports";
 }
 
 std::string expected_text(const Json& check) {
@@ -105,6 +137,7 @@ class Collector {
     case_name_ = string_of(experiment, "name");
     large_ = string_of(experiment, "kinematics") != "linear";
     const Json& measures = list_of(experiment, "measures");
+    voxels_ = object_of(experiment, "body").value("voxels", false);
     compares_displacement_ = std::find(measures.begin(), measures.end(), "displacement_error") != measures.end();
     motions_.clear();
     for (const Json& model : list_of(experiment, "models"))
@@ -122,6 +155,10 @@ class Collector {
     if (!list_of(experiment, "models").empty()) add_rows(result);  // else the reference alone: no model to be judged
     for (const Json& model : list_of(experiment, "models"))
       models_for(string_of(model, "label"), number_of(model, "own_poisson_ratio"));
+    if (compares_displacement_)
+      for (const Json& run : list_of(result, "runs"))
+        if (const auto found = models_.find({large_, string_of(run, "model")}); found != models_.end())
+          found->second.asked = true;
   }
 
   Headline take() {
@@ -181,10 +218,15 @@ class Collector {
           part && nu && is_finest(split))
         own_parts[{string_of(split, "model"), *nu, string_of(split, "measure")}] = *part;
     for (const Json& row : list_of(result, "rows"))
-      if (is_finest(row)) add_row(row, own_parts);
+      if (is_finest(row))
+        add_row(row, own_parts,
+                string_of(row, "measure") == "reaction_error" ? largest_reaction(list_of(result, "rows"), row)
+                                                              : "displacement");
   }
 
-  void add_row(const Json& row, const std::map<std::tuple<std::string, double, std::string>, double>& own_parts) {
+  /// `of`: what the error is of.
+  void add_row(const Json& row, const std::map<std::tuple<std::string, double, std::string>, double>& own_parts,
+               const std::string& of) {
     const std::string measure = string_of(row, "measure"), model = string_of(row, "model");
     const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
     if (nu && error && measure == "motion_error")
@@ -200,6 +242,7 @@ class Collector {
     kind[*nu].take(std::abs(*error), uncertainty, case_name_);
     if (!displacement && !reaction) return;
     errors.cases.insert(case_name_);
+    (voxels_ ? errors.voxels : errors.blocks) = true;
     const auto part = own_parts.find({model, *nu, measure});
     const bool has_part = part != own_parts.end();
     // What is extrapolated has no springs of its own: not ranked beside models by theirs.
@@ -209,7 +252,7 @@ class Collector {
       return;
     (has_part ? errors.parts : errors.wholes) = true;
     if (has_part && displacement) errors.springs[*nu].take(part->second, uncertainty, case_name_);
-    errors.rank[*nu].take(has_part ? part->second : *error, uncertainty, case_name_);
+    errors.rank[*nu].take(has_part ? part->second : *error, uncertainty, case_name_, of);
   }
 
   void add_check(const Json& check) {
@@ -226,7 +269,7 @@ class Collector {
 
   Headline headline_;
   std::string case_name_;
-  bool large_ = false, compares_displacement_ = false;
+  bool large_ = false, voxels_ = false, compares_displacement_ = false;
   std::map<std::pair<bool, std::string>, ModelErrors> models_;
   std::set<std::string> fem_, external_;  ///< elements; displacements of other programs
   std::set<std::string> motions_;         ///< models of the case that are in motion: shown, not judged

@@ -176,10 +176,12 @@ std::optional<Warning> doubt_of_reference(const Json& cases) {
 
 std::string deformation_line(const Json& result) {
   std::vector<std::string> parts;
-  for (const Json& d : list_of(result, "deformations"))
+  for (const Json& d : list_of(result, "deformations")) {
+    const double strain = number_of(d, "principal_strain").value_or(0);
     parts.push_back(fmt::format("ν = {}: {} %, {:.2g}°", nu_text(number_of(d, "poisson_ratio")),
-                                percent(number_of(d, "principal_strain").value_or(0)),
+                                strain < 1e-5 ? fmt::format("{:.2g}", 100 * strain) : percent(strain),
                                 number_of(d, "rotation_deg").value_or(0)));
+  }
   return parts.empty() ? "" : fmt::format("{:<28} {}", name_of(result), fmt::join(parts, "; "));
 }
 

@@ -90,27 +90,40 @@ std::string where_text(const Candidate& c) {
                      cases == 1 ? "" : "s", c.large_deformation ? " of large deformation" : "");
 }
 
-/// Of displacements, coarse cells included, in per cent.
-std::string whole_error(const ModelErrors& e) { return percent(largest(ranked(e, e.displacement)).second.error); }
+/// Of displacements, or where none was compared of reactions, coarse cells included, in per cent.
+std::string whole_error(const ModelErrors& e) {
+  return percent(largest(ranked(e, e.displacement.empty() ? e.reaction : e.displacement)).second.error);
+}
+
+constexpr const char* reactions = "reactions of moved supports";
 
 /// The one error that ranks the best model, in words; of its springs alone never without the whole.
 std::string closest_text(const Candidate& best) {
   const ModelErrors& e = *best.errors;
-  const std::string within = percent(best.error()), where = where_text(best) + auxetic_clause(e) + ".",
+  const bool doubtful = best.uncertainty() > 0.5 * best.error();  // not of the springs' own part on the same cubes
+  const std::string within = percent(best.error()),
+                    where =
+                        where_text(best) + auxetic_clause(e) +
+                        (doubtful && !(e.parts && !e.wholes)
+                             ? fmt::format("; the reference itself is uncertain by {} %.", percent(best.uncertainty()))
+                             : "."),
                     whole = e.parts ? whole_error(e) : "";
   if (e.parts && !e.wholes)
     return fmt::format(
         "Of the spring models {} comes closest: its springs stay within {} % of finite elements on the same cubes, its "
-        "displacements, coarse cells included, within {} % of the reference, {}",
-        best.name, within, whole, where);
-  return fmt::format(
-      "Of the spring models {} comes closest: its displacements {}stay within {} % of finite elements{} {}", best.name,
-      e.reaction.empty() ? "" : "and the reactions of moved supports ", within,
-      e.parts ? fmt::format(", counting on bodies that are no blocks its springs alone ({} % with the "
-                            "coarse cells),",
-                            whole)
-              : "",
-      where);
+        "{}, coarse cells included, within {} % of the reference, {}",
+        best.name, within, e.displacement.empty() ? reactions : "displacements", whole, where);
+  return fmt::format("Of the spring models {} comes closest: its {} stay within {} % of finite elements{} {}",
+                     best.name,
+                     e.displacement.empty() ? reactions
+                     : e.reaction.empty()   ? "displacements"
+                                            : "displacements and the reactions of moved supports",
+                     within,
+                     e.parts ? fmt::format(", counting on bodies that are no blocks its springs alone ({} % with the "
+                                           "coarse cells),",
+                                           whole)
+                             : "",
+                     where);
 }
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
@@ -123,7 +136,10 @@ std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
   return fmt::format(
       "Of the spring models {} come closest and cannot be told apart: their largest errors{}{} differ by no more than "
       "the {} % that the reference is uncertain by, {}.",
-      listed(names), e.reaction.empty() ? "" : " of displacement and reactions",
+      listed(names),
+      e.reaction.empty()       ? ""
+      : e.displacement.empty() ? " of reactions of moved supports"
+                               : " of displacement and reactions",
       e.parts ? ", on bodies that are no blocks those of their springs alone," : "", percent(uncertainty),
       where_text(tied.front()));
 }
@@ -131,11 +147,18 @@ std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
 // A reference with a larger uncertainty ranks no model.
 constexpr double telling_uncertainty = 0.2;
 
-std::string untold_text(const Candidate& best, double uncertainty) {
-  return fmt::format(
-      "Which spring model comes closest the reference does not tell, {}: it is uncertain by {} %. Refine it: in "
-      "[reference] a smaller edge_m (bodies of voxels), more cells (blocks).",
-      where_text(best), percent(uncertainty));
+/// Of one model alone: how close it comes.
+std::string untold_text(const Candidate& best, bool alone, double uncertainty) {
+  const auto& [nu, worst] = largest(best.rank);
+  const std::string what =
+      alone
+          ? fmt::format("How close {} comes the reference does not tell, {}: its largest error, {} % of the {} in {},",
+                        best.name, where_text(best), percent(worst.error), worst.of, at_nu(worst.case_name, nu))
+          : fmt::format("Which spring model comes closest the reference does not tell, {}: it", where_text(best));
+  return fmt::format("{} is uncertain by {} %. Refine it: in [reference] {}.", what, percent(uncertainty),
+                     !best.errors->voxels   ? "more cells"
+                     : !best.errors->blocks ? "a smaller edge_m"
+                                            : "a smaller edge_m (bodies of voxels), more cells (blocks)");
 }
 
 /// States that every model was run only at Poisson's ratios other than the one it is valid for; or nothing.
@@ -172,7 +195,7 @@ std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::
   const bool on_same_cubes = best.errors->parts && !best.errors->wholes;
   if (uncertainty > telling_uncertainty && !(tied.size() == 1 && on_same_cubes)) {
     closest.clear();
-    return untold_text(best, uncertainty);
+    return untold_text(best, all.size() == 1, uncertainty);
   }
   return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
 }

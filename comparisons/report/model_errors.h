@@ -14,9 +14,11 @@ struct Worst {
   double error = -1;
   double uncertainty = 0;
   std::string case_name;
+  std::string of = "displacement";  ///< "force on z_max"
 
-  void take(double other, double its_uncertainty, const std::string& its_case) {
-    if (other > error) *this = {other, its_uncertainty, its_case};
+  void take(double other, double its_uncertainty, const std::string& its_case,
+            const std::string& its_of = "displacement") {
+    if (other > error) *this = {other, its_uncertainty, its_case, its_of};
   }
 };
 
@@ -25,12 +27,14 @@ using ByNu = std::map<double, Worst>;
 /// Errors of one model.
 struct ModelErrors {
   ByNu displacement, volume, reaction;
-  ByNu springs;                        ///< displacement: the springs' own part of it, on bodies of voxels
-  ByNu promised;                       ///< displacement: what cut cells estimate of themselves
-  ByNu rank;                           ///< errors by which the closest model is found
-  std::set<std::string> cases;         ///< in which a displacement or a reaction was compared
-  std::optional<double> own_nu;        ///< the only Poisson's ratio that the model is valid for, if any
-  bool parts = false, wholes = false;  ///< ranked by the springs' own part somewhere, by the whole error somewhere
+  ByNu springs;                         ///< displacement: the springs' own part of it, on bodies of voxels
+  ByNu promised;                        ///< displacement: what cut cells estimate of themselves
+  ByNu rank;                            ///< errors by which the closest model is found
+  std::set<std::string> cases;          ///< in which a displacement or a reaction was compared
+  std::optional<double> own_nu;         ///< the only Poisson's ratio that the model is valid for, if any
+  bool blocks = false, voxels = false;  ///< bodies of which they are
+  bool asked = false;                   ///< for displacements
+  bool parts = false, wholes = false;   ///< ranked by the springs' own part somewhere, by the whole error somewhere
 };
 
 /// Models in the order in which they are listed.

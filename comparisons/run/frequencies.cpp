@@ -12,6 +12,7 @@
 #include "msm/dynamics/natural_modes.h"
 #include "msm/embedding/boundary.h"
 #include "problem/case_file/external.h"
+#include "problem/system/child.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -179,6 +180,9 @@ std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, co
                        fmt::format("{}: cells of 27 nodes have no natural modes (allowed: hybmss_avg)",
                                    prepared.experiment.models[m].label));
   const ReferenceModes reference = reference_modes(prepared, material, options.modes);
+  const auto go_on = [] {
+    if (children_interrupted()) throw std::runtime_error("interrupted");
+  };
   std::vector<FrequencyTable> tables;
   for (const Lattice& lattice : prepared.lattices) {
     FrequencyTable& table = tables.emplace_back();
@@ -194,6 +198,7 @@ std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, co
     for (std::size_t m = 0; m < prepared.models.size(); ++m) {
       const bool cells = prepared.models[m].row.topology == Topology::cells;
       for (const double theta : cells ? options.consistency : std::vector<double>{0}) {
+        go_on();
         progress::phase(
             fmt::format("{} on {} cells", prepared.experiment.models[m].label, cells_text(lattice.cells, " x ")));
         table.models.push_back(frequencies_of(prepared, lattice, m, theta, material, options.modes));
@@ -201,6 +206,7 @@ std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, co
       }
     }
   }
+  go_on();
   return tables;
 }
 

@@ -247,8 +247,12 @@ void measure(const Experiment& e, const MotionChoice& motion, const Network& net
   }
   const std::vector<double>*kinetic = series(h, "kinetic_energy"), *elastic = series(h, "elastic_energy"),
         *load = series(h, "load_potential");
-  if (motion.damping == 0 && motion.viscosity == 0 && !(motion.plane && motion.plane->friction > 0) && elastic &&
-      first < h.time.size()) {
+  const auto pushed = [&](const char* axis) {
+    const std::vector<double>* impulse = series(h, std::string("contact_impulse.") + axis);
+    return impulse && impulse->back() != 0;
+  };
+  const bool landed = pushed("x") || pushed("y") || pushed("z");  // and lost energy: PlaneContact
+  if (motion.damping == 0 && motion.viscosity == 0 && !landed && elastic && first < h.time.size()) {
     const auto total = [&](std::size_t i) { return (*kinetic)[i] + (*elastic)[i] + (*load)[i]; };
     double drift = 0, largest = 0;
     for (std::size_t i = first; i < h.time.size(); ++i) {

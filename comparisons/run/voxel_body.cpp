@@ -292,16 +292,43 @@ void place_samples(PreparedCase& prepared) {
     prepared.body_points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
 }
 
-/// @throws InputError naming a probe that is further outside than half a cube: facets lie inside curved surfaces.
-void check_probes(const PreparedCase& prepared) {
+/// How far a curved surface may lie above a facet of it [m]: half of how far the corners of the facets beside it lie
+/// below its plane, unless there is an edge of the body between them.
+double bulge(const Mesh& body, const std::vector<OuterFacet>& facets, std::size_t of) {
+  constexpr double edge = 0.7;  // cosine between normals
+  const auto corners = [&](const OuterFacet& f) {
+    return std::array<Vec3, 3>{body.nodes.row(f.nodes[0]), body.nodes.row(f.nodes[1]), body.nodes.row(f.nodes[2])};
+  };
+  const auto normal = [&](const OuterFacet& f) -> Vec3 {
+    const auto [a, b, c] = corners(f);
+    const Vec3 n = (b - a).cross(c - a).normalized();
+    return n.dot(f.cell_centre - a) > 0 ? Vec3(-n) : n;
+  };
+  const Vec3 n = normal(facets[of]), at = corners(facets[of])[0];
+  double below = 0;
+  for (const OuterFacet& f : facets)
+    if (std::find_first_of(f.nodes.begin(), f.nodes.begin() + 3, facets[of].nodes.begin(),
+                           facets[of].nodes.begin() + 3) != f.nodes.begin() + 3 &&
+        normal(f).dot(n) > edge)
+      for (const Vec3& corner : corners(f)) below = std::max(below, n.dot(at - corner));
+  return below / 2;
+}
+
+/// Notes probes outside the body: beyond its facets by more than round-off and than its surface may bulge over them.
+/// @throws InputError naming a probe that is further outside than half a cube.
+void check_probes(PreparedCase& prepared) {
   const Mesh& body = *prepared.tetrahedra.back();
   const std::vector<OuterFacet> facets = outer_facets(body);
   const FacetTree tree(body, facets);
   const auto finer = [](const Lattice& a, const Lattice& b) { return a.voxel_edge < b.voxel_edge; };
   const double slack = std::min_element(prepared.lattices.begin(), prepared.lattices.end(), finer)->voxel_edge / 2;
   for (const Probe& p : prepared.experiment.probes) {
-    const double distance = (tree.nearest(p.at).point - p.at).norm();
-    if (!prepared.lattices.front().region->inside(p.at) && distance > slack)
+    if (prepared.lattices.front().region->inside(p.at)) continue;
+    const auto [facet, point, distance] = tree.nearest(p.at);
+    if (distance > 1e-6 * prepared.size.norm() + bulge(body, facets, facet))
+      prepared.notes.push_back(
+          fmt::format("probe '{}' lies {:.3g} m outside the body: its displacement is extrapolated", p.name, distance));
+    if (distance > slack)
       throw InputError(fmt::format(
           "probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface",
           p.name, p.at[0], p.at[1], p.at[2], distance));

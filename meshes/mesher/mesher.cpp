@@ -124,6 +124,10 @@ fs::path find_geo(const Body& body, const fs::path& case_file) {
     refuse_own_script(body, candidate);
     return candidate;
   }
+  std::error_code ignored;
+  if (const fs::path folder = case_file.parent_path() / body.geo;
+      !body.geo.empty() && fs::is_directory(folder, ignored))
+    throw InputError(body.where, fmt::format("body.geo: {} is a folder (allowed: a file)", folder.string()));
   throw InputError(body.where, fmt::format("body.geo: no file '{}' beside the case file or among the built-in "
                                            "bodies (allowed: {})",
                                            body.geo, list_of_bodies(built_in)));

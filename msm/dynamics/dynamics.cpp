@@ -212,10 +212,6 @@ double lagged_damping(const MassSpringModel& model, double density, double time_
   return time_step * dispersion_frequency_squared(model, density);
 }
 
-namespace {
-
-/// The velocity that goes with positions x: of explicit steps half a step before, v - dt a / 2, of momenta if these are
-/// averaged.
 NodalVectors velocity_before(const MassSpringModel& model, double density, const NodalVectors& x,
                              const BoundaryConditions& bc, double dt, const DynamicsOptions& options) {
   NodalVectors v = options.velocity;
@@ -235,6 +231,8 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
       v.data()[i] -= dt / 2 * (f.data()[i] * per_mass[i / 3] - options.damping * v.data()[i]);
   return v;
 }
+
+namespace {
 
 /// Contact with the plane at the end of an explicit step.
 void touch(Motion& motion, PlaneContact& contact, double dt, double damping, const BoundaryConditions& bc) {

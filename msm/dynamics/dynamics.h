@@ -100,6 +100,18 @@ double checked_time_step(const MassSpringModel& model, double density, const Dyn
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, double time_step,
                                     const DynamicsOptions& options);
 
+/// The velocity that a motion is set to at its start: of explicit steps half a step before the positions, v - dt a / 2,
+/// of momenta if these are averaged.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @param x positions [m], n x 3
+/// @param bc supports and loads then
+/// @param dt the step [s]
+/// @param options of which velocity, integrator, damping, viscosity and mass_consistency are read
+/// @return for Motion::set_state() [m/s], n x 3; zero if DynamicsOptions::velocity is empty
+NodalVectors velocity_before(const MassSpringModel& model, double density, const NodalVectors& x,
+                             const BoundaryConditions& bc, double dt, const DynamicsOptions& options);
+
 /// Smallest damping [1/s] with which lagged dispersion is stable: step * omega*^2, omega* a bound on what dispersion
 /// adds (dispersion_frequency_squared()).  For a mode of frequencies omega_s (springs) and omega* the step has the
 /// characteristic equation (1 + c dt) z^2 - (2 + c dt - dt^2 omega_s^2) z + (1 + dt^2 omega*^2) = 0, and the product of

@@ -12,7 +12,7 @@
 #include "msm/embedding/rigid_motions.h"
 #include "msm/statics/tangent_solver.h"
 #include "msm/topology/macro_cells.h"
-#include "problem/system/progress.h"
+#include "problem/system/child.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
@@ -75,6 +75,7 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
     clear(fixed, y);
   };
   const Operator solve = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    if (children_interrupted()) throw std::runtime_error("interrupted");
     stiffness.solve(r, inner_residual, inner_iterations, z);
   };
   const Eigen::MatrixXd rigid = orthonormalised(M, left_motions(supported, fixed, network.X), {});

@@ -6,9 +6,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -76,6 +78,17 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 NodalVectors rows_of(const Numbers& values, const char* name, Eigen::Index rows = -1);
 /// Three numbers.
 Vec3 vector_of(const Numbers& values, const char* name);
+/// The same numbers.
+/// @throws InputError naming the argument if one is infinite or NaN.
+template <class Value>
+Value finite(Value value, const char* name) {
+  if constexpr (std::is_arithmetic_v<Value>) {
+    if (std::isfinite(value)) return value;
+  } else {
+    if (value.allFinite()) return value;
+  }
+  throw InputError(std::string(name) + ": a number is not finite (allowed: finite numbers)");
+}
 
 /// Raises KeyboardInterrupt after Ctrl-C; without the GIL.
 inline void check_interruption() {

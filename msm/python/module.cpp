@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <stdexcept>
+#include <system_error>
 
 #include "msm/python/bindings.h"
 
@@ -47,6 +48,8 @@ PYBIND11_MODULE(_springproof, m) {
       std::rethrow_exception(std::move(thrown));
     } catch (const std::invalid_argument& e) {  // of the library, where no place in a file is known
       PyErr_SetString(input_error.ptr(), e.what());
+    } catch (const std::system_error& e) {  // of a file; Python makes FileNotFoundError of 2
+      PyErr_SetObject(PyExc_OSError, pybind11::make_tuple(e.code().value(), e.what()).ptr());
     }
   });
   python::bind_bodies(m);

@@ -18,12 +18,15 @@ constexpr long nodes_between_looks = 2000000;  // nodes times steps until the ne
 /// A model in motion, with copies of its state for Python that are renewed when they are asked for.
 class MovingModel {
  public:
-  MovingModel(ModelPointer model, std::vector<Load> loads, NodeConditions nodes, const DynamicsOptions& options)
+  MovingModel(ModelPointer model, std::vector<Load> loads, NodeConditions nodes, DynamicsOptions options)
       : model_(std::move(model)), loads_(std::move(loads)), nodes_(std::move(nodes)) {
     const double density = model_->springs.density;
     dt_ = checked_time_step(model_->model(), density, options);
     motion_ = make_motion(model_->model(), density, dt_, options);
     apply();
+    const NodalVectors& X = model_->network().X;
+    options.velocity = NodalVectors::Zero(X.rows(), 3);
+    set_state(X, velocity_before(model_->model(), density, X, conditions_, dt_, options));
     motion_->move_supports();
   }
 
@@ -43,7 +46,12 @@ class MovingModel {
     }
   }
 
-  void set_state(const NodalVectors& x, const NodalVectors& v) {
+  void set_state(NodalVectors x, NodalVectors v) {
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (conditions_.fixed[i]) {
+        x.data()[i] = model_->network().X.data()[i] + conditions_.prescribed.data()[i];
+        v.data()[i] = 0;
+      }
     motion_->set_state(x, v);
     fresh_x_ = fresh_v_ = fresh_f_ = false;
   }
@@ -84,7 +92,8 @@ class MovingModel {
  private:
   void apply() {
     const Kinematics kinematics = model_->model().small_displacements_only ? Kinematics::linear : Kinematics::finite;
-    motion_->set_conditions(conditions_of(*model_, loads_, nodes_, kinematics, 1));
+    conditions_ = conditions_of(*model_, loads_, nodes_, kinematics, 1);
+    motion_->set_conditions(conditions_);
   }
 
   /// Into the same memory, which views of Python refer to.
@@ -102,6 +111,7 @@ class MovingModel {
   ModelPointer model_;
   std::vector<Load> loads_;
   NodeConditions nodes_;
+  BoundaryConditions conditions_;
   double dt_ = 0;
   std::unique_ptr<Motion> motion_;
   long steps_ = 0;
@@ -147,11 +157,12 @@ copy what is to be kept.)")
             const int n = s.model().network().nodes();
             s.set_state(rows_of(positions, "positions", n), rows_of(velocities, "velocities", n));
           },
-          "positions"_a, "velocities"_a, "Puts all nodes there, n x 3 [m] and [m/s].")
+          "positions"_a, "velocities"_a,
+          "Puts all nodes that are not held there, n x 3 [m] and [m/s]; velocities as the attribute gives them.")
       .def(
           "set_forces",
           [](MovingModel& s, const Numbers& forces) {
-            s.set_forces(rows_of(forces, "forces", s.model().network().nodes()));
+            s.set_forces(finite(rows_of(forces, "forces", s.model().network().nodes()), "forces"));
           },
           "forces"_a, "Forces on the nodes, n x 3 [N], from now on, beside the loads; instead of those given before.")
       .def_property_readonly(
@@ -159,7 +170,7 @@ copy what is to be kept.)")
           "n x 3 [m]; a view, renewed when read")
       .def_property_readonly(
           "velocities", [](const py::object& self) { return view(self.cast<MovingModel&>().velocities(), self); },
-          "n x 3 [m/s]; a view, renewed when read")
+          "n x 3 [m/s], of explicit steps half a step before the positions; a view, renewed when read")
       .def_property_readonly(
           "forces", [](const py::object& self) { return view(self.cast<MovingModel&>().forces(), self); },
           "internal forces, n x 3 [N]; a view, renewed when read")

@@ -98,8 +98,9 @@ void bind_state(py::module_& m) {
           "body_displacement", [](const py::object& self) { return view(self.cast<SolvedState&>().on_body, self); },
           "of the body's nodes (Body.nodes), 3 columns [m]; a view; no rows for a model without a body")
       .def("at", &displacement_at_points, "points"_a, "Displacement of points of the body, k x 3 [m].")
-      .def_property_readonly("reactions", &reactions_of,
-                             "patch -> force [N] and torque about its centroid [N m] of its support, 2 x 3")
+      .def_property_readonly(
+          "reactions", &reactions_of,
+          "patch -> force [N] and torque [N m] of its support, about the centroid of the patch at rest, 2 x 3")
       .def_readonly("volume_change", &SolvedState::volume_change, "(V' - V)/V of the deformed cells")
       .def_property_readonly("solver", [](const SolvedState& s) { return s.equilibrium.solver; })
       .def_property_readonly(
@@ -146,8 +147,9 @@ NodeConditions node_conditions(const BodyModel& model, const py::object& held, c
     else
       out.displacement = rows_of(given, "displacement", count);
   }
-  if (!forces.is_none()) out.forces = rows_of(forces.cast<Numbers>(), "forces", n);
-  if (!forces.is_none() && !out.forces.allFinite()) throw InputError("forces: a number is not finite");
+  if (out.displacement.array().isInf().any())
+    throw InputError("displacement: a number is infinite (allowed: finite numbers, NaN: free)");
+  if (!forces.is_none()) out.forces = finite(rows_of(forces.cast<Numbers>(), "forces", n), "forces");
   return out;
 }
 
@@ -185,6 +187,8 @@ BoundaryConditions conditions_of(const BodyModel& model, const std::vector<Load>
 void bind_loads(py::module_& m) {
   py::class_<PrescribedDisplacement>(m, "Displacement", "A support: displacement (x, y, z) [m] of a patch; None: free.")
       .def(py::init([](const std::string& on, const std::array<std::optional<double>, 3>& displacement) {
+             for (const auto& along : displacement)
+               if (along) finite(*along, "displacement");
              return PrescribedDisplacement{on, displacement};
            }),
            "on"_a, "displacement"_a = std::array<std::optional<double>, 3>{0.0, 0.0, 0.0})
@@ -192,36 +196,39 @@ void bind_loads(py::module_& m) {
   py::class_<PrescribedRotation>(m, "Rotation",
                                  "A support: rotation of a patch by `angle` [rad] about an axis through `point` [m].")
       .def(py::init([](const std::string& on, const Numbers& point, const Numbers& axis, double angle) {
-             const Vec3 direction = vector_of(axis, "axis");
+             const Vec3 direction = finite(vector_of(axis, "axis"), "axis");
              if (!(direction.norm() > 0)) throw InputError("axis: is zero (allowed: a direction)");
-             return PrescribedRotation{on, vector_of(point, "point"), direction.normalized(), angle};
+             return PrescribedRotation{on, finite(vector_of(point, "point"), "point"), direction.normalized(),
+                                       finite(angle, "angle")};
            }),
            "on"_a, "point"_a, "axis"_a, "angle"_a)
       .def_readonly("on", &PrescribedRotation::on, "name of the patch");
   py::class_<PatchForce>(m, "Force", "A force [N] spread evenly over a patch.")
       .def(py::init([](const std::string& on, const Numbers& force) {
-             return PatchForce{on, vector_of(force, "force")};
+             return PatchForce{on, finite(vector_of(force, "force"), "force")};
            }),
            "on"_a, "force"_a)
       .def_readonly("on", &PatchForce::on, "name of the patch");
   py::class_<Traction>(m, "Traction", "Force per rest area of a patch [Pa], constant in direction.")
       .def(py::init([](const std::string& on, const Numbers& traction) {
-             return Traction{on, vector_of(traction, "traction")};
+             return Traction{on, finite(vector_of(traction, "traction"), "traction")};
            }),
            "on"_a, "traction"_a)
       .def_readonly("on", &Traction::on, "name of the patch");
   py::class_<Pressure>(m, "Pressure", "Pressure on a patch [Pa], along its normals at rest.")
       .def(py::init([](const std::string& on, double pressure) {
-             return Pressure{on, pressure};
+             return Pressure{on, finite(pressure, "pressure")};
            }),
            "on"_a, "pressure"_a)
       .def_readonly("on", &Pressure::on, "name of the patch");
   py::class_<Gravity>(m, "Gravity", "Acceleration of the whole body [m/s^2].")
-      .def(py::init([](const Numbers& acceleration) { return Gravity{vector_of(acceleration, "acceleration")}; }),
+      .def(py::init([](const Numbers& acceleration) {
+             return Gravity{finite(vector_of(acceleration, "acceleration"), "acceleration")};
+           }),
            "acceleration"_a);
   py::class_<PointForce>(m, "PointForce", "A force [N] at a point of the body at rest [m].")
       .def(py::init([](const Numbers& at, const Numbers& force) {
-             return PointForce{vector_of(at, "at"), vector_of(force, "force")};
+             return PointForce{finite(vector_of(at, "at"), "at"), finite(vector_of(force, "force"), "force")};
            }),
            "at"_a, "force"_a);
 }

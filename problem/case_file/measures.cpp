@@ -156,7 +156,7 @@ const std::vector<Measure>& measure_table() {
      "volume change, first order", "integral of div u over V; errors in percentage points"},
     {"stable_load", value, {{"stable_load", "1"}}, "share of the load up to which a lattice has a stable equilibrium; also of models without a result",
      "share of the load that is borne", "the largest share of the load at which a stable equilibrium was found; 1: all of it"},
-    {"reaction", value, {{"force", "N"}, {"torque", "N m"}}, "force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m], where displacement is prescribed",
+    {"reaction", value, {{"force", "N"}, {"torque", "N m"}}, "force.PATCH.x|y|z|magnitude [N], torque.PATCH... [N m] about the centroid of the patch at rest, where displacement is prescribed",
      "", "", reaction_rows},
     {"reaction_error", distance, {{"reaction_error", "1"}},
      "largest relative error of force or torque on a moved support; always measured where one moves",

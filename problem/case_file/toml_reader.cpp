@@ -128,7 +128,8 @@ double as_number(const TomlValue& value, const Range& range) {
   if (!range.contains(x)) refuse(value, fmt::format("is {}", x), range.words);
   if (x != 0 && (std::abs(x) < smallest_number || std::abs(x) > largest_number))
     refuse(value, fmt::format("is {}", x),
-           fmt::format("{}, 0 or {:g} to {:g} in size", range.words, smallest_number, largest_number));
+           fmt::format("{}, {}{:g} to {:g} in size", range.words, range.contains(0) ? "0 or " : "", smallest_number,
+                       largest_number));
   return x;
 }
 

@@ -1,11 +1,8 @@
 #include "problem/system/files.h"
 
-#include <fmt/format.h>
-
 #include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <stdexcept>
+#include <system_error>
 
 namespace springproof {
 
@@ -21,7 +18,24 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-void write_file(const std::filesystem::path& file, std::string_view bytes) {
+namespace {
+
+/// What a chain of symbolic links ends in, which may not exist yet.
+std::filesystem::path end_of_links(std::filesystem::path file) {
+  constexpr int most_links = 40;  // as Linux
+  for (int links = 0; links <= most_links; ++links) {
+    std::error_code no_link;
+    const std::filesystem::path to = std::filesystem::read_symlink(file, no_link);
+    if (no_link) return file;
+    file = file.parent_path() / to;
+  }
+  throw std::system_error(ELOOP, std::generic_category(), "cannot write " + file.string());
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& name, std::string_view bytes) {
+  const std::filesystem::path file = end_of_links(name);
   std::filesystem::path partial = file;
   partial += ".part";
   std::ofstream out(partial, std::ios::binary);
@@ -32,9 +46,10 @@ void write_file(const std::filesystem::path& file, std::string_view bytes) {
     std::filesystem::rename(partial, file, error);
     if (!error) return;
   }
-  const std::string why = error ? error.message() : std::strerror(errno);
-  std::filesystem::remove(partial, error);
-  throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), why));
+  if (!error) error.assign(errno, std::generic_category());
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);
+  throw std::system_error(error, "cannot write " + file.string());
 }
 
 }  // namespace springproof

@@ -102,6 +102,8 @@ expect "fewer jobs than none" "jobs: is -1 .allowed: 0 to 1024" compare "$work/g
 "$program" material -E 1 --nu 0.3 --cell-size -1 2>&1 | grep -qxF -e "--cell-size: is -1 (allowed: a finite number > 0)" ||
   { echo "FAILED: cells of no size"; failures=$((failures + 1)); }
 expect "100,000 jobs" "jobs.*1024" compare "$work/good.toml" --jobs 100000 --out "$work/out"
+mkdir "$work/thing.stl"
+expect "export of a folder" "thing.stl is a folder" export "$work/thing.stl" --to springs -E 1 --nu 0.3
 expect "export of a thousand million cells" "1e\+09 cells .allowed: up to" export "$work/good.toml" --to calculix --cells 1000 1000 1000 --out "$work/out"
 edited "a lattice of a thousand million cells" "case.toml:2:7: cells: .*1e\+09 cells .allowed" 's/\[2, 2, 2\]/[1000, 1000, 1000]/'
 edited "a reference of a thousand million cells" "case.toml:17:9: reference.cells: .*GB" '$s/$/\n[reference]\ncells = [1000, 1000, 1000]/'

@@ -17,6 +17,29 @@ mkdir "$work/empty"
 PATH="$work/empty" "$program" cross-check cross_check/shear_st_venant_kirchhoff >"$work/out" 2>"$work/err"
 [ $? -eq 3 ] && grep -q "apt-get install calculix-ccx" "$work/err" || fail "without ccx" "$work/err"
 
+# A body of voxels: status 2, before anything is meshed.
+cat >"$work/ball.toml" <<'TOML'
+[body]
+geo = "sphere.geo"
+size_m = [1, 1, 1]
+voxels = 500
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+density_kg_m3 = 1000
+[[patch]]
+name = "low"
+beyond = { point_m = [0.5, 0.5, 0.2], normal = [0, 0, -1] }
+[[load]]
+on = "low"
+displacement_m = [0, 0, 0]
+[[load]]
+gravity_m_s2 = [0, 0, -1]
+TOML
+SPRINGPROOF_MESH_CACHE=$work/meshes "$program" cross-check "$work/ball.toml" >"$work/out" 2>"$work/err"
+[ $? -eq 2 ] && grep -q "ball.toml:2:7: a body of voxels has no cross-check of its own" "$work/err" || fail "a body of voxels" "$work/err"
+[ ! -e "$work/meshes" ] || fail "it was meshed first"
+
 # A law that CalculiX does not have: status 2 and those it has.
 sed 's/st_venant_kirchhoff/hencky/' "$(dirname "$0")/../../comparisons/experiments/cross_check/shear_st_venant_kirchhoff.toml" >"$work/case.toml"
 for command in cross-check "export --to calculix --out $work/case.inp"; do

@@ -52,6 +52,13 @@ refused 'hybmss has more than springs.*lock \(allowed: msm_18, msm_14, hybmss_cf
 refused 'is 0.4, and springs alone.*\(allowed: 0.25;' bar.toml --to jolt --nu 0.4 --out no.json
 refused 'msm_18: Bullet.s links have no modulus' bar.toml --to bullet --model msm_18 --out no.json
 refused 'a name that ends in .xml' bar.toml --to mujoco --out no.json
+# Boxes: an engine gets cubes, and the message says how.
+sed 's/cells = .*/cells = [8, 2, 2]/; s/"hybmss", "msm_18"/"hybmss_avg"/' bar.toml >boxes.toml
+for engine in jolt bullet mujoco lammps; do
+  refused "boxes.toml: the cells are 0.125 x 0.25 x 0.25 m \(allowed with --to $engine: cubes, --cells NX NY NZ" boxes.toml --to $engine
+done
+"$program" export boxes.toml --to jolt --cells 8 4 4 --out cubes.json >log 2>&1 || fail "boxes as cubes: $(cat log)"
+"$program" export boxes.toml --to springs --out boxes.json >log 2>&1 || fail "boxes as springs: $(cat log)"
 refused 'not the corners of whole cubes' bar.toml --to jolt --model msm_centred --out no.json
 
 # The numbers of `material` are those of the file: a spring inside, on the surface, on an edge.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/models.md has a section for each model of the table and for nothing else, and says in each what the reader came for;
-# `springproof material` knows each of them.
+# `springproof material` knows each of them, and `homogenise` tells bias from scatter.
 #   models.sh PROGRAM SOURCE-FOLDER
 set -u
 program=$1 page=$2/docs/models.md
@@ -17,5 +17,9 @@ for row in $rows; do
   "$program" material --model "$row" -E 1e5 --nu 0.25 >/dev/null 2>&1 || fail "springproof material --model $row"
 done
 for section in $sections; do grep -qx "$section" <<<"$rows" || fail "docs/models.md describes $section, which is no model"; done
+"$program" homogenise -E 1e4 --nu 0.25 --model msm_random --seeds 5 | grep -qE 'a bias of the model: .*K by [+]3 %, [0-9]+ standard errors' ||
+  fail "homogenise takes for scatter what is off by many standard errors of the mean"
+"$program" homogenise -E 1e4 --nu 0.25 --model msm_random | grep -q -- '--seeds 10' ||
+  fail "homogenise of one network does not say how bias and scatter are told apart"
 echo "$(wc -w <<<"$rows") models"
 exit $((failures > 0))

@@ -77,5 +77,12 @@ printf '[[load]]\non = "z_max"\ndisplacement_m = ["free", "free", 0]\n' | cat "$
 refuse "two values at one node" "conflict.toml:.*is prescribed by the load in line" "$work/conflict.toml"
 printf '[[load]]\non = "x_min"\nforce_N = [1, 0, 0]\n' | cat "$work/block.toml" - >"$work/force.toml"
 refuse "steps under a force over a patch" "not shared out" "$work/force.toml" --steps 1
+refuse "no cubes" "^--voxels: Value -3 not in range 1 to 4000000" "$work/block.toml" --voxels -3
+refuse "cells of a negative number" "^--cells: Value -1 not in range 1 to 1000" "$work/block.toml" --cells 4 -1 4
+refuse "no iterations" "^--max-iterations: Value 0 not in range 1 to 1000000" "$work/block.toml" --max-iterations 0
+refuse "steps back" "^--steps: Value -1 not in range 0 to 1000000000" "$work/block.toml" --steps -1
+for damping in -1 nan; do
+  refuse "a damping of $damping" "^--damping: is $damping (allowed: a finite number >= 0)" "$work/block.toml" --damping $damping
+done
 check force --poisson-ratio 0.3   # in equilibrium: in parts instead of slabs
 exit $failed

@@ -306,6 +306,10 @@ for out in taken.json none/body.json; do
   "$program" export icosahedron.stl -E 5e3 --nu 0.45 --to springs --out $out >log 2>errors
   [ $? -eq 2 ] && [ "$(wc -l <errors)" -eq 1 ] && grep -q -- "--out: cannot write $out.*allowed" errors && [ ! -e $out.part ] || fail "an unwritable file: $(cat errors)"
 done
+# Through a symbolic link, which stays one.
+ln -s linked.json link.json
+"$program" export icosahedron.stl -E 5e3 --nu 0.45 --to springs --out link.json >log 2>&1
+[ $? -eq 0 ] && [ -L link.json ] && [ -s linked.json ] || fail "a symbolic link: $(cat log)"
 
 # LAMMPS: its forces are ours, at a state that it has moved to.
 "$program" export case.toml --to lammps --model emsm --out springs.data >log 2>&1

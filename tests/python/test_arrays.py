@@ -140,3 +140,7 @@ def test_files_for_paraview(tmp_path, model):
     assert 'timestep="0.5" file="a.vtu"' in (tmp_path / "a.pvd").read_text()
     with pytest.raises(sp.InputError, match="velocity: has shape"):
         sp.write_vtu(tmp_path / "b.vtu", body, u, velocity=u[1:])
+    for write in (lambda file: sp.write_vtu(file, body, u), lambda file: sp.write_pvd(file, [(0.5, "a.vtu")]),
+                  lambda file: model.write(file.with_suffix(".json"))):
+        with pytest.raises(FileNotFoundError, match="cannot write .*none.*No such file"):
+            write(tmp_path / "none" / "a.vtu")

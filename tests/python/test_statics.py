@@ -105,7 +105,14 @@ def test_what_cannot_be_solved_says_why():
                        (lambda: model.solve(held=[0.5]), "held: is no list of nodes"),
                        (lambda: model.solve(held=[0], displacement=(0, 0)), r"displacement: has shape \(2,\) \(allowed: three numbers\)"),
                        (lambda: model.solve(forces=np.zeros((n, 2))), rf"forces: has shape \({n}, 2\) \(allowed: \({n}, 3\)\)"),
-                       (lambda: model.forces(np.zeros((n + 1, 3))), "positions: has shape")):
+                       (lambda: model.forces(np.zeros((n + 1, 3))), "positions: has shape"),
+                       (lambda: model.solve(held=[0], displacement=(np.inf, 0, 0)), "displacement: a number is infinite"),
+                       (lambda: sp.Force("x_max", (np.nan, 0, 0)), "force: a number is not finite"),
+                       (lambda: sp.Displacement("x_max", (np.nan, None, 0)), "displacement: a number is not finite"),
+                       (lambda: sp.Rotation("x_max", (0, 0, 0), (0, 0, 1), np.inf), "angle: a number is not finite"),
+                       (lambda: sp.Pressure("x_max", np.nan), "pressure: a number is not finite"),
+                       (lambda: sp.Gravity((0, 0, np.nan)), "acceleration: a number is not finite"),
+                       (lambda: sp.PointForce((np.inf, 0, 0), (0, 0, 1)), "at: a number is not finite")):
         with pytest.raises(sp.InputError, match=text):
             call()
 

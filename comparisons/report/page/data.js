@@ -158,7 +158,7 @@ const lineMeanings = {
   'line.strain.all': 'mean |ε − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
   'line.stress.all': 'mean |σ − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
 };
-const measureMeaning = measure => lineMeanings[measure] || (measureTable[measure] || {}).meaning;
+const measureMeaning = measure => measure.startsWith('torque.') ? 'about the centroid of the patch at rest' : lineMeanings[measure] || (measureTable[measure] || {}).meaning;
 
 function measureText(measure) {
   if ((measureTable[measure] || {}).title) return measureTable[measure].title;

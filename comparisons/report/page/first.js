@@ -123,7 +123,8 @@ function claimText(result, model) {
 /// "error of displacement and reactions".
 function dottedErrors(compared) {
   const still = compared.filter(measure => measure !== 'motion_error');
-  return [still.length > 1 ? 'error of displacement and reactions' : still.length > 0 ? 'displacement error' : '',
+  return [still.length > 1 ? 'error of displacement and reactions' : still[0] === 'reaction_error' ? 'error of the reactions of moved supports'
+            : still.length > 0 ? 'displacement error' : '',
           still.length < compared.length ? 'difference of motions' : ''].filter(Boolean).join(', or ');
 }
 

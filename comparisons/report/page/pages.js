@@ -39,26 +39,35 @@ function tintLegend() {
 /// Differences from the reference's displacements: at rest, and of probes over the whole motion.
 const displacementRows = result => ['displacement_error', 'motion_error'].flatMap(measure => rowsAt(result, measure));
 
+/// Those by which models are judged: of reactions where no displacement was compared.
+function judgedRows(result) {
+  const rows = displacementRows(result);
+  return rows.length > 0 ? rows : rowsAt(result, 'reaction_error');
+}
+
 /// The largest of a model.
-const worstDisplacement = (result, model) => worstOf(result, displacementRows(result).filter(row => row.model === model));
+const worstJudged = (result, model) => worstOf(result, judgedRows(result).filter(row => row.model === model));
 
 function worstCell(result, model) {
-  const worst = worstDisplacement(result, model);
+  const worst = worstJudged(result, model);
   const failed = result.runs.filter(run => run.model === model && !run.ok).length;
   const lost = failed ? el('small', {class: 'lost'}, `${failed} without result`) : null;
   if (!worst) return el('td', {class: 'number'}, failed ? lost : '–');
-  return el('td', {class: 'number ' + tint(result, worst.row)}, percent(worst.error),
+  const reaction = worstReaction(result, model), worse = reaction && reaction.error > worst.error ? reaction : worst;
+  return el('td', {class: 'number ' + tint(result, worse.row)}, percent(worst.error),
             el('small', {}, `ν = ${nuText(worst.row.poisson_ratio)}`), reactionNote(result, model), lost);
 }
 
 /// The largest reaction error of a model, where a support is moved.
+const worstReaction = (result, model) => worstOf(result, rowsAt(result, 'reaction_error').filter(row => row.model === model));
+
 function reactionNote(result, model) {
-  const worst = worstOf(result, rowsAt(result, 'reaction_error').filter(row => row.model === model));
-  return worst ? el('small', {}, `reactions ${percent(worst.error)}`) : null;
+  const worst = worstReaction(result, model);
+  return worst && displacementRows(result).length > 0 ? el('small', {}, `reactions ${percent(worst.error)}`) : null;
 }
 
 function worstUncertainty(result) {
-  const all = displacementRows(result).map(row => scaledUncertainty(result, row)).filter(isNumber);
+  const all = judgedRows(result).map(row => scaledUncertainty(result, row)).filter(isNumber);
   return all.length > 0 ? percent(Math.max(...all)) : '–';
 }
 
@@ -75,7 +84,7 @@ function splitModels() {
 }
 
 function otherModel(result, model) {
-  const worst = worstDisplacement(result, model);
+  const worst = worstJudged(result, model);
   const failed = result.runs.some(run => run.model === model && !run.ok);
   return worst ? `${model}: ${percent(worst.error)}` : failed ? `${model}: without result` : null;
 }
@@ -325,9 +334,9 @@ function runsPart(result) {
 /// How far the models are from the reference, in one sentence, with the checks beside it.
 function outcome(result) {
   const worst = models.filter(model => result.models.includes(model) && !isFem(model)).map(model => ({model, worst:
-    worstOf(result, displacementRows(result).filter(row => row.model === model && claims(result, model, row.poisson_ratio)))}))
+    worstOf(result, judgedRows(result).filter(row => row.model === model && claims(result, model, row.poisson_ratio)))}))
     .filter(entry => entry.worst).sort((a, b) => a.worst.error - b.worst.error);
-  const words = worst.length === 0 ? '' : `Largest displacement errors: ${worst.slice(0, 3).map(({model, worst: {error}}) => `${model} ${percent(error)}`).join(', ')}` +
+  const words = worst.length === 0 ? '' : `Largest ${displacementRows(result).length > 0 ? 'displacement errors' : 'errors of reactions'}: ${worst.slice(0, 3).map(({model, worst: {error}}) => `${model} ${percent(error)}`).join(', ')}` +
     (worst.length > 3 ? `; ${worst[worst.length - 1].model} ${percent(worst[worst.length - 1].worst.error)}` : '') +
     `. The reference is uncertain by ${worstUncertainty(result)}.`;
   return el('p', {class: 'outcome'}, verdictChip(caseVerdict(result)), ' ', heldText(result) || '', heldText(result) && words ? '. ' : '', words);

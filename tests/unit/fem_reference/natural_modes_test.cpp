@@ -49,6 +49,17 @@ TEST(FemNaturalModes, OfAFreeCubeHoldLamesModes) {
   }
 }
 
+TEST(FemNaturalModes, WhereCopiesOfMultipleEigenvaluesAreMissedMoreAreAskedFor) {
+  // With six beside those wanted, 32 eigenvalues lie below a gap where 30 are found.
+  fem::GridProblem problem = modes_of({0.05, 0.05, 0.05}, {8, 8, 8}, 2, 0.3, 18);
+  problem.material.youngs_modulus = 1e11;
+  problem.material.density = 8500;
+  const fem::Solution s = fem::solve_grid(problem);
+  ASSERT_TRUE(s.ok) << s.message;
+  EXPECT_EQ(s.rigid_motions, 6);
+  EXPECT_GE(s.frequencies.size(), 18u);
+}
+
 TEST(FemNaturalModes, OfAClampedBarWithoutContractionHoldItsStandingWave) {
   // nu = 0: f = c / (4 L), plus the dispersion of consistent mass, (k h)^2/24 (linear) or (k h)^4/1440 (quadratic).
   const Vec3 size(2, 0.5, 0.6);

@@ -80,13 +80,16 @@ TEST(Material, PoissonRatioOutsideItsRangeIsRefused) {
 }
 
 TEST(Material, ModuliOutsideTheirRangeAreRefused) {
-  for (const double bad : {0.0, -1.0, nan, infinity}) {
+  for (const double bad : {0.0, -1.0, 1e-31, 1e31, 1e308, nan, infinity}) {
     EXPECT_NE(message_of({bad, 0.3, {}, {}, {}}).find("youngs_modulus > 0"), std::string::npos);
     EXPECT_NE(message_of({{}, 0.3, bad, {}, {}}).find("shear_modulus > 0"), std::string::npos);
     EXPECT_NE(message_of({{}, 0.3, {}, bad, {}}).find("bulk_modulus > 0"), std::string::npos);
     EXPECT_NE(message_of({1e4, 0.3, {}, {}, {}}, bad).find("density > 0"), std::string::npos);
   }
-  EXPECT_NE(message_of({1e4, {}, {}, {}, nan}).find("lame_lambda = nan"), std::string::npos);
+  EXPECT_EQ(message_of({1e308, 0.3, {}, {}, {}}),
+            "youngs_modulus = 1e+308 Pa (allowed: youngs_modulus > 0, from 1e-30 to 1e+30 Pa)");
+  for (const double bad : {nan, -1e31, infinity})
+    EXPECT_NE(message_of({1e4, {}, {}, {}, bad}).find("lame_lambda = "), std::string::npos);
 }
 
 TEST(Material, PairsThatNoSolidHasAreRefused) {
@@ -117,6 +120,7 @@ TEST(Material, ExactlyTwoModuli) {
 TEST(Material, CheckRefusesWhatTheHeaderSays) {
   EXPECT_NO_THROW(check({1, 0.49, 1}));
   EXPECT_THROW(check({0, 0.3, 1}), std::invalid_argument);
+  EXPECT_THROW(check({1e308, 0.3, 1}), std::invalid_argument);
   EXPECT_THROW(check({1, 0.5, 1}), std::invalid_argument);
   EXPECT_THROW(check({1, nan, 1}), std::invalid_argument);
   EXPECT_THROW(check({1, 0.3, 0}), std::invalid_argument);

@@ -51,6 +51,18 @@ TEST(Advice, TakesTheCoarsestLatticeFromWhichOnAllAreAccurate) {
   EXPECT_EQ(json_of(a)["models"][0]["cells_across"], 4);
 }
 
+TEST(Advice, APredictionWhoseRangeEndsFarAboveTheErrorIsUncertain) {
+  Wish wish;
+  wish.error = 0.03;
+  EXPECT_NE(text_of(advise(forecast(), wish)).find("reaches it"), std::string::npos);
+  Forecast wide = forecast();
+  wide.predict = [](const std::string&, const Resolution& r) { return Prediction{0.1 / r.across, 20, false}; };
+  wide.predict_element = [](const std::string&, const Resolution&) { return std::optional<Prediction>(); };
+  const std::string text = text_of(advise(wide, wish));
+  EXPECT_EQ(text.find("reaches it"), std::string::npos) << text;
+  EXPECT_NE(text.find("uncertain"), std::string::npos) << text;
+}
+
 TEST(Advice, SaysWhenSpringsAreTheWrongTool) {
   Wish wish;
   wish.error = 1e-3;  // springs reach 0.006 on the finest lattice

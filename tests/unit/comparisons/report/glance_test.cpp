@@ -54,6 +54,22 @@ TEST_F(GlanceInBrowser, ThePlotRanksAsTheAnswerDoes) {
   EXPECT_NE(dom.find("near, compress: 20 % (reactions) at ν = 0.25"), std::string::npos) << said(dom);
 }
 
+TEST_F(GlanceInBrowser, ThePlotNamesWhatWasCompared) {
+  CaseResult c = disputed_case();
+  std::erase_if(c.rows, [](const auto& row) { return row.measure == "displacement_error"; });
+  c.experiment.measures = {"reaction_error"};
+  const std::string dom = open_with(document({c}), pictures({}), tools + R"js(
+    say('head ' + document.querySelector('.dot-head b').textContent);
+    say('outcome ' + outcome(cases[0]).textContent);
+    endLoading();
+  )js");
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("head Largest error of the reactions of moved supports against finite elements"),
+            std::string::npos)
+      << said(dom);
+  EXPECT_NE(dom.find("Largest errors of reactions: "), std::string::npos) << said(dom);
+}
+
 TEST_F(GlanceInBrowser, LargeDeformationAloneIsPlottedToo) {
   CaseResult large = disputed_case();
   large.experiment.kinematics = "hencky";

@@ -243,6 +243,20 @@ TEST(Headline, APressureAtLargeStrainIsSaidToBeADeadLoad) {
       << terminal_text(h);
 }
 
+TEST(Headline, DampingInProportionToTheMassIsSaidToBrakeAFreeBody) {
+  CaseResult c = with_errors("ball", "hybmss", {{0.3, 8, 0.1}});
+  c.experiment.kinematics = "hencky";
+  c.experiment.dynamics = MotionChoice();
+  c.experiment.dynamics->viscosity = 1e-4;
+  EXPECT_TRUE(headline_of({c}).notes.empty());
+  c.experiment.dynamics->damping = 50;
+  EXPECT_EQ(headline_of({c}).notes.at(0).text(),
+            "ball: damping in proportion to the mass (loss_factor, damping_1_s) also brakes what the free body does as "
+            "a whole, its fall and its turning, at a rate of 50/s; viscosity_s alone does not");
+  c.experiment.loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}};
+  EXPECT_TRUE(headline_of({c}).notes.empty());
+}
+
 TEST(Headline, ModelsThatFollowAnotherLawThanTheReferenceAreNamed) {
   CaseResult c = with_models("bar", 0.3, 1e-4, {{"hybmss", 0.03}, {"hybmss_avg", 0.02}});
   c.experiment.kinematics = "hencky";

@@ -200,6 +200,7 @@ TEST_F(ReportInBrowser, SetsReactionsBesideDisplacementsWhereASupportMoves) {
   const std::string table = dom.substr(dom.find("<section id=\"cases\">"),
                                        dom.find("<section id=\"shapes\"") - dom.find("<section id=\"cases\">"));
   EXPECT_NE(table.find("<small>reactions 40 %</small>"), std::string::npos);
+  EXPECT_NE(table.find("number tint4\">"), std::string::npos) << "by the worse of both: " << table;
 }
 
 TEST_F(ReportInBrowser, NamesNoModelOffItsOwnPoissonsRatioAsCheapest) {

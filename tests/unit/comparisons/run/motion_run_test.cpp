@@ -170,6 +170,9 @@ TEST(MotionRun, ABallOfCutCellsFallsOnAPlane) {
   }
   EXPECT_GT(most, 1.5 * mass * 9.81 * lands) << "it bounces";
   EXPECT_LT(h.measured.at("restitution"), 1);
+  EXPECT_EQ(h.measured.count("energy_drift"), 0u) << "the loss of a landing is none of the steps";
+  const Part flies = run_of(falling_ball("duration_s = 0.02\nsamples = 200\n"));
+  EXPECT_LT(history(flies).measured.at("energy_drift"), 0.1) << "it has not landed";
   EXPECT_GT(h.measured.at("restitution"), 0.6);
 }
 

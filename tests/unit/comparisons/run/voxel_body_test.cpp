@@ -273,6 +273,31 @@ TEST_P(VoxelMistakes, AreRefusedWithTheirPlace) {
   }
 }
 
+/// What is said of a probe of the ball.
+std::vector<std::string> notes_on_a_probe(const Vec3& at) {
+  std::string text = ball_case(300, every_load, "\"hybmss\"", "elements = []\nedge_m = 0.03");
+  const std::string there = "at_m = [0.1, 0.1, 0.19]";
+  text.replace(text.find(there), there.size(), fmt::format("at_m = [{}, {}, {}]", at[0], at[1], at[2]));
+  std::vector<std::string> notes = prepare(parse_experiment(text, "ball.toml")).notes;
+  std::erase_if(notes, [](const std::string& n) { return n.find("probe") == std::string::npos; });
+  return notes;
+}
+
+TEST(VoxelBody, ProbesOutsideAreNotedWithTheirDistance) {
+  const Vec3 centre(0.1, 0.1, 0.1);
+  for (const Vec3& n : {Vec3(0, 0, 1), Vec3(0.6, 0, 0.8), Vec3(0.36, 0.48, -0.8), Vec3(-0.5, 0.1, 0.4).normalized()}) {
+    EXPECT_TRUE(notes_on_a_probe(centre + 0.1 * n).empty())
+        << "on the true surface, between the facets' corners or not";
+    const std::vector<std::string> notes = notes_on_a_probe(centre + 0.108 * n);
+    ASSERT_EQ(notes.size(), 1u);
+    ASSERT_TRUE(notes[0].starts_with("probe 'top' lies 0.00")) << notes[0];
+    const double distance = std::stod(notes[0].substr(std::string("probe 'top' lies ").size()));
+    EXPECT_GE(distance, 0.008);
+    EXPECT_LT(distance, 0.0095) << "from the facets, which lie up to 1.5 mm inside the ball";
+    EXPECT_TRUE(notes[0].ends_with(" m outside the body: its displacement is extrapolated")) << notes[0];
+  }
+}
+
 const Mistake mistakes[] = {
     {"seed_of_a_network_on_vertices", "\"emsm_random\"", "{ model = \"emsm_patch\", seed = 2 }",
      "ball.toml:*emsm_patch: seed: the nodes of this network are the vertices of a mesh"},

@@ -2,44 +2,16 @@
 // allowed.
 #include <gtest/gtest.h>
 
-#include "problem/case_file/experiment.h"
-#include "support/case_file.h"
+#include "support/mistake.h"
 
 namespace springproof::experiment_mistakes_test {
 namespace {
 
-using test::message_of;
-
-using test::full_case;
-using test::small_case;
-using test::verification_case;
-
-/// One edit of a valid case and what must be in the message.
-struct Mistake {
-  const char* name;
-  const char* file;
-  const char* replace;  ///< "" appends
-  const char* with;
-  std::vector<const char*> says;
-};
-
-void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+using namespace test;
 
 class Mistakes : public testing::TestWithParam<Mistake> {};
 
-TEST_P(Mistakes, AreExplained) {
-  const Mistake& mistake = GetParam();
-  std::string text = mistake.file;
-  ASSERT_NE(message_of(text).find("accepted"), std::string::npos) << "the unedited file must be valid";
-  const std::string old = mistake.replace;
-  const std::size_t at = text.find(old);
-  ASSERT_NE(at, std::string::npos) << old;
-  old.empty() ? text.append(mistake.with) : text.replace(at, old.size(), mistake.with);
-  const std::string message = message_of(text);
-  EXPECT_EQ(message.rfind("case.toml:", 0), 0u) << message;
-  for (const char* part : mistake.says)
-    EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks: " << part;
-}
+TEST_P(Mistakes, AreExplained) { expect_explained(GetParam()); }
 
 const Mistake mistakes[] = {
     // Keys.
@@ -230,181 +202,6 @@ const Mistake mistakes[] = {
      "pressure_Pa = 2.5",
      "pressure_Pa = [0, 0, 1]",
      {"load.pressure_Pa: is a list (allowed: a finite number)"}},
-    // Probes, section, reference.
-    {"ProbesShareAName",
-     full_case,
-     "[reference]",
-     "[[probe]]\nname = \"tip\"\nat_m = [0, 0, 0]\n[reference]",
-     {"probe.name: 'tip' is the name of another probe"}},
-    {"NormalIsZero", full_case, "[0, -2, 0]", "[0, 0, 0]", {"section.normal: is the zero vector"}},
-    {"GradingIsSmall",
-     full_case,
-     "grading = 1",
-     "grading = 0.9",
-     {"reference.grading: is 0.9 (allowed: a number from 1 to 3)"}},
-    {"SmoothIsNoFlag", full_case, "smooth = true", "smooth = 1", {"reference.smooth: is ", "true or false"}},
-    {"GradingIsLarge", full_case, "grading = 1", "grading = 3.1", {"reference.grading: is 3.1"}},
-    {"ElementIsUnknown",
-     full_case,
-     "[\"p2\", \"q1\"",
-     "[\"p3\", \"q1\"",
-     {"reference.elements: 'p3' is not known (allowed: q1, q2, p1, p2)"}},
-    {"ElementTwice", full_case, "[\"p2\", \"q1\"", "[\"q2\", \"q1\"", {"reference.elements: 'q2' is named twice"}},
-    // Compare.
-    {"UnknownMeasure",
-     full_case,
-     "\"reaction\"",
-     "\"reactions\"",
-     {"compare.measures: 'reactions' is not known", "did you mean 'reaction'?"}},
-    {"MeasureTwice", full_case, "\"reaction\"", "\"volume_change\"", {"'volume_change' is named twice"}},
-    {"SectionIsMissing",
-     full_case,
-     "[section]\npoint_m = [1.2, 0, 0]\nnormal = [0, -2, 0]\n",
-     "",
-     {"compare.measures: 'section_distance' needs a plane", "[section]"}},
-    {"ProbeIsMissing",
-     full_case,
-     "[[probe]]\nname = \"tip\"\nat_m = [2.4, 0.2, 0.2]\n",
-     "",
-     {"compare.measures: 'probe' needs points", "[[probe]]"}},
-    {"LabelTwice",
-     full_case,
-     "label = \"share\"",
-     "label = \"hybmss\"",
-     {"compare.models: the label 'hybmss' is taken"}},
-    {"LabelOfTheReference", full_case, "label = \"share\"", "label = \"fem\"", {"the label 'fem' is taken"}},
-    {"ModelWithoutName",
-     full_case,
-     "model = \"hybmss\", face_to_cube",
-     "face_to_cube",
-     {"compare.models.model: is missing"}},
-    {"OptionIsAList",
-     full_case,
-     "face_to_cube = 1.0",
-     "face_to_cube = [1.0]",
-     {"compare.models.face_to_cube: is a list"}},
-    {"OptionIsNan", full_case, "face_to_cube = 1.0", "face_to_cube = nan", {"compare.models.face_to_cube: is nan"}},
-    {"LabelOfAnElement", full_case, "label = \"share\"", "label = \"fem_p1\"", {"the label 'fem_p1' is taken"}},
-    {"NoModels",
-     small_case,
-     "",
-     "\n[compare]\nmodels = []\n",
-     {"compare.models: is an empty list", "[reference] has elements"}},
-    {"NoModelsAndNoElements",
-     verification_case,
-     "elements = [\"q2\", \"p1\"]\n",
-     "",
-     {":18:10: compare.models: is an empty list"}},
-    {"NoModelsAndAnEmptyListOfElements",
-     verification_case,
-     "elements = [\"q2\", \"p1\"]\n",
-     "elements = []\n",
-     {":18:10: compare.models: is an empty list"}},
-    {"ExactIsUnknown",
-     verification_case,
-     "exact = \"trigonometric\"",
-     "exact = \"none\"",
-     {":20:9: compare.exact: 'none' is not known (allowed: trigonometric, solenoidal)"}},
-    {"ExactBesideModels",
-     verification_case,
-     "models = []",
-     "models = [\"hybmss\"]",
-     {":20:9: compare.exact: stands beside models"}},
-    {"OrderWithoutExact",
-     verification_case,
-     "exact = \"trigonometric\"\n",
-     "",
-     {":19:35: compare.measures: 'displacement_error_order' needs the solution"}},
-    {"ComparedElementTwice",
-     full_case,
-     "elements = [\"p1\", \"q1\"]",
-     "elements = [\"p1\", \"p1\"]",
-     {"compare.elements: 'p1' is named twice"}},
-    {"ComparedElementUnknown",
-     full_case,
-     "elements = [\"p1\", \"q1\"]",
-     "elements = [\"q3\"]",
-     {"compare.elements: 'q3' is not known", "q2"}},
-    {"CostIsANumber", full_case, "cost = true", "cost = 1", {"compare.cost: is the integer 1"}},
-    {"ModelsIsAString",
-     small_case,
-     "",
-     "\n[compare]\nmodels = \"hybmss\"\n",
-     {":15:10: compare.models: is the string 'hybmss'"}},
-    // Expect and published.
-    {"ExpectUnknownModel", full_case, "\"fem\"", "\"fem_q3\"", {"expect.model: 'fem_q3' is not known", "fem_q1"}},
-    {"ExpectElementNotRun",
-     verification_case,
-     "\"fem_p1\"",
-     "\"fem_q1\"",
-     {"expect.model: 'fem_q1' is not known (allowed: fem, fem_q2, fem_p1)"}},
-    {"ExpectStressOfAModel",
-     full_case,
-     "\"fem_p2\"",
-     "\"hybmss\"",
-     {"expect.measure: 'stress.tip.xy' is not known of 'hybmss'"}},
-    {"ExpectBoundAndTolerance",
-     verification_case,
-     "at_least = 1.9\n",
-     "at_least = 1.9\nwithin = 1\n",
-     {":31:10: expect.within: stands beside at_least"}},
-    {"ExpectBoundIsText",
-     verification_case,
-     "at_least = 1.9\n",
-     "at_least = \"1.9\"\n",
-     {":30:12: expect.at_least: is the string '1.9'"}},
-    {"ExpectUnknownPoissonRatio",
-     full_case,
-     "poisson_ratio = 0.25",
-     "poisson_ratio = 0.26",
-     {"expect.poisson_ratio: 0.26 is not in the case (allowed: -0.5, 0.25, 0.499)"}},
-    {"ExpectUnknownCells",
-     full_case,
-     "cells = [48, 8, 8]",
-     "cells = [48, 8, 9]",
-     {"expect.cells: [48, 8, 9] is not in the case (allowed: [24, 4, 4], [48, 8, 8])"}},
-    {"ExpectUnknownMeasure",
-     full_case,
-     "\"force.x_max.magnitude\"",
-     "\"force.x_mx.magnitude\"",
-     {"expect.measure: 'force.x_mx.magnitude'", "'force.x_max.magnitude'?"}},
-    {"ExpectUnknownProbe",
-     full_case,
-     "\"displacement.tip.z\"",
-     "\"displacement.top.z\"",
-     {"expect.measure", "'displacement.tip.z'?"}},
-    {"ExpectUnmeasured",
-     small_case,
-     "",
-     "\n[compare]\nmeasures = [\"reaction\"]\n[[expect]]\nmodel = \"hybmss\"\nmeasure = "
-     "\"volume_change\"\nsource = \"analytic\"\nvalue = 0\nwithin = 1\n",
-     {"expect.measure: 'volume_change' is not known (allowed: force.z_min.x"}},
-    {"ExpectUnknownSource",
-     full_case,
-     "\"published\"\nvalue",
-     "\"printed\"\nvalue",
-     {"expect.source: 'printed'", "extrapolated FEM"}},
-    {"ExpectWithoutValue", full_case, "value = -1.5\n", "", {"expect.value: is missing", "extrapolated FEM"}},
-    {"ExpectWithoutTolerance", full_case, "within = 1e-6\n", "", {"expect: has no tolerance"}},
-    {"ExpectWithTwoTolerances",
-     full_case,
-     "within = 1e-6\n",
-     "within = 1\nwithin_relative = 1\n",
-     {"expect: has two tolerances"}},
-    {"ExpectNegativeTolerance", full_case, "within = 1e-6\n", "within = -1\n", {"expect.within: is -1", ">= 0"}},
-    {"ExpectFractionOfZero",
-     full_case,
-     "-1.5\nwithin =",
-     "0\nwithin_relative =",
-     {"expect.within_relative: is a fraction of a value that is 0"}},
-    {"ExpectNan", full_case, "value = -1.5", "value = nan", {"expect.value: is nan"}},
-    {"PublishedUnknownPoissonRatio",
-     full_case,
-     "poisson_ratio = 0.499",
-     "poisson_ratio = 0.49",
-     {"published.poisson_ratio: 0.49 is not in the case"}},
-    {"PublishedWithoutSource", full_case, "where = \"Fig. 4\"\n", "", {"published.where: is missing"}},
-    {"PublishedValueIsText", full_case, "value = 0.1\n", "value = \"0.1\"\n", {"published.value: is the string '0.1'"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(CaseFile, Mistakes, testing::ValuesIn(mistakes),
