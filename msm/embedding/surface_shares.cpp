@@ -183,8 +183,9 @@ struct SurfaceInterpolation {
     return found;
   }
 
-  /// Moves `moment` [m^2] times the length of the side ab of a facet inwards.
-  void thin(const Vec3& a, const Vec3& b, const Vec3& normal, double moment, PatchShares& shares) const {
+  /// Moves `moment` [m^2] times the length of the side ab of a facet inwards, from nodes of areas `unthinned`.
+  void thin(const Vec3& a, const Vec3& b, const Vec3& normal, double moment, const NodalVectors& unthinned,
+            PatchShares& shares) const {
     const Vec3 along = (b - a).normalized(), inwards = normal.cross(along);
     const int pieces = static_cast<int>(std::ceil((b - a).norm() / (piece_width * spacing)));
     const double area = moment / spacing * (b - a).norm() / pieces;
@@ -192,10 +193,18 @@ struct SurfaceInterpolation {
       const Vec3 p = a + (b - a) * ((piece + 0.5) / pieces);
       const auto [before, after] = on_edge(p, along);
       if (before < 0 || after < 0) continue;
-      const double d = distance(before, p), share = d / (d + distance(after, p));
+      // Springs of positive constants hold an edge whose areas in its two faces differ by up to a factor of sqrt(3).
+      const auto weight = [&](int n, int other) {
+        const Vec3 both = unthinned.row(n).transpose();
+        const double here = std::max(0.0, both.dot(normal)), there = (both - here * normal).norm();
+        return distance(other, p) * (1e-6 + std::pow(here / (here + there + 1e-12 * spacing * spacing), 4));
+      };
+      const double of_before = weight(before, after), of_after = weight(after, before);
+      const double share = of_after / (of_before + of_after);
       give(before, -area * (1 - share), normal, shares);
       give(after, -area * share, normal, shares);
-      const SurfaceWeights w = at(p + spacing * inwards, normal);
+      const Vec3 from = (network.X.row(before) + share * (network.X.row(after) - network.X.row(before))).transpose();
+      const SurfaceWeights w = at(from + spacing * inwards, normal);
       for (std::size_t i = 0; i < w.nodes.size(); ++i) give(w.nodes[i], area * w.weight[i], normal, shares);
     }
   }
@@ -216,6 +225,18 @@ void meet_gauss(const NodalVectors& X, double volume, NodalVectors& A) {
   A += share.asDiagonal() * linear * symmetric_solve(moments, missing);
 }
 
+/// Half of the mean L^2 / 84 of springs with k near 1/L^3 [m^2]: in bending the strain in the middle of a spring
+/// stands for that along it, <n_x^4 n_z^2> / <n_x^4> = 1/7 and the mean square along a line is L^2 / 12, so that the
+/// second moment of their stress may exceed that of the section by as much.
+double moment_of_lengths(const Network& network) {
+  double lengths = 0, inverse = 0;
+  for (const Spring& s : network.springs) {
+    lengths += s.rest_length;
+    inverse += 1 / s.rest_length;
+  }
+  return lengths / inverse / 168;
+}
+
 /// The sides of facets that are sharp edges.
 struct SharpSides {
   const Region& region;
@@ -225,19 +246,22 @@ struct SharpSides {
   const Vec3& point(int n) const { return region.surface_points[n]; }
 
   /// Moves area inwards at those of a facet of `corners` points.
-  void thin(const int* facet, int corners, double moment, PatchShares& shares) const {
+  void thin(const int* facet, int corners, double moment, const NodalVectors& unthinned, PatchShares& shares) const {
     const Vec3 normal = (point(facet[1]) - point(facet[0])).cross(point(facet[2]) - point(facet[0])).normalized();
     for (int c = 0; c < corners; ++c) {
       const int a = facet[c], b = facet[(c + 1) % corners];
       if (std::binary_search(sharp.begin(), sharp.end(), std::array<int, 2>{std::min(a, b), std::max(a, b)}))
-        interpolation.thin(point(a), point(b), normal, moment, shares);
+        interpolation.thin(point(a), point(b), normal, moment, unthinned, shares);
     }
   }
 
-  void thin(double moment, PatchShares& whole, std::map<std::string, PatchShares>& patches) const {
-    for (const auto& t : region.surface_triangles) thin(t.data(), 3, moment, whole);
+  /// `excess` of the interpolation over the integral of the Laplacian [m^2].
+  void thin(double excess, PatchShares& whole, std::map<std::string, PatchShares>& patches) const {
+    const double moment = excess - moment_of_lengths(interpolation.network);
+    const NodalVectors unthinned = whole.normal;
+    for (const auto& t : region.surface_triangles) thin(t.data(), 3, moment, unthinned, whole);
     for (const Patch& p : region.patches)
-      for (const auto& f : p.facets) thin(f.data(), f[3] < 0 ? 3 : 4, moment, patches.at(p.name));
+      for (const auto& f : p.facets) thin(f.data(), f[3] < 0 ? 3 : 4, moment, unthinned, patches.at(p.name));
   }
 };
 
