@@ -225,18 +225,6 @@ void meet_gauss(const NodalVectors& X, double volume, NodalVectors& A) {
   A += share.asDiagonal() * linear * symmetric_solve(moments, missing);
 }
 
-/// Half of the mean L^2 / 84 of springs with k near 1/L^3 [m^2]: in bending the strain in the middle of a spring
-/// stands for that along it, <n_x^4 n_z^2> / <n_x^4> = 1/7 and the mean square along a line is L^2 / 12, so that the
-/// second moment of their stress may exceed that of the section by as much.
-double moment_of_lengths(const Network& network) {
-  double lengths = 0, inverse = 0;
-  for (const Spring& s : network.springs) {
-    lengths += s.rest_length;
-    inverse += 1 / s.rest_length;
-  }
-  return lengths / inverse / 168;
-}
-
 /// The sides of facets that are sharp edges.
 struct SharpSides {
   const Region& region;
@@ -255,9 +243,7 @@ struct SharpSides {
     }
   }
 
-  /// `excess` of the interpolation over the integral of the Laplacian [m^2].
-  void thin(double excess, PatchShares& whole, std::map<std::string, PatchShares>& patches) const {
-    const double moment = excess - moment_of_lengths(interpolation.network);
+  void thin(double moment, PatchShares& whole, std::map<std::string, PatchShares>& patches) const {
     const NodalVectors unthinned = whole.normal;
     for (const auto& t : region.surface_triangles) thin(t.data(), 3, moment, unthinned, whole);
     for (const Patch& p : region.patches)
