@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "meshes/volume.h"
 #include "msm/embedding/surface_shares.h"
 #include "msm/parameters/patch_fit.h"
 #include "msm/periodic/laws_of_model.h"
