@@ -25,6 +25,7 @@ SurfaceShares surface_shares(const Region& region, const Network& network);
 
 /// Those of a network whose nodes are the vertices of a body's tetrahedra: of linear fields on the facets, then as
 /// above at the sharp edges.
+/// @throws as above
 SurfaceShares vertex_shares(const Mesh& tetrahedra, const Network& network);
 
 }  // namespace springproof

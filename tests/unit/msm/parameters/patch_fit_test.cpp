@@ -48,7 +48,7 @@ TEST(SurfaceShares, ObeyGaussAndBelongToTheirFaces) {
     if (X(n, 0) < 4) EXPECT_EQ(end.area[n], 0) << "x = " << X(n, 0);
 }
 
-// Nodes alone, without a share of their own for edges, have 13 % too much: the trapezoidal rule of five intervals 8 %.
+// Without what the edges give to the inside they are 9 % too large (the trapezoidal rule of five intervals: 8 %).
 TEST(SurfaceShares, HaveTheSecondMomentsOfAFace) {
   const EmbeddedModel built = patch_bar(0.25);
   const NodalVectors& X = built.model.network.X;
