@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
@@ -225,11 +226,32 @@ void meet_gauss(const NodalVectors& X, double volume, NodalVectors& A) {
   A += share.asDiagonal() * linear * symmetric_solve(moments, missing);
 }
 
+/// Sharp edges between plane faces: edges of the triangles of a curved surface may be as sharp.
+std::vector<std::array<int, 2>> edges_of_planes(const Region& region) {
+  const auto point = [&](int n) -> const Vec3& { return region.surface_points[n]; };
+  std::map<std::array<int, 2>, std::vector<std::size_t>> at;  // edge -> triangles
+  std::vector<Vec3> normal;
+  for (const auto& t : region.surface_triangles) {
+    for (int c = 0; c < 3; ++c)
+      at[{std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])}].push_back(normal.size());
+    normal.push_back((point(t[1]) - point(t[0])).cross(point(t[2]) - point(t[0])).normalized());
+  }
+  std::vector<char> plane(normal.size(), 0);
+  for (const auto& [edge, of] : at)
+    if (of.size() == 2 && normal[of[0]].dot(normal[of[1]]) > 1 - 1e-9) plane[of[0]] = plane[of[1]] = 1;
+  std::vector<std::array<int, 2>> edges = sharp_edges(region);
+  std::erase_if(edges, [&](const auto& edge) {
+    const auto& of = at[edge];
+    return of.size() != 2 || !plane[of[0]] || !plane[of[1]];
+  });
+  return edges;
+}
+
 /// The sides of facets that are sharp edges.
 struct SharpSides {
   const Region& region;
   const SurfaceInterpolation& interpolation;
-  std::vector<std::array<int, 2>> sharp = sharp_edges(region);
+  std::vector<std::array<int, 2>> sharp = edges_of_planes(region);
 
   const Vec3& point(int n) const { return region.surface_points[n]; }
 
