@@ -6,11 +6,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
+#include "meshes/volume.h"
 #include "msm/algebra/dense.h"
 #include "msm/topology/point_cells.h"
+#include "msm/topology/surface_features.h"
 
 namespace springproof {
 namespace {
@@ -20,6 +23,8 @@ constexpr double on_surface = 1e-6;
 constexpr double piece_width = 0.5;
 constexpr std::array heights = {1e-6, 0.1, 0.3, 0.6, 1.0};  // of nodes above or below the tangent plane
 constexpr std::array reaches = {1.6, 2.0, 2.5, 3.0};
+constexpr double laplacian = 4;      // of |x|^2 in a plane
+constexpr double edge_reach = 3;     // of nodes on a sharp edge
 constexpr double largest_sum = 1.5;  // of |weights|, which is 1 within the convex hull of few nodes
 
 struct SurfaceWeights {
@@ -135,18 +140,74 @@ struct SurfaceInterpolation {
     return best;
   }
 
-  /// Adds the shares in a triangle, anticlockwise seen from outside.
-  void add(const std::array<Vec3, 3>& triangle, PatchShares& shares) const {
+  /// Adds the shares in a triangle, anticlockwise seen from outside.  Returns by how much they overestimate the
+  /// integral of |x|^2 [m^4].
+  double add(const std::array<Vec3, 3>& triangle, PatchShares& shares) const {
     const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+    double excess = 0;
     for_pieces(triangle[0], triangle[1], triangle[2], piece_width * spacing,
                [&](const Vec3& a, const Vec3& b, const Vec3& c) {
                  const double area = (b - a).cross(c - a).norm() / 2;
-                 const SurfaceWeights w = at((a + b + c) / 3, normal);
+                 const Vec3 middle = (a + b + c) / 3;
+                 for (const Vec3& corner : {a, b, c}) excess -= area * (corner - middle).squaredNorm() / 12;
+                 const SurfaceWeights w = at(middle, normal);
                  for (std::size_t i = 0; i < w.nodes.size(); ++i) {
-                   shares.area[w.nodes[i]] += area * w.weight[i];
-                   shares.normal.row(w.nodes[i]) += area * w.weight[i] * normal.transpose();
+                   give(w.nodes[i], area * w.weight[i], normal, shares);
+                   excess += area * w.weight[i] * std::pow(distance(w.nodes[i], middle), 2);
                  }
                });
+    return excess;
+  }
+
+  static void give(int node, double area, const Vec3& normal, PatchShares& shares) {
+    shares.area[node] += area;
+    shares.normal.row(node) += area * normal.transpose();
+  }
+
+  /// The nodes before and after p on a straight edge, -1 where there is none.
+  std::array<int, 2> on_edge(const Vec3& p, const Vec3& along) const {
+    std::array<int, 2> found = {-1, -1};
+    std::array<double, 2> nearest = {edge_reach * spacing, edge_reach * spacing};
+    cells.any_near(
+        p,
+        [&](int n) {
+          const Vec3 d = network.X.row(n).transpose() - p;
+          const double at = d.dot(along);
+          const int side = at > 0;
+          if ((d - at * along).norm() <= on_surface * spacing && std::abs(at) <= nearest[side]) {
+            found[side] = n;
+            nearest[side] = std::abs(at);
+          }
+          return false;
+        },
+        static_cast<int>(edge_reach) + 1);
+    return found;
+  }
+
+  /// Moves `moment` [m^2] times the length of the side ab of a facet inwards, from nodes of areas `unthinned`.
+  void thin(const Vec3& a, const Vec3& b, const Vec3& normal, double moment, const NodalVectors& unthinned,
+            PatchShares& shares) const {
+    const Vec3 along = (b - a).normalized(), inwards = normal.cross(along);
+    const int pieces = static_cast<int>(std::ceil((b - a).norm() / (piece_width * spacing)));
+    const double area = moment / spacing * (b - a).norm() / pieces;
+    for (int piece = 0; piece < pieces; ++piece) {
+      const Vec3 p = a + (b - a) * ((piece + 0.5) / pieces);
+      const auto [before, after] = on_edge(p, along);
+      if (before < 0 || after < 0) continue;
+      // Springs of positive constants hold an edge whose areas in its two faces differ by up to a factor of sqrt(3).
+      const auto weight = [&](int n, int other) {
+        const Vec3 both = unthinned.row(n).transpose();
+        const double here = std::max(0.0, both.dot(normal)), there = (both - here * normal).norm();
+        return distance(other, p) * (1e-6 + std::pow(here / (here + there + 1e-12 * spacing * spacing), 4));
+      };
+      const double of_before = weight(before, after), of_after = weight(after, before);
+      const double share = of_after / (of_before + of_after);
+      give(before, -area * (1 - share), normal, shares);
+      give(after, -area * share, normal, shares);
+      const Vec3 from = (network.X.row(before) + share * (network.X.row(after) - network.X.row(before))).transpose();
+      const SurfaceWeights w = at(from + spacing * inwards, normal);
+      for (std::size_t i = 0; i < w.nodes.size(); ++i) give(w.nodes[i], area * w.weight[i], normal, shares);
+    }
   }
 
   PatchShares none() const { return {Eigen::VectorXd::Zero(network.nodes()), NodalVectors::Zero(network.nodes(), 3)}; }
@@ -165,6 +226,53 @@ void meet_gauss(const NodalVectors& X, double volume, NodalVectors& A) {
   A += share.asDiagonal() * linear * symmetric_solve(moments, missing);
 }
 
+/// Sharp edges between plane faces: edges of the triangles of a curved surface may be as sharp.
+std::vector<std::array<int, 2>> edges_of_planes(const Region& region) {
+  const auto point = [&](int n) -> const Vec3& { return region.surface_points[n]; };
+  std::map<std::array<int, 2>, std::vector<std::size_t>> at;  // edge -> triangles
+  std::vector<Vec3> normal;
+  for (const auto& t : region.surface_triangles) {
+    for (int c = 0; c < 3; ++c)
+      at[{std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])}].push_back(normal.size());
+    normal.push_back((point(t[1]) - point(t[0])).cross(point(t[2]) - point(t[0])).normalized());
+  }
+  std::vector<char> plane(normal.size(), 0);
+  for (const auto& [edge, of] : at)
+    if (of.size() == 2 && normal[of[0]].dot(normal[of[1]]) > 1 - 1e-9) plane[of[0]] = plane[of[1]] = 1;
+  std::vector<std::array<int, 2>> edges = sharp_edges(region);
+  std::erase_if(edges, [&](const auto& edge) {
+    const auto& of = at[edge];
+    return of.size() != 2 || !plane[of[0]] || !plane[of[1]];
+  });
+  return edges;
+}
+
+/// The sides of facets that are sharp edges.
+struct SharpSides {
+  const Region& region;
+  const SurfaceInterpolation& interpolation;
+  std::vector<std::array<int, 2>> sharp = edges_of_planes(region);
+
+  const Vec3& point(int n) const { return region.surface_points[n]; }
+
+  /// Moves area inwards at those of a facet of `corners` points.
+  void thin(const int* facet, int corners, double moment, const NodalVectors& unthinned, PatchShares& shares) const {
+    const Vec3 normal = (point(facet[1]) - point(facet[0])).cross(point(facet[2]) - point(facet[0])).normalized();
+    for (int c = 0; c < corners; ++c) {
+      const int a = facet[c], b = facet[(c + 1) % corners];
+      if (std::binary_search(sharp.begin(), sharp.end(), std::array<int, 2>{std::min(a, b), std::max(a, b)}))
+        interpolation.thin(point(a), point(b), normal, moment, unthinned, shares);
+    }
+  }
+
+  void thin(double moment, PatchShares& whole, std::map<std::string, PatchShares>& patches) const {
+    const NodalVectors unthinned = whole.normal;
+    for (const auto& t : region.surface_triangles) thin(t.data(), 3, moment, unthinned, whole);
+    for (const Patch& p : region.patches)
+      for (const auto& f : p.facets) thin(f.data(), f[3] < 0 ? 3 : 4, moment, unthinned, patches.at(p.name));
+  }
+};
+
 }  // namespace
 
 SurfaceShares surface_shares(const Region& region, const Network& network) {
@@ -179,7 +287,36 @@ SurfaceShares surface_shares(const Region& region, const Network& network) {
     }
   }
   PatchShares whole = interpolation.none();
-  for (const auto& t : region.surface_triangles) interpolation.add({point(t[0]), point(t[1]), point(t[2])}, whole);
+  double excess = 0;
+  for (const auto& t : region.surface_triangles)
+    excess += interpolation.add({point(t[0]), point(t[1]), point(t[2])}, whole);
+  SharpSides{region, interpolation}.thin(excess / whole.area.sum() / laplacian, whole, shares.patches);
+  shares.area = std::move(whole.normal);
+  meet_gauss(network.X, region.volume, shares.area);
+  return shares;
+}
+
+SurfaceShares vertex_shares(const Mesh& tetrahedra, const Network& network) {
+  const Region region = region_of(tetrahedra);
+  const SurfaceInterpolation interpolation(region, network);
+  SurfaceShares shares;
+  const auto X = [&](int n) -> Vec3 { return tetrahedra.nodes.row(n).transpose(); };
+  for (const Patch& p : tetrahedra.patches) {
+    PatchShares& patch = shares.patches.emplace(p.name, interpolation.none()).first->second;
+    patch.area = nodal_areas(tetrahedra, p);
+    for (const auto& f : p.facets)
+      for (int corner = 0; corner < 3; ++corner)
+        patch.normal.row(f[corner]) += (X(f[1]) - X(f[0])).cross(X(f[2]) - X(f[0])).transpose() / 6;
+  }
+  double excess = 0, area = 0;
+  for (const auto& t : region.surface_triangles) {
+    const Vec3 &a = region.surface_points[t[0]], &b = region.surface_points[t[1]], &c = region.surface_points[t[2]];
+    const double own = (b - a).cross(c - a).norm() / 2;
+    area += own;
+    excess += own * ((a - b).squaredNorm() + (b - c).squaredNorm() + (c - a).squaredNorm()) / 12;
+  }
+  PatchShares whole{Eigen::VectorXd::Zero(network.nodes()), volume_gradient(tetrahedra)};
+  SharpSides{region, interpolation}.thin(excess / area / laplacian, whole, shares.patches);
   shares.area = std::move(whole.normal);
   meet_gauss(network.X, region.volume, shares.area);
   return shares;

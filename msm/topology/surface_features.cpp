@@ -28,6 +28,13 @@ std::vector<Side> sides_of(const Region& region) {
   return sides;
 }
 
+bool is_corner(const std::vector<Vec3>& directions) {
+  if (directions.empty()) return false;
+  return directions.size() != 2 || -directions[0].dot(directions[1]) < cos_sharp;
+}
+
+}  // namespace
+
 std::vector<std::array<int, 2>> sharp_edges(const Region& region) {
   const std::vector<Side> sides = sides_of(region);
   std::vector<std::array<int, 2>> sharp;
@@ -39,13 +46,6 @@ std::vector<std::array<int, 2>> sharp_edges(const Region& region) {
   }
   return sharp;
 }
-
-bool is_corner(const std::vector<Vec3>& directions) {
-  if (directions.empty()) return false;
-  return directions.size() != 2 || -directions[0].dot(directions[1]) < cos_sharp;
-}
-
-}  // namespace
 
 SurfaceFeatures surface_features(const Region& region) {
   const auto& points = region.surface_points;

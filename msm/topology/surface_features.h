@@ -13,4 +13,7 @@ struct SurfaceFeatures {
 
 SurfaceFeatures surface_features(const Region& region);
 
+/// Those edges by the numbers of their surface points, each pair and all of them ascending.
+std::vector<std::array<int, 2>> sharp_edges(const Region& region);
+
 }  // namespace springproof

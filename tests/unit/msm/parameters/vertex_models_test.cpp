@@ -10,6 +10,7 @@
 
 #include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
+#include "msm/embedding/surface_shares.h"
 #include "msm/laws/dispersion_weights.h"
 #include "msm/parameters/patch_fit.h"
 #include "msm/statics/equilibrium.h"
@@ -35,7 +36,7 @@ const Mesh& round() {
 
 /// Largest and mean unbalanced force of a node under affine strains, of the stress on the area of a node.
 Eigen::Vector2d unbalanced(const Mesh& mesh, const Network& network) {
-  const NodalVectors A = volume_gradient(mesh);
+  const NodalVectors A = vertex_shares(mesh, network).area;
   double largest = 0, squares = 0;
   for (const Vec3& a : {Vec3(1, 0, 0), Vec3(0, 1, -1), Vec3(1, 2, 3)}) {
     const Eigen::Matrix3d strain = a * a.transpose() / a.squaredNorm();
@@ -94,7 +95,7 @@ double on_near_springs(const Network& network, const DispersionWeights& weights)
 
 TEST(VolumeWeights, OfNearSpringsAreExactAndAtEachNodeItsOwn) {
   const Network network = fitted_on_vertices(test::model("emsm_patch"), bar());
-  const NodalVectors gradient = volume_gradient(bar());
+  const NodalVectors gradient = vertex_shares(bar(), network).area;
   const DispersionWeights near = volume_weights(network, gradient, 1, WeightStart::near_springs);
   EXPECT_LE(near.residual, 1e-3);
   EXPECT_GT(on_near_springs(network, near), 2 * on_near_springs(network, volume_weights(network, gradient, 1)));
