@@ -52,8 +52,10 @@ LatticeSolve solve_on(const PreparedCase& prepared, const Lattice& lattice, cons
 }
 
 /// The displacement of a solve at other points.
-NodalVectors at_points(const Lattice& lattice, bool cut, const LatticeSolve& solve, const NodalVectors& points) {
-  if (cut) return displacement_at(*lattice.cut, solve.state.displacement, points);
+NodalVectors at_points(const Lattice& lattice, const ModelParameters& p, const LatticeSolve& solve,
+                       const NodalVectors& points) {
+  if (p.cut.value_or(false))
+    return displacement_at(*lattice.cut, solve.state.displacement, points, p.row.topology == Topology::macro_cells);
   const Locator locator(*lattice.mesh);
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
@@ -124,7 +126,8 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
     const bool cuts = voxels && has_cut_cells(row) &&
                       (!finite || row.extension == Extension::averaging || row.topology == Topology::macro_cells);
     if (cuts) e.models.push_back(choice_of(name, true));
-    e.models.push_back(choice_of(name, cuts ? std::optional(false) : std::nullopt));
+    if (!cuts || row.topology == Topology::cells)  // macro-cells of whole cubes fill blocks only
+      e.models.push_back(choice_of(name, cuts ? std::optional(false) : std::nullopt));
   };
   add(pilot_reference_model);
   for (const std::string& name : models)
@@ -147,9 +150,9 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
 
 /// The extrapolated displacement of the reference at the nodes of a lattice.
 ReferenceField reference_at(const std::vector<const Lattice*>& lattices, const std::vector<LatticeSolve>& solves,
-                            bool cut, const Mesh& mesh) {
+                            const ModelParameters& p, const Mesh& mesh) {
   std::vector<NodalVectors> fields;
-  for (std::size_t i = 0; i < 3; ++i) fields.push_back(at_points(*lattices[i], cut, solves[i], mesh.nodes));
+  for (std::size_t i = 0; i < 3; ++i) fields.push_back(at_points(*lattices[i], p, solves[i], mesh.nodes));
   const auto ratio = [&](std::size_t i) { return std::cbrt(cells_of(*lattices[i + 1]) / cells_of(*lattices[i])); };
   return extrapolate(fields, nodal_volumes(mesh), {ratio(0), ratio(1)});
 }
@@ -215,7 +218,7 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
     }
     out.cells.push_back(cells_of(lattice));
     out.errors.push_back(displacement_error(s.field, run.truths[i].displacement, nodal_volumes(*lattice.mesh)));
-    fields.push_back(at_points(lattice, out.cut, s, last.mesh->nodes));
+    fields.push_back(at_points(lattice, p, s, last.mesh->nodes));
   }
   if (out.cells.empty()) return out;
   const auto own = own_poisson_ratio(p.row);
@@ -282,7 +285,6 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   };
   for (const int n : at.every) run.every.push_back(lattice_at(n));
   for (const int n : at.reference) run.reference.push_back(lattice_at(n));
-  const bool cut = prepared.models.front().cut.value_or(false);
   for (const Lattice* lattice : run.reference) {
     progress::phase(fmt::format("reference on {} cells", cells_of(*lattice)));
     run.reference_solves.push_back(solve_on(prepared, *lattice, prepared.models.front(), material));
@@ -295,7 +297,7 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   out.reference = fmt::format("{} on {:g}, {:g} and {:g} cells, extrapolated", pilot_reference_model,
                               cells_of(*run.reference[0]), cells_of(*run.reference[1]), out.reference_cells);
   for (const Lattice* lattice : run.every)
-    run.truths.push_back(reference_at(run.reference, run.reference_solves, cut, *lattice->mesh));
+    run.truths.push_back(reference_at(run.reference, run.reference_solves, prepared.models.front(), *lattice->mesh));
   const Mesh& mesh = *run.every.back()->mesh;
   const NodalVectors& u = run.truths.back().displacement;
   out.uncertainty = run.truths.back().uncertainty;

@@ -131,10 +131,10 @@ std::vector<Option> options_of(const ModelRow& row) {
     options.push_back(
         number("turned_deg", -90, 90, [](double v, ModelParameters& p) { p.turned = v * std::numbers::pi / 180; }));
   options.push_back(hold_option());
-  if (row.topology == Topology::cells && row.extension != Extension::momentum_dispersion) {
+  const bool of_cells = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion;
+  if (of_cells || row.topology == Topology::macro_cells)
     options.push_back(flag("cut", [](bool on, ModelParameters& p) { p.cut = on; }));
-    options.push_back(number("shift", 0, 1, [](double v, ModelParameters& p) { p.shift = v; }));
-  }
+  if (of_cells) options.push_back(number("shift", 0, 1, [](double v, ModelParameters& p) { p.shift = v; }));
   if (row.topology != Topology::cells && row.topology != Topology::macro_cells) options.push_back(grip_option());
   if (row.extension == Extension::volume_correction)
     options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,

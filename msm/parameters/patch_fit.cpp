@@ -42,13 +42,11 @@ struct PatchDual {
         diagonal(Eigen::VectorXd::Zero(patch_moments * n.nodes())),
         slack(Eigen::VectorXd::Constant(n.nodes(), slacks.front())),
         smooth(n.image_of.empty() ? n.X : NodalVectors(0, 3), unit) {
-    double lengths = 0;  // sum of k_0 L^2 / c
-    for (const Spring& s : n.springs) lengths += unit / s.rest_length;
-    const double c = 15 * n.volume.sum() / std::pow(unit, 3) / lengths;
+    const double c = 15 * n.volume.sum() / std::pow(unit, 3) / static_cast<double>(n.springs.size());
     for (const Spring& s : n.springs) {
       const Vec3 along = (n.X.row(s.j) - n.X.row(s.i)).transpose() / s.rest_length;
-      column.push_back({n.master(s.i), n.master(s.j),
-                        c * std::pow(unit / s.rest_length, 2) * symmetric_product(along, along, along)});
+      column.push_back(
+          {n.master(s.i), n.master(s.j), c * unit / s.rest_length * symmetric_product(along, along, along)});
     }
     for (int node = 0; node < n.nodes(); ++node)
       at(b, n.master(node)) -= patch_traction(area.row(node).transpose() / (unit * unit));

@@ -5,7 +5,7 @@
 
 namespace springproof {
 
-/// Replaces the spring constants by k = t k_0, k_0 = c / L^3, t > 0, that fulfil at each node n the ten conditions
+/// Replaces the spring constants by k = t k_0, k_0 = c / L^2, t > 0, that fulfil at each node n the ten conditions
 ///   sum_s k L n_i n_j n_k = -G (d_ij A_k + d_jk A_i + d_ki A_j)   (unit vectors n from the node, d Kronecker's
 ///   symbol)
 /// and make the sum of (t - 1)^2 / 2 - 0.09 ln t least: near 1, and never zero.
