@@ -204,7 +204,7 @@ EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std
   if (!has_cut_cells(p.row))
     throw InputError(
         fmt::format("{}: cannot be made of cut cells (allowed: lattices of cells without momentum "
-                    "dispersion)",
+                    "dispersion, hybmss_macro)",
                     p.row.name));
   EmbeddedModel built;
   const bool macro = p.row.topology == macro_cells;

@@ -123,7 +123,8 @@ nlohmann::json to_json(const std::vector<Sample>& samples, const ModelParameters
   return out;
 }
 
-/// "E by +1.2 %, G by -3 %": moduli whose means are off by more than four times their standard error.
+/// "E by +1.2 %, 7 standard errors of its mean; ...": moduli whose means are off by more than four times their standard
+/// error.
 std::string biases(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m) {
   std::vector<std::string> off;
   for (const Quantity& q : quantities) {

@@ -217,16 +217,30 @@ class Collector {
       if (const auto part = number_of(split, "model_error"), nu = number_of(split, "poisson_ratio");
           part && nu && is_finest(split))
         own_parts[{string_of(split, "model"), *nu, string_of(split, "measure")}] = *part;
+    // Where a model has no part, all are ranked by their whole errors.
+    std::set<std::pair<double, std::string>> ranked_by_parts;
+    for (const auto& [key, part] : own_parts) ranked_by_parts.insert({std::get<1>(key), std::get<2>(key)});
+    for (const Json& row : list_of(result, "rows"))
+      if (const auto nu = number_of(row, "poisson_ratio");
+          nu && is_finest(row) && is_ranked(string_of(row, "model")) &&
+          !own_parts.contains({string_of(row, "model"), *nu, string_of(row, "measure")}))
+        ranked_by_parts.erase({*nu, string_of(row, "measure")});
     for (const Json& row : list_of(result, "rows"))
       if (is_finest(row))
-        add_row(row, own_parts,
+        add_row(row, own_parts, ranked_by_parts,
                 string_of(row, "measure") == "reaction_error" ? largest_reaction(list_of(result, "rows"), row)
                                                               : "displacement");
   }
 
+  /// Whether a model has springs of its own, at rest: what is extrapolated has none.
+  bool is_ranked(const std::string& model) const {
+    return !fem_.contains(model) && !external_.contains(model) && !motions_.contains(model) &&
+           !model.ends_with("extrapolated");
+  }
+
   /// `of`: what the error is of.
   void add_row(const Json& row, const std::map<std::tuple<std::string, double, std::string>, double>& own_parts,
-               const std::string& of) {
+               const std::set<std::pair<double, std::string>>& ranked_by_parts, const std::string& of) {
     const std::string measure = string_of(row, "measure"), model = string_of(row, "model");
     const auto nu = number_of(row, "poisson_ratio"), error = number_of(row, "error");
     if (nu && error && measure == "motion_error")
@@ -245,14 +259,14 @@ class Collector {
     (voxels_ ? errors.voxels : errors.blocks) = true;
     const auto part = own_parts.find({model, *nu, measure});
     const bool has_part = part != own_parts.end();
-    // What is extrapolated has no springs of its own: not ranked beside models by theirs.
-    if (!has_part && std::any_of(own_parts.begin(), own_parts.end(), [&](const auto& other) {
-          return std::get<1>(other.first) == *nu && std::get<2>(other.first) == measure;
-        }))
-      return;
-    (has_part ? errors.parts : errors.wholes) = true;
     if (has_part && displacement) errors.springs[*nu].take(part->second, uncertainty, case_name_);
-    errors.rank[*nu].take(has_part ? part->second : *error, uncertainty, case_name_, of);
+    const bool by_part = ranked_by_parts.contains({*nu, measure});
+    const bool others_have_parts = std::any_of(own_parts.begin(), own_parts.end(), [&](const auto& other) {
+      return std::get<1>(other.first) == *nu && std::get<2>(other.first) == measure;
+    });
+    if (others_have_parts && !is_ranked(model)) return;
+    (by_part ? errors.parts : errors.wholes) = true;
+    errors.rank[*nu].take(by_part ? part->second : *error, uncertainty, case_name_, of);
   }
 
   void add_check(const Json& check) {

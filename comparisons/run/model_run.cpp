@@ -153,7 +153,7 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
                                   cut ? displacement_at(*lattice.cut, sample.state.displacement,
                                                         measured_points(prepared), !network.macro_cells.empty())
                                       : at_measured_points(prepared, lattice, sample.field.displacement));
-  if (cut && asked(e, "promised_error") && !in_motion)
+  if (cut && asked(e, "promised_error") && !in_motion && network.macro_cells.empty())
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {

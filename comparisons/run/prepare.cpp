@@ -49,12 +49,13 @@ void choose_cut_cells(PreparedCase& prepared) {
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     ModelParameters& p = prepared.models[m];
     const bool averaged = p.has(Extension::averaging), large = e.model_kinematics() != Kinematics::linear;
-    const char* reason = !has_cut_cells(p.row)                                   ? "this model has none"
-                         : !e.body.is_voxels()                                   ? "the body is a block"
-                         : e.fracture                                            ? "the body breaks"
-                         : e.models[m].in_motion && !averaged                    ? "it is to move in time"
-                         : large && !averaged && !p.has(Extension::volume_modes) ? "the displacements are large"
-                                                                                 : nullptr;
+    const char* reason = !has_cut_cells(p.row)                                          ? "this model has none"
+                         : !e.body.is_voxels()                                          ? "the body is a block"
+                         : e.fracture                                                   ? "the body breaks"
+                         : e.models[m].in_motion && !averaged                           ? "it is to move in time"
+                         : !e.body.accuracies.empty() && p.has(Extension::volume_modes) ? "its cells have several sizes"
+                         : large && !averaged && !p.has(Extension::volume_modes)        ? "the displacements are large"
+                                                                                        : nullptr;
     if (reason && p.cut.value_or(false))
       throw InputError(
           e.models[m].where,

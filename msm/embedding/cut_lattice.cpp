@@ -123,10 +123,7 @@ Network cut_macro_lattice(const CutBody& body, const std::vector<std::string>& h
   for (std::size_t m = 0; m < macro.cells.size(); ++m)
     for (int cube = 0; cube < 8; ++cube) {
       Hexahedron& corners = network.cells.emplace_back();
-      for (int a = 0; a < 8; ++a) {
-        const auto [x, y, z] = hexahedron_corners[a];
-        corners[a] = macro.cells[m][cube % 2 + x + 3 * (cube / 2 % 2 + y) + 9 * (cube / 4 + z)];
-      }
+      for (int a = 0; a < 8; ++a) corners[a] = macro.cells[m][macro_node(cube, a)];
       network.filled.push_back(macro.filled[m][cube]);
     }
   std::vector<Vec3> anchored;
@@ -238,9 +235,7 @@ NodalVectors at_points_of_cells(const CutBody& body, const NodalVectors& u) {
   for (std::size_t c = 0; c < body.cells.size(); ++c)
     for (int n = 0; n < 8; ++n) {
       const auto [m, cube] = macro.place[c];
-      const auto [x, y, z] = hexahedron_corners[n];
-      const int node = cube % 2 + x + 3 * (cube / 2 % 2 + y) + 9 * (cube / 4 + z);
-      out.row(body.cells[c].corners[n]) = u.row(macro.cells[m][node]);
+      out.row(body.cells[c].corners[n]) = u.row(macro.cells[m][macro_node(cube, n)]);
     }
   return out;
 }

@@ -39,6 +39,6 @@ NodalVectors at_points_of_cells(const CutBody& body, const NodalVectors& displac
 
 /// Displacement of the network, of cells or macro-cells, at points of the body [m].
 NodalVectors displacement_at(const CutBody& body, const NodalVectors& displacement, const NodalVectors& points,
-                             bool of_macro_cells = false);
+                             bool of_macro_cells);
 
 }  // namespace springproof

@@ -16,10 +16,10 @@ struct SurfaceShares {
 /// are made exact by a linear field in proportion to |A_n|.
 ///
 /// Interpolation by linear fields overestimates the integral of a quadratic field f over a face by m times that of its
-/// Laplacian, m = h^2 / 12 on squares of edge h, and the second moments of a section carry over to the springs: a bar
-/// of eight spacings is 2.5 % too stiff in bending and 6 % in torsion.  By Gauss's theorem that is m times the integral
-/// of the normal derivative along the border of the face.  So at every sharp edge both faces give m ds of area times
-/// length to the inside: nodes of the edge lose what the surface one spacing inwards gains (Gregory's end correction).
+/// Laplacian, m = h^2 / 12 on squares of edge h, and the second moments of a section carry over to the springs: those
+/// of a bar of eight spacings are 2.5 % too large.  By Gauss's theorem that is m times the integral of the normal
+/// derivative along the border of the face.  So at sharp edges between plane faces both give m ds of area times length
+/// to the inside: nodes of the edge lose what the surface one spacing inwards gains (Gregory's end correction).
 /// @throws std::invalid_argument if a part of the surface has no node.
 SurfaceShares surface_shares(const Region& region, const Network& network);
 

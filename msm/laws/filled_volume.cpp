@@ -81,8 +81,7 @@ VolumeChange of_macro_cells(const Network& network, const NodalVectors& u) {
   VolumeChange change{0, 0};
   double volume = 0;
   for (std::size_t c = 0; c < network.macro_cells.size(); ++c) {
-    Eigen::Matrix<double, 3, 27> at;
-    for (int n = 0; n < 27; ++n) at.col(n) = u.row(network.macro_cells[c][n]).transpose();
+    const Eigen::Matrix<double, 3, 27> at = at_nodes(network.macro_cells[c], u);
     const MacroPoints of_cell = macro_points(network, c);
     volume += of_cell.volume;
     for (const MacroPoint& p : of_cell.points) {

@@ -47,6 +47,12 @@ void set_modes(std::vector<MacroPoint>& points) {
 
 }  // namespace
 
+Eigen::Matrix<double, 3, 27> at_nodes(const MacroCell& cell, const NodalVectors& values) {
+  Eigen::Matrix<double, 3, 27> at;
+  for (int n = 0; n < 27; ++n) at.col(n) = values.row(cell[n]).transpose();
+  return at;
+}
+
 bool is_full(const Network& network, std::size_t cell) {
   return network.filled.empty() || std::all_of(network.filled.begin() + static_cast<long>(8 * cell),
                                                network.filled.begin() + static_cast<long>(8 * cell + 8),
@@ -55,8 +61,12 @@ bool is_full(const Network& network, std::size_t cell) {
 
 MacroPoints macro_points(const Network& network, std::size_t cell) {
   static const std::vector<MacroPoint> of_full = gauss_points();
-  if (is_full(network, cell)) return {8 * network.cell_volume(), of_full};
-  MacroPoints out{0, {}};
+  MacroPoints out;
+  if (is_full(network, cell)) {
+    out.volume = 8 * network.cell_volume();
+    out.points = of_full;
+    return out;
+  }
   double filled = 0;
   for (int cube = 0; cube < 8; ++cube) {
     const FilledPart& part = network.filled[8 * cell + cube];
@@ -66,12 +76,13 @@ MacroPoints macro_points(const Network& network, std::size_t cell) {
     for (int s = 0; s < 8; ++s) {
       const Vec3 sign(s & 1 ? 1 : -1, s & 2 ? 1 : -1, s & 4 ? 1 : -1),
           at = middle_of_cube(cube) + part.mean + deviation * sign;
-      out.points.push_back({at, part.fraction / 8, triquadratic_gradients(at), Eigen::Vector4d::Zero()});
+      out.own.push_back({at, part.fraction / 8, triquadratic_gradients(at), Eigen::Vector4d::Zero()});
     }
   }
-  for (MacroPoint& p : out.points) p.share /= filled;
+  for (MacroPoint& p : out.own) p.share /= filled;
   out.volume = filled * network.cell_volume();
-  set_modes(out.points);
+  set_modes(out.own);
+  out.points = out.own;
   return out;
 }
 

@@ -1,6 +1,7 @@
 // The points of a macro-cell at which its springs see the strain, and the modes of its volume.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "msm/topology/network.h"
@@ -21,13 +22,21 @@ struct MacroPoint {
 /// Of a full cell its 27 Gauss points; of a cell that the body fills in part eight in each of its cubes, of equal
 /// weight, which have all moments of the filled part up to the second order.
 struct MacroPoints {
-  double volume;  ///< of the body in the cell [m^3]
-  std::vector<MacroPoint> points;
+  double volume = 0;            ///< of the body in the cell [m^3]
+  std::vector<MacroPoint> own;  ///< empty for full cells, which share theirs
+  std::span<const MacroPoint> points;
+
+  MacroPoints() = default;
+  MacroPoints(MacroPoints&&) = default;  // a copy's points would be those of the original
 };
 
 /// @param network with macro-cells
 /// @param cell number of one
 MacroPoints macro_points(const Network& network, std::size_t cell);
+
+/// Values of its 27 nodes, a column each.
+/// @param values per node of the network, n x 3
+Eigen::Matrix<double, 3, 27> at_nodes(const MacroCell& cell, const NodalVectors& values);
 
 /// Whether the body fills a macro-cell.
 bool is_full(const Network& network, std::size_t cell);

@@ -14,16 +14,12 @@ namespace {
 using Nodes = Eigen::Matrix<double, 3, 27>;
 using Modes = Eigen::Vector4d;
 
-Nodes positions_of(const MacroCell& cell, const NodalVectors& x) {
-  Nodes at;
-  for (int n = 0; n < 27; ++n) at.col(n) = x.row(cell[n]).transpose();
-  return at;
-}
-
 /// State of a macro-cell.
 struct Deformed {
-  double edge, volume;  ///< of a cube [m], of the body in the cell at rest [m^3]
-  std::vector<MacroPoint> points;
+  double edge;  ///< of a cube [m]
+  MacroPoints all;
+  std::span<const MacroPoint> points = all.points;
+  double volume = all.volume;  ///< of the body in the cell at rest [m^3]
   std::vector<Eigen::Matrix3d> F;
   std::vector<double> J, theta;
   std::vector<double> pressure;  ///< U'(theta), projected, at the points [1]
@@ -31,11 +27,8 @@ struct Deformed {
   bool inverted = false;
 
   Deformed(const MacroSprings& law, const Network& network, std::size_t cell, const NodalVectors& x)
-      : edge(network.cell_edge) {
-    MacroPoints all = macro_points(network, cell);
-    volume = all.volume;
-    points = std::move(all.points);
-    const Nodes at = positions_of(network.macro_cells[cell], x);
+      : edge(network.cell_edge), all(macro_points(network, cell)) {
+    const Nodes at = at_nodes(network.macro_cells[cell], x);
     Modes mean = Modes::Zero(), slope = Modes::Zero();
     for (const MacroPoint& p : points) {
       F.emplace_back(at * p.gradient.transpose() / edge);
@@ -145,7 +138,7 @@ const Eigen::Matrix<double, 54, 54>& difference_of_neighbours(int axis) {
 /// Positions of the nodes of both cells of a face, from one of them: round-off grows with their distance.
 Eigen::Matrix<double, 3, 54> positions_of(const Network& network, const MacroFace& face, const NodalVectors& x) {
   Eigen::Matrix<double, 3, 54> at;
-  at << positions_of(network.macro_cells[face.lower], x), positions_of(network.macro_cells[face.upper], x);
+  at << at_nodes(network.macro_cells[face.lower], x), at_nodes(network.macro_cells[face.upper], x);
   return at.colwise() - Vec3(at.col(13));
 }
 

@@ -29,7 +29,7 @@ MassSpringModel companion(const Network& network, double shear_modulus, double l
 /// Steps of GMRES between restarts; bodies one macro-cell across take more than a hundred.
 constexpr int restart = 150;
 
-/// Part of a cube without body that counts as filled.
+/// Part of a cube that counts as filled at least.
 constexpr double least_filled = 0.3;
 /// Of the Schur complement of a cell that the body fills in part: times that with the other cells held.
 constexpr double schur_of_patch = 3;
@@ -58,8 +58,7 @@ MassSpringModel cut_companion(const Network& network, double shear_modulus, doub
 }  // namespace
 
 bool MacroSolver::covers(const MassSpringModel& model) {
-  return (model.network.grid || !model.network.macro_cells.empty()) && macro_springs_of(model) &&
-         std::all_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) {
+  return macro_springs_of(model) && std::all_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) {
            return std::holds_alternative<MacroSprings>(law) || std::holds_alternative<Anchors>(law);
          });
 }
@@ -154,7 +153,6 @@ void MacroSolver::apply_lattice(const Eigen::VectorXd& r, Eigen::VectorXd& z) co
   for (const Patch& patch : patches_) relax(patch, r, z);
   A_.multiply(z, product);
   cut_->apply(r - product, correction);
-  clear_fixed(correction);
   z += step_ * correction;
   for (auto patch = patches_.rbegin(); patch != patches_.rend(); ++patch) relax(*patch, r, z);
 }

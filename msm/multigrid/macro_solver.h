@@ -16,10 +16,10 @@ namespace springproof {
 /// G.  Solved by conjugate gradients; for kappa much above G with four pressures per cell as unknowns,
 ///     A u + D^T p = f,   D u - (kappa C)^-1 p = g,
 /// by GMRES.  The preconditioner of A is one V-cycle of hybmss_avg with the same nodes, the Schur complement is taken
-/// as that of a volume term of G: its modes are orthogonal at rest.  In cut bodies cubes without body count as filled
-/// to a part there.  Before and after that V-cycle each cell that the body fills in part is relaxed exactly, one after
-/// the other: its nodes outside of the body follow their neighbours in ways that the lattice does not know.  The Schur
-/// complement of its volume is that with the other cells held, times a constant.
+/// as that of a volume term of G: its modes are orthogonal at rest.  In cut bodies cubes that are hardly filled count
+/// as filled to a part there.  Before and after that V-cycle each cell that the body fills in part is relaxed exactly,
+/// one after the other: its nodes outside of the body follow their neighbours in ways that the lattice does not know.
+/// The Schur complement of its volume is that with the other cells held, times a constant.
 class MacroSolver {
  public:
   /// Whether the model consists of macro-cells, of a block or of a cut body, and anchors.
@@ -71,7 +71,7 @@ class MacroSolver {
   void assume_schur();
   void relax(const Patch& patch, const Eigen::VectorXd& r, Eigen::VectorXd& z) const;  ///< exactly on the patch
   void add_constant_parts();                                                           ///< A_ += bonds and anchors
-  void apply_lattice(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;              ///< one V-cycle
+  void apply_lattice(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;              ///< the preconditioner of A
 
   const Network& network_;
   MacroSprings law_;

@@ -30,7 +30,7 @@ const std::vector<ModelRow> table = {
   {"hybmss_b",       "HybMSS + bending hourglass correction (linear kinematics)",              cells,     2,        true,  volume_correction,   true,  false, G},
   {"hybmss_bt",      "HybMSS + bending and torsion hourglass correction (linear kinematics)",  cells,     2,        true,  volume_correction,   true,  true,  G},
   {"hybmss_avg",     "recommended: springs averaged over each cell; any strain, any nu",        cells,     16.0 / 9, false, averaging,           true,  true,  G},
-  {"hybmss_macro",   "springs at 27 points of cells of 27 nodes; blocks at rest, most exact",  macro_cells, 16.0 / 9, false, volume_modes,      false, false, G},
+  {"hybmss_macro",   "springs at 27 points of cells of 27 nodes; blocks, cut bodies, at rest",  macro_cells, 16.0 / 9, false, volume_modes,      false, false, G},
 };
 // clang-format on
 

@@ -18,8 +18,7 @@ std::vector<MacroCell> macro_cells_of(const Mesh& mesh) {
   if (mesh.hexahedra.size() != static_cast<std::size_t>(nx) * ny * nz)
     throw std::invalid_argument(
         "macro-cells of whole cubes fill blocks only (allowed: a body of `cells`, or a cut body at rest; hybmss_avg "
-        "takes "
-        "any body)");
+        "takes any body)");
   if (nx % 2 != 0 || ny % 2 != 0 || nz % 2 != 0)
     throw std::invalid_argument(fmt::format(
         "body.cells: [{}, {}, {}]: a macro-cell is two cubes along each axis (allowed: even numbers)", nx, ny, nz));

@@ -6,6 +6,12 @@
 
 namespace springproof {
 
+/// Of the 27 nodes of a macro-cell that in a corner of one of its eight cubes, x fastest.
+constexpr int macro_node(int cube, int corner) {
+  const auto [x, y, z] = hexahedron_corners[corner];
+  return cube % 2 + x + 3 * (cube / 2 % 2 + y) + 9 * (cube / 4 + z);
+}
+
 /// The macro-cells of a block of cubes.
 /// @param mesh a block of equal cubes: block_mesh()
 /// @return one for every two cubes along each axis, the first from the lowest corner

@@ -32,7 +32,7 @@ struct Anchor {
 /// The 27 nodes of a macro-cell, two cubes along each axis: node x + 3 y + 9 z at (x, y, z) cube edges.
 using MacroCell = std::array<int, 27>;
 
-/// Two macro-cells with a common face, of which the body fills one in part.
+/// Two macro-cells with a common face, of which the body fills at least one in part.
 struct MacroFace {
   int lower, upper;  ///< macro-cells
   int axis;          ///< from the lower to the upper

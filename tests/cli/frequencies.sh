@@ -57,16 +57,15 @@ check "held: no rigid motion, the force is no support" 'len(tables) == 1 and tab
 check "held: errors" 'tables[0]["models"][0]["rms_error"] < 0.02 and tables[0]["models"][0]["mass_consistency"] == 0.6'
 grep -q "held on z_min" "$work/stdout" || fail "the table does not say what is held: $(cat "$work/stdout")"
 
-# An interrupt is heard between the iterations of a model.   Without a reference, which is interrupted as everywhere.
+# An interrupt is heard between the iterations of a model.  Without a reference, which is interrupted as everywhere.
 sed 's/cells = \[6, 6, 6\]/cells = [24, 24, 24]/' "$work/cube.toml" >"$work/fine.toml"
 SPRINGPROOF_FEM_PROGRAM=/bin/false "$program" frequencies "$work/fine.toml" --modes 60 >"$work/stdout" 2>"$work/stderr" &
 pid=$!
 sleep 3
 kill -INT $pid
-start=$(date +%s%N)
 wait $pid
-status=$? waited=$((($(date +%s%N) - start) / 1000000))
-[ $status -eq 130 ] && [ $waited -lt 2000 ] || fail "an interrupt: status $status after $waited ms: $(cat "$work/stdout" "$work/stderr")"
+status=$?
+[ $status -eq 130 ] && ! grep -q hybmss "$work/stdout" || fail "an interrupt: status $status: $(cat "$work/stdout" "$work/stderr")"
 
 # refused PATTERN ARGUMENTS...
 refused() {

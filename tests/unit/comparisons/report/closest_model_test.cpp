@@ -40,6 +40,18 @@ TEST(ClosestModel, WhatHasNoSpringsOfItsOwnIsNotRankedBesideTheOthersSprings) {
             "1 linear case.");
 }
 
+// Macro-cells have no whole cubes to compare with.
+TEST(ClosestModel, BesideAModelWithoutPartsTheWholeErrorsDecide) {
+  CaseResult bar =
+      with_models("bar", 0.3, 0.001, {{"hybmss_macro", 0.008}, {"hybmss_avg", 0.013}, {"extrapolated", 0.002}});
+  add_split(bar, "hybmss_avg", 0.3, 0.013, 0.0027);
+  const Headline h = headline_of({bar});
+  EXPECT_EQ(h.answer.find("Of the spring models hybmss_macro comes closest: its displacements stay within 0.8 % of"),
+            0u)
+      << h.answer;
+  EXPECT_NE(h.models[1].sentence.find("its springs within 0.27 %"), std::string::npos) << h.models[1].sentence;
+}
+
 TEST(ClosestModel, BlocksAndBodiesOfVoxelsShareOneNumber) {
   CaseResult bunny = with_models("bunny", 0.45, 1e-3, {{"emsm", 0.059}, {"hybmss_bt", 0.17}});
   add_split(bunny, "emsm", 0.45, 0.059, 0.178);
