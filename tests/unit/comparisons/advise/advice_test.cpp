@@ -81,7 +81,7 @@ TEST(Advice, ABudgetLimitsTheLattice) {
   const Advice free = advise(forecast(), wish);
   EXPECT_EQ(free.choices[0].resolution.across, 16);
   EXPECT_TRUE(free.choices[0].accurate);
-  wish.ms_per_step = *free.choices[0].ms_per_step / 100;  // times are measured, on a machine that may be busy
+  wish.ms_per_step = *free.choices[0].ms_per_step / 8;  // four cells across take a 64th; the machine may be busy
   const Advice tight = advise(forecast(), wish);
   const Choice& best = tight.choices[0].model == "hybmss_avg" ? tight.choices[0] : tight.choices[1];
   EXPECT_LT(best.resolution.across, 16);
