@@ -83,5 +83,5 @@ done
 start out
 [ $? -eq $whole ] || fail "resuming failed"
 compare out
-[ -z "$(ls -A "$TMPDIR")" ] || fail "left in the temporary folder: $(ls "$TMPDIR")"
+[ -z "$(ls -A "$TMPDIR")" ] || fail "left in the temporary folder: $(ls -A "$TMPDIR")"
 echo "$killed kills, $((finished + 1)) runs finished with the same numbers (seed $seed)"
