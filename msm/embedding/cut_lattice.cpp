@@ -74,6 +74,15 @@ std::array<Value, 27> of_macro_cell(int cube, const std::array<Value, 27>& of_cu
   return all;
 }
 
+/// Points and more of them.
+NodalVectors followed_by(const NodalVectors& points, const std::vector<Vec3>& more) {
+  NodalVectors all(points.rows() + static_cast<Eigen::Index>(more.size()), 3);
+  all.topRows(points.rows()) = points;
+  for (std::size_t a = 0; a < more.size(); ++a)
+    all.row(points.rows() + static_cast<Eigen::Index>(a)) = more[a].transpose();
+  return all;
+}
+
 }  // namespace
 
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus) {
@@ -97,10 +106,7 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
       anchored.push_back(centroid);
       network.anchors.push_back(anchor);
     }
-  network.X.resize(corners + static_cast<Eigen::Index>(anchored.size()), 3);
-  network.X.topRows(corners) = body.points;
-  for (std::size_t a = 0; a < anchored.size(); ++a)
-    network.X.row(corners + static_cast<Eigen::Index>(a)) = anchored[a].transpose();
+  network.X = followed_by(body.points, anchored);
   network.volume = Eigen::VectorXd::Zero(network.X.rows());
   for (const CutCell& cell : body.cells) {
     network.cells.push_back(cell.corners);
@@ -141,10 +147,7 @@ Network cut_macro_lattice(const CutBody& body, const std::vector<std::string>& h
       }
       network.macro_anchors.push_back(anchor);
     }
-  network.X.resize(nodes + static_cast<Eigen::Index>(anchored.size()), 3);
-  network.X.topRows(nodes) = macro.points;
-  for (std::size_t a = 0; a < anchored.size(); ++a)
-    network.X.row(nodes + static_cast<Eigen::Index>(a)) = anchored[a].transpose();
+  network.X = followed_by(macro.points, anchored);
   network.volume = Eigen::VectorXd::Zero(network.X.rows());
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     for (const int n : network.cells[c]) network.volume[n] += network.filled[c].fraction * network.cell_volume() / 8;
