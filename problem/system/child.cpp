@@ -108,6 +108,7 @@ fs::path own_folder() {
 namespace {
 
 constexpr std::string_view folder_prefix = "springproof-temporary-";  // no likely name for a folder of results
+constexpr std::string_view unlocked_prefix = ".springproof-";         // of a folder that is not locked yet
 
 /// Where temporary folders are made.
 fs::path temporary_place() {
@@ -134,11 +135,12 @@ int lock_folder(const fs::path& folder) {
 
 }  // namespace
 
-// Removes folders named like ours that no process has locked.
+// Removes folders named like ours that no process has locked, and those, empty, that were to be.
 void remove_orphans() {
   std::error_code error;
   for (fs::directory_iterator entry(temporary_place(), error), end; !error && entry != end; entry.increment(error)) {
-    if (!entry->path().filename().string().starts_with(folder_prefix)) continue;
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(folder_prefix) && !name.starts_with(unlocked_prefix)) continue;
     const int lock = lock_folder(entry->path());
     if (lock < 0) continue;
     std::error_code ignored;
@@ -147,16 +149,24 @@ void remove_orphans() {
   }
 }
 
-// The folder gets its final name after it is locked, so that no process takes it for an orphan.
+// The folder gets its final name after it is locked, so that no process takes it for an orphan with something in it;
+// before that another process may remove it, and it is made again.
 TemporaryFolder::TemporaryFolder() {
   const fs::path place = temporary_place();
   static std::once_flag first;
   std::call_once(first, remove_orphans);
-  std::string name = (place / ".springproof-XXXXXX").string();
-  if (!mkdtemp(name.data())) no_room(name, errno);
-  lock_ = lock_folder(name);
-  path = place / fmt::format("{}{}-{}", folder_prefix, getpid(), name.substr(name.size() - 6));
-  if (std::rename(name.c_str(), path.c_str()) != 0) no_room(path, errno);
+  constexpr int most_trials = 3;
+  for (int trial = 1;; ++trial) {
+    std::string name = (place / fmt::format("{}XXXXXX", unlocked_prefix)).string();
+    if (!mkdtemp(name.data())) no_room(name, errno);
+    lock_ = lock_folder(name);
+    path = place / fmt::format("{}{}-{}", folder_prefix, getpid(), name.substr(name.size() - 6));
+    const bool last = trial == most_trials;  // where nothing can be locked, it goes on without
+    if ((lock_ >= 0 || last) && std::rename(name.c_str(), path.c_str()) == 0) return;
+    if (last) no_room(path, errno);
+    if (lock_ >= 0) close(lock_);
+    rmdir(name.c_str());
+  }
 }
 
 TemporaryFolder::~TemporaryFolder() {
