@@ -62,7 +62,7 @@ add_custom_command(
   COMMENT "Embedding the report's page and its libraries"
   VERBATIM)
 
-springproof_sources(report_sources report)
+springproof_sources(report_sources results report)
 add_library(report STATIC ${report_sources} ${report_generated})
 springproof_uses_headers(report headers_with_json)
 set(report_view ${CMAKE_BINARY_DIR}/arrows/comparisons)

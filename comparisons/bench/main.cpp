@@ -17,7 +17,7 @@
 #include "comparisons/bench/parallel.h"
 #include "comparisons/bench/statics.h"
 #include "comparisons/bench/table.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "msm/kernels/instruction_set.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"

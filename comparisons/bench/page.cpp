@@ -4,7 +4,7 @@
 
 #include "comparisons/report/assets.h"
 #include "comparisons/report/page.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "problem/system/files.h"
 
 namespace springproof::bench {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/status.h"

@@ -106,6 +106,8 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(1, 16));
   compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
   compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
+  compare_command->add_flag("--verbose", options.verbose,
+                            "also print a sentence on every model, and how far each case deforms");
   CLI::Option* live = compare_command->add_flag_callback(
       "--live", [&] { options.live_page = live_page(); },
       "also copy the page in which the bodies can be pulled (live.html) beside the report, with a link");

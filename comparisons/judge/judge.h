@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 
 namespace springproof {
 

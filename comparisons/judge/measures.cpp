@@ -75,18 +75,18 @@ std::map<std::string, double> stress_measures(const std::vector<Probe>& probes, 
   return out;
 }
 
-std::optional<double> reaction_difference(const std::map<std::string, double>& a,
-                                          const std::map<std::string, double>& b,
-                                          const std::map<std::string, ReferenceValue>& truth,
-                                          const std::vector<std::string>& patches, double length) {
+std::optional<ReactionDifference> reaction_difference(const std::map<std::string, double>& a,
+                                                      const std::map<std::string, double>& b,
+                                                      const std::map<std::string, ReferenceValue>& truth,
+                                                      const std::vector<std::string>& patches, double length) {
   constexpr double vanishing = 0.1;
-  std::optional<double> largest;
+  std::optional<ReactionDifference> largest;
   for (const std::string& patch : patches) {
     const double force = size_of(truth, "force." + patch), torque = size_of(truth, "torque." + patch);
     const auto compare = [&](const std::string& name, double size, double other) {
       const auto u = vector_of(a, name), v = vector_of(b, name);
-      if (u && v && size > 0 && size > vanishing * other)
-        largest = std::max(largest.value_or(0), (*u - *v).norm() / size);
+      if (!u || !v || !(size > 0 && size > vanishing * other)) return;
+      if (const double error = (*u - *v).norm() / size; !largest || error > largest->error) largest = {error, name};
     };
     compare("force." + patch, force, torque / length);
     compare("torque." + patch, torque, force * length);

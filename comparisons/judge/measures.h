@@ -25,13 +25,19 @@ using ProbeStresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 /// stress.<probe>.<xx|yy|zz|xy|yz|xz>.
 std::map<std::string, double> stress_measures(const std::vector<Probe>& probes, const ProbeStresses& stress);
 
+/// How far a reaction is off.
+struct ReactionDifference {
+  double error = -1;  ///< relative [1]
+  std::string of;     ///< "force.z_max"
+};
+
 /// Largest difference of force or torque between two sets of measures on one of the patches, relative to the force or
-/// torque of `truth` [1].  A force or torque that vanishes is left out: below its uncertainty, or below a tenth of the
+/// torque of `truth`.  A force or torque that vanishes is left out: below its uncertainty, or below a tenth of the
 /// other of the two, converted with the body's `length` [m] as lever arm.  Empty if none is left.
-std::optional<double> reaction_difference(const std::map<std::string, double>& a,
-                                          const std::map<std::string, double>& b,
-                                          const std::map<std::string, ReferenceValue>& truth,
-                                          const std::vector<std::string>& patches, double length);
+std::optional<ReactionDifference> reaction_difference(const std::map<std::string, double>& a,
+                                                      const std::map<std::string, double>& b,
+                                                      const std::map<std::string, ReferenceValue>& truth,
+                                                      const std::vector<std::string>& patches, double length);
 
 /// value + off * uncertainty of each measure.
 std::map<std::string, double> values_of(const std::map<std::string, ReferenceValue>& limits, double off = 0);

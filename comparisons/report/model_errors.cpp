@@ -6,13 +6,17 @@
 #include <algorithm>
 #include <tuple>
 
-#include "comparisons/report/headline_words.h"
-#include "comparisons/report/results.h"
+#include "comparisons/report/words.h"
+#include "problem/material.h"
 
 namespace springproof {
-
 namespace {
+
 using namespace words;
+
+// A reference with a larger uncertainty ranks no model.
+constexpr double telling_uncertainty = 0.2;
+
 }  // namespace
 
 std::string range_text(double from, double to) {
@@ -34,31 +38,47 @@ ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
   return out;
 }
 
-namespace {
-
-/// Those by which the closest model is found: without the auxetic ones, where there are others.
 ByNu ranked(const ModelErrors& errors, const ByNu& by_nu) {
   ByNu all = claimed(errors, by_nu), ordinary = all;
   std::erase_if(ordinary, [](const auto& entry) { return entry.first < 0; });
   return ordinary.empty() ? all : ordinary;
 }
 
-std::string auxetic_clause(const ModelErrors& errors) {
-  ByNu auxetic = claimed(errors, errors.rank);
-  if (auxetic.empty() || auxetic.rbegin()->first < 0) return "";
-  std::erase_if(auxetic, [](const auto& entry) { return entry.first >= 0; });
-  if (auxetic.empty()) return "";
-  return fmt::format("; {}: {} %", range_text(auxetic), percent(largest(auxetic).second.error));
+std::string cells_range(const ModelErrors& errors) {
+  if (errors.cells.empty()) return "";
+  const auto text = [](std::size_t n) {
+    return n < 10000 ? fmt::format("{}", n) : fmt::format("{},{:03}", n / 1000, n % 1000);
+  };
+  const std::size_t few = *errors.cells.begin(), many = *errors.cells.rbegin();
+  return few == many ? text(few) : fmt::format("{} to {}", text(few), text(many));
 }
+
+namespace {
+
+/// How widely a model was compared where it is ranked.
+std::pair<std::size_t, std::size_t> breadth(const ModelErrors& errors) {
+  const ByNu rank = ranked(errors, errors.rank);
+  return {rank.empty() ? 0 : errors.cases.size(), rank.size()};
+}
+
+}  // namespace
+
+bool ranks_before(const ModelErrors& a, const ModelErrors& b) {
+  if (breadth(a) != breadth(b)) return breadth(a) > breadth(b);
+  const ByNu of_a = ranked(a, a.rank), of_b = ranked(b, b.rank);
+  return !of_a.empty() && largest(of_a).second.error < largest(of_b).second.error;
+}
+
+namespace {
 
 struct Candidate {
   std::string name;
   bool large_deformation;
   const ModelErrors* errors;
   ByNu rank;  ///< where the model is valid
-  double error() const { return largest(rank).second.error; }
-  double uncertainty() const { return largest(rank).second.uncertainty; }
-  auto breadth() const { return std::tuple(errors->cases.size(), rank.size()); }
+  const Worst& worst() const { return largest(rank).second; }
+  double error() const { return worst().error; }
+  double uncertainty() const { return worst().uncertainty; }
 };
 
 /// Whether the models are judged by cases of large deformation: where there are no linear ones.
@@ -75,77 +95,62 @@ std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models)
     if (Candidate c{key.name, large, &errors, ranked(errors, errors.rank)};
         key.large_deformation == large && !key.beside && !c.rank.empty())
       all.push_back(c);
-  if (all.empty()) return all;
-  const auto widest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
-                        return a.breadth() < b.breadth();
-                      })->breadth();
-  std::erase_if(all, [&](const Candidate& c) { return c.breadth() < widest; });
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.error() < b.error(); });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return ranks_before(*a.errors, *b.errors); });
+  if (!all.empty())
+    std::erase_if(all,
+                  [widest = breadth(*all.front().errors)](const Candidate& c) { return breadth(*c.errors) < widest; });
   return all;
 }
 
+/// "for ν from 0 to 0.4, in 2 linear cases of 800 to 1000 cells; ν = −0.5, left out here: 30 %".
 std::string where_text(const Candidate& c) {
   const auto cases = c.errors->cases.size();
-  return fmt::format("{}, in {} {}case{}{}", range_text(c.rank), cases, c.large_deformation ? "" : "linear ",
-                     cases == 1 ? "" : "s", c.large_deformation ? " of large deformation" : "");
+  const std::string cells = cells_range(*c.errors);
+  ByNu auxetic = claimed(*c.errors, c.errors->rank);
+  std::erase_if(auxetic, [&](const auto& entry) { return c.rank.contains(entry.first); });
+  std::string out = fmt::format(
+      "{}, in {} {}case{}{}{}", range_text(c.rank), cases, c.large_deformation ? "" : "linear ", cases == 1 ? "" : "s",
+      c.large_deformation ? " of large deformation" : "", cells.empty() ? "" : fmt::format(" of {} cells", cells));
+  if (!auxetic.empty())
+    out += fmt::format("; left out here: {} % {}", percent(largest(auxetic).second.error), range_text(auxetic));
+  return out;
 }
 
-/// Of displacements, or where none was compared of reactions, coarse cells included, in per cent.
-std::string whole_error(const ModelErrors& e) {
-  return percent(largest(ranked(e, e.displacement.empty() ? e.reaction : e.displacement)).second.error);
+const char* compared_words(const ModelErrors& e) {
+  return e.displacement.empty() ? "reactions of moved supports"
+         : e.reaction.empty()   ? "displacements"
+                                : "displacements and the reactions of moved supports";
 }
 
-constexpr const char* reactions = "reactions of moved supports";
+/// "within 6.5 % of finite elements (uncertain by 0.2 %)": never an error without the uncertainty of its reference.
+std::string within_text(const Candidate& c) {
+  const bool doubtful = c.uncertainty() > 0.5 * c.error();
+  return fmt::format(
+      "within {} % of finite elements{}", percent(c.error()),
+      doubtful ? fmt::format(", as far as these can tell: they are uncertain by {} %,", percent(c.uncertainty()))
+               : fmt::format(" (uncertain by {} %)", percent(c.uncertainty())));
+}
 
-/// The one error that ranks the best model, in words; of its springs alone never without the whole.
-std::string closest_text(const Candidate& best) {
-  const ModelErrors& e = *best.errors;
-  const bool doubtful = best.uncertainty() > 0.5 * best.error();  // not of the springs' own part on the same cubes
-  const std::string within = percent(best.error()),
-                    where =
-                        where_text(best) + auxetic_clause(e) +
-                        (doubtful && !(e.parts && !e.wholes)
-                             ? fmt::format("; the reference itself is uncertain by {} %.", percent(best.uncertainty()))
-                             : "."),
-                    whole = e.parts ? whole_error(e) : "";
-  if (e.parts && !e.wholes)
-    return fmt::format(
-        "Of the spring models {} comes closest: its springs stay within {} % of finite elements on the same cubes, its "
-        "{}, coarse cells included, within {} % of the reference, {}",
-        best.name, within, e.displacement.empty() ? reactions : "displacements", whole, where);
-  return fmt::format("Of the spring models {} comes closest: its {} stay within {} % of finite elements{} {}",
-                     best.name,
-                     e.displacement.empty() ? reactions
-                     : e.reaction.empty()   ? "displacements"
-                                            : "displacements and the reactions of moved supports",
-                     within,
-                     e.parts ? fmt::format(", counting on bodies that are no blocks its springs alone ({} % with the "
-                                           "coarse cells),",
-                                           whole)
-                             : "",
-                     where);
+std::string closest_text(const Candidate& best, bool alone) {
+  return fmt::format("{}: its {} are {} {}.",
+                     alone ? best.name : fmt::format("Of the spring models {} comes closest", best.name),
+                     compared_words(*best.errors), within_text(best), where_text(best));
 }
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
   std::vector<std::string> names;
-  for (const Candidate& c : tied)
-    names.push_back(
-        fmt::format("{} ({} %{})", c.name, percent(c.error()),
-                    !c.errors->parts ? "" : fmt::format(", {} % with coarse cells", whole_error(*c.errors))));
+  for (const Candidate& c : tied) names.push_back(fmt::format("{} ({} %)", c.name, percent(c.error())));
   const ModelErrors& e = *tied.front().errors;
   return fmt::format(
-      "Of the spring models {} come closest and cannot be told apart: their largest errors{}{} differ by no more than "
+      "Of the spring models {} come closest and cannot be told apart: their largest errors{} differ by no more than "
       "the {} % that the reference is uncertain by, {}.",
       listed(names),
       e.reaction.empty()       ? ""
       : e.displacement.empty() ? " of reactions of moved supports"
                                : " of displacement and reactions",
-      e.parts ? ", on bodies that are no blocks those of their springs alone," : "", percent(uncertainty),
-      where_text(tied.front()));
+      percent(uncertainty), where_text(tied.front()));
 }
-
-// A reference with a larger uncertainty ranks no model.
-constexpr double telling_uncertainty = 0.2;
 
 /// Of one model alone: how close it comes.
 std::string untold_text(const Candidate& best, bool alone, double uncertainty) {
@@ -166,7 +171,7 @@ std::string no_claim_text(const std::map<ModelKey, ModelErrors>& models) {
   std::vector<std::string> names;
   for (const auto& [key, errors] : models)
     if (!key.large_deformation && !key.beside && errors.own_nu && !errors.rank.empty())
-      names.push_back(fmt::format("{} (a solid of ν = {} alone)", key.name, nu_text(errors.own_nu)));
+      names.push_back(fmt::format("{} (a solid of ν = {} alone)", key.name, nu_text(*errors.own_nu)));
   if (names.empty()) return "";
   return fmt::format("No spring model was compared at a Poisson's ratio that it claims: {}.", listed(names));
 }
@@ -192,12 +197,15 @@ std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::
     closest.push_back(c.name);
     uncertainty = std::max(uncertainty, doubt);
   }
-  const bool on_same_cubes = best.errors->parts && !best.errors->wholes;
-  if (uncertainty > telling_uncertainty && !(tied.size() == 1 && on_same_cubes)) {
+  const auto spring_models = std::count_if(models.begin(), models.end(), [&](const auto& m) {
+    return !m.first.beside && m.first.large_deformation == best.large_deformation &&
+           !ranked(m.second, m.second.rank).empty();
+  });
+  if (uncertainty > telling_uncertainty) {
     closest.clear();
     return untold_text(best, all.size() == 1, uncertainty);
   }
-  return tied.size() == 1 ? closest_text(best) : tied_text(tied, uncertainty);
+  return tied.size() == 1 ? closest_text(best, spring_models == 1) : tied_text(tied, uncertainty);
 }
 
 std::string closest_in_time(const std::map<std::string, ByNu>& models, std::vector<std::string>& closest) {
@@ -211,20 +219,26 @@ std::string closest_in_time(const std::map<std::string, ByNu>& models, std::vect
                    [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
   const Worst& least = all.front().second;
   std::vector<std::string> names;
-  const bool alone = closest.empty();
+  const bool unnamed = closest.empty();
   double uncertainty = least.uncertainty;
   for (const auto& [model, worst] : all) {
     const double doubt = std::max(worst.uncertainty, least.uncertainty);
     if (worst.error - least.error > doubt) continue;
     names.push_back(fmt::format("{} ({} %)", without_motion(model), percent(worst.error)));
-    if (alone) closest.push_back(model);
+    if (unnamed) closest.push_back(model);
     uncertainty = std::max(uncertainty, doubt);
   }
+  const std::string where = range_text(models.at(all.front().first));
+  if (all.size() == 1)
+    return fmt::format(
+        "In time {} is within {} % of finite elements {}, by the probes' difference over the whole motion; these are "
+        "uncertain by {} %.",
+        without_motion(all.front().first), percent(least.error), where, percent(uncertainty));
   return fmt::format("In time {}{}, by the probes' difference over the whole motion {}; these are uncertain by {} %.",
                      listed(names),
                      names.size() == 1 ? " comes closest to finite elements"
                                        : " come closest to finite elements and cannot be told apart",
-                     range_text(models.at(all.front().first)), percent(uncertainty));
+                     where, percent(uncertainty));
 }
 
 }  // namespace springproof

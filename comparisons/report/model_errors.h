@@ -11,14 +11,13 @@ namespace springproof {
 
 /// The largest error at one Poisson's ratio, over the cases.
 struct Worst {
-  double error = -1;
-  double uncertainty = 0;
+  double error = -1;       ///< against the true body, coarse cells and their shape included [1]
+  double uncertainty = 0;  ///< of the reference [1]
   std::string case_name;
-  std::string of = "displacement";  ///< "force on z_max"
+  std::string of = "displacement";  ///< "displacement", or a reaction, "force on z_max"
 
-  void take(double other, double its_uncertainty, const std::string& its_case,
-            const std::string& its_of = "displacement") {
-    if (other > error) *this = {other, its_uncertainty, its_case, its_of};
+  void take(const Worst& other) {
+    if (other.error > error) *this = other;
   }
 };
 
@@ -27,20 +26,21 @@ using ByNu = std::map<double, Worst>;
 /// Errors of one model.
 struct ModelErrors {
   ByNu displacement, volume, reaction;
-  ByNu springs;                         ///< displacement: the springs' own part of it, on bodies of voxels
   ByNu promised;                        ///< displacement: what cut cells estimate of themselves
-  ByNu rank;                            ///< errors by which the closest model is found
+  ByNu rank;                            ///< the larger of displacement and reaction: the one number of the model
   std::set<std::string> cases;          ///< in which a displacement or a reaction was compared
+  std::set<std::size_t> cells;          ///< numbers of cells of its finest lattices in them
+  std::vector<double> seconds;          ///< CPU time of its solutions on these
   std::optional<double> own_nu;         ///< the only Poisson's ratio that the model is valid for, if any
   bool blocks = false, voxels = false;  ///< bodies of which they are
   bool asked = false;                   ///< for displacements
-  bool parts = false, wholes = false;   ///< ranked by the springs' own part somewhere, by the whole error somewhere
 };
 
 /// Models in the order in which they are listed.
 struct ModelKey {
-  bool large_deformation, beside;  ///< beside: elements or another program, not springs
-  std::size_t order;               ///< of first appearance
+  bool large_deformation;
+  bool beside;        ///< no spring model: elements, a limit of two lattices, another program shown for comparison
+  std::size_t order;  ///< of first appearance
   std::string name;
   auto operator<=>(const ModelKey&) const = default;
 };
@@ -55,8 +55,17 @@ const std::pair<const double, Worst>& largest(const ByNu& errors);
 /// The errors at the Poisson's ratios that the model is valid for.
 ByNu claimed(const ModelErrors& errors, const ByNu& by_nu);
 
-/// The answer: which spring models come closest to finite elements; these are added to `closest`.  Empty: none was
-/// compared.
+/// Those of them by which models are ranked: without the auxetic ones, where there are others.
+ByNu ranked(const ModelErrors& errors, const ByNu& by_nu);
+
+/// "800", "500 to 1,000": numbers of cells; empty: unknown.
+std::string cells_range(const ModelErrors& errors);
+
+/// Models as they are ranked: those compared most widely first, then by their largest error.
+bool ranks_before(const ModelErrors& a, const ModelErrors& b);
+
+/// The answer: which spring models come closest to finite elements, or how close the only one comes; the closest are
+/// added to `closest`.  Empty: none was compared.
 std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::vector<std::string>& closest);
 
 /// Which of the models that were compared most widely comes closest to finite elements in time, by the probes'

@@ -10,9 +10,8 @@
 #include <set>
 
 #include "comparisons/report/assets.h"
-#include "comparisons/report/headline.h"
 #include "comparisons/report/page.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/encoding.h"
 #include "problem/system/files.h"
@@ -45,8 +44,9 @@ void shorten(Json& json) {
 Json table_of(const Json& rows) {
   static const std::vector<std::string> columns = {
       "kinematics", "model",     "poisson_ratio",         "cells", "measure", "value",
-      "unit",       "reference", "reference_uncertainty", "error", "samples", "spread"};
-  static const std::set<std::string> named = {"kinematics", "model", "cells", "measure", "unit"};
+      "unit",       "reference", "reference_uncertainty", "error", "samples", "spread",
+      "of"};
+  static const std::set<std::string> named = {"kinematics", "model", "cells", "measure", "unit", "of"};
   Json values = Json::array(), words = Json::array();
   std::map<std::string, std::size_t> numbers;
   for (const Json& row : rows) {
@@ -100,8 +100,7 @@ std::string model_list_html(const Headline& head, bool large_deformation) {
   for (const ModelVerdict& verdict : head.models)
     if (verdict.large_deformation == large_deformation)
       items += fmt::format("<li data-model=\"{0}\"><b>{0}</b>{1} {2}</li>\n", xml_escaped(verdict.model),
-                           verdict.finite_elements ? " (finite elements, for comparison)" : "",
-                           xml_escaped(verdict.sentence));
+                           verdict.beside ? " (for comparison)" : "", xml_escaped(verdict.sentence));
   return items.empty() ? "" : "<ul class=\"verdicts\">\n" + items + "</ul>\n";
 }
 
@@ -132,7 +131,9 @@ std::string case_link_html(const Warning& warning) {
 std::string answer_html(const Headline& head) {
   const std::string doubt = head.doubt ? case_link_html(*head.doubt) : "";
   if (head.answer.empty() && doubt.empty()) return "";
-  return fmt::format("<p class=\"answer\">{} {}</p>\n", xml_escaped(unbroken(head.answer)), doubt);
+  const std::string beyond =
+      head.no_linear_theory.empty() ? "" : fmt::format("<b>{}</b>", xml_escaped(unbroken(head.no_linear_theory)));
+  return fmt::format("<p class=\"answer\">{} {} {}</p>\n", xml_escaped(unbroken(head.answer)), beyond, doubt);
 }
 
 /// Notes and warnings, in this order.
@@ -169,7 +170,8 @@ std::string counts_html(const Headline& head) {
 std::string failures_html(const Headline& head) {
   return folded_html("failures", fmt::format("Expectations that fail: {}", head.failed), head.failed_checks) +
          folded_html("failures", fmt::format("Not compared: {}", head.failures.size()), head.failures) +
-         folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()), head.failed_runs);
+         folded_html("failures", fmt::format("Runs without a result: {}", head.failed_runs.size()), head.failed_runs) +
+         folded_html("words", "Measured, without a reference", head.measured);
 }
 
 /// The first screen: the answer, two bodies, facts and warnings, the plot of dots (filled in by first.js), then
@@ -184,10 +186,9 @@ std::string headline_html(const Headline& head) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& file, const Json& results, const Json& pictures) {
+void write_report(const std::filesystem::path& file, const Headline& head, const Json& results, const Json& pictures) {
   using namespace report_assets;
   const bool live = std::filesystem::exists(file.parent_path() / "live.html");
-  const Headline head = headline(results);
   write_file(file, filled(template_html, {{"style_css", std::string(style_css)},
                                           {"headline", headline_html(head)},
                                           {"live_link", live ? "<a href=\"live.html\">Pull the bodies</a>" : ""},

@@ -4,12 +4,15 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "comparisons/report/headline.h"
+
 namespace springproof {
 
-/// Writes the page.  `results` is the document written to results.json, `pictures` an array with what
-/// pictures_to_json made of each case.  The page carries Chart.js, three.js and OrbitControls inline, once, and links a
-/// live.html beside it.
+/// Writes the page.  `head` is the verdict on the results, `results` the document written to results.json, `pictures`
+/// an array with what pictures_to_json made of each case.  The page carries Chart.js, three.js and OrbitControls
+/// inline, once, and links a live.html beside it.
 /// @throws std::runtime_error if the file cannot be written (nothing half-written is left).
-void write_report(const std::filesystem::path& file, const nlohmann::json& results, const nlohmann::json& pictures);
+void write_report(const std::filesystem::path& file, const Headline& head, const nlohmann::json& results,
+                  const nlohmann::json& pictures);
 
 }  // namespace springproof

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "comparisons/report/headline_words.h"
+#include "comparisons/report/words.h"
 
 namespace springproof {
 namespace {
@@ -24,16 +24,13 @@ std::string change_words(double strain) {
   return fmt::format("{} by {} %", strain < 0 ? "shortened" : "lengthened", percent(std::abs(strain)));
 }
 
-std::string what_happens(const Json& stability) {
-  const std::string lost = string_of(stability, "lost");
-  if (lost == "inverted cell") return "a cell is turned inside out";
-  if (lost == "no convergence")
+std::string what_happens(const Stability& stability) {
+  if (stability.lost == "inverted cell") return "a cell is turned inside out";
+  if (stability.lost == "no convergence")
     return "Newton's method does not converge beyond it, which proves no loss of equilibrium";
   std::vector<std::string> axes;
-  const Json& alternation = list_of(stability, "alternation");
-  for (std::size_t axis = 0; axis < alternation.size() && axis < 3; ++axis)
-    if (alternation[axis].is_number() && alternation[axis].get<double>() > short_wave)
-      axes.push_back(std::string(1, "xyz"[axis]));
+  for (std::size_t axis = 0; axis < stability.alternation.size() && axis < 3; ++axis)
+    if (stability.alternation[axis] > short_wave) axes.push_back(std::string(1, "xyz"[axis]));
   if (!axes.empty())
     return fmt::format(
         "the lattice wrinkles, neighbours move against each other along {}: the springs' failure, not the material's",
@@ -43,36 +40,32 @@ std::string what_happens(const Json& stability) {
 
 bool moves(const std::string& model) { return model.ends_with(" in motion"); }
 
+bool is_lost(const Run& run) { return run.stability && !run.stability->lost.empty(); }
+bool is_wrinkled(const Run& run) { return run.stability && run.stability->wrinkles > wrinkled; }
+
 /// Models of the case at rest that have a result at this Poisson's ratio and on these cells.
-std::vector<std::string> holding(const Json& result, const Json& of) {
+std::vector<std::string> holding(const CaseResult& result, const Run& of) {
   std::vector<std::string> names;
-  for (const Json& run : list_of(result, "runs"))
-    if (string_of(run, "kind") == "msm" && run.value("ok", false) && !moves(string_of(run, "model")) &&
-        run.at("poisson_ratio") == of.at("poisson_ratio") && run.at("cells") == of.at("cells") &&
-        number_of(object_of(run, "stability"), "wrinkles").value_or(0) <= wrinkled &&
-        std::find(names.begin(), names.end(), string_of(run, "model")) == names.end())
-      names.push_back(string_of(run, "model"));
+  for (const Run& run : result.runs)
+    if (run.kind == "msm" && run.ok && !moves(run.model) && run.poisson_ratio == of.poisson_ratio &&
+        run.cells == of.cells && !is_wrinkled(run) && std::find(names.begin(), names.end(), run.model) == names.end())
+      names.push_back(run.model);
   return names;
 }
 
-std::string advice(const Json& result, const Json& run) {
+std::string advice(const CaseResult& result, const Run& run) {
   const std::vector<std::string> names = holding(result, run);
   if (names.empty()) {
-    const Json& runs = list_of(result, "runs");
-    const bool tried = std::any_of(runs.begin(), runs.end(),
-                                   [](const Json& r) { return string_of(r, "model").starts_with("hybmss_avg"); });
+    const bool tried = std::any_of(result.runs.begin(), result.runs.end(),
+                                   [](const Run& r) { return r.model.starts_with("hybmss_avg"); });
     return std::string("no model of the case holds: apply less") + (tried ? "" : ", or take hybmss_avg");
   }
   return fmt::format("{} {} the whole load there", listed(names), names.size() == 1 ? "bears" : "bear");
 }
 
-bool is_lost(const Json& run) { return !string_of(object_of(run, "stability"), "lost").empty(); }
-
-std::string loss_words(const Json& run) {
-  const Json& stability = object_of(run, "stability");
-  return fmt::format("ν = {} at {} % of the load, {} % of strain", nu_text(number_of(run, "poisson_ratio")),
-                     percent(number_of(stability, "load_reached").value_or(0)),
-                     percent(number_of(stability, "strain").value_or(0)));
+std::string loss_words(const Run& run) {
+  return fmt::format("ν = {} at {} % of the load, {} % of strain", nu_text(run.poisson_ratio),
+                     percent(run.stability->load_reached), percent(run.stability->strain));
 }
 
 }  // namespace
@@ -93,21 +86,17 @@ std::string limit_sentence(const std::string& case_name, const LatticeLimit& lim
       limit.instead.empty() ? "apply less" : limit.instead + " is stable there");
 }
 
-std::string stability_answer(const Json& cases) {
+std::string stability_answer(const std::vector<CaseResult>& cases) {
   std::map<std::string, double> least;
-  for (const Json& result : cases) {
-    const Json& runs = list_of(result, "runs");
-    if (std::none_of(runs.begin(), runs.end(), is_lost)) continue;
+  for (const CaseResult& result : cases) {
+    if (std::none_of(result.runs.begin(), result.runs.end(), is_lost)) continue;
     double finest = 0;
-    for (const Json& run : runs) finest = std::max(finest, cell_count(cells_of(run)));
-    for (const Json& run : runs) {
-      const std::string model = string_of(run, "model");
-      const bool ok = run.value("ok", false);
-      if (string_of(run, "kind") != "msm" || moves(model) || cell_count(cells_of(run)) < finest ||
-          !(ok || is_lost(run)))
+    for (const Run& run : result.runs) finest = std::max(finest, cell_count(run.cells));
+    for (const Run& run : result.runs) {
+      if (run.kind != "msm" || moves(run.model) || cell_count(run.cells) < finest || !(run.ok || is_lost(run)))
         continue;
-      const double share = ok ? 1 : number_of(object_of(run, "stability"), "load_reached").value_or(0);
-      const auto known = least.try_emplace(model, share).first;
+      const double share = run.ok ? 1 : run.stability->load_reached;
+      const auto known = least.try_emplace(run.model, share).first;
       known->second = std::min(known->second, share);
     }
   }
@@ -122,35 +111,31 @@ std::string stability_answer(const Json& cases) {
                      fmt::join(parts, ", "));
 }
 
-std::vector<Warning> stability_warnings(const Json& result, std::size_t case_number) {
-  const std::string name = string_of(object_of(result, "experiment"), "name");
+std::vector<Warning> stability_warnings(const CaseResult& result, std::size_t case_number) {
+  const std::string& name = result.experiment.name;
   // One warning per model and kind of loss, of the worst resolution and Poisson's ratio first.
   struct Group {
     std::vector<std::string> where;
-    const Json* first = nullptr;
+    const Run* first = nullptr;
   };
   std::map<std::pair<std::string, std::string>, Group> lost, waves;
   std::vector<Warning> warnings;
-  for (const Json& run : list_of(result, "runs")) {
-    const Json& stability = object_of(run, "stability");
-    const bool wrinkles = number_of(stability, "wrinkles").value_or(0) > wrinkled;
-    if (!is_lost(run) && !(wrinkles && run.value("ok", false))) continue;
-    Group& group =
-        is_lost(run) ? lost[{string_of(run, "model"), what_happens(stability)}] : waves[{string_of(run, "model"), ""}];
+  for (const Run& run : result.runs) {
+    if (!is_lost(run) && !(is_wrinkled(run) && run.ok)) continue;
+    Group& group = is_lost(run) ? lost[{run.model, what_happens(*run.stability)}] : waves[{run.model, ""}];
     if (!group.first) group.first = &run;
     group.where.push_back(is_lost(run) ? loss_words(run)
                                        : fmt::format("ν = {} ({} % of the strain alternates)",
-                                                     nu_text(number_of(run, "poisson_ratio")),
-                                                     percent(*number_of(stability, "wrinkles"))));
+                                                     nu_text(run.poisson_ratio), percent(run.stability->wrinkles)));
   }
   for (const auto& [key, group] : lost)
-    warnings.push_back({case_number,
-                        fmt::format("{}: {} {}, {}: {}", name, key.first,
-                                    string_of(object_of(*group.first, "stability"), "lost") == "no convergence"
-                                        ? "was not followed to the whole load"
-                                        : "loses its equilibrium",
-                                    fmt::join(group.where, "; "), key.second),
-                        advice(result, *group.first)});
+    warnings.push_back(
+        {case_number,
+         fmt::format("{}: {} {}, {}: {}", name, key.first,
+                     group.first->stability->lost == "no convergence" ? "was not followed to the whole load"
+                                                                      : "loses its equilibrium",
+                     fmt::join(group.where, "; "), key.second),
+         advice(result, *group.first)});
   for (const auto& [key, group] : waves) {
     const bool motion = moves(key.first);
     warnings.push_back(

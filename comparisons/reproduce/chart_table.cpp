@@ -3,8 +3,8 @@
 #include <cctype>
 #include <set>
 
-#include "comparisons/report/results.h"
 #include "comparisons/reproduce/chart.h"
+#include "comparisons/results/records.h"
 
 namespace springproof {
 namespace {

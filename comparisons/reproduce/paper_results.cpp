@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/judge/differences.h"
-#include "comparisons/report/crack_picture.h"
 #include "comparisons/reproduce/read_pictures.h"
+#include "comparisons/results/crack_picture.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"

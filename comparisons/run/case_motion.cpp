@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "comparisons/report/picture.h"
+#include "comparisons/results/picture.h"
 #include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 

@@ -9,7 +9,7 @@
 #include "comparisons/judge/deformation.h"
 #include "comparisons/judge/line_measure.h"
 #include "comparisons/judge/measures.h"
-#include "comparisons/report/picture.h"
+#include "comparisons/results/picture.h"
 #include "comparisons/run/case_checks.h"
 #include "comparisons/run/case_motion.h"
 #include "comparisons/run/cut_extrapolation.h"
@@ -195,12 +195,17 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
   doubt.col(0) += reference->field.nodal_uncertainty;
   const auto of_sample = [&](const NodalVectors& field, const std::map<std::string, double>& values) {
     std::map<std::string, double> out = distances(run, lattice, field);
-    if (const auto error = reaction_error(run.prepared, values, reference->scalars)) out["reaction_error"] = *error;
+    const auto reaction = reaction_error(run.prepared, values, reference->scalars);
+    if (reaction) out["reaction_error"] = reaction->error;
     return out;
   };
   std::vector<std::map<std::string, double>> of_samples;
   for (std::size_t s = 0; s < u.size(); ++s) of_samples.push_back(of_sample(u[s], scalars[s]));
+  const std::size_t first = run.part.rows.size();
   add_distances(run, blank, of_samples, of_sample(doubt, values_of(reference->scalars, 1)));
+  for (std::size_t r = first; r < run.part.rows.size(); ++r)
+    if (run.part.rows[r].measure == "reaction_error")
+      run.part.rows[r].of = reaction_error(run.prepared, scalars.front(), reference->scalars)->of;
 }
 
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {

@@ -1,7 +1,7 @@
 // Runs one case: every model and the reference, at one Poisson's ratio, measured by the same code.
 #pragma once
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 #include "comparisons/run/vtu_output.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "comparisons/report/crack_picture.h"
+#include "comparisons/results/crack_picture.h"
 #include "comparisons/run/model_run.h"
 #include "meshes/field.h"
 #include "msm/embedding/boundary.h"

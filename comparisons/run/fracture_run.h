@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 
 namespace springproof {

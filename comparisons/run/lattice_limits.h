@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 
 namespace springproof {

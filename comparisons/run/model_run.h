@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/motion_run.h"
 #include "comparisons/run/prepared_case.h"
 #include "msm/statics/equilibrium.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "comparisons/judge/reference_value.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 
 namespace springproof {

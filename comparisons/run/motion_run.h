@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"

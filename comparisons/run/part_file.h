@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/checked_file.h"
 
 namespace springproof {

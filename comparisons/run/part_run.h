@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "comparisons/judge/reference_value.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/motion_reference.h"
 #include "comparisons/run/prepared_case.h"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "comparisons/judge/measures.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/case_checks.h"
 #include "comparisons/run/external.h"
 #include "comparisons/run/fracture_run.h"

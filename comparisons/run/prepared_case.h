@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "comparisons/judge/patch_mean.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "meshes/mesh.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/models.h"

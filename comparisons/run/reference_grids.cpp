@@ -237,8 +237,9 @@ bool comparable(const PreparedCase& prepared, const std::string& measure) {
   return !prepared.sharing.contains(measure.substr(from, measure.rfind('.') - from));
 }
 
-std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
-                                     const std::map<std::string, ReferenceValue>& truth) {
+std::optional<ReactionDifference> reaction_error(const PreparedCase& prepared,
+                                                 const std::map<std::string, double>& values,
+                                                 const std::map<std::string, ReferenceValue>& truth) {
   return reaction_difference(values, values_of(truth), truth, comparable_moved_patches(prepared),
                              prepared.size.maxCoeff());
 }

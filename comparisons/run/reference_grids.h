@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/vtu_output.h"
 #include "fem_reference/reference.h"
@@ -62,8 +63,9 @@ std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared);
 
 /// Largest relative error of the force or torque on a moved support; nothing where none is moved, or none can be
 /// compared.
-std::optional<double> reaction_error(const PreparedCase& prepared, const std::map<std::string, double>& values,
-                                     const std::map<std::string, ReferenceValue>& truth);
+std::optional<ReactionDifference> reaction_error(const PreparedCase& prepared,
+                                                 const std::map<std::string, double>& values,
+                                                 const std::map<std::string, ReferenceValue>& truth);
 
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);

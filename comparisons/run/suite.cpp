@@ -300,7 +300,10 @@ int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
     for (const Task& task : tasks)
       if (task.prepared == &p) append(task.part, results.back());
   }
-  return write_results(std::move(results), plan.libraries, {options.out, options.vtu, options.live_page}) ? 0 : 1;
+  return write_results(std::move(results), plan.libraries,
+                       {options.out, options.vtu, options.live_page, options.verbose})
+             ? 0
+             : 1;
 }
 
 }  // namespace

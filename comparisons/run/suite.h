@@ -16,6 +16,7 @@ struct SuiteOptions {
   bool vtu = false;                    ///< write a VTU per run
   bool vtu_single = false;             ///< in single precision
   bool quiet = false;                  ///< show no progress
+  bool verbose = false;                ///< also print a sentence on every model
   std::filesystem::path live_page;     ///< copied beside the report, which links it; empty: none
   std::vector<double> poisson_ratios;  ///< only these of each case; empty: all
   int finer = 1;                       ///< reference grids with so many times the cells along each direction

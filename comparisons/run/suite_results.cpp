@@ -13,9 +13,9 @@
 
 #include "comparisons/judge/calibration.h"
 #include "comparisons/judge/judge.h"
-#include "comparisons/report/crack_picture.h"
 #include "comparisons/report/headline.h"
 #include "comparisons/report/report.h"
+#include "comparisons/results/crack_picture.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/vtu_output.h"
 #include "problem/system/file_name.h"
@@ -89,7 +89,10 @@ CaseResult case_of(const PreparedCase& p) {
   CaseResult result;
   result.experiment = p.experiment;
   result.size = p.size;
-  for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
+  for (const Lattice& lattice : p.lattices) {
+    result.cells.push_back(lattice.cells);
+    result.filled.push_back(lattice.cut ? lattice.cut->cells.size() : lattice.mesh->hexahedra.size());
+  }
   result.notes = p.notes;
   for (std::size_t m = 0; m < p.models.size(); ++m) {
     const std::string& label = p.experiment.models[m].label;
@@ -128,9 +131,10 @@ bool write_results(std::vector<CaseResult> results, const std::string& libraries
   write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   write_file(out / "results.csv", to_csv(results));
   write_crack_pictures(results, out);
-  write_report(out / "report.html", doc, pictures);
-  const Headline h = headline(doc);
-  fmt::print("{}{}report: {}\n", terminal_text(h), calibration_table(known), (out / "report.html").string());
+  const Headline h = headline(results);
+  write_report(out / "report.html", h, doc, pictures);
+  fmt::print("{}{}report: {}\n", terminal_text(h, choice.verbose), calibration_table(known),
+             (out / "report.html").string());
   return success(h);
 }
 

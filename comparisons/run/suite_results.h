@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 
 namespace springproof {
@@ -23,6 +23,7 @@ struct ResultsChoice {
   std::filesystem::path out;
   bool vtu = false;                 ///< series of the VTU files in out/vtu are written
   std::filesystem::path live_page;  ///< copied beside the report, which links it; empty: none
+  bool verbose = false;             ///< a sentence on every model is printed
 };
 
 /// Judges the cases, whose parts are appended, and writes and prints the results.

@@ -73,7 +73,7 @@ double voxel_seconds(const PreparedCase& prepared) {
     if (mesh->hexahedra.size() > most_cubes) continue;
     for (const std::string& element : elements_of(e, 'q'))
       if (small_enough(e, *mesh, degree_of(element))) total += with_matrices * unknowns(*mesh, degree_of(element));
-    if (!e.cost && mesh->hexahedra.size() <= most_refined_cubes) total += with_matrices * 9 * unknowns(*mesh, 2);
+    if (e.parts && mesh->hexahedra.size() <= most_refined_cubes) total += with_matrices * 9 * unknowns(*mesh, 2);
   }
   return total;
 }
@@ -125,7 +125,7 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
       for (const std::string& element : e.elements)
         if (const double n = unknowns(e.body, i, degree_of(element)); allowed(n))
           total += voxels ? with_matrices * n : seconds_of(element, n);
-      if (voxels && !e.cost && nodal <= 3 * nodes_per_cube * most_refined_cubes)
+      if (voxels && e.parts && nodal <= 3 * nodes_per_cube * most_refined_cubes)
         total += with_matrices * 9 * unknowns(e.body, i, 2);
     }
     if (allowed(nodal))

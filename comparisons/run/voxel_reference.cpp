@@ -52,8 +52,8 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   return solutions;
 }
 
-/// Solves on the cubes of one lattice: with these elements, and for the error split with q2, and q2 on cubes cut into
-/// eight, if they are not too many.
+/// Solves on the cubes of one lattice: with these elements, and for the parts of the errors with q2, and q2 on cubes
+/// cut into eight, if they are not too many.
 std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Lattice& lattice,
                                        const IsotropicMaterial& material, const std::vector<std::string>& elements) {
   const Experiment& e = prepared.experiment;
@@ -65,7 +65,7 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Latti
   request.points = mesh->nodes;
   request.meshes = {mesh};
   for (const std::string& element : elements) request.grids.push_back({cells, element, 1.0, 0, 0});
-  if (!e.cost && mesh->hexahedra.size() <= most_refined_cubes) {
+  if (e.parts && mesh->hexahedra.size() <= most_refined_cubes) {
     request.grids.push_back({cells, "q2", 1.0, 0, 0});
     request.grids.push_back({{2 * cells[0], 2 * cells[1], 2 * cells[2]}, "q2", 1.0, 0, 1});
   }
@@ -91,7 +91,8 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
   const std::vector<std::string> patches = comparable_moved_patches(prepared);
   const double length = prepared.size.maxCoeff();
   const auto distance = [&](const auto& a, const auto& b) {
-    return reaction_difference(a, b, body.scalars, patches, length).value_or(0);
+    const auto difference = reaction_difference(a, b, body.scalars, patches, length);
+    return difference ? difference->error : 0;
   };
   if (samples.empty() || !reaction_difference(samples.front(), truth, body.scalars, patches, length)) return {};
   split.measure = "reaction_error";
@@ -102,7 +103,7 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
   }
   split.discretisation_error = distance(voxels.peer_values, limit);
   split.geometry_error = distance(limit, truth);
-  split.body_uncertainty = distance(values_of(body.scalars, 1), truth);
+  split.uncertainty = distance(values_of(body.scalars, 1), truth);
   split.voxel_uncertainty = distance(values_of(voxels.limits, 1), limit);
   return split;
 }
@@ -133,6 +134,7 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
     if (lattice.tetrahedra) fitted.push_back(lattice.tetrahedra);
     std::vector<std::string> on_cubes = elements_of(e, 'q');
     std::erase_if(on_cubes, [&](const std::string& element) { return too_fine(*lattice.mesh, element); });
+    if (e.parts && std::find(on_cubes.begin(), on_cubes.end(), "q1") == on_cubes.end()) on_cubes.push_back("q1");
     const std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material, on_cubes);
     const auto refined = cubes.begin() + static_cast<std::ptrdiff_t>(std::min(on_cubes.size(), cubes.size()));
     out.peers.emplace_back(cubes.begin(), refined);
@@ -187,7 +189,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
   const double samples = static_cast<double>(u.size());
   ErrorSplit blank;
   static_cast<RunKey&>(blank) = key;
-  blank.voxel_edge = lattice.voxel_edge;
+  blank.voxel_edge_m = lattice.voxel_edge;
   std::vector<ErrorSplit> splits;
 
   const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
@@ -205,7 +207,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
   field.discretisation_error = distance(voxels.peer, voxels.limit);
   field.geometry_error = distance(voxels.limit, body.field.displacement);
   field.voxel_uncertainty = std::sqrt(weights.dot(voxels.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size;
-  field.body_uncertainty = body.field.uncertainty;
+  field.uncertainty = body.field.uncertainty;
   splits.push_back(field);
 
   if (const auto s = split_of_reactions(prepared, voxels, body, values, blank)) splits.push_back(*s);
@@ -224,7 +226,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
     s.discretisation_error = voxels.peer_values.at(measure) - limit.value;
     s.geometry_error = limit.value - truth.value;
     s.voxel_uncertainty = limit.uncertainty;
-    s.body_uncertainty = truth.uncertainty;
+    s.uncertainty = truth.uncertainty;
     splits.push_back(s);
   }
   return splits;

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "meshes/voxels/cut_cells.h"
 #include "meshes/vtu.h"
 

@@ -135,7 +135,9 @@ struct Experiment {
   double max_unknowns = 0;  ///< models and elements with more than about this many unknowns are not run; 0: no limit
   bool cost = false;        ///< run times are compared: short runs are repeated, all stop at the same residual
                             ///< (problem/system/run_cost.h)
-  std::string exact;        ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
+  bool parts = false;  ///< of a body of voxels: by what each error is made, which takes finite elements on its cubes
+                       ///< and on these cut into eight, the largest runs of the case
+  std::string exact;   ///< name of the exact field that is the solution (problem/exact_field.h); empty: none
   std::vector<std::string> measures;
   std::vector<Probe> probes;
   std::optional<Section> section;

@@ -12,7 +12,8 @@
 namespace springproof {
 namespace {
 
-constexpr Key compare_schema[] = {{"models"}, {"measures"}, {"elements"}, {"max_unknowns"}, {"cost"}, {"exact"}};
+constexpr Key compare_schema[] = {{"models"}, {"measures"}, {"elements"}, {"max_unknowns"},
+                                  {"cost"},   {"parts"},    {"exact"}};
 
 constexpr Key expect_schema[] = {{"model", "a model of [compare], or fem, fem_q1, ..."},
                                  {"poisson_ratio"},
@@ -263,6 +264,13 @@ void read_compare_table(const TomlValue& value, const TomlTable& document, Exper
   }
   if (const auto most = table.find("max_unknowns")) experiment.max_unknowns = as_number(*most, positive_number);
   if (const auto cost = table.find("cost")) experiment.cost = as_flag(*cost);
+  if (const auto parts = table.find("parts")) {
+    experiment.parts = as_flag(*parts);
+    if (experiment.parts && !experiment.body.is_voxels())
+      refuse(*parts, "is for bodies that are cut out of a lattice", "voxels or voxel_edge_m in [body], or no such key");
+    if (experiment.parts && experiment.cost)
+      refuse(*parts, "does not go with cost = true", "one of the two: elements on refined cubes would be timed too");
+  }
 }
 
 }  // namespace

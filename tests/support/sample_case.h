@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 
 namespace springproof {
 

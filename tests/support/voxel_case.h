@@ -47,6 +47,7 @@ on = "low"
 displacement_m = [0, 0, 0]
 {}
 [compare]
+parts = true
 models = [{}]
 measures = ["displacement_error", "volume_change", "reaction", "probe"]
 [[probe]]

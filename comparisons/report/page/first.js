@@ -36,6 +36,24 @@ function firstMotion(model) {
   return null;
 }
 
+/// The body of a model in motion, near nu = 0.4, playing; who wants less motion sees it at its end.  Null: no frames.
+function firstPlaying(model) {
+  const offers = judgedCases().flatMap(result => picturesOf(result).pictures.filter(p => p.model === model && p.frames).map(picture => ({result, picture})));
+  if (offers.length === 0) return null;
+  const rank = ({picture}) => Math.abs(picture.poisson_ratio - 0.4) - (picture.surface === 'smooth' ? 1 : 0);
+  const {result, picture} = offers.reduce((a, b) => rank(b) < rank(a) ? b : a);
+  const viewer = new Viewer(), clock = el('output', {}), all = makePanels(picturesOf(result), [picture], true), panels = all.slice(1);
+  const amplification = fittingAmplification(result, all);
+  paintPanels(all, colourings.displacement, amplification);
+  viewer.describe(`${result.name} in motion`);
+  viewer.show(panels);
+  aimAtPanels(viewer, panels, amplification, panels[0].shape.frames.flatMap(frame => Array.from(panels[0].shape.rest, (x, i) => x + amplification * frame[i])));
+  charts.push(() => viewer.render());
+  if (!matchMedia('(prefers-reduced-motion: reduce)').matches) playFrames(viewer, () => panels, () => amplification, clock);
+  return [viewer.node, el('p', {class: 'note'}, `${result.name}, ν = ${nuText(picture.poisson_ratio)}` +
+    (amplification === 1 ? '' : `, displacements drawn ${number(amplification, 3)} times as large`), clock)];
+}
+
 /// Where no model was compared: how much of the load each of them bears, if some lose their equilibrium.
 function firstStability() {
   const result = cases.find(losesEquilibrium);
@@ -49,7 +67,7 @@ function firstBodies(model) {
     const chart = figure();
     chart.draw(curve);
     charts.push(() => chart.draw(curve));
-    return box.append(el('b', {}, curve.caption), chart.node);
+    return box.append(...(model && firstPlaying(model) || []), el('b', {}, curve.caption), chart.node);
   }
   const offer = model && firstPictures(model);
   if (!offer) {
@@ -76,26 +94,17 @@ function firstBodies(model) {
 
 const caseGlyphs = ['●', '▲', '■', '◆', '★', '▼', '✚', '✖'];
 
-/// The springs' own part of an error on a body of voxels [%]; null: there is none.
-function ownPart(result, row) {
-  const split = result.splits.find(s => s.measure === row.measure && s.model === row.model && s.poisson_ratio === row.poisson_ratio &&
-    cellsText(s.cells) === cellsText(row.cells));
-  return split && isNumber(split.model_error) ? 100 * Math.abs(split.model_error) : null;
-}
-
 /// The errors by which models are ranked: at rest, and in motion where there are finite elements in time.
 const rankedMeasures = ['displacement_error', 'reaction_error', 'motion_error'];
 const shortNames = {displacement_error: 'displacement', reaction_error: 'reactions', motion_error: 'in time', volume_change: 'volume change'};
 const isMoving = (result, model) => (result.experiment.models || []).some(m => m.label === model && m.in_motion);
 
-/// Errors of a model in a case at those of these Poisson's ratios that the model claims: `error` [%], by which models are
-/// ranked, and `whole`, which on a body that is no block includes its coarse cells.
+/// Errors of a model in a case at those of these Poisson's ratios that the model claims [%], against the true body.
 function errorsOf(result, model, nus, measures = rankedMeasures) {
   return measures.filter(measure => !isMoving(result, model) || measure === 'motion_error').flatMap(measure => rowsAt(result, measure)).filter(row => row.model === model && nus.includes(row.poisson_ratio) &&
     claims(result, model, row.poisson_ratio)).map(row => {
-    const whole = scaledError(result, row), own = ownPart(result, row);
-    return {result, row, whole, own, error: own ?? whole, uncertainty: scaledUncertainty(result, row)};
-  }).filter(entry => entry.whole !== null);
+    return {result, row, error: scaledError(result, row), uncertainty: scaledUncertainty(result, row)};
+  }).filter(entry => entry.error !== null);
 }
 
 /// The largest of some errors; none: null.
@@ -107,8 +116,12 @@ function dotLine(shown, model, nus) {
   return {model, dots, worst: Math.max(...dots.map(dot => dot.error)), nus: distinct(errors.flat().map(({row}) => row.poisson_ratio)).length};
 }
 
-/// As the answer ranks them: those compared most widely first, and then by the largest error.
-const byRank = (a, b) => b.dots.length - a.dots.length || b.nus - a.nus || a.worst - b.worst;
+/// No spring model: elements, the limit of two lattices, what another program computed for comparison.
+const isBeside = model => isFem(model) || model.endsWith(' extrapolated') ||
+  cases.some(({experiment}) => (experiment.models || []).some(m => m.label === model && m.options?.springs === false));
+
+/// As the answer ranks them: those compared most widely first, and then by the largest error; what is beside them last.
+const byRank = (a, b) => isBeside(a.model) - isBeside(b.model) || b.dots.length - a.dots.length || b.nus - a.nus || a.worst - b.worst;
 
 /// Whether a label is another form of a model that has a row under its plain name.
 const isVariant = model => judgedCases().some(({experiment}) => (experiment.models || []).some(m =>
@@ -146,23 +159,21 @@ function dotPlot() {
       : several.length === 1 ? `at ν = ${nuText(several[0])}` : `for ν from ${nuText(several[0])} to ${nuText(several[several.length - 1])}`;
     const lines = names.filter(model => variants.checked || !isVariant(model) || closest.includes(model))
       .map(model => dotLine(shown, model, wanted)).filter(line => line.dots.length > 0).sort(byRank);
-    const all = lines.flatMap(line => line.dots.flatMap(dot => [dot.error, dot.whole])).filter(error => error > 0);
+    const all = lines.flatMap(line => line.dots.map(dot => dot.error)).filter(error => error > 0);
     const low = Math.floor(Math.log10(Math.min(1, ...all))), high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(1, ...all))));
     const at = error => `${100 * Math.min(1, Math.max(0, (Math.log10(Math.max(error, 1e-12)) - low) / (high - low)))}%`;
     const ticks = Array.from({length: high - low + 1}, (_, i) => 10 ** (low + i));
     const marks = () => ticks.map(tick => el('span', {class: 'tick', style: {left: at(tick)}}));
-    /// The uncertainty of the reference, to both sides of the whole error: the springs' own part does not depend on it.
-    const whisker = ({whole, uncertainty}, model) => !uncertainty ? null : el('span', {class: 'whisker', style: {
-      left: at(whole - uncertainty), right: `calc(100% - ${at(whole + uncertainty)})`, background: modelPaint(model)}});
+    /// The uncertainty of the reference, to both sides of the error.
+    const whisker = ({error, uncertainty}, model) => !uncertainty ? null : el('span', {class: 'whisker', style: {
+      left: at(error - uncertainty), right: `calc(100% - ${at(error + uncertainty)})`, background: modelPaint(model)}});
     axis.replaceChildren(
       ...lines.flatMap(({model, dots, worst}) => [
         el('div', {class: closest.includes(model) ? 'dot-name closest' : 'dot-name'}, modelName(model), claimText(dots[0].result, model)),
-        el('div', {class: 'dot-track'}, marks(), dots.map(dot => whisker(dot, model)), dots.map(({result, row, error, own, whole}) => {
-          const text = `${model}, ${result.name}: ${percent(error)}${compared.length > 1 ? ` (${shortNames[row.measure]})` : ''} at ν = ${nuText(row.poisson_ratio)}` +
-            (own === null ? '' : ` by its springs, ${percent(whole)} with coarse cells`);
-          const mark = (at, kind) => el('span', {class: kind, role: 'img', title: text, 'aria-label': text, style: {left: at, color: modelPaint(model)}},
-                                        caseGlyphs[shown.indexOf(result) % caseGlyphs.length]);
-          return [own === null ? null : mark(at(whole), 'dot pale'), mark(at(error), 'dot')];
+        el('div', {class: 'dot-track'}, marks(), dots.map(dot => whisker(dot, model)), dots.map(({result, row, error}) => {
+          const text = `${model}, ${result.name}: ${percent(error)}${compared.length > 1 ? ` (${shortNames[row.measure]})` : ''} at ν = ${nuText(row.poisson_ratio)}`;
+          return el('span', {class: 'dot', role: 'img', title: text, 'aria-label': text, style: {left: at(error), color: modelPaint(model)}},
+                    caseGlyphs[shown.indexOf(result) % caseGlyphs.length]);
         })),
         el('div', {class: 'dot-worst'}, percent(worst))]),
       el('div', {}, ''), el('div', {class: 'dot-track scale'}, ticks.map(tick => el('span', {class: 'tick-text', style: {left: at(tick)}}, `${number(tick, 1)} %`))), el('div', {}, ''));
@@ -174,15 +185,14 @@ function dotPlot() {
       el('span', {class: 'dot-legend'}, shown.map((result, i) => el('span', {}, caseGlyphs[i % caseGlyphs.length], ' ', result.name)),
          el('span', {}, el('i', {class: 'whisker-sample'}), 'uncertainty of the reference'))),
     axis,
-    el('p', {class: 'note'}, 'Models of most cases and Poisson’s ratios come first, then by their largest error, on the right.' +
-      (shown.some(result => result.splits.length > 0) ? ' On a body that is no block a dot is the springs’ own part of the error, the pale one the whole with coarse cells.' : '')));
+    el('p', {class: 'note'}, 'Errors against the true body, coarse cells included. Models of most cases and Poisson’s ratios come first, then by their largest error, on the right.'));
   draw();
 }
 
 // ---- what it holds for, and costs
 
 const listedErrors = (model, nus, measure) => judgedCases().map(result => largestOf(errorsOf(result, model, nus, [measure]))).filter(Boolean)
-  .map(({result, own, whole}) => `${result.name} ${percent(whole)}${own === null ? '' : ` (its springs ${percent(own)})`}`).join(', ').replace(/ %/g, '\u00a0%');
+  .map(({result, error}) => `${result.name} ${percent(error)}`).join(', ').replace(/ %/g, '\u00a0%');
 
 /// The middle of the CPU times of a model's solutions at the finest cells.
 function middleSeconds(model) {

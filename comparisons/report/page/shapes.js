@@ -94,6 +94,19 @@ function shapesNotes(colouring, amplification, ghost) {
   return [`${drawn} All bodies: one scale, one camera.` + (ghost ? ' Grey: the body at rest.' : '')];
 }
 
+/// Shows the frames of panels, twenty a second, again and again; models without a motion stay as they are.
+/// Returns what stops it.
+function playFrames(viewer, framed, amplification, clock) {
+  let number = 0;
+  const timer = setInterval(() => {
+    const moving = framed(), {time} = moving[0].picture.frames, i = number++ % time.length;
+    for (const {surface, shape} of moving) surface.place(amplification(), shape.frames[Math.min(i, shape.frames.length - 1)]);
+    clock.textContent = ` t = ${time[i].toPrecision(3)} s`;
+    viewer.request();
+  }, 50);
+  return () => clearInterval(timer);
+}
+
 // ---- paper
 
 /// Panels with their labels, and the colour bar, on one sheet.
@@ -201,21 +214,13 @@ function shapesSection(section) {
     build();
   }
   const framed = () => panels.filter(panel => !panel.rest && panel.shape.frames);
-  /// Frame after frame, twenty a second, again and again; models without a motion stay as they are.
   function play() {
-    let number = 0;
+    if (framed().length === 0) return;
     playButton.textContent = 'Stop';
-    playing = setInterval(() => {
-      const moving = framed();
-      if (moving.length === 0) return stop();
-      const {time} = moving[0].picture.frames, i = number++ % time.length;
-      for (const {surface, shape} of moving) surface.place(amplification(), shape.frames[Math.min(i, shape.frames.length - 1)]);
-      clock.textContent = ` t = ${time[i].toPrecision(3)} s`;
-      viewer.request();
-    }, 50);
+    playing = playFrames(viewer, framed, amplification, clock);
   }
   function stop() {
-    clearInterval(playing);
+    playing();
     playing = null;
     playButton.textContent = 'Play the motion';
     clock.textContent = '';

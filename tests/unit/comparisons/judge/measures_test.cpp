@@ -26,22 +26,26 @@ std::map<std::string, ReferenceValue> reactions(const Vec3& force, const Vec3& t
   return out;
 }
 
-std::optional<double> difference(const std::map<std::string, ReferenceValue>& truth, const Vec3& force,
-                                 const Vec3& torque) {
+std::optional<ReactionDifference> difference(const std::map<std::string, ReferenceValue>& truth, const Vec3& force,
+                                             const Vec3& torque) {
   return reaction_difference(values_of(reactions(force, torque, 0)), values_of(truth), truth, {"end"}, 8.0);
 }
 
 TEST(ReactionDifference, IsThatOfTheForceOrTorqueThatIsFurtherOff) {
   const auto pull = reactions({0, 0, 10}, {20, 0, 0}, 1e-6);
-  EXPECT_NEAR(*difference(pull, {0, 1, 10}, {20, 0, 0}), 0.1, 1e-12);
-  EXPECT_NEAR(*difference(pull, {0, 1, 10}, {20, 0, 6}), 0.3, 1e-12);
+  EXPECT_NEAR(difference(pull, {0, 1, 10}, {20, 0, 0})->error, 0.1, 1e-12);
+  EXPECT_EQ(difference(pull, {0, 1, 10}, {20, 0, 0})->of, "force.end");
+  EXPECT_NEAR(difference(pull, {0, 1, 10}, {20, 0, 6})->error, 0.3, 1e-12);
+  EXPECT_EQ(difference(pull, {0, 1, 10}, {20, 0, 6})->of, "torque.end");
 }
 
 TEST(ReactionDifference, WhatVanishesInTheReferenceIsLeftOut) {
   const auto twist = reactions({0, 0, 0}, {0, 0, 5}, 1e-6);
-  EXPECT_NEAR(*difference(twist, {0.05, 0, 0}, {0, 0, 7.1}), 0.42, 1e-12) << "there is no force to be relative to";
+  EXPECT_NEAR(difference(twist, {0.05, 0, 0}, {0, 0, 7.1})->error, 0.42, 1e-12)
+      << "there is no force to be relative to";
   const auto slight = reactions({0.01, 0, 0}, {0, 0, 5}, 1e-6);
-  EXPECT_NEAR(*difference(slight, {0.05, 0, 0}, {0, 0, 7.1}), 0.42, 1e-12) << "0.01 N on 8 m is little beside 5 N m";
+  EXPECT_NEAR(difference(slight, {0.05, 0, 0}, {0, 0, 7.1})->error, 0.42, 1e-12)
+      << "0.01 N on 8 m is little beside 5 N m";
   const auto noise = reactions({1e-9, 0, 0}, {0, 2e-9, 0}, 1e-8);
   EXPECT_FALSE(difference(noise, {1, 0, 0}, {0, 0, 0})) << "a rigid motion";
   EXPECT_FALSE(reaction_difference({}, {}, {}, {"end"}, 8.0));

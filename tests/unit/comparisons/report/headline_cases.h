@@ -1,8 +1,6 @@
 // Cases made of errors alone, and their headline.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "comparisons/report/headline.h"
 #include "support/sample_case.h"
 
@@ -27,20 +25,10 @@ inline CaseResult with_errors(const std::string& name, const std::string& model,
   return c;
 }
 
-inline Headline headline_of(const std::vector<CaseResult>& cases) {
-  nlohmann::json results = {{"cases", nlohmann::json::array()}};
-  for (const auto& c : cases) results["cases"].push_back(to_json(c));
-  return headline(results);
-}
-
 inline void add_row(CaseResult& c, const std::string& model, double nu, const std::string& measure, double error,
                     double uncertainty) {
   c.rows.push_back(
       {{model, nu, {10, 10, 10}}, c.experiment.name, "linear", measure, error, "1", 0.0, uncertainty, error});
-}
-
-inline void add_split(CaseResult& c, const std::string& model, double nu, double total, double own) {
-  c.splits.push_back({{model, nu, {10, 10, 10}}, 0.01, "displacement_error", "1", total, own, 0.17, 0.35, 0.063, 0.02});
 }
 
 /// Several models at one Poisson's ratio: {name, displacement error}.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "comparisons/report/report.h"
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 
 namespace springproof {
 
@@ -46,7 +46,7 @@ inline std::size_t count(const std::string& text, const std::string& part) {
 class Report : public testing::Test {
  protected:
   std::string write(const std::vector<CaseResult>& cases) {
-    write_report(file, document(cases), pictures(cases));
+    write_report(file, headline(cases), document(cases), pictures(cases));
     return slurp(file);
   }
   void TearDown() override { std::filesystem::remove(file); }
@@ -78,9 +78,9 @@ class ReportInBrowser : public Report {
   }
 
   /// The same with a script that runs after the page's own.
-  std::string open_with(const nlohmann::json& results, const nlohmann::json& pictures, const std::string& script,
+  std::string open_with(const std::vector<CaseResult>& cases, const nlohmann::json& pictures, const std::string& script,
                         const std::string& fragment = "", const std::string& options = whole_page) {
-    write_report(file, results, pictures);
+    write_report(file, headline(cases), document(cases), pictures);
     add_script(script);
     return visit(file, fragment, options);
   }

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "comparisons/report/crack_picture.h"
+#include "comparisons/results/crack_picture.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/part_file.h"
 #include "comparisons/run/prepare.h"

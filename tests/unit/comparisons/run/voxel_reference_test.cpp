@@ -85,7 +85,7 @@ TEST_F(VoxelReference, RowsBalanceAndPartsOfTheErrorAddUp) {
           << row.model << " " << row.measure;
     }
   for (const char* model : {"hybmss", "emsm", "emsm_random", "msm_18", "fem_q1"}) EXPECT_EQ(seen[model], 6) << model;
-  ASSERT_FALSE(part.splits.empty());
+  ASSERT_FALSE(part.splits.empty()) << "the case asks for them";
   std::map<std::string, int> scalars;
   for (const ErrorSplit& s : part.splits) {
     EXPECT_TRUE(std::isfinite(s.total)) << s.measure;
@@ -108,11 +108,14 @@ TEST_F(VoxelReference, RowsBalanceAndPartsOfTheErrorAddUp) {
 TEST_F(VoxelReference, ElementsBesideTheModelsRunAtTheirResolutions) {
   std::string text = ball_case(100, every_load, "\"hybmss\"", "edge_m = 0.035");
   text.replace(text.find("voxels = 100"), 12, "voxels = [100, 200]");
-  text.replace(text.find("[compare]\n"), 10, "[compare]\ncost = true\nelements = [\"p1\", \"q1\", \"p2\"]\n");
+  text.replace(text.find("[compare]\nparts = true\n"), 23,
+               "[compare]\ncost = true\nelements = [\"p1\", \"q1\", \"p2\"]\n");
   const PreparedCase prepared = prepare(parse_experiment(text, "ball.toml"));
   ASSERT_EQ(prepared.lattices.size(), 2u);
   EXPECT_GT(prepared.lattices[1].tetrahedra->tetrahedra.size(), prepared.lattices[0].tetrahedra->tetrahedra.size());
   const Part part = run_part(prepared, 0, {});
+  EXPECT_TRUE(part.splits.empty()) << "parts of the errors are computed on request";
+  for (const springproof::Run& run : part.runs) EXPECT_NE(run.model, "fem_q2") << cells_text(run.cells);
   for (const char* model : {"hybmss", "fem_p1", "fem_q1", "fem_p2"})
     for (const Lattice& lattice : prepared.lattices) {
       const Cells& c = lattice.cells;

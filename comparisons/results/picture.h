@@ -1,7 +1,7 @@
 // The deformed surface of a field, for the report's 3D view.
 #pragma once
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "meshes/field.h"
 
 namespace springproof {

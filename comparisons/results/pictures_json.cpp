@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 #include "problem/system/encoding.h"
 
 namespace springproof {

@@ -1,4 +1,4 @@
-#include "comparisons/report/thin_surface.h"
+#include "comparisons/results/thin_surface.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

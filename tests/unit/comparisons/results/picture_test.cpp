@@ -1,4 +1,4 @@
-#include "comparisons/report/picture.h"
+#include "comparisons/results/picture.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "comparisons/report/thin_surface.h"
+#include "comparisons/results/thin_surface.h"
 
 namespace springproof::picture_test {
 namespace {

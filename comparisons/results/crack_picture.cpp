@@ -1,4 +1,4 @@
-#include "comparisons/report/crack_picture.h"
+#include "comparisons/results/crack_picture.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "comparisons/report/picture.h"
+#include "comparisons/results/picture.h"
 
 #include <algorithm>
 
-#include "comparisons/report/thin_surface.h"
+#include "comparisons/results/thin_surface.h"
 #include "meshes/locate/locate.h"
 #include "meshes/locate/outer_facets.h"
 #include "meshes/volume.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 
 namespace springproof {
 

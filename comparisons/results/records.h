@@ -35,6 +35,7 @@ struct Row : RunKey {
   std::optional<double> error;        ///< value - reference; for measures that are errors, the value itself
   int samples = 1;                    ///< disordered networks behind the value, which is then their mean
   std::optional<double> spread = {};  ///< standard deviation over them; empty: one sample
+  std::string of = {};                ///< of a reaction_error: which reaction is off, "force.z_max"
 };
 
 /// How near the state of a model is to the loss of its equilibrium, or where it was lost.
@@ -111,14 +112,14 @@ struct PublishedRow : RunKey {
 /// three parts add up to the total; for displacement_error each is the norm of its own field, over the reference's
 /// norm.
 struct ErrorSplit : RunKey {
-  double voxel_edge = 0;  ///< [m]
+  double voxel_edge_m = 0;
   std::string measure;
   std::string unit;
   double total = 0;                 ///< model - body-fitted limit
   double model_error = 0;           ///< model - eight-node elements on the same voxels
   double discretisation_error = 0;  ///< those - the limit of refined elements on the same voxels
   double geometry_error = 0;        ///< that limit - body-fitted limit
-  double body_uncertainty = 0;      ///< of the body-fitted limit, and so of the total
+  double uncertainty = 0;           ///< of the body-fitted limit, and so of the total
   double voxel_uncertainty = 0;     ///< of the limit on the voxels
 };
 
@@ -210,9 +211,10 @@ struct Part {
 };
 
 struct CaseResult : Part {
-  Experiment experiment;     ///< as read
-  Vec3 size = Vec3::Zero();  ///< of the body [m]; for a body of voxels that of its bounding box
-  std::vector<Cells> cells;  ///< of its lattices
+  Experiment experiment;            ///< as read
+  Vec3 size = Vec3::Zero();         ///< of the body [m]; for a body of voxels that of its bounding box
+  std::vector<Cells> cells;         ///< of its lattices; of a body of voxels those of its bounding box
+  std::vector<std::size_t> filled;  ///< number of cells in the body, per lattice
   std::map<std::string, double>
       own_poisson_ratios;                   ///< of the models, by label, that are solids of one Poisson's ratio only
   std::map<std::string, std::string> laws;  ///< of the models, by label, whose springs follow a law of finite strain:
@@ -228,8 +230,11 @@ bool is_tetrahedra(const Cells& cells);
 /// "10x10x10" or "812 tets".
 std::string cells_text(const Cells& cells, std::string_view times = "x");
 
-/// Number of hexahedra or tetrahedra.
+/// Number of hexahedra or tetrahedra; of a body of voxels that of its bounding box.
 double cell_count(const Cells& cells);
+
+/// Number of cells in the body of the lattice that has these; 0: there is none.
+std::size_t filled_cells(const CaseResult& result, const Cells& cells);
 
 /// Of a case of large strain one clause each on loads and on models that follow another law than the reference.
 std::vector<std::string> cautions(const CaseResult& result);

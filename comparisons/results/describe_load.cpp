@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "comparisons/report/results.h"
+#include "comparisons/results/records.h"
 
 namespace springproof {
 namespace {

@@ -1,0 +1,33 @@
+// Numbers and lists in the sentences of the verdict.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/case_file/experiment.h"
+
+namespace springproof::words {
+
+/// With a minus sign instead of a hyphen.
+std::string minus(std::string number);
+
+/// As many digits as read back exactly; "nothing" if empty or not finite.
+std::string number_text(std::optional<double> x);
+
+/// Two significant digits, a fraction as percent, without its sign %: 0.0191 -> "1.9".
+std::string percent(double fraction);
+
+/// At most six significant digits: 0.499975.
+std::string nu_text(double nu);
+
+/// "bunny at ν = 0.45".
+std::string at_nu(const std::string& name, double nu);
+
+/// "10×10×10 cells" or "812 tets".
+std::string cells_words(const Cells& cells);
+
+/// "a", "a and b", "a, b and c".
+std::string listed(const std::vector<std::string>& items);
+
+}  // namespace springproof::words

@@ -1,0 +1,126 @@
+#include "comparisons/results/records.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "comparisons/results/records_json.h"
+#include "problem/case_file/measures.h"
+
+namespace springproof {
+namespace {
+
+using Json = nlohmann::json;
+
+Json vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+// ---- the parts of a case
+
+Json json_of(const IsotropicMaterial& m) {
+  return {{"youngs_modulus", m.youngs_modulus}, {"poisson_ratio", m.poisson_ratio}, {"density", m.density}};
+}
+
+Json json_of(const ModelChoice& model) {
+  Json options = Json::object();
+  for (const auto& [key, value] : model.options)
+    options[key] = std::visit([](const auto& x) { return Json(x); }, value);
+  return {{"name", model.name}, {"label", model.label}, {"options", options}, {"in_motion", model.in_motion}};
+}
+
+Json json_of(const Probe& probe) { return {{"name", probe.name}, {"at", vector(probe.at)}}; }
+
+Json json_of(const Section& section) { return {{"point", vector(section.point)}, {"normal", vector(section.normal)}}; }
+
+Json json_of(const Line& line) {
+  return {{"from", vector(line.from)}, {"to", vector(line.to)}, {"points", line.points}, {"middle", line.middle}};
+}
+
+template <class T>
+Json list(const std::vector<T>& items) {
+  Json out = Json::array();
+  for (const T& item : items) out.push_back(json_of(item));
+  return out;
+}
+
+Json json_of(const CaseResult& result) {
+  const Experiment& e = result.experiment;
+  Json poisson_ratios = Json::array(), loads = Json::array();
+  for (const auto& m : e.materials) poisson_ratios.push_back(m.poisson_ratio);
+  for (const auto& load : e.loads) loads.push_back(describe(load, e.model_kinematics()));
+  return {{"name", e.name},
+          {"folder", e.folder},
+          {"cite", e.cite},
+          {"what", e.what},
+          {"kinematics", e.kinematics},
+          {"body",
+           {{"geo", e.body.geo},
+            {"size", vector(result.size)},
+            {"cells", result.cells},
+            {"filled", result.filled},
+            {"voxels", e.body.is_voxels()}}},
+          {"materials", list(e.materials)},
+          {"poisson_ratios", poisson_ratios},
+          {"loads", loads},
+          {"models", list(e.models)},
+          {"elements", e.elements},
+          {"cost", e.cost},
+          {"measures", e.measures},
+          {"moved_patches", moved_patches(e)},
+          {"probes", list(e.probes)},
+          {"section", e.section ? json_of(*e.section) : Json(nullptr)},
+          {"line", e.line ? json_of(*e.line) : Json(nullptr)},
+          {"reference",
+           {{"cells", e.reference.cells},
+            {"elements", e.reference.elements},
+            {"grading", e.reference.grading},
+            {"edge", e.reference.edge},
+            {"smooth", e.reference.smooth}}},
+          {"exact", e.exact},
+          {"text", e.text}};
+}
+
+}  // namespace
+
+std::string to_string(Verdict verdict) { return Json(verdict); }
+
+bool same_run(const RunKey& a, const RunKey& b) {
+  return a.model == b.model && same_poisson_ratio(a.poisson_ratio, b.poisson_ratio) && a.cells == b.cells;
+}
+
+bool is_tetrahedra(const Cells& cells) { return cells[0] > 0 && cells[1] == 0 && cells[2] == 0; }
+
+std::string cells_text(const Cells& cells, std::string_view times) {
+  return is_tetrahedra(cells) ? fmt::format("{} tets", cells[0]) : fmt::format("{}", fmt::join(cells, times));
+}
+
+double cell_count(const Cells& cells) {
+  return is_tetrahedra(cells) ? cells[0] : double(cells[0]) * cells[1] * cells[2];
+}
+
+std::size_t filled_cells(const CaseResult& result, const Cells& cells) {
+  const auto found = std::find(result.cells.begin(), result.cells.end(), cells);
+  const auto number = static_cast<std::size_t>(found - result.cells.begin());
+  return number < result.filled.size() ? result.filled[number] : 0;
+}
+
+Json to_json(const CaseResult& result) {
+  Json experiment = json_of(result);
+  for (Json& model : experiment["models"]) {
+    const auto own = result.own_poisson_ratios.find(model["label"]);
+    model["own_poisson_ratio"] = own == result.own_poisson_ratios.end() ? Json(nullptr) : Json(own->second);
+    const auto law = result.laws.find(model["label"]);
+    model["law"] = law == result.laws.end() ? Json(nullptr) : Json(law->second);
+  }
+  Json out = static_cast<const Part&>(result);
+  out.erase("pictures");
+  for (Json& crack : out["cracks"]) crack.erase("svg");
+  out.update({{"experiment", experiment},
+              {"checks", result.checks},
+              {"published", result.published},
+              {"cautions", cautions(result)},
+              {"notes", result.notes}});
+  return out;
+}
+
+}  // namespace springproof
