@@ -195,9 +195,11 @@ class Collector {
     (is("displacement_error") ? errors.displacement : errors.reaction)[nu].take(error);
     errors.rank[nu].take(error);
     errors.cases.insert(case_name_);
-    if (const std::size_t cells = filled_cells(result, row.cells)) errors.cells.insert(cells);
-    for (const Run& run : result.runs)
-      if (is("displacement_error") && run.ok && same_run(run, row)) errors.seconds.push_back(run.seconds);
+    for (const Run& run : result.runs) {
+      if (!run.ok || !same_run(run, row)) continue;
+      if (run.filled > 0) errors.cells.insert(run.filled);
+      if (is("displacement_error") && run.kind != "external") errors.seconds.push_back(run.seconds);
+    }
     (result.experiment.body.is_voxels() ? errors.voxels : errors.blocks) = true;
   }
 

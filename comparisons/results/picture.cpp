@@ -1,6 +1,7 @@
 #include "comparisons/results/picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "comparisons/results/thin_surface.h"
 #include "meshes/locate/locate.h"
@@ -78,6 +79,23 @@ Picture picture(const RunKey& key, const Field& field, const NodalVectors* truth
     if (truth) p.difference.push_back(static_cast<float>((field.displacement.row(n) - truth->row(n)).norm()));
   });
   return p;
+}
+
+NodalVectors pictured_points(const Mesh& mesh) {
+  Picture p;
+  std::vector<int> nodes;
+  add_facets(mesh, p, [&](int n) { nodes.push_back(n); });
+  return mesh.nodes(nodes, Eigen::all);
+}
+
+std::vector<float> von_mises(
+    const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>>& stress) {
+  std::vector<float> out;
+  for (const auto& s : stress.rowwise()) {
+    const double apart = std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2);
+    out.push_back(static_cast<float>(std::sqrt(apart / 2 + 3 * s.tail<3>().squaredNorm())));
+  }
+  return out;
 }
 
 Picture smooth_picture(const RunKey& key, const Field& field, const Mesh& body, const NodalVectors* truth) {

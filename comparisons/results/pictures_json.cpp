@@ -85,7 +85,8 @@ void check_sizes(const Picture& p) {
   const auto nodes = p.rest.size() / 3;
   if (p.rest.size() % 3 != 0 || p.displacement.size() != p.rest.size() || p.quads.size() % 4 != 0 ||
       (!p.difference.empty() && p.difference.size() != nodes) ||
-      (!p.volume_change.empty() && p.volume_change.size() != nodes))
+      (!p.volume_change.empty() && p.volume_change.size() != nodes) ||
+      (!p.von_mises.empty() && p.von_mises.size() != nodes))
     throw std::invalid_argument(fmt::format(
         "picture of {}: {} rest, {} displacement, {} difference, {} volume changes, {} facet numbers", p.model,
         p.rest.size(), p.displacement.size(), p.difference.size(), p.volume_change.size(), p.quads.size()));
@@ -114,6 +115,7 @@ Json pictures_to_json(const CaseResult& result) {
                         {"displacement", multiples_json<std::int16_t>(p.displacement)},
                         {"difference", multiples_json<std::int8_t>(p.difference)},
                         {"volume_change", multiples_json<std::int8_t>(p.volume_change)}});
+    if (!p.von_mises.empty()) pictures.back()["von_mises"] = multiples_json<std::int8_t>(p.von_mises);
     if (p.frames.empty()) continue;
     std::vector<float> frames;  // one after the other, with one scale
     for (const std::vector<float>& frame : p.frames) frames.insert(frames.end(), frame.begin(), frame.end());

@@ -48,36 +48,33 @@ Json json_of(const CaseResult& result) {
   Json poisson_ratios = Json::array(), loads = Json::array();
   for (const auto& m : e.materials) poisson_ratios.push_back(m.poisson_ratio);
   for (const auto& load : e.loads) loads.push_back(describe(load, e.model_kinematics()));
-  return {{"name", e.name},
-          {"folder", e.folder},
-          {"cite", e.cite},
-          {"what", e.what},
-          {"kinematics", e.kinematics},
-          {"body",
-           {{"geo", e.body.geo},
-            {"size", vector(result.size)},
-            {"cells", result.cells},
-            {"filled", result.filled},
-            {"voxels", e.body.is_voxels()}}},
-          {"materials", list(e.materials)},
-          {"poisson_ratios", poisson_ratios},
-          {"loads", loads},
-          {"models", list(e.models)},
-          {"elements", e.elements},
-          {"cost", e.cost},
-          {"measures", e.measures},
-          {"moved_patches", moved_patches(e)},
-          {"probes", list(e.probes)},
-          {"section", e.section ? json_of(*e.section) : Json(nullptr)},
-          {"line", e.line ? json_of(*e.line) : Json(nullptr)},
-          {"reference",
-           {{"cells", e.reference.cells},
-            {"elements", e.reference.elements},
-            {"grading", e.reference.grading},
-            {"edge", e.reference.edge},
-            {"smooth", e.reference.smooth}}},
-          {"exact", e.exact},
-          {"text", e.text}};
+  return {
+      {"name", e.name},
+      {"folder", e.folder},
+      {"cite", e.cite},
+      {"what", e.what},
+      {"kinematics", e.kinematics},
+      {"body",
+       {{"geo", e.body.geo}, {"size", vector(result.size)}, {"cells", result.cells}, {"voxels", e.body.is_voxels()}}},
+      {"materials", list(e.materials)},
+      {"poisson_ratios", poisson_ratios},
+      {"loads", loads},
+      {"models", list(e.models)},
+      {"elements", e.elements},
+      {"cost", e.cost},
+      {"measures", e.measures},
+      {"moved_patches", moved_patches(e)},
+      {"probes", list(e.probes)},
+      {"section", e.section ? json_of(*e.section) : Json(nullptr)},
+      {"line", e.line ? json_of(*e.line) : Json(nullptr)},
+      {"reference",
+       {{"cells", e.reference.cells},
+        {"elements", e.reference.elements},
+        {"grading", e.reference.grading},
+        {"edge", e.reference.edge},
+        {"smooth", e.reference.smooth}}},
+      {"exact", e.exact},
+      {"text", e.text}};
 }
 
 }  // namespace
@@ -96,12 +93,6 @@ std::string cells_text(const Cells& cells, std::string_view times) {
 
 double cell_count(const Cells& cells) {
   return is_tetrahedra(cells) ? cells[0] : double(cells[0]) * cells[1] * cells[2];
-}
-
-std::size_t filled_cells(const CaseResult& result, const Cells& cells) {
-  const auto found = std::find(result.cells.begin(), result.cells.end(), cells);
-  const auto number = static_cast<std::size_t>(found - result.cells.begin());
-  return number < result.filled.size() ? result.filled[number] : 0;
 }
 
 Json to_json(const CaseResult& result) {

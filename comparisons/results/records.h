@@ -63,6 +63,7 @@ struct Run : RunKey {
                               ///< with `cost` the growth due to the run
   double set_up_seconds = 0;  ///< CPU time from the mesh in memory to that system
   std::optional<Stability> stability = {};  ///< of models that are lattices of cells
+  std::size_t filled = 0;                   ///< number of its cells, or of those cut by its body, in the body
 };
 
 /// Uncertainty of the reference for one measure: three grids, observed order, Richardson limit, GCI.
@@ -131,6 +132,8 @@ struct Picture : RunKey {
   std::vector<int> quads;            ///< 4 surface-node numbers per facet; of a triangle the last is -1
   std::vector<float> volume_change;  ///< V'/V - 1, mean over the cells at each surface node [1]
   std::string surface = "cells";  ///< "cells": outer facets of the mesh; "smooth": the true surface, carried by voxels
+  std::vector<float> von_mises =
+      {};  ///< stress of the reference on its finest grid, per surface node [Pa]; empty: none
   std::vector<double> frame_times = {};                  ///< of the animation of a motion [s]
   std::vector<std::vector<float>> frames = {};           ///< displacement at each of these times, as `displacement` [m]
   std::map<std::string, std::vector<int>> patches = {};  ///< surface nodes of each patch of the mesh, ascending
@@ -182,6 +185,8 @@ struct Deformation {
   double poisson_ratio = 0;
   double principal_strain = 0;  ///< [1]
   double rotation_deg = 0;
+  Vec3 applied_N = Vec3::Zero();  ///< sum of the loads
+  Vec3 reacted_N = Vec3::Zero();  ///< sum of the supports' forces in the reference, on its finest grid
 };
 
 /// A model whose lattice is not stable at the strain that moved supports impose, or a quarter more, as a body has in
@@ -211,10 +216,9 @@ struct Part {
 };
 
 struct CaseResult : Part {
-  Experiment experiment;            ///< as read
-  Vec3 size = Vec3::Zero();         ///< of the body [m]; for a body of voxels that of its bounding box
-  std::vector<Cells> cells;         ///< of its lattices; of a body of voxels those of its bounding box
-  std::vector<std::size_t> filled;  ///< number of cells in the body, per lattice
+  Experiment experiment;     ///< as read
+  Vec3 size = Vec3::Zero();  ///< of the body [m]; for a body of voxels that of its bounding box
+  std::vector<Cells> cells;  ///< of its lattices; of a body of voxels those of its bounding box
   std::map<std::string, double>
       own_poisson_ratios;                   ///< of the models, by label, that are solids of one Poisson's ratio only
   std::map<std::string, std::string> laws;  ///< of the models, by label, whose springs follow a law of finite strain:
@@ -232,9 +236,6 @@ std::string cells_text(const Cells& cells, std::string_view times = "x");
 
 /// Number of hexahedra or tetrahedra; of a body of voxels that of its bounding box.
 double cell_count(const Cells& cells);
-
-/// Number of cells in the body of the lattice that has these; 0: there is none.
-std::size_t filled_cells(const CaseResult& result, const Cells& cells);
 
 /// Of a case of large strain one clause each on loads and on models that follow another law than the reference.
 std::vector<std::string> cautions(const CaseResult& result);

@@ -14,18 +14,18 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Row, case_name, kinematics, model, poisson_ra
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stability, load_reached, lost, strain, softest, alternation, wrinkles)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LatticeLimit, model, poisson_ratio, imposed, free, held, wave, instead)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Run, model, kind, poisson_ratio, cells, kinematics, ok, message, solver, iterations,
-                                   residual, seconds, unknowns, memory_MiB, set_up_seconds, stability)
+                                   residual, seconds, unknowns, memory_MiB, set_up_seconds, stability, filled)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, poisson_ratio, measure, unit, cells, values, observed_order, value,
                                    uncertainty, note, element, converging, correlation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Picture, model, poisson_ratio, cells, rest, displacement, difference, quads,
-                                   volume_change, frame_times, frames, surface, patches)
+                                   volume_change, von_mises, frame_times, frames, surface, patches)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LineRecord, model, poisson_ratio, cells, first, last, distance, strain, stress,
                                    exact_strain, exact_stress)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HistoryRecord, model, poisson_ratio, cells, time_step, time, names, units, values,
                                    integrator, measured, probe)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorSplit, model, poisson_ratio, cells, voxel_edge_m, measure, unit, total,
                                    model_error, discretisation_error, geometry_error, voxel_uncertainty, uncertainty)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain, rotation_deg)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain, rotation_deg, applied_N, reacted_N)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CrackRecord, model, poisson_ratio, cells, shrinkage, broken, fragments, stored,
                                    released, directions, svg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedRow, model, poisson_ratio, cells, measure, unit, published, computed, where,

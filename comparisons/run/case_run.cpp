@@ -61,13 +61,31 @@ void run_fem(PartRun& run) {
     for (const fem::Solution& s : on_cubes) run.part.runs.push_back(fem_run(run, s, "fem_q2"));
 }
 
+/// Stresses of the reference as rows of its own: springs have none.
+void add_stress_rows(PartRun& run) {
+  for (const ReferenceRecord& r : run.part.references)
+    if (r.measure.starts_with("stress."))
+      run.part.rows.push_back({run.key("fem_" + r.element, r.cells.back()),
+                               run.experiment().name,
+                               run.experiment().kinematics,
+                               r.measure,
+                               r.value,
+                               r.unit,
+                               {},
+                               r.uncertainty,
+                               {}});
+}
+
 void record_elements(PartRun& run) {
   for (const ElementGrids& e : run.grids.elements) {
     if (!complete(e)) continue;
     const std::vector<ReferenceRecord> records = records_of(run.prepared, run.material, e);
     run.part.references.insert(run.part.references.end(), records.begin(), records.end());
   }
-  if (run.experiment().models.empty()) run.part.rows = rows_of(run.prepared, run.part.references);
+  if (run.experiment().models.empty())
+    run.part.rows = rows_of(run.prepared, run.part.references);
+  else
+    add_stress_rows(run);
 }
 
 /// The first element's fields as the reference of the lattices; with an exact field, that field.
@@ -114,8 +132,10 @@ void measure_deformation(PartRun& run) {
   if (!run.reference[finest]) return;
   const NodalVectors& u = run.reference[finest]->field.displacement;
   const DeformationSize size = deformation_size(run.mesh(finest), u, run.experiment().model_kinematics());
-  run.part.deformations.push_back(
-      {run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi});
+  Deformation record{run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi};
+  record.applied_N = sum_of_loads(run.prepared);
+  for (const PatchReaction& r : run.grids.elements.front().grids.back().reactions) record.reacted_N += r.force;
+  run.part.deformations.push_back(record);
 }
 
 /// Distances from the reference field [their units].
@@ -263,6 +283,11 @@ void add_stable_load(PartRun& run, Row row, double load_reached) {
   run.part.rows.push_back(row);
 }
 
+/// Cut cells, or whole ones.
+std::size_t cells_in_body(const Lattice& lattice, const ModelParameters& parameters) {
+  return parameters.cut.value_or(false) ? lattice.cut->cells.size() : lattice.mesh->hexahedra.size();
+}
+
 void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
@@ -275,7 +300,8 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     const Equilibrium& s = sample.state;
     run.part.runs.push_back({run.key(label, lattice), is_external(e.models[number]) ? "external" : "msm", kind, s.ok,
                              s.message, s.solver, s.iterations, s.residual, sample.times.solve, s.unknowns,
-                             s.memory_MiB, sample.times.set_up, sample.stability});
+                             s.memory_MiB, sample.times.set_up, sample.stability,
+                             cells_in_body(run.prepared.lattices[lattice], run.prepared.models[number])});
     if (sample.stability)
       add_stable_load(run, {run.key(label, lattice), e.name, kind, "", 0, "", {}, {}, {}, 1, {}},
                       sample.stability->load_reached);
@@ -333,6 +359,15 @@ void run_fracture_model(PartRun& run, std::size_t lattice, std::size_t number) {
   run.part.cracks.push_back(std::move(samples.cracks));
 }
 
+/// The reference's stress on its picture, of the true surface where there is one: the last that was added.
+void add_stress(PartRun& run) {
+  const auto& stress = run.grids.elements.front().grids.back().stress;
+  const Eigen::Index first = first_pictured_stress(run.prepared);
+  Picture& p = run.part.pictures.back();
+  if (stress.rows() - first == static_cast<Eigen::Index>(p.rest.size() / 3))
+    p.von_mises = von_mises(stress.bottomRows(stress.rows() - first));
+}
+
 /// The finite elements' results at the nodes of one lattice.
 void add_fem(PartRun& run, std::size_t lattice) {
   const Lattice& here = run.prepared.lattices[lattice];
@@ -340,12 +375,14 @@ void add_fem(PartRun& run, std::size_t lattice) {
     Field field = sampled_field(here, run.grids.elements.front().grids.back());
     field.displacement = run.reference[lattice]->field.displacement;
     save(run, lattice, "fem", field);
+    if (lattice == 0) add_stress(run);
   }
   if (lattice >= run.grids.peers.size()) return;
   for (const fem::Solution& s : run.grids.peers[lattice]) {
     const std::string name = "fem_" + s.grid.element;
     run.part.runs.push_back(fem_run(run, s, name));
     run.part.runs.back().cells = here.cells;
+    run.part.runs.back().filled = here.mesh->hexahedra.size();
     if (!s.ok) continue;
     add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)},
              {measures_of(run.prepared, s)});

@@ -93,15 +93,16 @@ void fall_back(const PreparedCase& prepared, fem::Request request, const VtuOutp
   }
 }
 
-/// Sum of the magnitudes of the loads' nodal forces [N]: it does not vanish where the loads balance each other.
-double force_of_loads(const PreparedCase& prepared) {
+/// The loads' forces on the nodes of the first lattice [N].
+NodalVectors nodal_loads(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   return transfer(lattice_loads(prepared), *prepared.lattices.front().mesh, e.materials.front().density,
                   e.model_kinematics())
-      .external.rowwise()
-      .norm()
-      .sum();
+      .external;
 }
+
+/// Sum of their magnitudes: it does not vanish where the loads balance each other.
+double force_of_loads(const PreparedCase& prepared) { return nodal_loads(prepared).rowwise().norm().sum(); }
 
 /// Scale of the values of a measure: the largest displacement, the strain, the largest force (also of those that
 /// balance torques, and times the body's size for torques; the loads at least), or the largest stress.
@@ -184,10 +185,9 @@ std::string with_note(const ElementGrids& e, const std::string& note) {
 
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu) {
   const Experiment& experiment = prepared.experiment;
-  const bool stresses = wanted("stress", experiment.measures);
   fem::Request request = fem::request_of(experiment, material);
   request.points = sample_points(prepared);
-  if (stresses) request.stress_points = probe_points(experiment);
+  request.stress_points = stress_points(prepared);
   request.vtu_single = vtu.single;
   for (const std::string& element : experiment.reference.elements)
     add_reference_grids(prepared, element, experiment.reference.grading, vtu, request);
@@ -227,7 +227,8 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
   const std::vector<Probe>& probes = prepared.experiment.probes;
   auto values = field_measures(prepared, sampled_field(prepared.lattices.front(), s),
                                s.displacement.bottomRows(s.displacement.rows() - prepared.nodes()));
-  if (s.stress.rows() == static_cast<Eigen::Index>(probes.size())) values.merge(stress_measures(probes, s.stress));
+  if (const Eigen::Index measured = first_pictured_stress(prepared); measured > 0 && s.stress.rows() >= measured)
+    values.merge(stress_measures(probes, s.stress.topRows(measured)));
   return values;
 }
 
@@ -243,6 +244,8 @@ std::optional<ReactionDifference> reaction_error(const PreparedCase& prepared,
   return reaction_difference(values, values_of(truth), truth, comparable_moved_patches(prepared),
                              prepared.size.maxCoeff());
 }
+
+Vec3 sum_of_loads(const PreparedCase& prepared) { return nodal_loads(prepared).colwise().sum().transpose(); }
 
 NodalVectors exact_at_nodes(const PreparedCase& prepared) {
   if (prepared.experiment.exact.empty()) return NodalVectors(0, 3);

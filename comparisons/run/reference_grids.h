@@ -67,6 +67,9 @@ std::optional<ReactionDifference> reaction_error(const PreparedCase& prepared,
                                                  const std::map<std::string, double>& values,
                                                  const std::map<std::string, ReferenceValue>& truth);
 
+/// Sum of the loads [N], body forces of exact fields left out.
+Vec3 sum_of_loads(const PreparedCase& prepared);
+
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
 

@@ -1,6 +1,7 @@
 #include "comparisons/run/sampling.h"
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/results/picture.h"
 #include "meshes/locate/locate.h"
 
 namespace springproof {
@@ -48,6 +49,23 @@ NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lat
     for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * displacement.row(mesh.hexahedra[at.cell][n]);
   }
   return out;
+}
+
+Eigen::Index first_pictured_stress(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  return wanted("stress", e.measures) ? static_cast<Eigen::Index>(e.probes.size()) : 0;
+}
+
+NodalVectors stress_points(const PreparedCase& prepared) {
+  const Eigen::Index probes = first_pictured_stress(prepared);
+  const bool pictured = !prepared.lattices.empty() && !prepared.experiment.models.empty();
+  const NodalVectors surface =
+      pictured ? pictured_points(prepared.experiment.body.is_voxels() ? *prepared.tetrahedra.back()
+                                                                      : *prepared.lattices.front().mesh)
+               : NodalVectors(0, 3);
+  NodalVectors all(probes + surface.rows(), 3);
+  all << probe_points(prepared.experiment).topRows(probes), surface;
+  return all;
 }
 
 }  // namespace springproof

@@ -22,4 +22,11 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
 /// @throws InputError naming a probe outside the body.
 NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
 
+/// Rest positions at which the reference's stress is requested: the probes, if the case measures it there, then the
+/// surface that is pictured.
+NodalVectors stress_points(const PreparedCase& prepared);
+
+/// The rows of the surface among those.
+Eigen::Index first_pictured_stress(const PreparedCase& prepared);
+
 }  // namespace springproof

@@ -89,10 +89,7 @@ CaseResult case_of(const PreparedCase& p) {
   CaseResult result;
   result.experiment = p.experiment;
   result.size = p.size;
-  for (const Lattice& lattice : p.lattices) {
-    result.cells.push_back(lattice.cells);
-    result.filled.push_back(lattice.cut ? lattice.cut->cells.size() : lattice.mesh->hexahedra.size());
-  }
+  for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
   result.notes = p.notes;
   for (std::size_t m = 0; m < p.models.size(); ++m) {
     const std::string& label = p.experiment.models[m].label;

@@ -19,7 +19,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sweep, version, libraries, shards, finer, vtu
 
 namespace {
 
-constexpr std::string_view heading = "springproof sweep 1 ", meshed_heading = "springproof case 2 ";
+constexpr std::string_view heading = "springproof sweep 1 ", meshed_heading = "springproof case 1 ";
 
 fs::path meshed_file(const fs::path& folder, const std::string& key) { return folder / "parts" / (key + ".case.cbor"); }
 
@@ -115,7 +115,6 @@ void save_meshed(const fs::path& folder, const std::string& key, const CaseResul
   write_checked(meshed_file(folder, key), meshed_heading,
                 {{"size", meshed.size},
                  {"cells", meshed.cells},
-                 {"filled", meshed.filled},
                  {"notes", meshed.notes},
                  {"own_poisson_ratios", meshed.own_poisson_ratios},
                  {"laws", meshed.laws}});
@@ -125,7 +124,6 @@ bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& res
   const nlohmann::json meshed = read_checked(meshed_file(folder, key), meshed_heading);
   meshed.at("size").get_to(result.size);
   meshed.at("cells").get_to(result.cells);
-  meshed.at("filled").get_to(result.filled);
   meshed.at("notes").get_to(result.notes);
   meshed.at("own_poisson_ratios").get_to(result.own_poisson_ratios);
   meshed.at("laws").get_to(result.laws);

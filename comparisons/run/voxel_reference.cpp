@@ -33,12 +33,11 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   if (grids.empty()) return {};
   const Experiment& e = prepared.experiment;
   const NodalVectors measured = measured_points(prepared);
-  const bool stresses = wanted("stress", e.measures);
   fem::Request request = fem::request_of(e, material);
   request.loads = prepared.loads;
   request.grids = grids;
   request.points = stacked(prepared.body_points, measured);
-  if (stresses) request.stress_points = probe_points(e);
+  request.stress_points = stress_points(prepared);
   request.meshes = meshes;
   request.vtu_single = vtu_single;
   std::vector<fem::Solution> solutions = fem::solve(request);

@@ -21,11 +21,12 @@ const viridisCss = value => cssOf(colorAt(viridisStops, value));
 const colourings = {
   displacement: {text: 'displacement', symbol: '|u|', stops: viridisStops, values: shape => shape.size},
   difference: {text: 'difference to FEM', symbol: '|u − u_fem|', stops: viridisStops, values: shape => shape.difference},
+  von_mises: {text: 'von Mises stress of the reference', symbol: 'σ', unitOf: stressUnit, stops: viridisStops, values: shape => shape.von_mises},
   volume_change: {text: 'volume change', symbol: 'V′/V − 1', stops: coolWarmStops, signed: true, values: shape => shape.volume_change},
 };
 
 /// The unit that a colouring's values are shown in.
-const colouringUnit = (colouring, top) => colouring.signed ? {factor: 100, unit: '%'} : lengthUnit(top);
+const colouringUnit = (colouring, top) => colouring.signed ? {factor: 100, unit: '%'} : (colouring.unitOf || lengthUnit)(top);
 const colouringTitle = (colouring, top) => `${colouring.text} ${colouring.symbol} [${colouringUnit(colouring, top).unit}]`;
 
 /// Numbers along the colour bar.

@@ -143,6 +143,12 @@ function lengthUnit(size) {
   return {factor: 1, unit: 'm'};
 }
 
+/// The unit that suits a stress of this size.
+function stressUnit(size) {
+  for (const [factor, unit] of [[1e-9, 'GPa'], [1e-6, 'MPa'], [1e-3, 'kPa']]) if (size * factor >= 1) return {factor, unit};
+  return {factor: 1, unit: 'Pa'};
+}
+
 // ---- cells and measures
 
 /// [812, 0, 0] stands for 812 tetrahedra, which form no grid.

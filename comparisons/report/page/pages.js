@@ -194,6 +194,12 @@ function referencePart(result) {
     minorFold(measures.filter(m => result.minor.has(m)), tables), deformationTable(result)];
 }
 
+/// A sum of forces; components that are round-off beside the larger sum are 0.
+function forceCell({applied_N: applied = [], reacted_N: reacted = []}, sum = []) {
+  const size = Math.max(...[...applied, ...reacted].map(Math.abs), 0);
+  return el('td', {class: 'number'}, sum.length === 3 ? vectorText(sum.map(x => Math.abs(x) < 1e-9 * size ? 0 : x)) : '–');
+}
+
 /// Size of the deformation of the reference; amber where linear theory does not hold.
 function deformationTable(result) {
   if (result.deformations.length === 0) return null;
@@ -201,8 +207,9 @@ function deformationTable(result) {
   const cell = (d, key, text) => el('td', {class: 'number' + (result.linear && d[key] > limits[key] ? ' coarse' : '')}, text);
   return [el('h5', {}, 'Largest principal strain and rotation', el('small', {}, '99 % of the volume stay below' +
       (result.linear ? '; linear theory is for a few per cent and a few degrees: marked beyond 5 % or 5°' : ''))),
-    table('deformation', ['ν', right('principal strain'), right('rotation')], result.deformations.map(d => tr(nuText(d.poisson_ratio),
-      cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°'))))];
+    table('deformation', ['ν', right('principal strain'), right('rotation'), right('loads applied [N]'), right('supports react with [N]')], result.deformations.map(d => tr(nuText(d.poisson_ratio),
+      cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°'),
+      forceCell(d, d.applied_N), forceCell(d, d.reacted_N))))];
 }
 
 /// What to know of a case before its numbers are believed.

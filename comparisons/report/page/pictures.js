@@ -35,11 +35,11 @@ function trianglesOf(quads) {
 }
 
 /// Facet edges, each once.
-function edgesOf(quads) {
+function edgesOf(facets, corners = 4) {
   const seen = new Set(), index = [];
-  for (let i = 0; i < quads.length; i += 4)
-    for (let j = 0; j < 4; ++j) {
-      const a = quads[i + j], b = quads[i + (j + 1) % 4];
+  for (let i = 0; i < facets.length; i += corners)
+    for (let j = 0; j < corners; ++j) {
+      const a = facets[i + j], b = facets[i + (j + 1) % corners];
       const key = a < b ? a * 4294967296 + b : b * 4294967296 + a;
       if (a === b || seen.has(key)) continue;
       seen.add(key);
@@ -116,14 +116,14 @@ function framesOf({frames}, surface) {
 
 const decoded = new Map();
 
-/// {surface, rest, displacement, size, difference, volume_change}: values per node of the surface as it is drawn.
+/// {surface, rest, displacement, size, difference, volume_change, von_mises}: values per node of the surface as it is drawn.
 function decode(file, picture) {
   if (decoded.has(picture)) return decoded.get(picture);
   const surface = surfaceOf(file.meshes[picture.mesh], picture.surface === 'smooth');
   const scalars = packed => !packed ? [] : surface.source ? taken(octetsOf(packed), surface.source, 1) : octetsOf(packed);
   const displacement = surface.restOf(shortsOf(picture.displacement).map(u => Number.isFinite(u) ? u : 0));
   const shape = {surface, rest: surface.rest, displacement, size: norms(displacement), frames: framesOf(picture, surface),
-                 difference: scalars(picture.difference), volume_change: scalars(picture.volume_change)};
+                 difference: scalars(picture.difference), volume_change: scalars(picture.volume_change), von_mises: scalars(picture.von_mises)};
   decoded.set(picture, shape);
   return shape;
 }

@@ -122,6 +122,16 @@ function pairOf(result) {
   return {nu, cells: at, pictures: all.filter(p => p.model === 'fem' || p.model === best)};
 }
 
+/// The edges of a panel's triangles, which move with its surface: of the true surface the reference's finest mesh.
+function meshOf({shape, surface}) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', surface.position);
+  geometry.setIndex(new THREE.BufferAttribute(edgesOf(shape.surface.triangles.array, 3), 1));
+  const net = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: 0x222222, transparent: true, opacity: 0.55}));
+  net.frustumCulled = net.visible = false;
+  return net;
+}
+
 const markWords = {held: ['held', supportColour], moved: ['moved', moveColour], turned: ['turned', moveColour], force: ['force', loadColour],
                    pressure: ['pressure', loadColour], gravity: ['weight', loadColour], point: ['force', loadColour]};
 const cssNumber = color => '#' + color.toString(16).padStart(6, '0');
@@ -154,7 +164,21 @@ function problemPicture(result) {
   viewer.show(panels);
   aimAtPanels(viewer, panels, amplification, drawn.flatMap(cornersOf));
   bar.show(colouring, top);
-  const node = el('div', {class: 'glance'}, viewer.node, pictures.length > 1 && top > 0 ? bar.node : null,
+  const colouringChoice = select('Colour', ['difference', 'von_mises'].filter(key => panels.some(panel => panel.picture && colourings[key].values(panel.shape).length > 0))
+    .map(key => [key, `${colourings[key].text} ${colourings[key].symbol}`]), paint);
+  const meshBox = el('input', {type: 'checkbox', onchange: paint}), meshed = pictures[0].model === 'fem' && pictures[0].surface === 'smooth';
+  const net = meshed ? meshOf(panels[1]) : null;
+  if (net) panels[1].scene.add(net), panels[1].own.push(net);
+  function paint() {
+    const chosen = colourings[colouringChoice.value] || colouring, high = paintPanels(panels, chosen, amplification);
+    if (net) net.visible = meshBox.checked;
+    for (const panel of panels.slice(1)) panel.label.querySelector('small').textContent = panelWords(panel, chosen).text;
+    bar.show(chosen, high);
+    viewer.request();
+  }
+  paint();
+  const node = el('div', {class: 'glance'}, el('div', {class: 'choices'}, colouringChoice.node,
+      net ? el('label', {class: 'ghost'}, meshBox, 'mesh of the reference') : null), viewer.node, pictures.length > 1 && top > 0 ? bar.node : null,
     el('p', {class: 'note'}, `ν = ${nuText(nu)}, ${/tets/.test(cells) ? cells : cells + ' cells'}` +
       (amplification === 1 ? ', displacements to scale' : `, displacements drawn ${number(amplification, 3)} times as large`) + '. Drag or use the arrow keys to turn.'));
   return {node, redraw: () => viewer.render()};

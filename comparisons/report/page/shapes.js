@@ -9,8 +9,9 @@ function roundAmplification(x) {
 }
 
 const surfaceNames = {smooth: 'the true surface', cells: 'the cells'};
-const lengthText = x => { const {factor: f, unit} = lengthUnit(Math.abs(x)); return `${number(x * f, 4)} ${unit}`; };
-const valueText = (colouring, x) => colouring.signed ? `${signed(x, number(100 * x, 3))} %` : lengthText(x);
+const inUnit = (x, {factor, unit}) => `${number(x * factor, 4)} ${unit}`;
+const lengthText = x => inUnit(x, lengthUnit(Math.abs(x)));
+const valueText = (colouring, x) => colouring.signed ? `${signed(x, number(100 * x, 3))} %` : inUnit(x, colouringUnit(colouring, Math.abs(x)));
 
 /// Pictures of one row of panels, FEM first.
 function picturesAt(result, {nu, cells, surface}) {
@@ -72,7 +73,10 @@ function panelWords({picture, shape, rest}, colouring, node = null) {
   const values = colouring.values(shape), title = picture.model === 'fem' ? 'FEM reference' : picture.model;
   if (values.length === 0) return {title, text: picture.model === 'fem' ? 'the reference itself' : 'no value'};
   if (node !== null && node < values.length) return {title, text: `here ${valueText(colouring, values[node])}`};
-  if (!colouring.signed) return {title, text: `largest ${valueText(colouring, largest(values))}`};
+  if (!colouring.signed) {
+    const top = largest(values), at = values.indexOf(top), where = shape.rest.slice(3 * at, 3 * at + 3);
+    return {title, text: `largest ${valueText(colouring, top)}` + (colouring.unitOf ? ` at (${[...where].map(x => number(x, 3)).join(', ')}) m` : '')};
+  }
   const low = values.reduce((a, b) => b < a ? b : a, Infinity), high = values.reduce((a, b) => b > a ? b : a, -Infinity);
   return {title, text: `${valueText(colouring, low)} to ${valueText(colouring, high)}`};
 }

@@ -15,8 +15,7 @@ using namespace test;
 
 TEST(ClosestModel, TheWholeErrorDecidesAndNotTheSpringsOwnPart) {
   CaseResult bracket = with_models("bracket", 0.3, 0.041, {{"hybmss_avg", 0.065}, {"emsm", 0.12}});
-  bracket.cells = {{10, 10, 10}};
-  bracket.filled = {800};
+  for (auto& run : bracket.runs) run.filled = 800;
   for (const auto& [model, own] : {std::pair("hybmss_avg", 0.09), {"emsm", 0.0023}})
     bracket.splits.push_back({{model, 0.3, {10, 10, 10}}, 0.01, "displacement_error", "1", 0.065, own, 0.05, 0, 0, 0});
   add_row(bracket, "hybmss_avg", 0.3, "promised_error", 0.08, 0);
