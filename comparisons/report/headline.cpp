@@ -198,7 +198,7 @@ class Collector {
     for (const Run& run : result.runs) {
       if (!run.ok || !same_run(run, row)) continue;
       if (run.filled > 0) errors.cells.insert(run.filled);
-      if (is("displacement_error") && run.kind != "external") errors.seconds.push_back(run.seconds);
+      if (is("displacement_error") && run.seconds > 0) errors.seconds.push_back(run.seconds);
     }
     (result.experiment.body.is_voxels() ? errors.voxels : errors.blocks) = true;
   }

@@ -340,7 +340,7 @@ function runsPart(result) {
 
 /// How far the models are from the reference, in one sentence, with the checks beside it.
 function outcome(result) {
-  const worst = models.filter(model => result.models.includes(model) && !isFem(model)).map(model => ({model, worst:
+  const worst = models.filter(model => result.models.includes(model) && !isBeside(model)).map(model => ({model, worst:
     worstOf(result, judgedRows(result).filter(row => row.model === model && claims(result, model, row.poisson_ratio)))}))
     .filter(entry => entry.worst).sort((a, b) => a.worst.error - b.worst.error);
   const words = worst.length === 0 ? '' : `Largest ${displacementRows(result).length > 0 ? 'displacement errors' : 'errors of reactions'}: ${worst.slice(0, 3).map(({model, worst: {error}}) => `${model} ${percent(error)}`).join(', ')}` +

@@ -85,6 +85,13 @@ TEST_F(VoxelReference, RowsBalanceAndPartsOfTheErrorAddUp) {
           << row.model << " " << row.measure;
     }
   for (const char* model : {"hybmss", "emsm", "emsm_random", "msm_18", "fem_q1"}) EXPECT_EQ(seen[model], 6) << model;
+  ASSERT_EQ(part.deformations.size(), 1u);
+  EXPECT_LE((part.deformations[0].applied_N - load.force).norm(), 1e-8 * load.force.norm());
+  EXPECT_LE((part.deformations[0].reacted_N + load.force).norm(), 1e-8 * load.force.norm());
+  const auto coloured = std::count_if(part.pictures.begin(), part.pictures.end(), [](const Picture& p) {
+    return p.von_mises.size() == p.rest.size() / 3 && *std::max_element(p.von_mises.begin(), p.von_mises.end()) > 0;
+  });
+  EXPECT_EQ(coloured, 1) << "the reference on the true surface";
   ASSERT_FALSE(part.splits.empty()) << "the case asks for them";
   std::map<std::string, int> scalars;
   for (const ErrorSplit& s : part.splits) {
