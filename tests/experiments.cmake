@@ -5,7 +5,7 @@ set(experiments ${CMAKE_SOURCE_DIR}/comparisons/experiments)
 # `springproof compare CASE` runs it whole.
 set(tested_ratios  # a regular expression of cases, their ratios
     "golec_2019/[a-z]+" -0.5,0.499  # of the README's figure
-    "kot_2015/fig_7" -0.9,0.25,0.499
+    "kot_2015/fig_7_surface" -0.9,0.25,0.499
     "kot_2015/fig_12" 0.4
     "kot_2015/fig_13" 0.49
     "large_strain/(compression|tension|torsion)" 0.25,0.499
@@ -18,7 +18,7 @@ set(tested_ratios  # a regular expression of cases, their ratios
 # Those that repeat at length what others prove in seconds have the label `long`: the papers' figures one by one (`springproof
 # reproduce` draws them), larger bodies, longer motions, costs.
 set(long
-    "kot_2014/fig.*" "kot_2015/fig_(8|1[0-9])"
+    "kot_2014/fig.*" "kot_2015/fig_(7|8|1[0-9])"
     "golec_2019/(tables/(table2_.*|table3_tension_20|table4_shear_20|table5_torsion_45deg)|figures/fig_5_2MPa)"
     "golec_2019/ten_seconds/(table2_.*|table3_.*|table4_shear_20|table5_torsion_45deg)"
     "bodies/(rabbit_.*|hand_pressed|bar_networks)" "cost/.*" "large_strain/(tension|bending)"

@@ -70,7 +70,7 @@ void bench_experiments(const BenchOptions& options, Findings& findings) {
         "springproof is neither beside this program nor named by SPRINGPROOF_PROGRAM: no experiments");
   std::vector<std::string> names = {"golec_2019/compression", "golec_2019/tension", "golec_2019/shear",
                                     "golec_2019/bending",     "golec_2019/torsion", "kot_2014/fig_13",
-                                    "kot_2015/fig_7",         "bodies/rabbit"};
+                                    "kot_2015/fig_7_surface", "bodies/rabbit"};
   if (options.quick) names = {"kot_2014/fig_13"};
   for (const std::string& name : names) run_case(springproof, name, findings);
 }

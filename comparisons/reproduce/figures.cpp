@@ -37,6 +37,19 @@ Claim Claim::alike(double share) const {
   return claim;
 }
 
+Claim Claim::scattering(double share) const {
+  Claim claim = *this;
+  claim.target = scatter;
+  claim.within = share;
+  return claim;
+}
+
+Claim Claim::by_the_paper() const {
+  Claim claim = *this;
+  claim.papers_bound = true;
+  return claim;
+}
+
 Claim Claim::at(const std::vector<double>& ratios) const {
   Claim claim = *this;
   claim.poisson_ratios = ratios;

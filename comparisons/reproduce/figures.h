@@ -15,8 +15,8 @@ namespace springproof {
 struct Claim {
   /// What each number is compared with: `value`, the converged finite elements, the Poisson's ratio wanted; or the
   /// numbers of `models` with each other: in ascending order (or within their spread), or the largest over the
-  /// smallest less 1.
-  enum Target { number, finite_elements, wanted_nu, ascending, similar };
+  /// smallest less 1; or of several runs of a random network their spread over their mean.
+  enum Target { number, finite_elements, wanted_nu, ascending, similar, scatter };
 
   std::string words;
   std::string case_name, measure;
@@ -28,10 +28,14 @@ struct Claim {
   std::vector<double> poisson_ratios = {};
   std::optional<Cells> cells = {};
   std::string against = "";  ///< of `similar`: the measure whose ratio of largest to smallest is the bound
+  bool papers_bound =
+      false;  ///< `within` is the paper's number for this very quantity; else its words are judged by ours
 
   Claim near(double number_wanted, double share) const;  ///< within a share of a number
   Claim near_fem(double share) const;                    ///< within a share of the finite elements' value
   Claim at_most(double bound) const;                     ///< a distance, in its own unit
+  Claim scattering(double share) const;                  ///< runs of a network spread by at most a share of their mean
+  Claim by_the_paper() const;                            ///< the bound is the paper's
   Claim alike(double share) const;                       ///< largest over smallest less 1
   Claim at(const std::vector<double>& ratios) const;     ///< only at these Poisson's ratios
   Claim on(const Cells& lattice) const;                  ///< only on this lattice

@@ -22,6 +22,13 @@ std::optional<double> target_of(const Claim& claim, const Row& row) {
   return claim.target == Claim::wanted_nu ? row.poisson_ratio : claim.value;
 }
 
+/// What a claim bounds; no number where there is none.
+double off_by(const Claim& claim, const Row& row) {
+  if (claim.target == Claim::scatter) return row.spread ? *row.spread / std::abs(row.value) : std::nan("");
+  const std::optional<double> target = target_of(claim, row);
+  return target ? std::abs(row.value - *target) / (claim.relative ? std::abs(*target) : 1) : std::nan("");
+}
+
 /// Models and Poisson's ratios that a claim names and that have no row.
 int missing_runs(const PaperResults& results, const Claim& claim) {
   int missing = 0;
@@ -30,6 +37,8 @@ int missing_runs(const PaperResults& results, const Claim& claim) {
       if (!results.row(claim.case_name, model, nu, claim.measure, claim.cells)) ++missing;
   return missing;
 }
+
+std::string whose(const Claim& claim) { return claim.papers_bound ? "the paper's" : "ours"; }
 
 std::string size_text(const Claim& claim, double size) {
   return claim.relative ? fmt::format("{:.2g} %", 100 * size) : fmt::format("{:.2g}", size);
@@ -76,6 +85,8 @@ ClaimVerdict judge_order(const PaperResults& results, const Claim& claim) {
     listed += fmt::format("{}{} {:.2g}{}", listed.empty() ? "" : ", ",
                           ratios > 1 ? fmt::format("{} at ν = {:g}", row.model, row.poisson_ratio) : row.model,
                           row.value, row.spread ? fmt::format(" ± {:.1g}", *row.spread) : "");
+  if (claim.target == Claim::similar && claim.against.empty())
+    listed += fmt::format(" (allowed {}, {})", size_text(claim, claim.within), whose(claim));
   return {claim.words, listed, order_holds(results, claim, rows) ? ClaimVerdict::yes : ClaimVerdict::no};
 }
 
@@ -85,17 +96,16 @@ ClaimVerdict judge_claim(const PaperResults& results, const Claim& claim) {
   int rows = 0, inside = 0, without = missing_runs(results, claim);
   for (const Row& row : results.rows(claim.case_name)) {
     if (!asked_for(claim, row)) continue;
-    const std::optional<double> target = target_of(claim, row);
-    const double off = target ? std::abs(row.value - *target) / (claim.relative ? std::abs(*target) : 1) : std::nan("");
+    const double off = off_by(claim, row);
     std::isfinite(off) ? ++rows : ++without;
     if (std::isfinite(off)) worst = std::max(worst, off);
     if (off <= claim.within) ++inside;
   }
   if (rows == 0) return {claim.words, "no result", ClaimVerdict::no};
-  const bool distance = claim.target == Claim::number && claim.value == 0;
+  const bool distance = claim.target == Claim::scatter || (claim.target == Claim::number && claim.value == 0);
   std::string numbers = fmt::format("{} {}", distance ? "at most" : "off by at most", size_text(claim, worst));
-  if (claim.within < 0) return {claim.words, numbers, ClaimVerdict::not_judged};
-  numbers += fmt::format(" (allowed {})", size_text(claim, claim.within));
+  if (claim.within < 0) return {claim.words, numbers + " (not judged)", ClaimVerdict::not_judged};
+  numbers += fmt::format(" (allowed {}, {})", size_text(claim, claim.within), whose(claim));
   if (inside < rows && rows > 1) numbers += fmt::format(", {} of {} are within", inside, rows);
   if (without > 0) numbers += fmt::format(", {} without a result", without == 1 ? "one" : std::to_string(without));
   return {claim.words, numbers,
@@ -110,7 +120,9 @@ std::vector<ValueVerdict> judge_values(const PaperResults& results, const PaperF
     for (const PrintedValue& v :
          results.printed(case_name, figure.printed_where.empty() ? figure.title() : figure.printed_where)) {
       const double allowed = std::max(printed_tolerance * std::abs(v.printed), figure.last_digit * (1 + 1e-9));
-      all.push_back({v, v.ours && std::abs(*v.ours - v.printed) <= allowed});
+      const bool agrees = v.ours && std::abs(*v.ours - v.printed) <= allowed;
+      all.push_back({v, agrees});
+      if (agrees && figure.is_table()) all.back().value.remark.clear();  // remarks of tables say why ours differ
     }
   return all;
 }
@@ -129,7 +141,7 @@ void judge_claims(const PaperResults& results, const PaperFigure& figure, Figure
   const std::size_t hold = count(ClaimVerdict::yes), judged = verdict.claims.size() - count(ClaimVerdict::not_judged);
   verdict.word = word_of(hold, count(ClaimVerdict::partly), judged);
   for (const ClaimVerdict& claim : verdict.claims)
-    if (hold == judged || (claim.holds != ClaimVerdict::yes && claim.holds != ClaimVerdict::not_judged))
+    if (hold == judged || claim.holds != ClaimVerdict::yes)
       verdict.sentence += (verdict.sentence.empty() ? "" : "; ") + claim.words + ": " + claim.numbers;
 }
 

@@ -120,6 +120,32 @@ TEST(PaperFigures, UnknownPapersAndFiguresAreRefusedWithTheOnesThereAre) {
   EXPECT_EQ(figures_named(paper_named("kot_2015"), {}).size(), 13u);
 }
 
+const PaperFigure& figure_of(const std::string& paper, const std::string& id) {
+  for (const PaperFigure& figure : paper_named(paper).figures)
+    if (figure.id == id) return figure;
+  throw std::invalid_argument(id);
+}
+
+TEST(PaperFigures, ThePapersScatterOfABarIsNoDistanceFromItsFormula) {
+  int scatter = 0;
+  for (const Claim& claim : figure_of("kot_2014", "13").claims) {
+    EXPECT_TRUE(!claim.papers_bound || claim.target == Claim::scatter) << claim.words;
+    scatter += claim.target == Claim::scatter;
+  }
+  EXPECT_EQ(scatter, 2);
+}
+
+TEST(PaperFigures, DispersionAsPublishedIsJudgedOnThePapersBlock) {
+  for (const Claim& claim : figure_of("kot_2015", "7").claims) {
+    if (claim.models != std::vector<std::string>{"published"} || claim.within < 0) continue;
+    const Body& body = experiment_of(claim.case_name).body;
+    EXPECT_EQ(body.cells, (std::vector<Cells>{{70, 15, 15}}));
+    EXPECT_EQ(claim.measure, "moduli.poisson_ratio");
+    return;
+  }
+  FAIL() << "it is not judged";
+}
+
 /// Cells of the rows "| Fig. 8 | ... |" below the heading of a paper.
 std::map<std::string, std::vector<std::string>> documented(const std::string& paper) {
   std::ifstream in(std::string(SPRINGPROOF_SOURCE_DIR) + "/docs/reproducing.md");

@@ -59,7 +59,7 @@ TEST_F(ReproducedResults, AClaimHoldsInPartOrNotAtAll) {
   EXPECT_EQ(judged({"near one", "", "", {"a"}, Claim::number, 1, 0.2000001}).holds, ClaimVerdict::yes);
   EXPECT_EQ(judged({"near one", "", "", {"a"}, Claim::number, 1, 0.05}).holds, ClaimVerdict::partly);
   EXPECT_EQ(judged({"near one", "", "", {"a"}, Claim::number, 1, 0.05}).numbers,
-            "off by at most 20 % (allowed 5 %), 1 of 2 are within");
+            "off by at most 20 % (allowed 5 %, ours), 1 of 2 are within");
   EXPECT_EQ(judged({"near one", "", "", {"a"}, Claim::number, 1, 0.01}).holds, ClaimVerdict::no);
   EXPECT_EQ(judged({"near FEM", "", "", {"b"}, Claim::finite_elements, 0, 0.5}).holds, ClaimVerdict::yes);
   EXPECT_EQ(judged({"nu", "", "", {"a"}, Claim::wanted_nu, 0, 0.1, false}).holds, ClaimVerdict::no);
@@ -95,7 +95,47 @@ TEST_F(ReproducedResults, WithoutANumberOfThePaperNothingIsJudged) {
                            "",           {"golec_2019/compress"},
                            "",           {{"shown", "golec_2019/compress", "x", {"a"}, Claim::number, 0, -1, false}}};
   EXPECT_EQ(judge_figure(read(), figure).word, "drawn");
-  EXPECT_EQ(judge_figure(read(), figure).sentence, "shown: at most 1.2");
+  EXPECT_EQ(judge_figure(read(), figure).sentence, "shown: at most 1.2 (not judged)");
+}
+
+TEST_F(ReproducedResults, ItIsSaidWhoseTheBoundIs) {
+  const Claim claim{"near one", "", "", {"a"}, Claim::number, 1, 0.05};
+  EXPECT_NE(judged(claim).numbers.find("(allowed 5 %, ours)"), std::string::npos);
+  EXPECT_NE(judged(claim.by_the_paper()).numbers.find("(allowed 5 %, the paper's)"), std::string::npos);
+  EXPECT_NE(judged(Claim{"b as a", "", "", {"a", "b"}, Claim::similar, 0, 0.1, true, {0.25}}.by_the_paper())
+                .numbers.find("(allowed 10 %, the paper's)"),
+            std::string::npos);
+}
+
+TEST_F(ReproducedResults, TheScatterBetweenRunsIsNoDistance) {
+  const Claim spread{"runs differ", "", "", {"b"}};  // 3 +- 0.5
+  EXPECT_EQ(judged(spread.scattering(0.17)).holds, ClaimVerdict::yes);
+  EXPECT_EQ(judged(spread.scattering(0.16)).holds, ClaimVerdict::no);
+  EXPECT_EQ(judged(spread.scattering(0.16)).numbers, "at most 17 % (allowed 16 %, ours)");
+  EXPECT_EQ(judged(Claim{"one run", "", "", {"a"}}.scattering(1)).holds, ClaimVerdict::no) << "a single run has none";
+}
+
+TEST_F(ReproducedResults, WhatIsNotJudgedIsStillSaid) {
+  PaperFigure figure{"golec_2019", "3", "", {"golec_2019/compress"}, ""};
+  const auto off_one = [](double within) {
+    return Claim{"near one", "golec_2019/compress", "x", {"a"}, Claim::number, 1, within};
+  };
+  figure.claims = {off_one(0.01), off_one(-1)};
+  EXPECT_EQ(judge_figure(read(), figure).word, "differs");
+  EXPECT_EQ(judge_figure(read(), figure).sentence,
+            "near one: off by at most 20 % (allowed 1 %, ours), 0 of 2 are within; near one: off by at most 20 % (not "
+            "judged)");
+}
+
+TEST_F(ReproducedResults, NoReasonWhyAPrintedValueDiffersStandsBesideOneThatAgrees) {
+  result.published.push_back({{"a", 0.25, {1, 1, 1}}, "x", "N", 1.0, 1.001, "Table 2, a", "depends on the steps"});
+  result.published.push_back({{"a", 0.4, {1, 1, 1}}, "x", "N", 1.1, 1.2, "Table 2, a", "depends on the steps"});
+  PaperFigure figure{"golec_2019", "table2", "", {"golec_2019/compress"}, ""};
+  figure.last_digit = 0.01;
+  const FigureVerdict verdict = judge_figure(read(), figure);
+  ASSERT_EQ(verdict.values.size(), 2u);
+  EXPECT_EQ(verdict.values[0].value.remark, "");
+  EXPECT_EQ(verdict.values[1].value.remark, "depends on the steps");
 }
 
 TEST_F(ReproducedResults, PrintedValuesAgreeWithinTwoPerCentOrTheirLastDigit) {
