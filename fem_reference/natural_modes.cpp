@@ -28,85 +28,113 @@ constexpr double eigen_tolerance = 1e-10;  // relative residual
 constexpr double rigid_below = 1e-7;       // of the largest eigenvalue computed: a rigid motion
 constexpr double least_gap = 1e-4;         // relative, between eigenvalues: none lies in it by accident
 
-/// Stiffness and consistent mass of the free degrees of freedom.
+/// Stiffness and consistent mass of the free displacements and, after them, of the pressures, which have no mass.
 struct Pencil {
-  std::vector<PetscInt> number;  ///< of each degree of freedom among the free ones; -1: held
-  PetscInt unknowns = 0;
+  std::vector<PetscInt> number;  ///< of each displacement among the free ones; -1: held
+  PetscInt displacements = 0, pressures = 0;
   std::unique_ptr<SparseMatrix> K, M;
+
+  PetscInt unknowns() const { return displacements + pressures; }
 };
 
-/// lambda B^T P^-1 B: the pressures of a cell eliminated.  B = integral of pressure functions times div u, P their
-/// mass.
-CellMatrix condensed_pressure(const CellShape& shape, double lambda) {
-  const auto functions = shape.pressures.cols();
-  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(functions, 3 * shape.nodes());
-  for (int q = 0; q < shape.points(); ++q)
-    for (int a = 0; a < shape.nodes(); ++a)
-      for (int i = 0; i < 3; ++i)
-        B.col(3 * a + i) += shape.weights[q] * shape.gradients(3 * q + i, a) * shape.pressures.row(q).transpose();
-  const Eigen::MatrixXd P = shape.pressures.transpose() * shape.weights.asDiagonal() * shape.pressures;
-  return lambda * B.transpose() * P.ldlt().solve(B);
+/// Calls visit(cell, rows) with the pencil's rows of every cell: 3 a + i of component i of node a, then pressures.
+template <class Visit>
+void for_each_cell(const Pencil& pencil, const dealii::DoFHandler<3>& displacement,
+                   const dealii::DoFHandler<3>& pressure, const Visit& visit) {
+  const auto& fe = displacement.get_fe();
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell()), pressure_dofs;
+  std::vector<PetscInt> rows;
+  for (const auto& cell : displacement.active_cell_iterators()) {
+    cell->get_dof_indices(dofs);
+    rows.resize(dofs.size());
+    for (unsigned int i = 0; i < dofs.size(); ++i) {
+      const auto [component, node] = fe.system_to_component_index(i);
+      rows[3 * node + component] = pencil.number[dofs[i]];
+    }
+    if (pencil.pressures > 0) {
+      pressure_dofs.resize(pressure.get_fe().n_dofs_per_cell());
+      dealii::DoFHandler<3>::active_cell_iterator(&pressure.get_triangulation(), cell->level(), cell->index(),
+                                                  &pressure)
+          ->get_dof_indices(pressure_dofs);
+      for (const auto dof : pressure_dofs) rows.push_back(pencil.displacements + PetscInt(dof));
+    }
+    visit(dealii::Triangulation<3>::cell_iterator(cell), rows);
+  }
 }
 
+/// Stiffness of a cell, its pressures in units of `unit` [Pa/m].
+CellMatrix stiffness_of(const CellLaw& law, const CellShape& shape, double unit) {
+  const Eigen::Index u = 3 * shape.nodes(), p = shape.pressures.cols();
+  double smallest = 1;
+  CellTangent tangent;
+  cell_residual(law, shape, {Eigen::MatrixXd::Zero(shape.nodes(), 3), Eigen::VectorXd::Zero(p)}, smallest, &tangent);
+  CellMatrix K(u + p, u + p);
+  K.topLeftCorner(u, u) = tangent.uu;
+  if (p == 0) return K;
+  K.topRightCorner(u, p) = unit * tangent.up;
+  K.bottomLeftCorner(p, u) = unit * tangent.pu;
+  K.bottomRightCorner(p, p) = unit * unit * tangent.pp;
+  return K;
+}
+
+/// Consistent mass of a cell; none of its `pressures`.
+CellMatrix mass_of(const Eigen::MatrixXd& N, const Eigen::VectorXd& masses, Eigen::Index pressures) {
+  const Eigen::MatrixXd m = N.transpose() * masses.asDiagonal() * N;
+  CellMatrix M = CellMatrix::Zero(3 * N.cols() + pressures, 3 * N.cols() + pressures);
+  for (Eigen::Index a = 0; a < N.cols(); ++a)
+    for (Eigen::Index b = 0; b < N.cols(); ++b)
+      for (int i = 0; i < 3; ++i) M(3 * a + i, 3 * b + i) = m(a, b);
+  return M;
+}
+
+/// `pressure_unit`: of the unknown pressures [Pa/m], for numbers as large as the displacements'.
 Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
-                       Form form) {
+                       Form form, double pressure_unit) {
   Pencil pencil;
   pencil.number.assign(dof_handler.n_dofs(), 0);
   for (const Prescribed& p : prescribed(dof_handler, body, problem.loads)) pencil.number[p.dof] = -1;
   for (PetscInt& n : pencil.number)
-    if (n == 0) n = pencil.unknowns++;
-
-  const auto& fe = dof_handler.get_fe();
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
-  dealii::DynamicSparsityPattern pattern(pencil.unknowns, pencil.unknowns);
-  for (const auto& cell : dof_handler.active_cell_iterators()) {
-    cell->get_dof_indices(dofs);
-    std::vector<dealii::types::global_dof_index> free;
-    for (const auto dof : dofs)
-      if (pencil.number[dof] >= 0) free.push_back(pencil.number[dof]);
-    std::sort(free.begin(), free.end());
-    for (const auto row : free) pattern.add_entries(row, free.begin(), free.end(), true);
-  }
-  const dealii::IndexSet all = dealii::complete_index_set(pencil.unknowns);
-  const MPI_Comm comm = PETSC_COMM_SELF;
-  pencil.K = std::make_unique<SparseMatrix>(all, all, pattern, comm);
-  pencil.M = std::make_unique<SparseMatrix>(all, all, pattern, comm);
+    if (n == 0) n = pencil.displacements++;
 
   const auto scalar = scalar_element(body, problem.degree);
   const dealii::Quadrature<3> quadrature = cell_quadrature(body, body.has_tetrahedra() ? 4 : problem.degree + 1);
-  dealii::FEValues<3> values(*body.mapping, *scalar, quadrature,
-                             dealii::update_values | dealii::update_gradients | dealii::update_JxW_values);
   const int nodes = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
-  CellShape shape{Eigen::MatrixXd(3 * points, nodes), Eigen::VectorXd(points), Eigen::MatrixXd()};
+  CellShape shape{Eigen::MatrixXd(3 * points, nodes), Eigen::VectorXd(points), Eigen::MatrixXd(points, 0)};
+  dealii::DoFHandler<3> of_pressure(body.triangulation);
   if (form == Form::mixed) {
-    shape.pressures = values_at(*pressure_element(body, problem.degree), quadrature);
+    const auto fe = pressure_element(body, problem.degree);
+    of_pressure.distribute_dofs(*fe);
+    pencil.pressures = PetscInt(of_pressure.n_dofs());
+    shape.pressures = values_at(*fe, quadrature);
   }
+
+  dealii::DynamicSparsityPattern pattern(pencil.unknowns(), pencil.unknowns());
+  for_each_cell(pencil, dof_handler, of_pressure, [&](const auto&, const std::vector<PetscInt>& rows) {
+    std::vector<dealii::types::global_dof_index> free;
+    for (const PetscInt row : rows)
+      if (row >= 0) free.push_back(row);
+    std::sort(free.begin(), free.end());
+    for (const auto row : free) pattern.add_entries(row, free.begin(), free.end(), true);
+  });
+  const dealii::IndexSet all = dealii::complete_index_set(pencil.unknowns());
+  pencil.K = std::make_unique<SparseMatrix>(all, all, pattern, PETSC_COMM_SELF);
+  pencil.M = std::make_unique<SparseMatrix>(all, all, pattern, PETSC_COMM_SELF);
+
+  dealii::FEValues<3> values(*body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values);
+  const Eigen::MatrixXd N = values_at(*scalar, quadrature);
   const CellLaw law{std::nullopt, form, shear_modulus(problem.material), lame_lambda(problem.material)};
-  std::vector<PetscInt> rows(dofs.size());
-  for (const auto& cell : dof_handler.active_cell_iterators()) {
-    cell->get_dof_indices(dofs);
-    for (unsigned int i = 0; i < dofs.size(); ++i) {
-      const auto [component, node] = fe.system_to_component_index(i);
-      rows[3 * node + component] = pencil.number[dofs[i]];  // PETSc leaves out negative rows and columns
-    }
-    const dealii::Triangulation<3>::cell_iterator here = cell;
-    values.reinit(here);
-    CellMatrix mass = CellMatrix::Zero(3 * nodes, 3 * nodes);
+  for_each_cell(pencil, dof_handler, of_pressure, [&](const auto& cell, const std::vector<PetscInt>& rows) {
+    values.reinit(cell);
     for (int q = 0; q < points; ++q) {
       shape.weights[q] = values.JxW(q);
-      for (int a = 0; a < nodes; ++a) {
+      for (int a = 0; a < nodes; ++a)
         for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
-        for (int b = 0; b < nodes; ++b)
-          for (int i = 0; i < 3; ++i)
-            mass(3 * a + i, 3 * b + i) +=
-                problem.material.density * values.JxW(q) * values.shape_value(a, q) * values.shape_value(b, q);
-      }
     }
-    CellMatrix stiffness = cell_stiffness(law, shape, nullptr);
-    if (form == Form::mixed) stiffness += condensed_pressure(shape, law.lambda);
-    pencil.K->add(rows, rows, stiffness.data());
+    const CellMatrix stiffness = stiffness_of(law, shape, pressure_unit);
+    const CellMatrix mass = mass_of(N, problem.material.density * shape.weights, shape.pressures.cols());
+    pencil.K->add(rows, rows, stiffness.data());  // PETSc leaves out negative rows and columns
     pencil.M->add(rows, rows, mass.data());
-  }
+  });
   pencil.K->finish();
   pencil.M->finish();
   for (const Mat matrix : {pencil.K->petsc(), pencil.M->petsc()})
@@ -114,14 +142,15 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
   return pencil;
 }
 
-/// Number of eigenvalues below sigma: that of negative pivots of K - sigma M (Sylvester).
+/// Number of eigenvalues below sigma: that of negative pivots of K - sigma M (Sylvester), less one for each pressure,
+/// whose own block is negative.
 PetscInt eigenvalues_below(double sigma, const Pencil& pencil) {
   Mat shifted = nullptr;
   succeed(MatDuplicate(pencil.K->petsc(), MAT_COPY_VALUES, &shifted));
   succeed(MatAXPY(shifted, -sigma, pencil.M->petsc(), SAME_NONZERO_PATTERN));
   const PetscInt negative = SymmetricFactors(shifted).negative_pivots();
   succeed(MatDestroy(&shifted));
-  return negative;
+  return negative - pencil.pressures;
 }
 
 /// An eigenvalue solver and its vectors; destroyed on every way out.
@@ -161,7 +190,7 @@ void set_up(const Pencil& pencil, double target, Eigensolver& solver) {
 /// Computes `count` modes; the matrix is factorised once.  Iterations.
 int solve(const Pencil& pencil, int count, Eigensolver& solver) {
   PetscInt iterations = 0;
-  succeed(EPSSetDimensions(solver.eps, count, std::min<PetscInt>(pencil.unknowns, 3 * count), PETSC_DEFAULT));
+  succeed(EPSSetDimensions(solver.eps, count, std::min<PetscInt>(pencil.displacements, 3 * count), PETSC_DEFAULT));
   succeed(EPSSolve(solver.eps));
   succeed(EPSGetIterationNumber(solver.eps, &iterations));
   return int(iterations);
@@ -212,23 +241,19 @@ void solve_modes(const GridProblem& problem, const Body3& body, const dealii::Do
   const Element element{body.has_tetrahedra(), problem.degree};
   const Form form = form_for(element, problem.material.poisson_ratio, true);
   if (process_count() > 1) throw InputError("natural modes are computed by one process");
-  if (element.tetrahedra && form == Form::mixed)
-    throw InputError(
-        fmt::format("natural modes of tetrahedra: Poisson's ratio is {:g} (allowed: up to 0.4, above which "
-                    "they would lock)",
-                    problem.material.poisson_ratio));
   start_mpi();
   progress::detail(fmt::format("{} unknowns, natural modes", dof_handler.n_dofs()));
-  const Pencil pencil = assemble_pencil(problem, body, dof_handler, form);
   const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
+  const Pencil pencil =
+      assemble_pencil(problem, body, dof_handler, form, shear_modulus(problem.material) / low.distance(high));
   const double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
   Eigensolver solver;
   set_up(pencil, -0.01 * slowest, solver);
   solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form));
-  solution.unknowns = pencil.unknowns;
+  solution.unknowns = pencil.unknowns();
   Spectrum spectrum;
   for (int beyond = modes_beyond; beyond <= most_beyond; beyond *= 2) {
-    const int count = int(std::min<PetscInt>(problem.modes + 6 + beyond, pencil.unknowns));
+    const int count = int(std::min<PetscInt>(problem.modes + 6 + beyond, pencil.displacements));
     solution.iterations += solve(pencil, count, solver);
     spectrum = spectrum_of(solver.eps, problem.modes);
     if (int(spectrum.found.size()) < count) {
@@ -236,7 +261,7 @@ void solve_modes(const GridProblem& problem, const Body3& body, const dealii::Do
       return;
     }
     solution.message = missed(spectrum, pencil);
-    if (solution.message.empty() || count == pencil.unknowns) break;
+    if (solution.message.empty() || count == pencil.displacements) break;
   }
   if (!solution.message.empty()) return;
   const auto& [found, rigid, last, gap] = spectrum;

@@ -10,9 +10,9 @@ namespace springproof::fem {
 
 /// The problem's first `modes` natural modes, its supports at rest and its other loads left out: SLEPc's Krylov-Schur
 /// method about a shift below zero (MUMPS); that no eigenvalue was passed over follows from the inertia of K - sigma M
-/// above the last.  Quadratic hexahedra above nu = 0.4: pressures, discontinuous from cell to cell, are eliminated.
-/// Sets the frequencies, shapes, residual and description of the solution.
-/// @throws InputError for several processes, and for quadratic tetrahedra above nu = 0.4, which would lock.
+/// above the last.  In the mixed form (element.h) the pressures are unknowns without mass: a saddle point, about a
+/// shift below zero quasi-definite.  Sets the frequencies, shapes, residual and description of the solution.
+/// @throws InputError for several processes.
 void solve_modes(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                  Solution& solution);
 
