@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <utility>
 
 #include "comparisons/advise/measure.h"
-#include "comparisons/advise/table_prediction.h"
 #include "comparisons/run/find_cases.h"
 
 namespace springproof {
@@ -24,9 +20,10 @@ bool within(double truth, double predicted, double factor) {
 }
 
 const PilotModel* find_model(const Pilot& pilot, const std::string& label) {
-  const auto at =
-      std::find_if(pilot.models.begin(), pilot.models.end(), [&](const PilotModel& m) { return m.label == label; });
-  return at == pilot.models.end() ? nullptr : &*at;
+  for (const auto* list : {&pilot.models, &pilot.elements})
+    for (const PilotModel& m : *list)
+      if (m.label == label) return &m;
+  return nullptr;
 }
 
 /// The rows of a case at a Poisson's ratio, and the rows of the model table that they are of.
@@ -38,24 +35,12 @@ struct HeldOut {
 HeldOut held_out_of(const std::vector<Measurement>& all, const std::string& name, double poisson_ratio) {
   HeldOut out;
   for (const Measurement& m : all) {
-    if (m.load != name || !same_poisson_ratio(m.poisson_ratio, poisson_ratio)) continue;
+    if (m.case_name != name || !same_poisson_ratio(m.poisson_ratio, poisson_ratio)) continue;
     out.rows.push_back(m);
     const std::string row = m.model.substr(0, m.model.find(' '));
-    if (std::find(out.models.begin(), out.models.end(), row) == out.models.end()) out.models.push_back(row);
+    if (!row.starts_with("fem_") && std::find(out.models.begin(), out.models.end(), row) == out.models.end())
+      out.models.push_back(row);
   }
-  return out;
-}
-
-Judged judge(const Measurement& truth, const PilotModel& model, const Pilot& pilot,
-             const std::vector<Measurement>& measured) {
-  const double cells = std::pow(truth.cells_across, 3);
-  Judged out{truth, predict(pilot, model, cells), {}};
-  if (truth.body != "block") return out;
-  const Classified kind = classify(pilot);
-  const double across = std::cbrt(cells / pilot.volume) * kind.thickness;
-  if (const auto p =
-          predict(measured, {kind.load, "block", kind.slenderness, 0}, truth.model, truth.poisson_ratio, across))
-    out.from_table.push_back(*p);
   return out;
 }
 
@@ -72,31 +57,17 @@ bool inside(const Measurement& truth, const Prediction& p) {
 HitRate hit_rate(const std::vector<Judged>& judged) {
   HitRate out;
   for (const Judged& j : judged) {
-    const bool good = hit(j.truth, j.from_pilot);
+    const bool good = hit(j.truth, j.predicted);
     ++out.all;
     out.hits += good;
-    out.inside += inside(j.truth, j.from_pilot);
-    out.beyond += j.from_pilot.beyond;
-    out.beyond_hits += j.from_pilot.beyond && good;
-    for (const Prediction& p : j.from_table) {
-      ++out.table;
-      out.table_hits += hit(j.truth, p);
-      out.table_inside += inside(j.truth, p);
-    }
+    out.inside += inside(j.truth, j.predicted);
+    out.beyond += j.predicted.beyond;
+    out.beyond_hits += j.predicted.beyond && good;
   }
   return out;
 }
 
-Classified classify(const Pilot& pilot) {
-  const double thickness = pilot.size.minCoeff();
-  double across = std::numeric_limits<double>::infinity();
-  for (int d = 0; d < 3; ++d)
-    if (d != pilot.shares.axis) across = std::min(across, pilot.size[d]);
-  return {pilot.shares.largest(), pilot.size[pilot.shares.axis] / across, thickness};
-}
-
-std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out,
-                                      const std::vector<Measurement>& measured, const std::string& name,
+std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out, const std::string& name,
                                       const PilotSize& size) {
   std::vector<Judged> out;
   for (const Experiment& e : held_out_cases()) {
@@ -109,7 +80,7 @@ std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out,
         const bool whole = e.body.is_voxels() && !e.body.cut;
         const PilotModel* model = whole ? find_model(pilot, m.model + " cut=false") : nullptr;
         if (!model) model = find_model(pilot, m.model);
-        if (model) out.push_back(judge(m, *model, pilot, measured));
+        if (model) out.push_back({m, predict(pilot, *model, m.cells)});
       }
     }
   }

@@ -12,8 +12,7 @@ namespace springproof {
 /// One held-out error beside its predictions.
 struct Judged {
   Measurement truth;
-  Prediction from_pilot;
-  std::vector<Prediction> from_table;  ///< of a block in one of the measured loads; else none
+  Prediction predicted;
 };
 
 /// Within a factor of 1.5, or both below the reference's uncertainty.
@@ -22,25 +21,15 @@ bool hit(const Measurement& truth, const Prediction& prediction);
 /// Whether the truth lies in the range that the prediction states, or both are below the reference's uncertainty.
 bool inside(const Measurement& truth, const Prediction& prediction);
 
-/// Hits of all, of those on lattices finer than the pilot's, and of the table alone.
+/// Hits of all, and of those on lattices finer than the pilot's.
 struct HitRate {
   int all = 0, hits = 0, inside = 0;
   int beyond = 0, beyond_hits = 0;
-  int table = 0, table_hits = 0, table_inside = 0;
 };
 HitRate hit_rate(const std::vector<Judged>& judged);
 
-/// Predicts the held-out rows of the cases whose names contain `name` (empty: all), each from its pilot and, where the
-/// table knows its load, from `measured`.
-std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out,
-                                      const std::vector<Measurement>& measured, const std::string& name,
+/// Predicts the held-out rows of the cases whose names contain `name` (empty: all), each from its pilot.
+std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out, const std::string& name,
                                       const PilotSize& size = {});
-
-/// The load, slenderness and thickness of a case, as its pilot finds them; nothing for a body of voxels.
-struct Classified {
-  std::string load;
-  double slenderness = 1, thickness = 1;  ///< [1], [m]
-};
-Classified classify(const Pilot& pilot);
 
 }  // namespace springproof

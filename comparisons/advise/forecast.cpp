@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "comparisons/advise/advice.h"
-#include "comparisons/advise/check.h"
 #include "msm/parameters/model_table.h"
 
 namespace springproof {
@@ -35,96 +34,76 @@ std::string ratios(const std::vector<IsotropicMaterial>& materials) {
   return fmt::format("nu = {}", fmt::join(all, ", "));
 }
 
-}  // namespace
+std::string geometry_words(const Pilot& pilot, const std::vector<IsotropicMaterial>& materials) {
+  const LoadShares& s = pilot.shares;
+  return fmt::format(
+      "{:.3g} x {:.3g} x {:.3g} m, {}; strain energy: bending {:.0f} %, torsion {:.0f} %, axial {:.0f} %, shear {:.0f} "
+      "%, local {:.0f} %",
+      pilot.size[0], pilot.size[1], pilot.size[2], ratios(materials), 100 * s.bending, 100 * s.torsion, 100 * s.axial,
+      100 * s.shear, 100 * s.local);
+}
 
-Forecast forecast_from(const std::vector<Measurement>& measured, const Loading& loading, double thickness,
-                       const std::vector<IsotropicMaterial>& materials, const std::vector<std::string>& models) {
-  Forecast out;
-  out.basis = "measured errors of clamped blocks and round bars (measured.csv)";
-  out.geometry =
-      fmt::format("{} {:g} times as long as thick, {}{}, {}", loading.body, loading.slenderness, loading.load,
-                  loading.strain > 0 ? fmt::format(" at a strain of {:g}", loading.strain) : "", ratios(materials));
-  out.load = loading.load;
-  out.small_strain = loading.strain == 0;
-  out.material = nearest_to_half(materials);
-  out.models = models;
-  const double s = loading.slenderness, share = loading.body == "round" ? M_PI / 4 : 1;
-  for (const int n : {1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 96, 128}) {
-    const double across = s < 1 ? n / s : n, cells = share * across * across * (s < 1 ? n : n * s);
-    if (cells <= most_cells_advised) out.resolutions.push_back({cells, double(n), thickness * std::min(1.0, s) / n});
+/// Lattices from the coarsest of the pilot on; of a body of voxels in steps of a quarter of the edge or less.
+std::vector<Resolution> resolutions_of(const Pilot& pilot) {
+  const bool voxels = pilot.base[0] == 0;
+  const double thickness = pilot.size.minCoeff(),
+               base = voxels ? 64 : double(pilot.base[0]) * pilot.base[1] * pilot.base[2];
+  std::vector<Resolution> out;
+  for (int m = 1; m <= 256; ++m) {
+    const double cells = std::round(voxels ? base * std::pow(m, 1.5) : base * m * m * m),
+                 edge = std::cbrt(pilot.volume / cells);
+    if (cells <= most_cells_advised && (!voxels || cells >= pilot.models.front().cells.front()))
+      out.push_back({cells, voxels ? 0 : thickness / edge, edge});
   }
-  const auto at = [measured, loading, materials](const std::string& model, const Resolution& r) {
-    std::vector<std::optional<Prediction>> all;
-    for (const IsotropicMaterial& m : materials)
-      all.push_back(predict(measured, loading, model, m.poisson_ratio, r.across));
-    return worst(all);
-  };
-  out.predict = at;
-  out.predict_element = at;
-  if (loading.body == "round")
-    out.notes.push_back(
-        "models without a suffix are in cut cells (but for hybmss_avg at rest only), 'cut=false' in whole cubes");
   return out;
 }
 
-Forecast forecast_from(const std::vector<Measurement>& measured, const std::vector<Pilot>& pilots) {
+std::vector<std::string> notes_of(const Pilot& pilot) {
+  std::vector<std::string> out;
+  if (pilot.strain > 0.1 && pilot.experiment_is_linear)
+    out.push_back(fmt::format(
+        "strains reach {:.2g}: small displacements are no longer right (kinematics = \"hencky\" in the case)",
+        pilot.strain));
+  for (const PilotModel& m : pilot.models)
+    if (m.cells.empty()) out.push_back(fmt::format("{} has no result: {}", m.label, m.failure));
+  if (pilot.base[0] == 0)
+    out.push_back("models without a suffix are in cut cells where they can, 'cut=false' in whole cubes");
+  return out;
+}
+
+/// Of a model or an element; nothing where it has no result.
+std::optional<Prediction> prediction_of(const Pilot& pilot, const std::string& label, double cells) {
+  for (const auto* list : {&pilot.models, &pilot.elements})
+    for (const PilotModel& m : *list)
+      if (m.label == label && !m.cells.empty()) return predict(pilot, m, cells);
+  return {};
+}
+
+}  // namespace
+
+Forecast forecast_from(const std::vector<Pilot>& pilots) {
   Forecast out;
   const Pilot& pilot = pilots.back();
-  std::vector<IsotropicMaterial> materials;
-  for (const Pilot& p : pilots) materials.push_back(p.material);
+  for (const Pilot& p : pilots) out.materials.push_back(p.material);
   out.basis =
       fmt::format("the case itself on coarse lattices; reference: {}, uncertain by {:.2g} % of the displacement",
                   pilot.reference, 100 * pilot.uncertainty);
-  const Classified kind = classify(pilot);
-  const bool voxels = pilot.base[0] == 0;
-  const LoadShares& s = pilot.shares;
-  out.geometry = fmt::format(
-      "{:.3g} x {:.3g} x {:.3g} m, {}; strain energy: bending {:.0f} %, torsion {:.0f} %, axial {:.0f} %, shear {:.0f} "
-      "%, "
-      "local {:.0f} %",
-      pilot.size[0], pilot.size[1], pilot.size[2], ratios(materials), 100 * s.bending, 100 * s.torsion, 100 * s.axial,
-      100 * s.shear, 100 * s.local);
-  out.load = kind.load;
-  out.shares = s;
-  out.small_strain = pilot.experiment_is_linear;
-  out.material = nearest_to_half(materials);
+  out.geometry = geometry_words(pilot, out.materials);
+  out.shares = pilot.shares;
+  out.material = nearest_to_half(out.materials);
   out.solved_cells = pilot.reference_cells;
   out.solved_seconds = pilot.reference_seconds;
-  for (const PilotModel& m : pilot.models) out.models.push_back(m.label);
-  const double thickness = pilot.size.minCoeff();
-  for (int m = 1; m <= 256; ++m) {
-    const double base = voxels ? 64 : double(pilot.base[0]) * pilot.base[1] * pilot.base[2];
-    const double cells = voxels ? base * std::pow(m, 1.5) : base * m * m * m, edge = std::cbrt(pilot.volume / cells);
-    if (cells <= most_cells_advised && (!voxels || cells >= pilot.models.front().cells.front()))
-      out.resolutions.push_back({cells, voxels ? 0 : thickness / edge, edge});
+  for (const PilotModel& m : pilot.models) {
+    out.models.push_back(m.label);
+    if (m.step) out.cut_steps[m.label] = *m.step;
   }
-  out.predict = [pilots](const std::string& model, const Resolution& r) {
+  out.resolutions = resolutions_of(pilot);
+  out.predict = [pilots](const std::string& label, const Resolution& r) {
     std::vector<std::optional<Prediction>> all;
-    for (const Pilot& p : pilots)
-      for (const PilotModel& m : p.models)
-        if (m.label == model) all.push_back(m.cells.empty() ? std::nullopt : std::optional(predict(p, m, r.cells)));
+    for (const Pilot& p : pilots) all.push_back(prediction_of(p, label, r.cells));
     return worst(all);
   };
-  out.predict_element = [measured, kind, materials, voxels](const std::string& element,
-                                                            const Resolution& r) -> std::optional<Prediction> {
-    if (voxels) return {};
-    std::vector<std::optional<Prediction>> all;
-    for (const IsotropicMaterial& m : materials)
-      all.push_back(predict(measured, {kind.load, "block", kind.slenderness, 0}, element, m.poisson_ratio, r.across));
-    return worst(all);
-  };
-  if (pilot.strain > 0.1 && out.small_strain)
-    out.notes.push_back(
-        fmt::format("strains reach {:.2g}: small displacements are no longer right (kinematics = "
-                    "\"hencky\" in the case)",
-                    pilot.strain));
-  for (const PilotModel& m : pilot.models)
-    if (m.cells.empty()) out.notes.push_back(fmt::format("{} has no result: {}", m.label, m.failure));
-  if (voxels)
-    out.notes.push_back(
-        "models without a suffix are in cut cells where they can, 'cut=false' in whole cubes; times of a step are "
-        "known "
-        "of whole cubes only");
+  out.notes = notes_of(pilot);
   return out;
 }
 

@@ -11,20 +11,20 @@
 namespace springproof {
 namespace {
 
-constexpr const char* heading = "load,body,slenderness,strain,nu,model,cells_across,error,uncertainty";
+constexpr const char* heading = "case,nu,model,cells,error,uncertainty";
 
 Measurement measurement_of(const std::string& line) {
   std::vector<std::string> fields;
   std::istringstream in(line);
   for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
-  if (fields.size() != 9) throw std::invalid_argument(fmt::format("has {} fields", fields.size()));
+  if (fields.size() != 6) throw std::invalid_argument(fmt::format("has {} fields", fields.size()));
   const auto number = [&](std::size_t i) {
     std::size_t read = 0;
     const double x = std::stod(fields[i], &read);
     if (read != fields[i].size()) throw std::invalid_argument(fields[i] + " is no number");
     return x;
   };
-  return {fields[0], fields[1], number(2), number(3), number(4), fields[5], number(6), number(7), number(8)};
+  return {fields[0], number(1), fields[2], number(3), number(4), number(5)};
 }
 
 }  // namespace
@@ -52,8 +52,8 @@ MeasuredFile parse_measurements(const std::string& text, const std::filesystem::
     }
   }
   if (!has_heading)
-    throw InputError(fmt::format("{}: holds no measurements (allowed: a file written by springproof advise --measure)",
-                                 file.string()));
+    throw InputError(fmt::format(
+        "{}: holds no measurements (allowed: a file written by springproof advise --measure-held-out)", file.string()));
   return out;
 }
 
@@ -67,8 +67,8 @@ void write_measurements(const std::filesystem::path& file, const MeasuredFile& m
   for (std::string line; std::getline(header, line);) text += "#" + line + "\n";
   text += fmt::format("{}\n", heading);
   for (const Measurement& m : measured.rows)
-    text += fmt::format("{},{},{:g},{:g},{:g},{},{:.6g},{:.4e},{:.2e}\n", m.load, m.body, m.slenderness, m.strain,
-                        m.poisson_ratio, m.model, m.cells_across, m.error, m.uncertainty);
+    text += fmt::format("{},{:g},{},{:.0f},{:.4e},{:.2e}\n", m.case_name, m.poisson_ratio, m.model, m.cells, m.error,
+                        m.uncertainty);
   write_file(file, text);
 }
 

@@ -1,4 +1,4 @@
-// Measured errors of models: what advice is predicted from (measured.csv), and what it is held against (held_out.csv).
+// Measured errors of models in cases that predictions are held against (held_out.csv).
 #pragma once
 
 #include <filesystem>
@@ -7,15 +7,12 @@
 
 namespace springproof {
 
-/// The displacement error of one model in one load of one body.
+/// The displacement error of one model or finite element in a case.
 struct Measurement {
-  std::string load;          ///< "axial", "shear", "torsion", "bending"; held out: the name of the case
-  std::string body;          ///< "block", or "round" (a cylinder in a lattice)
-  double slenderness = 1;    ///< length along the load's axis over the thickness
-  double strain = 0;         ///< nominal; 0: small
+  std::string case_name;     ///< "golec_2019/bending"
   double poisson_ratio = 0;  ///< nu
   std::string model;         ///< label; "fem_q1", "fem_q2" for finite elements
-  double cells_across = 0;   ///< of the thickness; held out: the cube root of the number of cells
+  double cells = 0;          ///< of the lattice
   double error = 0;          ///< displacement_error (docs/results.md)
   double uncertainty = 0;    ///< of the reference, as a part of that error
 };

@@ -12,6 +12,8 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/run/prepare.h"
+#include "comparisons/run/reference_grids.h"
+#include "comparisons/run/sampling.h"
 #include "meshes/locate/locate.h"
 #include "meshes/volume.h"
 #include "msm/embedding/rigid_motions.h"
@@ -26,6 +28,7 @@ namespace {
 constexpr double slowest = 0.5, fastest = 2;       // orders at which errors may fall
 constexpr double large_displacement_share = 0.15;  // of the cells, where each is solved by Newton's method
 constexpr double voxel_share = 0.6;                // of the cells of a cut body, whose solver takes more iterations
+constexpr double quadratic_share = 0.75;           // of the models' cells along an edge, for quadratic elements
 constexpr double most_pilot_cells = 5e5;           // of any lattice of a pilot
 
 /// A model solved on a lattice.
@@ -97,6 +100,13 @@ Resolutions voxel_counts_of(const PilotSize& size) {
           {static_cast<int>(most / 12), static_cast<int>(most / 3.5), static_cast<int>(most)}};
 }
 
+/// Of a block of so many times the cells of `base`.
+double nodes_of(const Cells& base, double multiple) {
+  double nodes = 1;
+  for (const int n : base) nodes *= n * multiple + 1;
+  return nodes;
+}
+
 ModelChoice choice_of(const std::string& name, std::optional<bool> cut) {
   ModelChoice choice{name, {}, name, {}};
   if (cut) choice.options["cut"] = *cut;
@@ -104,7 +114,8 @@ ModelChoice choice_of(const std::string& name, std::optional<bool> cut) {
   return choice;
 }
 
-/// The case as the pilot solves it: its models, its lattices, no measures and no finite elements.
+/// The case as the pilot solves it: its models, its lattices, no measures; of a block linear elements beside the
+/// models, and quadratic ones on the coarser of their lattices.
 Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std::vector<std::string>& models,
                       const Resolutions& at, const Cells& base) {
   e.materials = {material};
@@ -115,10 +126,11 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
   e.section.reset();
   e.line.reset();
   e.dynamics.reset();
-  e.elements.clear();
   e.reference.elements.clear();
   e.models.clear();
   const bool voxels = e.body.is_voxels();
+  e.elements = voxels ? std::vector<std::string>{} : std::vector<std::string>{"q1", "q2"};
+  e.max_unknowns = 3 * 8 * nodes_of(base, quadratic_share * at.every.back());
   const auto add = [&](const std::string& name) {
     const ModelRow row = resolve(choice_of(name, {})).row;
     const bool finite = e.model_kinematics() == Kinematics::finite;
@@ -170,26 +182,26 @@ double order_of_errors(double coarse, double fine, double ratio) {
 /// By how much too stiff a body is whose displacements are short by an error; an error beyond it stays as it is.
 double stiffness_excess(double error) { return error < 0.9 ? error / (1 - error) : 10 * error; }
 
-/// Models that are the material have its solution as their limit; springs of another Poisson's ratio have their own.
-void extrapolate_model(const PilotModel& model, bool own_limit, const std::vector<NodalVectors>& fields,
-                       const NodalVectors& truth, const Eigen::VectorXd& weights, SquaredLine& line, double& order) {
+/// What is the material has its solution as its limit, to which its errors fall.
+void extrapolate_errors(PilotModel& model) {
   const std::size_t n = model.cells.size();
-  const double size = product(truth, truth, weights);
-  const NodalVectors off = fields.back() - truth;
-  const double ratio = n > 1 ? std::cbrt(model.cells[n - 1] / model.cells[n - 2]) : 2;
-  if (n < 2 || !own_limit) {
-    order = n > 1 ? order_of_errors(stiffness_excess(model.errors[n - 2]), stiffness_excess(model.errors[n - 1]), ratio)
-                  : 1;
-    line = {0, 0, product(off, off, weights) / size};
-    return;
-  }
-  const NodalVectors step = fields[n - 1] - fields[n - 2];
-  order =
-      n > 2 ? order_of_errors(std::sqrt(product(fields[n - 2] - fields[n - 3], fields[n - 2] - fields[n - 3], weights)),
-                              std::sqrt(product(step, step, weights)), ratio)
-            : 1;
-  const NodalVectors b = -step / (std::pow(ratio, order) - 1), a = off - b;
-  line = {product(a, a, weights) / size, product(a, b, weights) / size, product(b, b, weights) / size};
+  const double last = model.errors[n - 1];
+  model.beyond = {0, 0, last * last};
+  if (n < 2) return;
+  const double ratio = std::cbrt(model.cells[n - 1] / model.cells[n - 2]);
+  model.order = order_of_errors(stiffness_excess(model.errors[n - 2]), stiffness_excess(last), ratio);
+}
+
+/// Springs of another Poisson's ratio have a limit of their own; `fields`, two at least, are at the nodes of `truth`.
+void extrapolate_fields(PilotModel& model, const std::vector<NodalVectors>& fields, const NodalVectors& truth,
+                        const Eigen::VectorXd& weights) {
+  const std::size_t n = model.cells.size();
+  const auto step = [&](std::size_t i) { return NodalVectors(fields[i] - fields[i - 1]); };
+  const auto length = [&](const NodalVectors& u) { return std::sqrt(product(u, u, weights)); };
+  const double ratio = std::cbrt(model.cells[n - 1] / model.cells[n - 2]), size = product(truth, truth, weights);
+  if (n > 2) model.order = order_of_errors(length(step(n - 2)), length(step(n - 1)), ratio);
+  const NodalVectors b = -step(n - 1) / (std::pow(ratio, model.order) - 1), a = fields.back() - truth - b;
+  model.beyond = {product(a, a, weights) / size, product(a, b, weights) / size, product(b, b, weights) / size};
 }
 
 /// A pilot while it is being solved.
@@ -205,7 +217,6 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
   const ModelParameters& p = run.prepared.models[number];
   PilotModel out;
   out.label = run.prepared.experiment.models[number].label;
-  out.cut = p.cut.value_or(false);
   std::vector<NodalVectors> fields;
   const Lattice& last = *run.every.back();
   for (std::size_t i = 0; i < run.every.size(); ++i) {
@@ -222,8 +233,13 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
   }
   if (out.cells.empty()) return out;
   const auto own = own_poisson_ratio(p.row);
-  extrapolate_model(out, own && !same_poisson_ratio(*own, run.material.poisson_ratio), fields,
-                    run.truths.back().displacement, nodal_volumes(*last.mesh), out.beyond, out.order);
+  if (own && !same_poisson_ratio(*own, run.material.poisson_ratio) && fields.size() > 1)
+    extrapolate_fields(out, fields, run.truths.back().displacement, nodal_volumes(*last.mesh));
+  else
+    extrapolate_errors(out);
+  if (p.cut.value_or(false))
+    out.step = step_cost([&] { return build_on(run.prepared, last, p, run.material, true).model; },
+                         run.material.density, cells_of(last), last.voxel_edge);
   return out;
 } catch (const InputError&) {
   throw;
@@ -232,6 +248,32 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
   none.label = run.prepared.experiment.models[number].label;
   none.failure = e.what();
   return none;
+}
+
+/// The finite elements of a block on the lattices of the models; none where they cannot be run.
+std::vector<PilotModel> pilot_elements(const PilotRun& run) {
+  std::vector<PilotModel> out;
+  if (run.prepared.experiment.elements.empty() || !fem::available()) return out;
+  progress::phase("finite elements");
+  PreparedCase coarse = run.prepared;
+  coarse.lattices.clear();
+  for (const Lattice* lattice : run.every) add_lattice(*lattice, coarse);
+  const ReferenceGrids grids = solve_grids(coarse, run.material);
+  for (const std::string& element : coarse.experiment.elements) {
+    PilotModel m;
+    m.label = "fem_" + element;
+    for (std::size_t i = 0; i < grids.peers.size(); ++i)
+      for (const fem::Solution& s : grids.peers[i]) {
+        if (!s.ok || s.grid.element != element) continue;
+        m.cells.push_back(cells_of(coarse.lattices[i]));
+        m.errors.push_back(displacement_error(at_nodes(coarse.lattices[i], s.displacement), run.truths[i].displacement,
+                                              nodal_volumes(*coarse.lattices[i].mesh)));
+      }
+    if (m.cells.empty()) continue;
+    extrapolate_errors(m);
+    out.push_back(m);
+  }
+  return out;
 }
 
 void check_loads(const PreparedCase& prepared) {
@@ -308,6 +350,7 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   out.size = prepared.size;
   out.volume = volume(mesh, mesh.nodes);
   for (std::size_t m = 0; m < prepared.models.size(); ++m) out.models.push_back(pilot_model(run, m));
+  out.elements = pilot_elements(run);
   return out;
 }
 

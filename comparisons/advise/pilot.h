@@ -1,10 +1,12 @@
 // A case solved on coarse lattices by its models: errors that finer lattices will have.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "comparisons/advise/load_shares.h"
+#include "comparisons/advise/speed.h"
 #include "comparisons/run/prepared_case.h"
 
 namespace springproof {
@@ -26,13 +28,13 @@ struct SquaredLine {
   double at(double t) const { return aa + 2 * t * ab + t * t * bb; }
 };
 
-/// One model of a case on coarse lattices.
+/// One model or finite element of a case on coarse lattices.
 struct PilotModel {
   std::string label;
-  bool cut = false;            ///< in cut cells
-  std::string failure;         ///< why there are no errors
-  std::vector<double> cells;   ///< of the lattices, ascending
-  std::vector<double> errors;  ///< on them, against the pilot's reference
+  std::optional<StepCost> step;  ///< in cut cells: measured on the finest of these lattices
+  std::string failure;           ///< why there are no errors
+  std::vector<double> cells;     ///< of the lattices, ascending
+  std::vector<double> errors;    ///< on them, against the pilot's reference
   /// On finer lattices what the model is off from its limit falls with the edge to the power `order`.  The limit is the
   /// reference, and what falls is the excess of stiffness e / (1 - e); or, for springs of another Poisson's ratio, one
   /// of their own, a at t = 0.
@@ -49,8 +51,9 @@ struct PilotSize {
 struct Pilot {
   IsotropicMaterial material;
   std::vector<PilotModel> models;
-  double uncertainty = 0;  ///< of the reference: averaged springs on three lattices, extrapolated
-  std::string reference;   ///< "hybmss_avg on 7, 14 and 28 cells across, extrapolated"
+  std::vector<PilotModel> elements;  ///< of a block: fem_q1, fem_q2; none where springproof-fem is not here
+  double uncertainty = 0;            ///< of the reference: averaged springs on three lattices, extrapolated
+  std::string reference;             ///< "hybmss_avg on 7, 14 and 28 cells across, extrapolated"
   LoadShares shares;
   double strain = 0, rotation_deg = 0;                ///< size of the deformation (comparisons/judge/deformation.h)
   bool experiment_is_linear = true;                   ///< small displacements

@@ -17,17 +17,18 @@
 namespace springproof {
 namespace {
 
-constexpr int small_block = 8, large_block = 16;     // cells along each edge
-constexpr int steps_timed = 100, repeats_timed = 3;  // the least counts
+constexpr int small_block = 8, large_block = 16;      // cells along each edge
+constexpr double cells_stepped = 100 * 16 * 16 * 16;  // in all steps that are timed
+constexpr int repeats_timed = 3;                      // the least counts
 
-/// Held at the bottom, under its weight.
-BoundaryConditions held_block(const Network& network, double density) {
+/// Held at the bottom layer of nodes, under its weight.
+BoundaryConditions held_body(const Network& network, double density, double edge) {
   BoundaryConditions bc;
   bc.fixed.assign(network.X.size(), 0);
   bc.owner.assign(network.X.size(), -1);
   bc.prescribed = NodalVectors::Zero(network.X.rows(), 3);
   bc.external = masses(network, density) * Eigen::RowVector3d(0.3e-4, 0.5e-4, -1e-4);
-  const double bottom = network.X.col(2).minCoeff() + 0.5;
+  const double bottom = network.X.col(2).minCoeff() + 0.5 * edge;
   for (Eigen::Index n = 0; n < network.X.rows(); ++n)
     if (network.X(n, 2) <= bottom) {
       for (int c = 0; c < 3; ++c) bc.fixed[3 * n + c] = 1, bc.owner[3 * n + c] = 0;
@@ -36,8 +37,8 @@ BoundaryConditions held_block(const Network& network, double density) {
   return bc;
 }
 
-double seconds_of_steps(const MassSpringModel& model, double density, double safe_step, long steps) {
-  const BoundaryConditions held = held_block(model.network, density);
+double seconds_of_steps(const MassSpringModel& model, double density, const BoundaryConditions& held, double safe_step,
+                        long steps) {
   DynamicsOptions options;
   options.time_step = 0.5 * safe_step;
   options.duration = steps * *options.time_step;
@@ -56,7 +57,7 @@ double seconds_of_solve(const ModelParameters& p, const IsotropicMaterial& mater
     const MemoryGrowth memory;
     const double start = cpu_seconds();
     const MassSpringModel model = build_model(p, mesh, material);
-    const Equilibrium s = solve_linear(model, held_block(model.network, material.density),
+    const Equilibrium s = solve_linear(model, held_body(model.network, material.density, 1),
                                        {LinearSolver::automatic, compared_residual, 2000});
     if (!s.ok) throw std::runtime_error(s.message);
     const double seconds = cpu_seconds() - start;
@@ -70,6 +71,22 @@ double seconds_of_solve(const ModelParameters& p, const IsotropicMaterial& mater
 
 double Speed::solve_seconds(double cells) const { return solve * std::pow(cells / solve_cells, solve_power); }
 
+StepCost step_cost(const std::function<MassSpringModel()>& build, double density, double cells, double edge) try {
+  const MassSpringModel model = build();
+  const double safe_step = safe_time_step(model, density);
+  const BoundaryConditions held = held_body(model.network, density, edge);
+  const long steps = std::lround(std::ceil(cells_stepped / cells));
+  double none = 1e9, some = 1e9;  // the least of each: what disturbs a run does not make it shorter
+  for (int repeat = 0; repeat < repeats_timed; ++repeat) {
+    none = std::min(none, seconds_of_steps(model, density, held, safe_step, 1));
+    some = std::min(some, seconds_of_steps(model, density, held, safe_step, 1 + steps));
+  }
+  if (some <= none) throw std::runtime_error("its steps took no time that could be measured");
+  return {(some - none) / static_cast<double>(steps) / cells, safe_step / edge, ""};
+} catch (const std::exception& e) {
+  return {0, 0, e.what()};
+}
+
 Speed speed_of_model(const std::string& name, const IsotropicMaterial& material) try {
   Speed out;
   out.model = name;
@@ -81,15 +98,12 @@ Speed speed_of_model(const std::string& name, const IsotropicMaterial& material)
   out.solve_cells = many;
   out.solve_power = std::max(1.0, std::log(out.solve / first) / std::log(many / few));
   out.MiB_per_cell = MiB / many;
-  const MassSpringModel model =
-      build_model(p, block_mesh(Vec3::Constant(large_block), {large_block, large_block, large_block}), material);
-  out.safe_step = safe_time_step(model, material.density);
-  double none = 1e9, some = 1e9;  // the least of each: what disturbs a run does not make it shorter
-  for (int repeat = 0; repeat < repeats_timed; ++repeat) {
-    none = std::min(none, seconds_of_steps(model, material.density, out.safe_step, 1));
-    some = std::min(some, seconds_of_steps(model, material.density, out.safe_step, 1 + steps_timed));
-  }
-  out.step_per_cell = std::max(some - none, 1e-9) / steps_timed / many;
+  out.step = step_cost(
+      [&] {
+        return build_model(p, block_mesh(Vec3::Constant(large_block), {large_block, large_block, large_block}),
+                           material);
+      },
+      material.density, many, 1);
   return out;
 } catch (const std::exception& e) {
   Speed none;

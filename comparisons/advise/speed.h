@@ -1,18 +1,28 @@
 // What models and finite elements cost on this machine: a calibration of seconds.
 #pragma once
 
+#include <functional>
 #include <string>
-#include <vector>
 
+#include "msm/models.h"
 #include "problem/material.h"
 
 namespace springproof {
 
+/// An explicit step of a model.
+struct StepCost {
+  double seconds_per_cell = 0;  ///< CPU time
+  double safe_step = 0;         ///< largest step over the edge of the cells [s/m]
+  std::string failure;          ///< why it could not be measured
+};
+
+/// Of the model that `build` returns, of so many cells of an edge [m]; the least of some repetitions counts.
+StepCost step_cost(const std::function<MassSpringModel()>& build, double density, double cells, double edge);
+
 /// Cost of one model or element as a function of the number of cells of a lattice, one core.
 struct Speed {
   std::string model;
-  double step_per_cell = 0;           ///< CPU seconds of an explicit step, per cell; 0: does not move
-  double safe_step = 0;               ///< largest explicit step [s] with cells of 1 m
+  StepCost step;
   double solve_cells = 1, solve = 0;  ///< CPU seconds of set-up and solve of a block of so many cells
   double solve_power = 1;             ///< by which they grow with the number of cells
   double MiB_per_cell = 0;            ///< of a solve
@@ -21,7 +31,7 @@ struct Speed {
   double solve_seconds(double cells) const;
 };
 
-/// Of a block clamped on one side, small strain, as `springproof bench` measures; `strain`: true: by Newton's method.
+/// Of a block clamped on one side, small strain, as `springproof bench` measures.
 Speed speed_of_model(const std::string& model, const IsotropicMaterial& material);
 
 /// Of the finite element program, per cell; failure: it is not here.

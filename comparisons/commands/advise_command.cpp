@@ -66,8 +66,7 @@ void check_models(const std::vector<std::string>& models) {
 }  // namespace
 
 void AdviseCommand::add_options(CLI::App& command) {
-  command.add_option("CASE", case_,
-                     "case file (*.toml) or built-in name (springproof list); without: a block, see --load");
+  command.add_option("CASE", case_, "case file (*.toml) or built-in name (springproof list)");
   command.add_option("--error", wish_.error, "displacement error that is wanted, as a part of the displacement")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
@@ -75,36 +74,15 @@ void AdviseCommand::add_options(CLI::App& command) {
       ->check(positive());
   command.add_option("--budget-seconds", wish_.seconds, "CPU seconds of a static solve")->check(positive());
   command.add_option("--budget-memory", wish_.MiB, "MiB of a static solve")->check(positive());
-  command.add_option("--cells-across", wish_.cells_across, "predict for about so many cells across the thinnest part")
+  command
+      .add_option("--cells-across", wish_.cells_across,
+                  "of a block: predict for about so many cells across the thinnest part")
       ->check(positive());
   command.add_option("--models", wish_.models, "only these rows of the model table (default: seven of them)")
       ->delimiter(',');
-  command.add_option(
-      "--nu", poisson_ratios_,
-      "Poisson's ratio, a range FIRST:LAST or a list; the worst counts (default: 0.3, or the case's ends)");
-  command.add_option("-E,--youngs-modulus", youngs_modulus_, "Young's modulus [Pa], for the time step; without a case")
-      ->check(positive())
-      ->capture_default_str();
-  command.add_option("--density", density_, "density [kg/m^3]; without a case")
-      ->check(positive())
-      ->capture_default_str();
-  command.add_option("--load", loading_.load, "without a case: what is done to the body")
-      ->check(CLI::IsMember({"bending", "axial", "shear", "torsion"}))
-      ->capture_default_str();
-  command.add_option("--body", loading_.body, "without a case: a block, or a round bar in a lattice")
-      ->check(CLI::IsMember({"block", "round"}))
-      ->capture_default_str();
-  command
-      .add_option("--slenderness", slenderness_, "without a case: length over thickness (default: bending 6, else 1)")
-      ->check(CLI::Range(0.1, 100.0));
-  command.add_option("--strain", loading_.strain, "without a case: largest strain; 0: small")
-      ->check(CLI::Range(0.0, 0.6))
-      ->capture_default_str();
-  command.add_option("--thickness", thickness_, "without a case: of the body [m], for the time step")
-      ->check(positive())
-      ->capture_default_str();
+  command.add_option("--nu", poisson_ratios_,
+                     "Poisson's ratio, a range FIRST:LAST or a list; the worst counts (default: the case's ends)");
   command.add_flag("--json", json_, "print JSON");
-  command.add_option("--measure", measure_, "measure anew what is predicted from, into this file (resumes)");
   command.add_option("--measure-held-out", measure_held_out_,
                      "measure anew the cases of --check, into this file (resumes)");
   command
@@ -112,9 +90,8 @@ void AdviseCommand::add_options(CLI::App& command) {
       ->expected(0, 1)
       ->each([this](const std::string&) {});
   command
-      .add_option(
-          "--pilot-cells", pilot_cells_,
-          "of a case: cells of the finest lattice on which every model is solved; its reference takes 20 times as many")
+      .add_option("--pilot-cells", pilot_cells_,
+                  "cells of the finest lattice on which every model is solved; the reference takes 20 times as many")
       ->check(CLI::Range(50.0, 50000.0))
       ->capture_default_str();
   command.callback([this, &command] { check_ = command.count("--check") > 0; });
@@ -124,11 +101,18 @@ void AdviseCommand::add_options(CLI::App& command) {
       "of 1.5), 1 none does, 2 the input is unusable.");
 }
 
-Forecast AdviseCommand::of_case() const {
+Forecast AdviseCommand::forecast() const {
+  if (case_.empty())
+    throw InputError(
+        "CASE: there is none (allowed: a case file or a built-in name, see springproof list; of a block: [body] geo = "
+        "\"beam.geo\", size_m, cells, a [material] and [[load]]s, see docs/advise.md)");
   const std::vector<std::filesystem::path> found = find_cases({case_});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
   const Experiment e = read_experiment(found.front());
-  const std::vector<Measurement> measured = read_measurements(advise_folder() / "measured.csv").rows;
+  if (wish_.cells_across && e.body.is_voxels())
+    throw InputError(
+        "--cells-across: is for blocks (allowed: a case with size_m and cells; this body is cut out of a "
+        "lattice, whose cells across its thin parts differ)");
   std::vector<Pilot> pilots;
   Status status(json_);
   for (const IsotropicMaterial& material : ends_of(e, poisson_ratios_)) {
@@ -136,35 +120,20 @@ Forecast AdviseCommand::of_case() const {
     pilots.push_back(solve_pilot(e, material, wish_.models.empty() ? usual_models : wish_.models,
                                  {pilot_cells_, 20 * pilot_cells_}));
   }
-  return forecast_from(measured, pilots);
-}
-
-Forecast AdviseCommand::of_table() const {
-  const std::vector<Measurement> measured = read_measurements(advise_folder() / "measured.csv").rows;
-  Loading loading = loading_;
-  loading.slenderness = slenderness_.value_or(loading.load == "bending" ? 6 : 1);
-  std::vector<IsotropicMaterial> materials;
-  for (const double nu : numbers_of(poisson_ratios_.empty() ? "0.3" : poisson_ratios_))
-    materials.push_back({youngs_modulus_, nu, density_});
-  std::vector<std::string> models = wish_.models.empty() ? usual_models : wish_.models;
-  if (loading.body == "round")
-    for (std::size_t i = 0, n = models.size(); i < n; ++i) models.push_back(models[i] + " cut=false");
-  return forecast_from(measured, loading, thickness_, materials, models);
+  return forecast_from(pilots);
 }
 
 int AdviseCommand::check() const {
   const std::vector<Judged> judged = judge_predictions(read_measurements(advise_folder() / "held_out.csv").rows,
-                                                       read_measurements(advise_folder() / "measured.csv").rows,
                                                        check_name_, {pilot_cells_, 20 * pilot_cells_});
   if (judged.empty()) throw InputError(fmt::format("--check: no held-out case is called '{}'", check_name_));
-  fmt::print("{:<24}{:>7} {:<12}{:>10}{:>10}{:>10}{:>8}{:>10}\n", "case", "nu", "model", "cells", "error", "predicted",
-             "ratio", "table");
+  fmt::print("{:<24}{:>7} {:<12}{:>8}{:>10}{:>10}{:>8}\n", "case", "nu", "model", "cells", "error", "predicted",
+             "ratio");
   for (const Judged& j : judged)
-    fmt::print("{:<24}{:>7g} {:<12}{:>10.0f}{:>10.3g}{:>10.3g}{:>8.2f}{:>10}  {}{}\n", j.truth.load,
-               j.truth.poisson_ratio, j.truth.model, std::pow(j.truth.cells_across, 3), j.truth.error,
-               j.from_pilot.error, j.from_pilot.error / j.truth.error,
-               j.from_table.empty() ? "" : fmt::format("{:.3g}", j.from_table[0].error),
-               hit(j.truth, j.from_pilot) ? "" : "MISS ", j.from_pilot.beyond ? "extrapolated" : "");
+    fmt::print("{:<24}{:>7g} {:<12}{:>8.0f}{:>10.3g}{:>10.3g}{:>8.2f}  {}{}\n", j.truth.case_name,
+               j.truth.poisson_ratio, j.truth.model, j.truth.cells, j.truth.error, j.predicted.error,
+               j.predicted.error / j.truth.error, hit(j.truth, j.predicted) ? "" : "MISS ",
+               j.predicted.beyond ? "extrapolated" : "");
   const HitRate r = hit_rate(judged);
   const auto share = [](int part, int all) {
     return fmt::format("{} of {} ({:.1f} %)", part, all, 100.0 * part / std::max(1, all));
@@ -172,19 +141,16 @@ int AdviseCommand::check() const {
   fmt::print("within a factor of 1.5: {}; of those extrapolated {}\n", share(r.hits, r.all),
              share(r.beyond_hits, r.beyond));
   fmt::print("within the stated range: {}\n", share(r.inside, r.all));
-  fmt::print("from the table alone: {}; within the stated range {}\n", share(r.table_hits, r.table),
-             share(r.table_inside, r.table));
   return 10 * r.hits >= 9 * r.all ? 0 : 1;
 }
 
 int AdviseCommand::run() const {
-  if (!measure_held_out_.empty()) return measure(measure_held_out_, true);
-  if (!measure_.empty()) return measure(measure_, false);
+  if (!measure_held_out_.empty()) return measure_held_out(measure_held_out_);
   if (check_) return check();
   check_models(wish_.models);
-  const Advice advice = advise(case_.empty() ? of_table() : of_case(), wish_);
+  const Advice advice = advise(forecast(), wish_);
   fmt::print("{}", json_ ? json_of(advice).dump(2) + "\n" : text_of(advice));
-  return !advice.choices.empty() && advice.choices.front().accurate && advice.choices.front().affordable ? 0 : 1;
+  return !advice.choices.empty() && advice.choices.front().suits() ? 0 : 1;
 }
 
 }  // namespace springproof

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "comparisons/advise/advice.h"
 
@@ -14,27 +12,24 @@ class App;
 
 namespace springproof {
 
-/// `springproof advise [CASE]`.
+/// `springproof advise CASE`.
 class AdviseCommand {
  public:
   void add_options(CLI::App& command);
   /// @return 0: a model reaches the error within the budget; 1: none does; with --check 0 if nine of ten predictions
-  ///   are hits; with --measure 130 if interrupted.
+  ///   are hits; with --measure-held-out 130 if interrupted.
   /// @throws InputError for unusable input.
   int run() const;
 
  private:
-  Forecast of_case() const;
-  Forecast of_table() const;
+  Forecast forecast() const;
   int check() const;
 
   std::string case_, poisson_ratios_, check_name_;
   bool check_ = false, json_ = false;
-  double youngs_modulus_ = 1e4, density_ = 1000, thickness_ = 1, pilot_cells_ = 1500;
-  std::optional<double> slenderness_;
-  Loading loading_;
+  double pilot_cells_ = 1500;
   Wish wish_;
-  std::filesystem::path measure_, measure_held_out_;
+  std::filesystem::path measure_held_out_;
 };
 
 }  // namespace springproof

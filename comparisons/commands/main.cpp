@@ -182,7 +182,8 @@ int main(int argc, char** argv) try {
 
   AdviseCommand advice;
   CLI::App* advise_command = app.add_subcommand(
-      "advise", "Which models and resolutions reach an error within a budget, predicted from measurements");
+      "advise",
+      "Which models and resolutions reach an error within a budget, predicted from coarse solves of the case");
   advice.add_options(*advise_command);
 
   std::string form;
