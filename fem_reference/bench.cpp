@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/solve_grid.h"
+#include "problem/system/named_files.h"
 
 namespace springproof::fem {
 namespace {
@@ -150,9 +151,7 @@ void bench(const BenchOptions& options) {
   if (options.json_file.empty()) return;
   nlohmann::json all = {{"library", library_versions()}, {"ratios", ratios}, {"targets", targets}};
   for (const BenchRow& row : rows) all["rows"].push_back(to_json(row));
-  std::ofstream out(options.json_file);
-  out << all.dump(2) << "\n";
-  if (!out.flush()) throw std::runtime_error("cannot write " + options.json_file);
+  write_named_file(options.json_file, all.dump(2) + "\n");
 }
 
 }  // namespace springproof::fem

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "problem/system/child.h"
-#include "problem/system/files.h"
 #include "problem/system/input_error.h"
+#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {
@@ -58,7 +58,7 @@ MeasuredFile parse_measurements(const std::string& text, const std::filesystem::
 }
 
 MeasuredFile read_measurements(const std::filesystem::path& file) {
-  return parse_measurements(text_of_file(file), file);
+  return parse_measurements(read_named_file(file, "a table that springproof advise --measure wrote"), file);
 }
 
 void write_measurements(const std::filesystem::path& file, const MeasuredFile& measured) {
@@ -69,7 +69,7 @@ void write_measurements(const std::filesystem::path& file, const MeasuredFile& m
   for (const Measurement& m : measured.rows)
     text += fmt::format("{},{:g},{},{:.0f},{:.4e},{:.2e}\n", m.case_name, m.poisson_ratio, m.model, m.cells, m.error,
                         m.uncertainty);
-  write_file(file, text);
+  write_named_file(file, text);
 }
 
 std::filesystem::path advise_folder() { return data_folder("advise", SPRINGPROOF_ADVISE_DIR); }

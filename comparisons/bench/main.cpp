@@ -21,6 +21,7 @@
 #include "msm/kernels/instruction_set.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
+#include "problem/system/named_files.h"
 
 namespace {
 
@@ -96,7 +97,7 @@ void measure(const BenchOptions& options, Measured& m) {
 
 void write(const BenchOptions& options, const Json& document) {
   const std::string text = document.dump(1, ' ', false, Json::error_handler_t::replace);
-  if (!options.json.empty()) write_file(options.json, text);
+  if (!options.json.empty()) write_named_file(options.json, text);
   if (options.out.empty()) return;
   std::filesystem::create_directories(options.out);
   write_file(options.out / "bench.json", text);

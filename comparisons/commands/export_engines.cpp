@@ -7,7 +7,7 @@
 
 #include "comparisons/engines/engine_files.h"
 #include "problem/case_file/experiment.h"
-#include "problem/system/files.h"
+#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {
@@ -69,7 +69,7 @@ std::vector<std::string> held_patches(const Experiment& experiment) {
 int export_to_engine(const ExportRequest& request, const SpringsFile& springs, const std::vector<std::string>& held) {
   const EngineForm& engine = form_of_engine(request);
   const std::string text = engine.write({springs, held});
-  write_file(file_of(request), text);
+  write_named_file(file_of(request), text);
   const Network& network = springs.model.network;
   fmt::print("{}: {} nodes, {}, {:.4g} kg, E = {:g} Pa, nu = {:g}, pinned: {}\n", file_of(request).string(),
              network.nodes(),

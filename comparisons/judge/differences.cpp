@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "comparisons/judge/reference_value.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"
+#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {
@@ -66,12 +66,12 @@ double relative_difference(double a, double b, double size) {
 
 ResultsFolder read_results(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "results.json";
-  std::ifstream in(file);
-  if (!in)
+  if (std::error_code ignored; !std::filesystem::exists(file, ignored))
     throw InputError(
         fmt::format("{}: no results.json here; give a folder that `springproof compare` wrote", folder.string()));
+  const std::string text = read_named_file(file, "results of `springproof compare`");
   try {
-    const json document = json::parse(in);
+    const json document = json::parse(text);
     ResultsFolder found{document.at("program").at("version"), document.at("generated"), {}, {}};
     for (const json& result : document.at("cases")) {
       const json& experiment = result.at("experiment");

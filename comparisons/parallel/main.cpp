@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <fstream>
+#include <csignal>
 #include <thread>
 
 #include "comparisons/commands/number_checks.h"
@@ -12,6 +12,7 @@
 #include "msm/parallel/parted_equations.h"
 #include "problem/system/input_error.h"
 #include "problem/system/mpi_start.h"
+#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {
@@ -101,11 +102,7 @@ int parse_and_run(int argc, char** argv) {
     const nlohmann::json result = run(options, PETSC_COMM_WORLD);
     if (rank > 0) return 0;
     print(result);
-    if (!options.json_file.empty()) {
-      std::ofstream out(options.json_file);
-      out << result.dump(2) << "\n";
-      if (!out.flush()) throw InputError("cannot write " + options.json_file);
-    }
+    if (!options.json_file.empty()) write_named_file(options.json_file, result.dump(2) + "\n");
     return result["converged"].get<bool>() ? 0 : 1;
   } catch (const std::exception& e) {
     const bool of_input = dynamic_cast<const InputError*>(&e), alike = all_fail_alike();
@@ -120,6 +117,7 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace springproof
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of writing
   int none = 0, status = 1;
   springproof::start_mpi_without_network();
   PetscInitialize(&none, nullptr, nullptr, nullptr);

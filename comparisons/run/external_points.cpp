@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-#include "problem/system/files.h"
 #include "problem/system/input_error.h"
+#include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
 
@@ -62,9 +62,7 @@ struct CsvColumns {
 class CsvReader {
  public:
   CsvReader(const std::filesystem::path& file, const ExternalFormat& format) : file_(file.string()), format_(format) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) throw InputError({file_, 0, 0}, "no such file");
-    text_ = text_of_file(file);
+    text_ = read_named_file(file, "a table of points, NAME.csv");
     if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
   }
 

@@ -1,8 +1,8 @@
 #include "comparisons/run/input_checksum.h"
 
-#include "comparisons/run/checksum.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/script_files.h"
+#include "problem/system/checksum.h"
 #include "problem/system/files.h"
 
 namespace springproof {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "comparisons/results/records.h"
-#include "comparisons/run/checked_file.h"
+#include "problem/system/checked_file.h"
 
 namespace springproof {
 

@@ -8,8 +8,6 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
-#include <fstream>
 #include <mutex>
 #include <thread>
 
@@ -28,6 +26,7 @@
 #include "fem_reference/reference.h"
 #include "problem/system/child.h"
 #include "problem/system/file_name.h"
+#include "problem/system/new_file.h"
 #include "problem/system/shortened.h"
 
 namespace springproof {
@@ -59,13 +58,13 @@ void require_writable(const fs::path& folder) {
   if (folder.empty()) throw InputError("--out: needs the name of a folder");
   std::error_code error;
   fs::create_directories(folder / "parts", error);
-  const fs::path trial = folder / ".writable";
-  std::ofstream out;
-  if (!error) out.open(trial), out << "x", out.close();
-  if (error || !out)
-    throw InputError(shortened(fmt::format("--out: cannot write into {}: {}", folder.string(),
-                                           error ? error.message() : std::strerror(errno))));
-  fs::remove(trial, error);
+  try {
+    if (!error) NewFile(folder / "trial", {"x"});
+  } catch (const std::system_error& e) {
+    error = e.code();
+  }
+  if (error)
+    throw InputError(shortened(fmt::format("--out: cannot write into {}: {}", folder.string(), error.message())));
 }
 
 std::vector<Experiment> read_all(const std::vector<fs::path>& cases, const SuiteOptions& options) {

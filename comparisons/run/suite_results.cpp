@@ -115,8 +115,7 @@ void append(const Part& from, Part& to) {
 
 bool write_results(std::vector<CaseResult> results, const std::string& libraries, const ResultsChoice& choice) {
   const fs::path& out = choice.out;
-  if (!choice.live_page.empty())
-    fs::copy_file(choice.live_page, out / "live.html", fs::copy_options::overwrite_existing);
+  if (!choice.live_page.empty()) write_file(out / "live.html", text_of_file(choice.live_page));
   for (CaseResult& r : results) {
     judge(r);
     if (choice.vtu) write_series(r, out / "vtu" / key_of(r.experiment.file));

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "comparisons/run/checked_file.h"
+#include "problem/system/checked_file.h"
 #include "problem/system/json.h"
 
 namespace springproof {
@@ -19,12 +19,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sweep, version, libraries, shards, finer, vtu
 
 namespace {
 
-constexpr std::string_view heading = "springproof sweep 1 ", meshed_heading = "springproof case 1 ";
+constexpr std::string_view plan_heading = "springproof sweep 1 ", meshed_heading = "springproof case 1 ";
 
 fs::path meshed_file(const fs::path& folder, const std::string& key) { return folder / "parts" / (key + ".case.cbor"); }
 
 Sweep read(const fs::path& file) try {
-  return read_checked(file, heading).get<Sweep>();
+  return nlohmann::json::from_cbor(read_checked(file, plan_heading)).get<Sweep>();
 } catch (const std::exception&) {
   throw InputError(fmt::format("{} is damaged (remove it: the next shard writes it anew)", file.string()));
 }
@@ -85,7 +85,7 @@ void require_same(const fs::path& folder, const Sweep& there, const Sweep& own) 
 fs::path sweep_file(const fs::path& folder) { return folder / "sweep.cbor"; }
 
 Sweep common_plan(const fs::path& folder, const Sweep& own) {
-  if (create_checked(sweep_file(folder), heading, own)) return own;
+  if (create_checked(sweep_file(folder), plan_heading, cbor(own))) return own;
   Sweep there = read(sweep_file(folder));
   require_same(folder, there, own);
   return there;
@@ -113,22 +113,22 @@ const PlannedCase& case_of_key(const Sweep& sweep, const std::string& key) {
 
 void save_meshed(const fs::path& folder, const std::string& key, const CaseResult& meshed) {
   write_checked(meshed_file(folder, key), meshed_heading,
-                {{"size", meshed.size},
-                 {"cells", meshed.cells},
-                 {"notes", meshed.notes},
-                 {"own_poisson_ratios", meshed.own_poisson_ratios},
-                 {"laws", meshed.laws}});
+                cbor({{"size", meshed.size},
+                      {"cells", meshed.cells},
+                      {"notes", meshed.notes},
+                      {"own_poisson_ratios", meshed.own_poisson_ratios},
+                      {"laws", meshed.laws}}));
 }
 
 bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& result) try {
-  const nlohmann::json meshed = read_checked(meshed_file(folder, key), meshed_heading);
+  const nlohmann::json meshed = nlohmann::json::from_cbor(read_checked(meshed_file(folder, key), meshed_heading));
   meshed.at("size").get_to(result.size);
   meshed.at("cells").get_to(result.cells);
   meshed.at("notes").get_to(result.notes);
   meshed.at("own_poisson_ratios").get_to(result.own_poisson_ratios);
   meshed.at("laws").get_to(result.laws);
   return true;
-} catch (const DamagedFile&) {
+} catch (const std::exception&) {  // not there, or damaged
   return false;
 }
 

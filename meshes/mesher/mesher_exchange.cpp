@@ -52,12 +52,6 @@ Mesh sound(Mesh mesh) {
   return mesh;
 }
 
-std::string cbor(const json& j) {
-  std::string bytes;
-  json::to_cbor(j, bytes);
-  return bytes;
-}
-
 }  // namespace
 
 std::string to_cbor(const MeshRequest& r) {

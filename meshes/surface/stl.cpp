@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -21,27 +20,9 @@ namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little, "binary STL is little-endian");
 
 constexpr std::size_t header_bytes = 84, facet_bytes = 50;
-constexpr std::uintmax_t most_bytes = std::uintmax_t{2} << 30;
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message, int line = 0, int column = 0) {
   throw InputError(SourceLocation{file.string(), line, column}, message);
-}
-
-std::string contents_of(const fs::path& file) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) refuse(file, "no such file");
-  if (fs::is_directory(status)) refuse(file, "is a folder, not an STL file");
-  if (!fs::is_regular_file(status)) refuse(file, "is no regular file");
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error) refuse(file, error.message());
-  if (size > most_bytes) refuse(file, fmt::format("has {} bytes (allowed: up to {})", size, most_bytes));
-  std::string bytes(size, '\0');
-  std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(file, "cannot be opened");
-  in.read(bytes.data(), static_cast<std::streamsize>(size));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  return bytes;
 }
 
 void add_facet(Surface& surface, const std::array<Vec3, 3>& corners) {
@@ -242,8 +223,6 @@ constexpr Signature signatures[] = {
 }
 
 }  // namespace
-
-Surface read_stl(const fs::path& file) { return parse_stl(contents_of(file), file); }
 
 Surface parse_stl(std::string_view bytes, const fs::path& file) {
   if (is_binary_by_size(bytes)) return read_binary(file, bytes);

@@ -11,8 +11,8 @@
 #include "msm/exchange/read_cut_cells.h"
 #include "msm/exchange/springs_document.h"
 #include "msm/laws/nodal_gradients.h"
-#include "problem/system/files.h"
 #include "problem/system/input_error.h"
+#include "problem/system/named_files.h"
 #include "problem/system/shortened.h"
 
 namespace springproof {
@@ -20,8 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t largest_file = std::size_t{1} << 31;  // bytes
-constexpr double unbalanced = 1e-6;                         // force at rest over the sum of k L at a node
+constexpr double unbalanced = 1e-6;  // force at rest over the sum of k L at a node
 
 /// Reads the parameters that a law names by its function `fields`.
 class LawReader {
@@ -348,14 +347,7 @@ SpringsFile parse_springs(std::string_view text, const std::string& name) {
 }
 
 SpringsFile read_springs(const std::filesystem::path& file) {
-  namespace fs = std::filesystem;
-  const SourceLocation where{file.string(), 0, 0};
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throw InputError(where, "no such file");
-  if (!fs::is_regular_file(status)) throw InputError(where, "is no regular file (allowed: a springs file, NAME.json)");
-  if (fs::file_size(file, error) > largest_file) throw InputError(where, "is larger than 2 GiB (allowed: up to 2 GiB)");
-  return parse_springs(text_of_file(file), file.string());
+  return parse_springs(read_named_file(file, "a springs file, NAME.json"), file.string());
 }
 
 }  // namespace springproof

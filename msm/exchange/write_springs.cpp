@@ -6,8 +6,8 @@
 #include "meshes/vtu.h"
 #include "msm/exchange/npz.h"
 #include "msm/exchange/springs_document.h"
-#include "problem/system/files.h"
 #include "problem/system/input_error.h"
+#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {
@@ -121,7 +121,7 @@ std::string springs_as_json(const SpringsFile& springs) { return as_json(documen
 void require_springs_ending(const std::filesystem::path& file) { form_of(file); }
 
 void write_springs(const std::filesystem::path& file, const SpringsFile& springs) {
-  write_file(file, form_of(file).write(springs));
+  write_named_file(file, form_of(file).write(springs));
 }
 
 }  // namespace springproof

@@ -10,6 +10,7 @@
 #include "meshes/voxels/voxelise.h"
 #include "msm/python/bindings.h"
 #include "problem/body.h"
+#include "problem/system/named_files.h"
 
 namespace springproof::python {
 namespace {
@@ -127,7 +128,7 @@ void write_vtu_of(const fs::path& file, const SolidBody& body, const Numbers& di
     const auto key = name.cast<std::string>();
     extra.emplace_back(key, rows_of(values.cast<Numbers>(), key.c_str(), nodes));
   }
-  write_vtu(file, field, extra);
+  write_vtu(end_of_links(file), field, extra);
 }
 
 void bind_material(py::module_& m) {

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string_view>
 
+#include "problem/body_size.h"
 #include "problem/case_file/experiment_parts.h"
+#include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
 
@@ -99,7 +99,8 @@ Body read_body(const TomlValue& value) {
   if (const auto size = table.find("size_m")) {
     if (!script) refuse(*size, "is a parameter of .geo scripts", "scale, to multiply the coordinates of a file");
     // gmsh merges points that are 1e-8 apart.
-    body.size = as_vector(*size, {"a finite number > 0, from 1e-6 to 1e9 [m]", 1e-6, 1e9, true, true});
+    body.size =
+        as_vector(*size, {"a finite number > 0, from 1e-6 to 1e9 [m]", smallest_body, largest_body, true, true});
   } else if (script) {
     missing(value, "size_m", "[x, y, z], lengths > 0");
   }
@@ -322,17 +323,7 @@ Experiment parse_experiment(const std::string& text, const std::filesystem::path
 }
 
 Experiment read_experiment(const std::filesystem::path& file) {
-  namespace fs = std::filesystem;
-  const SourceLocation where{file.string(), 0, 0};
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throw InputError(where, "no such file");
-  if (fs::is_directory(status)) throw InputError(where, "is a directory (allowed: a case file, NAME.toml)");
-  if (!fs::is_regular_file(status)) throw InputError(where, "is no regular file (allowed: a case file, NAME.toml)");
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw InputError(where, "cannot be read");
-  return parse_experiment(text, file);
+  return parse_experiment(read_named_file(file, "a case file, NAME.toml", largest_case_file), file);
 }
 
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches) {

@@ -104,10 +104,9 @@ class DepthCounter {
 }  // namespace
 
 void require_bounded(std::string_view text, const std::string& file) {
-  constexpr std::size_t largest_file = 4 << 20;
-  if (text.size() > largest_file)
+  if (text.size() > largest_case_file)
     throw InputError(SourceLocation{file, 0, 0},
-                     fmt::format("has {} bytes (allowed: a case file of up to {})", text.size(), largest_file));
+                     fmt::format("has {} bytes (allowed: a case file of up to {})", text.size(), largest_case_file));
   DepthCounter(text, file).run();
 }
 

@@ -53,6 +53,8 @@ struct Key {
 
 SourceLocation location_of(const TomlValue& value);
 
+inline constexpr std::size_t largest_case_file = 4 << 20;  ///< [bytes]
+
 /// Refuses input that would exhaust the parser's stack or take it too long: files beyond 4 MiB, keys of more than 16
 /// parts, tables and lists more than 16 deep.
 /// @throws InputError

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -55,3 +56,14 @@ struct adl_serializer<Eigen::Matrix<double, rows, columns, options>> {
 };
 
 }  // namespace nlohmann
+
+namespace springproof {
+
+/// The document in CBOR.
+inline std::string cbor(const nlohmann::json& document) {
+  std::string bytes;
+  nlohmann::json::to_cbor(document, bytes);
+  return bytes;
+}
+
+}  // namespace springproof

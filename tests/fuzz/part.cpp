@@ -3,9 +3,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "comparisons/run/checksum.h"
 #include "comparisons/run/part_file.h"
 #include "fuzz/reader.h"
+#include "problem/system/checksum.h"
 
 namespace {
 

@@ -4,12 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <thread>
 
-#include "comparisons/run/checked_file.h"
 #include "comparisons/run/folder_lock.h"
 #include "comparisons/run/sweep.h"
 #include "problem/system/child.h"
@@ -75,33 +71,6 @@ TEST(FolderLock, IsSharedByShards) {
   const FolderLock first(out, FolderLock::beside_shards);
   EXPECT_NO_THROW(FolderLock(out, FolderLock::beside_shards));
   EXPECT_THROW(FolderLock(out, FolderLock::alone), InputError);
-}
-
-TEST(CheckedFile, IsCreatedByOneAndWrittenWholeByAny) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path / "file";
-  const auto content = [](int i) { return nlohmann::json(std::string(100000, static_cast<char>('a' + i))); };
-  std::atomic<int> created = 0;
-  std::vector<std::thread> writers;
-  for (int i = 0; i < 8; ++i)
-    writers.emplace_back([&, i] {
-      created += create_checked(file, "test 1 ", content(i));
-      EXPECT_NO_THROW(read_checked(file, "test 1 "));
-    });
-  for (std::thread& w : writers) w.join();
-  EXPECT_EQ(created, 1);
-  writers.clear();
-  for (int i = 0; i < 8; ++i)
-    writers.emplace_back([&, i] {
-      for (int k = 0; k < 20; ++k) {
-        write_checked(file, "test 1 ", content(i));
-        EXPECT_NO_THROW(read_checked(file, "test 1 "));
-      }
-    });
-  for (std::thread& w : writers) w.join();
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path), {}), 1) << "something is left behind";
-  EXPECT_THROW(read_checked(file, "other 1 "), DamagedFile);
-  EXPECT_THROW(write_checked(folder.path / "missing" / "file", "test 1 ", 1), std::runtime_error);
 }
 
 Sweep sweep_of(int shards) {

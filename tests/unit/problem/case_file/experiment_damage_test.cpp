@@ -32,8 +32,9 @@ TEST(CaseFile, MissingFileDirectoryAndDevice) {
     }
     return std::string("accepted");
   };
-  EXPECT_EQ(message("nowhere/case.toml"), "nowhere/case.toml: no such file");
-  EXPECT_NE(message(std::filesystem::temp_directory_path()).find("is a directory"), std::string::npos);
+  EXPECT_EQ(message("nowhere/case.toml"), "nowhere/case.toml: no such file (allowed: a case file, NAME.toml)");
+  EXPECT_NE(message(std::filesystem::temp_directory_path()).find("is a folder (allowed: a case file"),
+            std::string::npos);
   EXPECT_NE(message("/dev/null").find("no regular file"), std::string::npos);
   EXPECT_NE(message(std::string("\0x", 2)), "accepted");
   EXPECT_NE(message(std::string(100000, 'x')), "accepted");

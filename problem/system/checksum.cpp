@@ -1,6 +1,8 @@
-#include "comparisons/run/checksum.h"
+#include "problem/system/checksum.h"
 
 #include <fmt/format.h>
+
+#define XXH_INLINE_ALL  // the header alone: programs that link us need no library of it
 #include <xxhash.h>
 
 namespace springproof {
