@@ -2,18 +2,21 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
+#include <regex>
 #include <set>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/mesher/script_files.h"
+#include "problem/system/checked_file.h"
+#include "problem/system/checksum.h"
 #include "problem/system/child.h"
 
 namespace springproof {
@@ -22,6 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t most_bytes = 1'000'000'000;
+
+// File format: this heading (problem/system/checked_file.h), then the key and the answer of the mesher.
+constexpr std::string_view heading = "springproof mesh 1 ";
 
 /// Empty: none.
 fs::path folder() {
@@ -38,6 +44,19 @@ std::string line_of(const fs::path& file) {
                      s.st_ctim.tv_nsec);
 }
 
+/// Whether the name is one of ours: mesh-<checksum>.cbor, and before it has its place (problem/system/new_file.h) with
+/// .<8 digits>.part.
+bool has_our_name(const fs::path& file) {
+  static const std::regex ours("mesh-[0-9a-f]{32}\\.cbor(\\.[0-9a-f]{8}\\.part)?");
+  return std::regex_match(file.filename().string(), ours);
+}
+
+bool has_our_beginning(const fs::path& file) {
+  std::string bytes(heading.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes == heading;
+}
+
 void remove_oldest(const fs::path& folder) {
   struct Entry {
     fs::file_time_type used;
@@ -49,6 +68,8 @@ void remove_oldest(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     std::error_code gone;
+    if (!has_our_name(at->path()) || !fs::is_regular_file(at->symlink_status(gone)) || !has_our_beginning(at->path()))
+      continue;
     Entry e{at->last_write_time(gone), at->file_size(gone), at->path()};
     if (gone) continue;
     all += e.bytes;
@@ -69,18 +90,19 @@ MeshCache::MeshCache(const MeshRequest& request, const fs::path& program) {
   if (meshes.empty() || (script && !is_built_in(request.file))) return;
   key_ = to_cbor(request) + "\n" + line_of(program);
   for (const fs::path& file : script ? files_behind(request.file) : std::set{request.file}) key_ += line_of(file);
-  file_ = meshes / fmt::format("{:016x}.cbor", std::hash<std::string>()(key_));
+  file_ = meshes / fmt::format("mesh-{}.cbor", checksum(key_));
 }
 
 std::optional<MeshedBody> MeshCache::find() const {
-  if (key_.empty()) return {};
-  const std::string bytes = text_of_file(file_);
-  if (!bytes.starts_with(key_)) return {};
-  std::error_code ignored;
-  fs::last_write_time(file_, fs::file_time_type::clock::now(), ignored);  // when it was used
+  std::error_code error;
+  if (key_.empty() || !fs::exists(file_, error)) return {};
   try {
-    return answer_from_cbor(bytes.substr(key_.size()));
-  } catch (const std::runtime_error&) {  // damaged
+    const std::string content = read_checked(file_, heading);
+    if (!content.starts_with(key_)) refuse_damaged(file_);
+    fs::last_write_time(file_, fs::file_time_type::clock::now(), error);  // when it was used
+    return answer_from_cbor(content.substr(key_.size()));
+  } catch (const std::runtime_error&) {
+    fmt::print(stderr, "note: the kept mesh {} is damaged; it is made anew\n", file_.string());
     return {};
   }
 }
@@ -89,13 +111,11 @@ void MeshCache::keep(const std::string& answer) const {
   if (key_.empty()) return;
   std::error_code error;
   fs::create_directories(file_.parent_path(), error);
-  fs::path part = file_;
-  part += fmt::format(".{}.part", gettid());
-  std::ofstream out(part, std::ios::binary);
-  out << key_ << answer;
-  out.close();
-  if (out) fs::rename(part, file_, error);
-  if (!out || error) fs::remove(part, error);
+  try {
+    write_checked(file_, heading, key_ + answer);
+  } catch (const std::system_error&) {
+    return;
+  }
   remove_oldest(file_.parent_path());
 }
 

@@ -19,14 +19,15 @@ class MeshCache {
   /// and none where the variable is empty.
   MeshCache(const MeshRequest& request, const std::filesystem::path& program);
 
-  /// Nothing: it was never kept, or is damaged.
+  /// Nothing: it was never kept, or is damaged, which is said on stderr.
   std::optional<MeshedBody> find() const;
 
-  /// @param answer of the mesher, in CBOR.  The meshes not used for longest go when there are more than 1 GB.
+  /// @param answer of the mesher, in CBOR.  The meshes not used for longest go when there are more than 1 GB of them;
+  /// files of others in the folder are neither counted nor removed.
   void keep(const std::string& answer) const;
 
  private:
-  std::string key_;  ///< begins each file; empty: no place
+  std::string key_;  ///< begins the content of each file; empty: no place
   std::filesystem::path file_;
 };
 

@@ -83,6 +83,33 @@ TEST_F(MeshCaches, ADamagedMeshIsMadeAgain) {
   EXPECT_EQ(calls(), 3);
 }
 
+TEST_F(MeshCaches, AMeshOfWhichOneBitIsChangedIsMadeAgainWhichIsSaid) {
+  const Mesh mesh = mesh_body({.file = body_}).mesh;
+  const fs::path file = kept()[0];
+  const std::string whole = text_of_file(file);
+  int made = 1;
+  for (std::size_t byte = 5; byte < whole.size(); byte += whole.size() / 20) {
+    std::string bytes = whole;
+    bytes[byte] = static_cast<char>(bytes[byte] ^ 4);
+    write_file(file, bytes);
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(mesh_body({.file = body_}).mesh.nodes, mesh.nodes) << byte;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "note: the kept mesh " + file.string() + " is damaged; it is made anew\n");
+    EXPECT_EQ(calls(), ++made);
+    EXPECT_EQ(text_of_file(file), whole);
+  }
+}
+
+TEST_F(MeshCaches, AMeshUnderTheNameOfAnotherIsNotTaken) {
+  mesh_body({.file = body_, .scale = 2});
+  const fs::path first = kept()[0], aside = folder_.path / "aside";
+  fs::rename(first, aside);
+  mesh_body({.file = body_, .scale = 3});
+  fs::copy_file(aside, kept()[0], fs::copy_options::overwrite_existing);
+  EXPECT_EQ(mesh_body({.file = body_, .scale = 3}).mesh.nodes.maxCoeff(), 3);
+}
+
 TEST_F(MeshCaches, ScriptsOfTheUserAndRefusalsAreNotKept) {
   const fs::path script = folder_.path / "own.geo", refused = folder_.path / "refused.msh";
   std::ofstream(script) << "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n";
@@ -119,13 +146,33 @@ TEST_F(MeshCaches, WhatWasNotUsedForLongestGoesFirst) {
   using namespace std::chrono_literals;
   fs::resize_file(second, 600'000'000);  // sparse
   fs::last_write_time(second, fs::last_write_time(first) - 1h);
-  const fs::path large = folder_.path / "meshes" / "large.cbor";
-  std::ofstream(large) << "";
+  const fs::path large = folder_.path / "meshes" / "mesh-00112233445566778899aabbccddeeff.cbor";
+  fs::copy_file(first, large);
   fs::resize_file(large, 600'000'000);
   mesh_body(place(3));
   EXPECT_FALSE(fs::exists(second));
   EXPECT_TRUE(fs::exists(first));
   EXPECT_TRUE(fs::exists(large));
+}
+
+TEST_F(MeshCaches, FilesOfOthersAreNeitherCountedNorRemoved) {
+  mesh_body({.file = body_, .scale = 1});
+  const fs::path ours = kept()[0], meshes = ours.parent_path();
+  using namespace std::chrono_literals;
+  std::vector<fs::path> others;
+  for (const char* name :
+       {"thesis.txt", "photos.tar", "mesh-1.cbor", "0123456789abcdef.cbor",
+        "mesh-00112233445566778899aabbccddeeff.cbor", "mesh-00112233445566778899AABBCCDDEEFF.cbor"}) {
+    others.push_back(meshes / name);
+    std::ofstream(others.back()) << "mine";
+    fs::resize_file(others.back(), 1'100'000'000);  // sparse
+    fs::last_write_time(others.back(), fs::last_write_time(ours) - 1h);
+  }
+  fs::create_symlink(others[0], meshes / "mesh-ffffffffffffffffffffffffffffffff.cbor");
+  mesh_body({.file = body_, .scale = 2});
+  others.push_back(ours);
+  for (const fs::path& other : others) EXPECT_TRUE(fs::exists(other)) << other;
+  EXPECT_TRUE(fs::is_symlink(meshes / "mesh-ffffffffffffffffffffffffffffffff.cbor"));
 }
 
 }  // namespace
