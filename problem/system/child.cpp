@@ -17,6 +17,7 @@
 #include <cstring>
 #include <fstream>
 #include <mutex>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -109,6 +110,7 @@ namespace {
 
 constexpr std::string_view folder_prefix = "springproof-temporary-";  // no likely name for a folder of results
 constexpr std::string_view unlocked_prefix = ".springproof-";         // of a folder that is not locked yet
+constexpr const char* mark = ".springproof-temporary";                // a file in each folder of ours, first and last
 
 /// Where temporary folders are made.
 fs::path temporary_place() {
@@ -133,24 +135,41 @@ int lock_folder(const fs::path& folder) {
   return -1;
 }
 
+/// The mark goes last: what is left of the folder of one that is killed meanwhile is still known.
+void remove_marked(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (std::error_code ignored; entry->path().filename() != mark) fs::remove_all(entry->path(), ignored);
+  fs::remove_all(folder, error);
+}
+
+/// @return whether the folder now has its mark.
+bool set_mark(const fs::path& folder) {
+  const int descriptor = open((folder / mark).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  if (descriptor >= 0) close(descriptor);
+  return descriptor >= 0;
+}
+
 }  // namespace
 
-// Removes folders named like ours that no process has locked, and those, empty, that were to be.
+// Removes folders named as ours that no process has locked, where they are empty or have our mark.
 void remove_orphans() {
+  static const std::regex ours(
+      fmt::format("{}[0-9]+-[0-9A-Za-z]{{6}}|\\{}[0-9A-Za-z]{{6}}", folder_prefix, unlocked_prefix));
   std::error_code error;
   for (fs::directory_iterator entry(temporary_place(), error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(folder_prefix) && !name.starts_with(unlocked_prefix)) continue;
-    const int lock = lock_folder(entry->path());
+    const fs::path& folder = entry->path();
+    if (!std::regex_match(folder.filename().string(), ours)) continue;
+    const int lock = lock_folder(folder);
     if (lock < 0) continue;
-    std::error_code ignored;
-    fs::remove_all(entry->path(), ignored);
+    std::error_code none;
+    fs::is_regular_file(fs::symlink_status(folder / mark, none)) ? remove_marked(folder) : void(rmdir(folder.c_str()));
     close(lock);
   }
 }
 
-// The folder gets its final name after it is locked, so that no process takes it for an orphan with something in it;
-// before that another process may remove it, and it is made again.
+// The folder gets its final name after it is locked and marked; before that another process may take it for an orphan
+// and remove it, and it is made again.
 TemporaryFolder::TemporaryFolder() {
   const fs::path place = temporary_place();
   static std::once_flag first;
@@ -162,16 +181,16 @@ TemporaryFolder::TemporaryFolder() {
     lock_ = lock_folder(name);
     path = place / fmt::format("{}{}-{}", folder_prefix, getpid(), name.substr(name.size() - 6));
     const bool last = trial == most_trials;  // where nothing can be locked, it goes on without
-    if ((lock_ >= 0 || last) && std::rename(name.c_str(), path.c_str()) == 0) return;
-    if (last) no_room(path, errno);
+    if ((lock_ >= 0 || last) && set_mark(name) && std::rename(name.c_str(), path.c_str()) == 0) return;
+    const int error = errno;
+    remove_marked(name);
     if (lock_ >= 0) close(lock_);
-    rmdir(name.c_str());
+    if (last) no_room(path, error);
   }
 }
 
 TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path, ignored);
+  remove_marked(path);
   if (lock_ >= 0) close(lock_);
 }
 

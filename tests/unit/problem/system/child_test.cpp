@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -116,7 +117,8 @@ TEST(TemporaryFolder, IsGoneAfterwards) {
 }
 
 std::size_t folders_in(const fs::path& place) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(place), fs::directory_iterator()));
+  return static_cast<std::size_t>(
+      std::count_if(fs::directory_iterator(place), {}, [](const auto& entry) { return entry.is_directory(); }));
 }
 
 class Temporary : public testing::Test {
@@ -143,6 +145,23 @@ TEST_F(Temporary, FoldersOfTheKilledAreClearedAndThoseOfTheLivingAreNot) {
   EXPECT_EQ(folders_in(place_.path), 2u);
   EXPECT_EQ(text_of_file(living.path / "file"), "text");
   EXPECT_TRUE(fs::exists(place_.path / "springproof-report"));
+}
+
+TEST_F(Temporary, FoldersOfOthersStayWhateverTheirNames) {
+  const char* const full[] = {".springproof-notes", ".springproof-photos", "springproof-temporary-copy",
+                              "springproof-temporary-17-abcdef", "springproof-temporary-17-abcdefg"};
+  for (const char* name : full) {
+    fs::create_directory(place_.path / name);
+    std::ofstream(place_.path / name / "mine") << "text";
+  }
+  fs::create_directory(place_.path / ".springproof-empty-too");
+  std::ofstream(place_.path / "springproof-temporary-17-ghijkl") << "a file";
+  fs::create_directory_symlink(place_.path / ".springproof-notes", place_.path / "springproof-temporary-17-mnopqr");
+  remove_orphans();
+  for (const char* name : full) EXPECT_EQ(text_of_file(place_.path / name / "mine"), "text");
+  for (const char* name :
+       {".springproof-empty-too", "springproof-temporary-17-ghijkl", "springproof-temporary-17-mnopqr"})
+    EXPECT_TRUE(fs::exists(place_.path / name)) << name;
 }
 
 TEST_F(Temporary, APlaceThatIsNotThereIsNamed) {
