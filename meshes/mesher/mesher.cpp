@@ -13,7 +13,9 @@
 
 #include "meshes/mesher/mesh_cache.h"
 #include "meshes/mesher/mesher_exchange.h"
+#include "problem/body_size.h"
 #include "problem/system/child.h"
+#include "problem/system/named_files.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -22,6 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double most_cells = 5e6;
+
+constexpr double smallest_scale = 1e-30, largest_scale = 1e30;  // as numbers of a case
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message) {
   throw InputError(SourceLocation{file.string(), 0, 0}, message);
@@ -64,14 +68,30 @@ void check_facets(const fs::path& stl) {
                stl.string(), facets, seconds, 1e-9 * bytes_each * facets);
 }
 
+/// @param farthest the largest coordinate
+void require_size(const fs::path& file, const Vec3& size, double farthest) {
+  if (size.maxCoeff() >= smallest_body && size.maxCoeff() <= largest_body && farthest <= largest_body) return;
+  refuse(file,
+         fmt::format("the body spans {:.3g} x {:.3g} x {:.3g} m, up to {:.3g} m from the origin (allowed: a longest "
+                     "side of {:g} to {:g} m, no further than {:g} m from the origin; size_m, or scale of a file)",
+                     size[0], size[1], size[2], farthest, smallest_body, largest_body, largest_body));
+}
+
+/// The body itself.
+MeshedBody of_sound_size(const fs::path& file, MeshedBody body) {
+  const NodalVectors& x = body.mesh.nodes;
+  const auto span = x.colwise().maxCoeff() - x.colwise().minCoeff();
+  require_size(file, span.transpose(), x.cwiseAbs().maxCoeff());
+  return body;
+}
+
 void check(const MeshRequest& r) {
   const auto& extensions = mesh_file_extensions();
   const std::string extension = extension_of(r.file);
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
     refuse(r.file,
            fmt::format("cannot read a body from a '{}' file (allowed: {})", extension, fmt::join(extensions, ", ")));
-  std::error_code ignored;
-  if (!fs::is_regular_file(r.file, ignored)) refuse(r.file, "no such file");
+  require_file(r.file, fmt::format("a body: {}", fmt::join(extensions, ", ")));
   if (extension == ".stl") check_facets(r.file);
   if (!r.size.isZero() && !(r.size.allFinite() && r.size.minCoeff() > 0))
     refuse(r.file, "size_m: three positive lengths are needed");
@@ -83,8 +103,10 @@ void check(const MeshRequest& r) {
                        r.cells[0], r.cells[1], r.cells[2], cells, most_cells));
   if (!(r.edge >= 0) || !std::isfinite(r.edge))
     refuse(r.file, fmt::format("edge: {} m is no length (allowed: > 0)", r.edge));
-  if (!(r.scale > 0) || !std::isfinite(r.scale))
-    refuse(r.file, fmt::format("scale: {} is no factor (allowed: > 0)", r.scale));
+  if (!(r.scale >= smallest_scale && r.scale <= largest_scale))
+    refuse(r.file,
+           fmt::format("scale: {} is no factor (allowed: {:g} to {:g})", r.scale, smallest_scale, largest_scale));
+  if (!r.size.isZero()) require_size(r.file, r.size, r.size.maxCoeff());
   if (r.edge == 0 && r.tetrahedra == 0 && extension != ".geo" && extension != ".msh")
     refuse(r.file, "edge: the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
 }
@@ -125,9 +147,9 @@ fs::path find_geo(const Body& body, const fs::path& case_file) {
     return candidate;
   }
   std::error_code ignored;
-  if (const fs::path folder = case_file.parent_path() / body.geo;
-      !body.geo.empty() && fs::is_directory(folder, ignored))
-    throw InputError(body.where, fmt::format("body.geo: {} is a folder (allowed: a file)", folder.string()));
+  if (const fs::path beside = case_file.parent_path() / body.geo; !body.geo.empty() && fs::exists(beside, ignored))
+    throw InputError(body.where, fmt::format("body.geo: {} is {} (allowed: a file)", beside.string(),
+                                             fs::is_directory(beside, ignored) ? "a folder" : "no regular file"));
   throw InputError(body.where, fmt::format("body.geo: no file '{}' beside the case file or among the built-in "
                                            "bodies (allowed: {})",
                                            body.geo, list_of_bodies(built_in)));
@@ -150,7 +172,7 @@ MeshedBody mesh_body(const MeshRequest& request) {
     throw std::runtime_error(
         "the program springproof-mesh is neither beside this one nor named by SPRINGPROOF_MESH_PROGRAM");
   const MeshCache cache(request, program);
-  if (std::optional<MeshedBody> kept = cache.find()) return std::move(*kept);
+  if (std::optional<MeshedBody> kept = cache.find()) return of_sound_size(request.file, std::move(*kept));
   progress::detail("meshing " + request.file.filename().string());
   const TemporaryFolder folder;
   const fs::path question = folder.path / "request.cbor", answer = folder.path / "answer.cbor",
@@ -167,7 +189,7 @@ MeshedBody mesh_body(const MeshRequest& request) {
   if (!end.ok()) refuse(request.file, fmt::format("the mesher {} {}", words_for(end), trimmed(text_of_file(log))));
   try {
     const std::string bytes = text_of_file(answer);
-    MeshedBody body = answer_from_cbor(bytes);
+    MeshedBody body = of_sound_size(request.file, answer_from_cbor(bytes));
     cache.keep(bytes);
     return body;
   } catch (const InputError&) {
@@ -178,8 +200,7 @@ MeshedBody mesh_body(const MeshRequest& request) {
 }
 
 Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKind kind) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(geo, ignored)) refuse(geo, "no such file");
+  require_file(geo, "a script for gmsh, NAME.geo");
   if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
   if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
   const MeshRequest request{.file = geo, .size = size, .cells = cells, .kind = kind};

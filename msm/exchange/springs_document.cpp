@@ -7,13 +7,25 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "msm/exchange/json_place.h"
 #include "msm/topology/macro_cells.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using Keys = std::vector<std::string>;
+
+/// @throws InputError for numbers that a reader of the file refuses.
+void require_readable(const Keys& keys, const std::vector<double>& values, double least = 0) {
+  for (const double x : values)
+    if (!(std::abs(x) >= least && std::abs(x) <= largest_number_of_file))
+      throw InputError(
+          fmt::format("{} of the springs file: {:g} (allowed: {:g} to {:g} in size; choose another size, "
+                      "density or Young's modulus)",
+                      fmt::join(keys, "."), x, least, largest_number_of_file));
+}
 
 class DocumentWriter {
  public:
@@ -34,7 +46,9 @@ class DocumentWriter {
     array<double>(keys, {static_cast<std::size_t>(x.rows()), 3}, {x.data(), x.data() + x.size()});
   }
 
-  void numbers(const Keys& keys, std::vector<double> values) {
+  /// @param least in size
+  void numbers(const Keys& keys, std::vector<double> values, double least = 0) {
+    require_readable(keys, values, least);
     const std::size_t count = values.size();
     array<double>(keys, {count}, std::move(values));
   }
@@ -62,7 +76,7 @@ class LawWriter {
   }
 
   void number(const char* key, double value, double = 0, double = 0) {
-    if (!std::isfinite(value)) throw std::invalid_argument(fmt::format("{} of a law is {}", key, value));
+    require_readable(with(key), {value});
     writer_.at(law_)[key] = value;
   }
   void flag(const char* key, bool value) { writer_.at(law_)[key] = value; }
@@ -123,7 +137,8 @@ void add_filled(const std::vector<FilledPart>& filled, DocumentWriter& out) {
 void add_network(const Network& network, double density, DocumentWriter& out) {
   out.vectors({"nodes", "position_m"}, network.X);
   const Eigen::VectorXd mass = masses(network, density);
-  out.numbers({"nodes", "mass_kg"}, {mass.begin(), mass.end()});
+  const double least_mass = network.carried.empty() ? smallest_of_file : 0;  // what is carried has its mass elsewhere
+  out.numbers({"nodes", "mass_kg"}, {mass.begin(), mass.end()}, least_mass);
   std::vector<std::array<int, 2>> ends;
   std::vector<double> stiffness, rest_length;
   for (const Spring& s : network.springs) {
@@ -132,8 +147,8 @@ void add_network(const Network& network, double density, DocumentWriter& out) {
     rest_length.push_back(s.rest_length);
   }
   out.rows({"springs", "nodes"}, ends);
-  out.numbers({"springs", "stiffness_N_m"}, std::move(stiffness));
-  out.numbers({"springs", "rest_length_m"}, std::move(rest_length));
+  out.numbers({"springs", "stiffness_N_m"}, std::move(stiffness), smallest_of_file);
+  out.numbers({"springs", "rest_length_m"}, std::move(rest_length), smallest_of_file);
   if (!network.cells.empty()) {
     if (network.cell_edges.empty())
       out.at({"cells", "edge_m"}) = network.cell_edge;

@@ -230,6 +230,20 @@ TEST_F(Mesher, OptionsBesideAMeshAreNotRun) {
   EXPECT_FALSE(fs::exists(trace));
 }
 
+TEST_F(Mesher, BodiesHaveOneRangeOfSizes) {
+  const fs::path box = write("box.geo", box_solid);
+  for (const double scale : {1e200, 1e31, 1e-31})
+    EXPECT_SAYS(message_of({.file = box, .edge = scale, .scale = scale}), "is no factor (allowed: 1e-30 to 1e+30)");
+  for (const double scale : {1e12, 1e-12})
+    EXPECT_SAYS(message_of({.file = box, .edge = scale, .scale = scale}),
+                "(allowed: a longest side of 1e-06 to 1e+09 m");
+  EXPECT_EQ(message_of({.file = box, .edge = 1e8, .scale = 1e8}), "accepted");
+  const fs::path block = find_geo({.geo = "block.geo"}, {});
+  EXPECT_SAYS(message_of({.file = block, .size = {1e10, 1, 1}, .cells = {1, 1, 1}}), "the body spans 1e+10 x 1 x 1 m");
+  const fs::path far = write("far.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {1e10, 0, 0, 1e9, 1e9, 1e9};\n");
+  EXPECT_SAYS(message_of({.file = far, .edge = 1e9}), "up to 1.1e+10 m from the origin");
+}
+
 TEST_F(Mesher, RefusesWhatItCannotRead) {
   const std::string message = message_of({.file = write("body.obj", "v 0 0 0\n"), .edge = 0.1});
   EXPECT_SAYS(message, "cannot read a body from a '.obj' file (allowed: .geo, .stl, .msh, .step, .stp, .brep)");

@@ -48,6 +48,20 @@ std::string message_of(const std::string& text) {
   return "accepted";
 }
 
+TEST(SpringsFile, IsNotWrittenWithNumbersThatNoReaderTakes) {
+  SpringsFile file = file_of("msm_18");
+  for (const double density : {1e30, 1e-30, 1e300}) {
+    file.density = density;
+    file.model.network.volume.setConstant(density > 1 ? 1e3 : 1e-3);
+    try {
+      springs_as_json(file);
+      FAIL() << density;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("nodes.mass_kg of the springs file: "), std::string::npos) << e.what();
+    }
+  }
+}
+
 TEST(SpringsFile, IsReadAsItWasWrittenForEveryModel) {
   for (const ModelRow& row : model_table()) {
     if (row.topology == Topology::macro_cells) continue;  // refused: macro_springs_test.cpp
