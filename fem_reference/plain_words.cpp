@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "problem/system/shortened.h"
+
 namespace springproof::fem {
 namespace {
 
@@ -25,7 +27,8 @@ std::string one_line(const std::string& text) {
 
 }  // namespace
 
-std::string plain_words(const std::string& message) {
+std::string plain_words(const std::string& coloured) {
+  const std::string message = without_colours(coloured);
   if (message.find("An error occurred in line <") == std::string::npos) return one_line(message);
   const std::string said = one_line(between(message, "Additional information:", "\n\n"));
   const std::string condition = one_line(between(message, "The violated condition was:", "\n"));

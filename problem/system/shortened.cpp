@@ -7,7 +7,22 @@
 
 namespace springproof {
 
-std::string shortened(const std::string& message) {
+std::string without_colours(const std::string& text) {
+  const auto is_last = [](char c) { return c >= '@' && c <= '~'; };
+  std::string out;
+  for (auto at = text.begin(); at != text.end(); ++at) {
+    if (*at != '\x1b' || text.end() - at < 2 || at[1] != '[') {
+      out += *at;
+      continue;
+    }
+    at = std::find_if(at + 2, text.end(), is_last);
+    if (at == text.end()) break;
+  }
+  return out;
+}
+
+std::string shortened(const std::string& coloured) {
+  const std::string message = without_colours(coloured);
   constexpr std::size_t longest = 100, shown = 40;
   const auto continues_letter = [&](std::size_t at) {
     return (static_cast<unsigned char>(message[at]) & 0xc0) == 0x80;

@@ -5,7 +5,11 @@
 
 namespace springproof {
 
-/// Cuts words of more than 100 letters to their beginning, "aaaa... (5000 letters)"; line breaks become spaces.
+/// The text without what colours it on a terminal (control sequences of ECMA-48), as libraries write it.
+std::string without_colours(const std::string& text);
+
+/// Cuts words of more than 100 letters to their beginning, "aaaa... (5000 letters)"; line breaks become spaces, colours
+/// go.
 std::string shortened(const std::string& message);
 
 }  // namespace springproof

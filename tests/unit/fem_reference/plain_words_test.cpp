@@ -22,6 +22,7 @@ TEST(PlainWords, AreWhatAnExceptionHasToSay) {
   EXPECT_EQ(fem::plain_words("An error occurred in line <1> of file <x>\nThe violated condition was: a < b\n"),
             "deal.II: a condition does not hold: a < b");
   EXPECT_EQ(fem::plain_words("case.toml: --cells: 3 - 4 are\nwrong \n"), "case.toml: --cells: 3 - 4 are wrong");
+  EXPECT_EQ(fem::plain_words("\x1b[1;31mno \x1b[38;5;9mroom\x1b[0m"), "no room");
   EXPECT_EQ(fem::plain_words(""), "");
 }
 

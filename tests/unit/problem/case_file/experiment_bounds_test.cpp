@@ -61,6 +61,7 @@ TEST(Bounds, LongWordsAreShortenedInMessages) {
   }
   EXPECT_EQ(shortened(repeated("\xc3\xa4", 60) + " end"), repeated("\xc3\xa4", 20) + "... (120 letters) end");
   EXPECT_EQ(shortened("two\nlines"), "two lines");
+  EXPECT_EQ(shortened("\x1b[1;31mError\x1b[0m: \x1b[38;5;9mred\x1b[K"), "Error: red");
 }
 
 TEST(Bounds, NumbersBeyondReasonAreRefusedWithTheirPlace) {
