@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "meshes/locate/locate.h"
+#include "meshes/locate/tetrahedron_locator.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::calculix {
@@ -260,18 +262,41 @@ Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh) {
   return volumes;
 }
 
-std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point) {
-  const std::optional<Location> place = locate(linear, point);
-  if (!place)
-    throw InputError(fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies in no hexahedron of the body", point.x(),
-                                 point.y(), point.z()));
+namespace {
+
+struct PlaceInElement {
+  std::size_t element;
+  Vec3 xi;
+};
+
+std::optional<PlaceInElement> place_in_hexahedra(const Mesh& mesh, const Vec3& point) {
+  const std::optional<Location> place = locate(mesh, point);
+  if (!place) return {};
   // The trilinear shape functions yield the reference coordinates: each is the sum over the corners of one face.
   Vec3 xi = -Vec3::Ones();
   for (int corner = 0; corner < 8; ++corner)
     for (int d = 0; d < 3; ++d) xi[d] += 2 * hexahedron_corners[corner][d] * place->shape[corner];
-  const Eigen::VectorXd shape = basis(20, xi).value;
+  return PlaceInElement{place->cell, xi};
+}
+
+std::optional<PlaceInElement> place_in_tetrahedra(const Mesh& mesh, const Vec3& point) {
+  const TetrahedronLocator::Place place = TetrahedronLocator(mesh.nodes, mesh.tetrahedra)(point);
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  if (place.outside > 1e-9 * size) return {};
+  return PlaceInElement{place.cell, place.weights.tail<3>()};
+}
+
+}  // namespace
+
+std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point) {
+  const auto place = linear.hexahedra.empty() ? place_in_tetrahedra(linear, point) : place_in_hexahedra(linear, point);
+  if (!place)
+    throw InputError(fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies in no element of the body", point.x(),
+                                 point.y(), point.z()));
+  const std::vector<int>& nodes = mesh.elements[place->element];
+  const Eigen::VectorXd shape = basis(nodes.size(), place->xi).value;
   std::vector<std::pair<int, double>> weights;
-  for (int i = 0; i < 20; ++i) weights.emplace_back(mesh.elements[place->cell][i], shape[i]);
+  for (std::size_t i = 0; i < nodes.size(); ++i) weights.emplace_back(nodes[i], shape[static_cast<Eigen::Index>(i)]);
   return weights;
 }
 

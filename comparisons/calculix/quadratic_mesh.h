@@ -49,9 +49,9 @@ Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh);
 /// Consistent loads [N] of a body force given at rest positions [N/m^3].
 NodalVectors nodal_body_forces(const QuadraticMesh& mesh, const std::function<Vec3(const Vec3&)>& body_force);
 
-/// Nodes and values of their shape functions at a rest position inside a hexahedron.  `linear` is the mesh from which
-/// `mesh` was made.
-/// @throws InputError naming the point if it lies in no hexahedron.
+/// Nodes and values of their shape functions at a rest position inside the body.  `linear` is the mesh from which
+/// `mesh` was made: of hexahedra or of tetrahedra.
+/// @throws InputError naming the point if it lies in no element.
 std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point);
 
 struct VolumeChange {

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "comparisons/calculix/cross_check.h"
 #include "comparisons/calculix/deck.h"
@@ -17,10 +17,11 @@
 #include "comparisons/run/springs_of_case.h"
 #include "comparisons/run/status.h"
 #include "meshes/mesher/mesher.h"
+#include "meshes/mesher/mesher_exchange.h"
 #include "msm/exchange/lammps.h"
 #include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
-#include "problem/system/files.h"
+#include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
 
 namespace springproof {
@@ -36,13 +37,25 @@ Cells cells_of_option(const std::vector<int>& cells) {
 
 bool is_body(const std::string& name) {
   const auto& endings = mesh_file_extensions();
-  return std::find(endings.begin(), endings.end(), fs::path(name).extension().string()) != endings.end();
+  return std::find(endings.begin(), endings.end(), extension_of(name)) != endings.end();
 }
 
 Experiment read_case(const std::string& name) {
   const std::vector<fs::path> found = find_cases({name});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", name, found.size()));
   return read_experiment(found.front());
+}
+
+/// Before the work.
+void require_writable(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const char* why = fs::is_directory(file)                ? "is a folder"
+                    : !fs::is_directory(folder)           ? "its folder does not exist"
+                    : ::access(folder.c_str(), W_OK) != 0 ? "its folder is write-protected"
+                                                          : nullptr;
+  if (why)
+    throw InputError(fmt::format("--out: cannot write {}: {} (allowed: a name in a folder that can be written)",
+                                 file.string(), why));
 }
 
 int export_calculix(const ExportRequest& request) {
@@ -53,6 +66,10 @@ int export_calculix(const ExportRequest& request) {
   const Experiment experiment = read_case(request.what);
   calculix::require_counterpart(experiment);
   const IsotropicMaterial material = material_of(experiment, request.moduli.poisson_ratio);
+  const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
+  require_writable(file);
+  Status status(false);
+  const Status::Working working(status, request.what);
   const PreparedCase prepared = prepare(experiment);
   if (experiment.body.is_voxels() && !request.cells.empty())
     throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
@@ -61,11 +78,9 @@ int export_calculix(const ExportRequest& request) {
   const Mesh mesh =
       experiment.body.is_voxels() ? *prepared.tetrahedra.back() : mesh_geo(prepared.geo, experiment.body.size, cells);
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
-  const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
-  std::ofstream out(file);
+  std::ostringstream out;
   calculix::write(deck, out);
-  out.close();
-  if (!out) throw InputError(fmt::format("--out: cannot write {}", file));
+  write_named_file(file, out.view());
   fmt::print("{}: {} nodes, {} elements {}, nu = {:g}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
              deck.element, material.poisson_ratio);
   return 0;
@@ -195,18 +210,6 @@ void report(const fs::path& file, const SpringsFile& s) {
              s.material->poisson_ratio);
 }
 
-/// Before the work.
-void require_writable(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const char* why = fs::is_directory(file)                ? "is a folder"
-                    : !fs::is_directory(folder)           ? "its folder does not exist"
-                    : ::access(folder.c_str(), W_OK) != 0 ? "its folder is write-protected"
-                                                          : nullptr;
-  if (why)
-    throw InputError(fmt::format("--out: cannot write {}: {} (allowed: a name in a folder that can be written)",
-                                 file.string(), why));
-}
-
 int export_springs(const ExportRequest& request) {
   const fs::path file = out_or(request, ".json");
   require_springs_ending(file);
@@ -248,9 +251,10 @@ int export_lammps(const ExportRequest& request) {
   }
   const MassSpringModel& model = springs.model;
   const Eigen::VectorXd mass = masses(model.network, springs.density);
-  write_file(data, lammps_data(model, model.network.X, mass));
-  write_file(input, lammps_input(model, mass, data.filename().string(), 0.95 * springs.derived.at("safe_time_step_s")) +
-                        groups_of(springs) + "run 0\n");
+  write_named_file(data, lammps_data(model, model.network.X, mass));
+  write_named_file(input,
+                   lammps_input(model, mass, data.filename().string(), 0.95 * springs.derived.at("safe_time_step_s")) +
+                       groups_of(springs) + "run 0\n");
   report(data, springs);
   return 0;
 }

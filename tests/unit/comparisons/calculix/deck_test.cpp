@@ -180,6 +180,27 @@ TEST(CalculixDeck, LoadsSumToTheirTotals) {
   EXPECT_LE((torque - Vec3(1.9, 0.3, 0.7).cross(Vec3(4, 5, 6))).norm(), 1e-10);
 }
 
+TEST(CalculixDeck, APointForceActsWithinATetrahedronToo) {
+  Mesh mesh;
+  mesh.nodes.resize(4, 3);
+  mesh.nodes << 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 1;
+  mesh.tetrahedra = {{0, 1, 2, 3}};
+  const calculix::QuadraticMesh quadratic = calculix::quadratic(mesh);
+  const Vec3 point(0.5, 0.3, 0.2);
+  double sum = 0;
+  Vec3 first = Vec3::Zero(), second = Vec3::Zero();  // moments: quadratic fields are reproduced
+  for (const auto& [node, weight] : calculix::weights_at(quadratic, mesh, point)) {
+    const Vec3 x = quadratic.nodes.row(node).transpose();
+    sum += weight;
+    first += weight * x;
+    second += weight * x.cwiseProduct(x);
+  }
+  EXPECT_NEAR(sum, 1, 1e-14);
+  EXPECT_LE((first - point).norm(), 1e-14);
+  EXPECT_LE((second - point.cwiseProduct(point)).norm(), 1e-14);
+  EXPECT_THROW(calculix::weights_at(quadratic, mesh, Vec3(1, 1, 1)), InputError);
+}
+
 TEST(CalculixDeck, PressurePushesInwards) {
   Experiment e = bar();
   for (const auto& [name, inwards] : {std::pair("x_min", Vec3(1.5, 0, 0)), std::pair("x_max", Vec3(-1.5, 0, 0)),
