@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "meshes/mesher/mesher.h"
+#include "meshes/mesher/mesher_exchange.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
@@ -23,6 +25,14 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
   if (error) throw InputError(shortened(fmt::format("{}: cannot be read: {}", folder.string(), error.message())));
   std::sort(files.begin(), files.end());
   return files;
+}
+
+/// @throws InputError for a body, which has no loads.
+const fs::path& no_body(const fs::path& file) {
+  const auto& bodies = mesh_file_extensions();
+  if (std::find(bodies.begin(), bodies.end(), extension_of(file)) == bodies.end()) return file;
+  throw InputError(shortened(fmt::format("{} is a body (allowed: a case, NAME.toml, in which [body] has geo = \"{}\")",
+                                         file.string(), file.filename().string())));
 }
 
 fs::path experiments_folder() { return data_folder("experiments", SPRINGPROOF_EXPERIMENTS_DIR); }
@@ -48,7 +58,7 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
       if (fs::is_directory(status))
         found = toml_files<fs::directory_iterator>(path);
       else if (fs::exists(status))
-        found = {path};
+        found = {no_body(path)};
       else if (error && status.type() != fs::file_type::not_found && why.empty())
         why = error.message() + "; ";  // a loop of links, too long a name
       if (!found.empty()) break;

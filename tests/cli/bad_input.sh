@@ -78,6 +78,10 @@ expect "homogenise: seeds of a lattice" "unknown option 'seeds'" homogenise -E 1
 expect "homogenise: half a seed" "whole number" homogenise -E 1 --nu 0.3 --seed 1.5
 expect "homogenise: box too small" "three times" homogenise -E 1 --nu 0.3 --nodes 8
 
+touch "$work/UPPER.STL"
+expect "a body in place of a case" "UPPER.STL is a body .allowed: a case, NAME.toml, in which .body. has geo = \"UPPER.STL\"" compare "$work/UPPER.STL" --out "$work/out"
+for none in /dev/zero /proc/self/mem; do expect "$none" "$none: .*allowed: a case file" compare $none --out "$work/out"; done
+
 # Names: loops of links, thousands of letters, other encodings.
 long=$(printf 'x%.0s' $(seq 5000))
 ln -s loop.toml "$work/loop.toml"

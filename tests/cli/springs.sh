@@ -301,6 +301,11 @@ bad '--voxels.*4000000' icosahedron.stl -E 5e3 --nu 0.45 --voxels 100000000
 sed '2,8d' icosahedron.stl >open.stl  # without its first facet
 bad 'open.stl' open.stl -E 5e3 --nu 0.45
 bad 'none.stl' none.stl -E 5e3 --nu 0.45
+bad 'scale: 1e\+200 is no factor .allowed: 1e-30 to 1e\+30' icosahedron.stl -E 5e3 --nu 0.45 --scale 1e200
+bad 'the body spans 1.7e\+12 x .* m.*allowed: a longest side of 1e-06 to 1e\+09 m' icosahedron.stl -E 5e3 --nu 0.45 --scale 1e12
+bad 'nodes.mass_kg of the springs file: .*allowed' icosahedron.stl -E 5e3 --nu 0.45 --density 1e29 --scale 1e3
+cp icosahedron.stl CAPITALS.STL
+"$program" export CAPITALS.STL -E 5e3 --nu 0.45 --voxels 30 --to springs --out capitals.json >log 2>&1 || fail "an ending in capitals: $(cat log)"
 mkdir taken.json
 for out in taken.json none/body.json; do
   "$program" export icosahedron.stl -E 5e3 --nu 0.45 --to springs --out $out >log 2>errors
