@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -282,6 +283,7 @@ int run(int argc, char** argv) {
 }  // namespace springproof::fem
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of writing
   if (argc == 2 && std::string_view(argv[1]) == springproof::fork_server_argument)
     return springproof::serve_forks(springproof::fem::run);
   return springproof::fem::run(argc, argv);

@@ -83,6 +83,7 @@ int describe(const CLI::App& app, const std::string& form) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of writing; children inherit it
   CLI::App app{"Mass-spring models of elastic solids, proved against finite elements.", "springproof"};
   app.require_subcommand(1);
   app.set_version_flag("--version", versions);
