@@ -11,6 +11,7 @@
 #include "msm/dynamics/time_step.h"
 #include "msm/models.h"
 #include "problem/system/files.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::bench {
 namespace {
@@ -156,8 +157,22 @@ std::string missing_for(const std::string& adapter) {
                      there.is_object() ? ", where another version is" : "");
 }
 
+/// npm replaces all packages of the folder.
+/// @throws InputError where they are of another program.
+void require_no_other_packages(const fs::path& folder) {
+  std::error_code ignored;
+  const Json there = json_of_file(folder / "package.json"), ours = json_of_file(adapters_folder() / "package.json");
+  const bool none = !fs::exists(folder / "package.json", ignored) && !fs::exists(folder / "node_modules", ignored);
+  if (none || (there.is_object() && there.value("name", "") == ours.at("name"))) return;
+  throw InputError(
+      fmt::format("SPRINGPROOF_ENGINES: {} has packages of another program (allowed: a folder without "
+                  "package.json and node_modules, or one that --install made)",
+                  folder.string()));
+}
+
 void install_packages() {
   const fs::path npm = program_on_path("npm"), folder = packages_folder();
+  require_no_other_packages(folder);
   if (npm.empty()) throw std::runtime_error("--install: npm is not on PATH (Debian's packages nodejs and npm)");
   fs::create_directories(folder);
   for (const char* file : {"package.json", "package-lock.json"})

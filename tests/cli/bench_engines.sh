@@ -35,6 +35,12 @@ grep -q "^MuJoCo: not measured: " "$work/out" && ! grep -q "^Jolt" "$work/out" |
 PATH=$work/nothing "$program" bench engines --install >"$work/out" 2>&1
 [ $? -eq 1 ] && grep -q "npm is not on PATH" "$work/out" || fail "--install without npm: $(cat "$work/out")"
 
+mkdir -p "$work/project/node_modules"
+echo '{ "name": "of-others" }' >"$work/project/package.json"
+SPRINGPROOF_ENGINES=$work/project "$program" bench engines --install >"$work/out" 2>&1
+[ $? -eq 2 ] && grep -q "packages of another program" "$work/out" && grep -q of-others "$work/project/package.json" && [ -d "$work/project/node_modules" ] ||
+  fail "the project of others: $(cat "$work/out")"
+
 # Versions are exact and the lock file names no host.
 grep -qE '"(\^|~|>|\*|latest)' "$sources/package.json" && fail "versions that move in package.json"
 grep -qE 'resolved|https?:' "$sources/package-lock.json" && fail "a host in package-lock.json"
