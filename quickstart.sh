@@ -71,8 +71,8 @@ install_missing
 if [ "${1:-}" = test ]; then
   shift
   build all
-  # Without those that take another compiler or many minutes: ctest --test-dir build/release -L long (or recipe, or fuzz)
-  step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" -LE "long|recipe|fuzz" "$@"
+  # Without those that take another compiler or many minutes: ctest --test-dir build/release -L long (or recipe, fuzz, hostile)
+  step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" -LE "long|recipe|fuzz|hostile" "$@"
 else
   build springproof springproof-mesh springproof-fem  # without the bench, the tests and what runs on several processes
   [ $# -gt 0 ] || set -- golec_2019/bending golec_2019/compression golec_2019/torsion bodies/rabbit --poisson-ratio=-0.5,0.25,0.4,0.499
