@@ -4,11 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/judge/calibration.h"
 #include "comparisons/results/records.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
@@ -37,12 +40,46 @@ std::string supports_words(const Experiment& e) {
   return patches.empty() ? "free" : fmt::format("held on {}", fmt::join(patches, ", "));
 }
 
-std::string percent(double error) { return fmt::format("{:+.2f} %", 100 * error); }
+using ModelCells = std::array<std::string, 3>;  ///< frequency, error, MAC
+constexpr std::size_t models_abreast = 2;       // in 80 columns
 
-/// Frequency, error and MAC of a row.
-std::string cell_of(const ModeRow& row, double truth) {
-  if (!row.frequency) return fmt::format("no partner  MAC {:.2f}", row.mac);
-  return fmt::format("{:.5g}  {}  {:.2f}", *row.frequency, percent(*row.frequency / truth - 1), row.mac);
+void print_line(const std::string& mode, const std::string& fem, const std::string& uncertainty,
+                const std::vector<ModelCells>& models) {
+  fmt::print("{:>4}{:>11}{:>10}", mode, fem, uncertainty);
+  for (const auto& [frequency, error, mac] : models) fmt::print("{:>12}{:>10}{:>5}", frequency, error, mac);
+  fmt::print("\n");
+}
+
+ModelCells cells_of(const FrequencyTable& t, const ModelFrequencies& m, std::size_t i) {
+  if (i >= t.reference.size())
+    return {i < m.modes.frequencies.size() ? fmt::format("{:.5g}", m.modes.frequencies[i]) : "", "", ""};
+  const ModeRow& row = m.rows[i];
+  const std::string mac = fmt::format("{:.2f}", row.mac);
+  if (!row.frequency) return {"no partner", "", mac};
+  return {fmt::format("{:.5g}", *row.frequency),
+          fmt::format("{:+.2f}", 100 * (*row.frequency / t.reference[i].value - 1)), mac};
+}
+
+void print_modes(const FrequencyTable& t, const std::vector<const ModelFrequencies*>& models, int modes) {
+  fmt::print("\n{:{}}", "", models.empty() ? 0 : 25);
+  std::vector<ModelCells> rms, largest;
+  for (const ModelFrequencies* m : models) {
+    fmt::print("{:>27.26}", name_of(*m));
+    rms.push_back({"", fmt::format("{:.2f}", 100 * m->rms), ""});
+    largest.push_back({"", fmt::format("{:.2f}", 100 * m->largest), ""});
+  }
+  if (!models.empty()) fmt::print("\n");
+  print_line("mode", "FEM [Hz]", "+- [Hz]", std::vector<ModelCells>(models.size(), {"[Hz]", "error [%]", "MAC"}));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(modes); ++i) {
+    const bool known = i < t.reference.size();
+    std::vector<ModelCells> cells;
+    for (const ModelFrequencies* m : models) cells.push_back(cells_of(t, *m, i));
+    print_line(std::to_string(i + 1), known ? fmt::format("{:.5g}", t.reference[i].value) : "",
+               known ? fmt::format("{:.1g}", t.reference[i].uncertainty) : "", cells);
+  }
+  if (t.reference.empty() || models.empty()) return;
+  print_line("rms", "", "", rms);
+  print_line("max", "", "", largest);
 }
 
 void print(const Experiment& e, const FrequencyTable& t, int modes) {
@@ -50,11 +87,12 @@ void print(const Experiment& e, const FrequencyTable& t, int modes) {
              cells_text(t.lattice->cells, " x "), supports_words(e), t.material.youngs_modulus, t.material.density);
   if (t.failure.empty())
     fmt::print(
-        "FEM: {}; {} rigid motions left out.  Models: frequency [Hz], error, MAC; a number after the name is the "
-        "share of consistent mass\n\n",
+        "FEM: {}; {} rigid motions left out.\n"
+        "Error of a model's frequency from that of FEM; MAC: likeness of their shapes, 1: the same.\n"
+        "A number after a model's name: share of consistent mass.\n",
         t.form, t.rigid_motions);
   else
-    fmt::print("no reference: {}\n\n", t.failure);
+    fmt::print("no reference: {}\n", t.failure);
   std::vector<const ModelFrequencies*> shown;
   for (const ModelFrequencies& m : t.models) {
     if (m.message.empty())
@@ -62,29 +100,8 @@ void print(const Experiment& e, const FrequencyTable& t, int modes) {
     else
       fmt::print("{}: {}\n", name_of(m), m.message);
   }
-  constexpr int width = 27;
-  fmt::print("{:>4}  {:>20}", "mode", t.failure.empty() ? "FEM [Hz]" : "");
-  for (const ModelFrequencies* m : shown) fmt::print("{:>{}}", name_of(*m), width);
-  fmt::print("\n");
-  for (std::size_t i = 0; i < static_cast<std::size_t>(modes); ++i) {
-    const bool known = i < t.reference.size();
-    fmt::print("{:>4}  {:>20}", i + 1,
-               known ? fmt::format("{:.6g} +- {:.1g}", t.reference[i].value, t.reference[i].uncertainty) : "");
-    for (const ModelFrequencies* m : shown)
-      fmt::print("{:>{}}",
-                 known                             ? cell_of(m->rows[i], t.reference[i].value)
-                 : i < m->modes.frequencies.size() ? fmt::format("{:.5g}", m->modes.frequencies[i])
-                                                   : "",
-                 width);
-    fmt::print("\n");
-  }
-  if (t.reference.empty()) return;
-  for (const auto& [word, value] :
-       {std::pair("rms", &ModelFrequencies::rms), std::pair("max", &ModelFrequencies::largest)}) {
-    fmt::print("{:>4}  {:>20}", word, "");
-    for (const ModelFrequencies* m : shown) fmt::print("{:>{}}", fmt::format("{:.2f} %", 100 * m->*value), width);
-    fmt::print("\n");
-  }
+  for (std::size_t first = 0; first == 0 || first < shown.size(); first += models_abreast)
+    print_modes(t, {shown.begin() + first, shown.begin() + std::min(first + models_abreast, shown.size())}, modes);
 }
 
 nlohmann::json json_of(const FrequencyTable& t) {
@@ -93,7 +110,8 @@ nlohmann::json json_of(const FrequencyTable& t) {
                         {"density_kg_m3", t.material.density},
                         {"cells", t.lattice->cells},
                         {"reference",
-                         {{"form", t.form},
+                         {{"element", t.element},
+                          {"form", t.form},
                           {"failure", t.failure},
                           {"rigid_motions", t.rigid_motions},
                           {"modes", nlohmann::json::array()}}},
@@ -188,6 +206,7 @@ int FrequenciesCommand::run() const try {
   Status status;
   bool all = true;
   nlohmann::json tables = nlohmann::json::array();
+  std::vector<KnownQuantity> known;
   const PreparedCase prepared = [&] {
     const Status::Working working(status, experiment.name);
     return prepare_lattices(experiment);
@@ -198,6 +217,7 @@ int FrequenciesCommand::run() const try {
       const Status::Working working(status, fmt::format("{}, nu = {:g}", experiment.name, material.poisson_ratio));
       return natural_frequencies(prepared, material, options_);
     }();
+    std::ranges::copy(known_quantities(experiment, records_of(solved.front())), std::back_inserter(known));
     for (const FrequencyTable& t : solved) {
       print(experiment, t, options_.modes);
       std::fflush(stdout);
@@ -209,11 +229,13 @@ int FrequenciesCommand::run() const try {
     }
   }
   if (!out_.empty())
-    write_file(
-        fs::path(out_) / "frequencies.json",
-        nlohmann::json{{"case", experiment.name}, {"supports", supports_words(experiment)}, {"tables", tables}}.dump(
-            2) +
-            "\n");
+    write_file(fs::path(out_) / "frequencies.json", nlohmann::json{{"case", experiment.name},
+                                                                   {"supports", supports_words(experiment)},
+                                                                   {"tables", tables},
+                                                                   {"calibration", calibration_json(known)}}
+                                                            .dump(2) +
+                                                        "\n");
+  if (!known.empty()) fmt::print("\n{}", calibration_table(known));
   return all ? 0 : 1;
 } catch (const std::runtime_error&) {
   if (children_interrupted()) return frequencies_interrupted;

@@ -63,9 +63,15 @@ std::vector<KnownLine> read_table(const std::filesystem::path& file) {
   return lines;
 }
 
+constexpr std::array kinds = {"hexahedra",     "tetrahedra", "bodies in files", "near-incompressible",
+                              "finite strain", "in motion",  "frequencies",     "all"};
+
 std::string kind_of(const Experiment& e, const ReferenceRecord& r) {
+  if (r.measure.starts_with("frequency.")) return "frequencies";
+  if (r.measure.starts_with("motion")) return "in motion";
   if (e.model_kinematics() == Kinematics::finite) return "finite strain";
   if (r.poisson_ratio >= near_incompressible) return "near-incompressible";
+  if (!e.body.is_script()) return "bodies in files";
   return r.element[0] == 'q' ? "hexahedra" : "tetrahedra";
 }
 
@@ -123,13 +129,12 @@ Json list(const std::vector<T>& items) {
 
 double KnownQuantity::error() const { return std::abs(value - known); }
 
-std::vector<KnownQuantity> known_quantities(const CaseResult& result) {
-  const Experiment& e = result.experiment;
+std::vector<KnownQuantity> known_quantities(const Experiment& e, const std::vector<ReferenceRecord>& records) {
   const std::filesystem::path file = e.file.parent_path() / "known.csv";
   std::vector<KnownQuantity> quantities;
   if (!std::filesystem::exists(file)) return quantities;
   for (const KnownLine& line : read_table(file))
-    for (const ReferenceRecord& r : result.references) {
+    for (const ReferenceRecord& r : records) {
       if (line.case_name != e.name || line.element != r.element || line.measure != r.measure ||
           !same_poisson_ratio(line.poisson_ratio, r.poisson_ratio))
         continue;
@@ -141,9 +146,28 @@ std::vector<KnownQuantity> known_quantities(const CaseResult& result) {
   return quantities;
 }
 
+std::vector<KnownQuantity> known_quantities(const CaseResult& result) {
+  std::vector<ReferenceRecord> records = result.references;
+  for (const Row& row : result.rows) {  // the same beside every model
+    if (!row.measure.starts_with("motion.") || !row.reference || !row.reference_uncertainty) continue;
+    ReferenceRecord r;
+    r.poisson_ratio = row.poisson_ratio;
+    r.measure = row.measure;
+    r.unit = row.unit;
+    r.value = *row.reference;
+    r.uncertainty = *row.reference_uncertainty;
+    r.element = result.experiment.body.is_voxels() ? "p2" : "q2";
+    const auto same = [&](const auto& x) {
+      return x.measure == r.measure && same_poisson_ratio(x.poisson_ratio, r.poisson_ratio);
+    };
+    if (std::none_of(records.begin(), records.end(), same)) records.push_back(r);
+  }
+  return known_quantities(result.experiment, records);
+}
+
 std::vector<CalibrationShare> calibration_shares(const std::vector<KnownQuantity>& quantities) {
   std::vector<CalibrationShare> shares;
-  for (const char* kind : {"hexahedra", "tetrahedra", "near-incompressible", "finite strain", "all"})
+  for (const char* kind : kinds)
     if (const CalibrationShare share = share_of(kind, quantities); share.quantities > 0) shares.push_back(share);
   return shares;
 }

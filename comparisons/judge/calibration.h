@@ -16,7 +16,7 @@ struct KnownQuantity {
   std::string element;  ///< "q2", "p2", ...
   std::string measure;
   std::string unit;
-  std::string kind;  ///< of reference: "hexahedra", "tetrahedra", "finite strain", "near-incompressible"
+  std::string kind;  ///< of reference (calibration_shares())
   double known = 0;
   double known_uncertainty = 0;  ///< of the known value itself; 0: exact
   std::string where;             ///< source of the known value: "Lame, closed form", "3 times finer"
@@ -28,10 +28,13 @@ struct KnownQuantity {
   bool inside() const { return error() <= uncertainty; }
 };
 
-/// The quantities of a case that the table `known.csv` beside its file lists; none without that table.
-/// Lines: case,poisson_ratio,element,measure,value,uncertainty,where.
-/// Left out are values whose own uncertainty exceeds a quarter of both the stated uncertainty and the error.
+/// Those of the records that the table `known.csv` beside the case's file lists; none without that table.
+/// Lines: case,poisson_ratio,element,measure,value,uncertainty,where.  Frequencies are measures "frequency.1", ...
+/// [Hz]. Left out are values whose own uncertainty exceeds a quarter of both the stated uncertainty and the error.
 /// @throws InputError with file and line for a line that cannot be read.
+std::vector<KnownQuantity> known_quantities(const Experiment& experiment, const std::vector<ReferenceRecord>& records);
+
+/// The same for the references of a case at rest, and those in time beside its models in motion.
 std::vector<KnownQuantity> known_quantities(const CaseResult& result);
 
 /// How many lie within their stated uncertainty, and how wide that is.
@@ -42,7 +45,9 @@ struct CalibrationShare {
   double largest_ratio = 0;
 };
 
-/// One per kind that occurs, then "all"; nothing if there is no quantity.
+/// One per kind that occurs, then "all"; nothing if there is no quantity.  Kinds: "frequencies", "in motion", "finite
+/// strain", "near-incompressible" (nu of 0.45 and more), "bodies in files" (surfaces and solids: tetrahedra),
+/// "hexahedra", "tetrahedra"; the first that holds.
 std::vector<CalibrationShare> calibration_shares(const std::vector<KnownQuantity>& quantities);
 
 /// {"shares": [...], "quantities": [...]} (docs/results.md); null if there is no quantity.

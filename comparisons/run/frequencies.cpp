@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <numeric>
 
 #include "comparisons/run/reference_grids.h"
 #include "fem_reference/case_request.h"
@@ -23,9 +25,12 @@ constexpr double most_mode_elements = 1728;
 constexpr int modes_beside = 6;         // computed beside those compared, as partners and for whole multiplets
 constexpr double eigenvalue_order = 4;  // of frequencies with quadratic elements in smooth solutions
 
+std::string element_of(const PreparedCase& prepared) { return prepared.experiment.body.is_voxels() ? "p2" : "q2"; }
+
 /// Three grids, coarse to fine.
 fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) {
   const Experiment& e = prepared.experiment;
+  const std::string element = element_of(prepared);
   fem::Request request = fem::request_of(e, material);
   request.law = "linear";
   request.loads = supports_of(e);
@@ -33,7 +38,7 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   if (e.body.is_voxels()) {
     request.points = prepared.body_points;
     request.meshes = prepared.tetrahedra;
-    for (int m = 0; m < 3; ++m) request.grids.push_back({{prepared.uncut[m], 0, 0}, "p2", 1.0, m, 0});
+    for (int m = 0; m < 3; ++m) request.grids.push_back({{prepared.uncut[m], 0, 0}, element, 1.0, m, 0});
     return request;
   }
   request.points.resize(prepared.nodes(), 3);
@@ -44,7 +49,7 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   const Cells fine =
       divisible_cells(e.body.size, elements > 0 ? std::min(elements, most_mode_elements) : most_mode_elements);
   for (const int divisor : {4, 2, 1})
-    request.grids.push_back({divided(fine, divisor), "q2", request.loads.empty() ? 1.0 : e.reference.grading});
+    request.grids.push_back({divided(fine, divisor), element, request.loads.empty() ? 1.0 : e.reference.grading});
   return request;
 }
 
@@ -77,9 +82,23 @@ struct ReferenceModes {
   ModeSet finest;  ///< at the nodes of every lattice, one after the other
 };
 
+/// Limits of near frequencies may be in another order than those of the finest grid.
+void put_in_order(ReferenceModes& m) {
+  std::vector<std::size_t> order(m.frequencies.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return m.frequencies[a].value < m.frequencies[b].value; });
+  const ReferenceModes before = m;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    m.frequencies[i] = before.frequencies[order[i]];
+    m.finest.frequencies[i] = before.finest.frequencies[order[i]];
+    m.finest.shapes[i] = before.finest.shapes[order[i]];
+  }
+}
+
 ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
   ReferenceModes out;
-  const ElementGrids grids{"q2", fem::solve(mode_request(prepared, material, modes + modes_beside))};
+  const ElementGrids grids{element_of(prepared), fem::solve(mode_request(prepared, material, modes + modes_beside))};
   for (const fem::Solution& s : grids.grids)
     if (!s.ok) {
       out.failure = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);
@@ -94,8 +113,13 @@ ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMate
     for (int i = 0; i < modes; ++i) values[i].push_back(s.frequencies[pairs[i].partner.value_or(i)]);
   }
   const double order = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order;
-  for (const std::vector<double>& v : values)
-    out.frequencies.push_back(extrapolate(v, solver_noise * v[2], order, ratios_of(grids)));
+  std::map<std::string, ReferenceValue> limits;  // in their order, each the one component of its own vector
+  for (int i = 0; i < modes; ++i)
+    limits[fmt::format("frequency.{:03}.value", i + 1)] =
+        extrapolate(values[i], solver_noise * values[i][2], order, ratios_of(grids));
+  raise_to_usual(limits);
+  for (const auto& [name, limit] : limits) out.frequencies.push_back(limit);
+  put_in_order(out);
   return out;
 } catch (const std::runtime_error& e) {
   ReferenceModes none;
@@ -145,6 +169,21 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
 
 }  // namespace
 
+std::vector<ReferenceRecord> records_of(const FrequencyTable& table) {
+  std::vector<ReferenceRecord> records;
+  for (const ReferenceValue& value : table.reference) {
+    ReferenceRecord& r = records.emplace_back();
+    r.poisson_ratio = table.material.poisson_ratio;
+    r.measure = fmt::format("frequency.{}", records.size());
+    r.unit = "Hz";
+    r.value = value.value;
+    r.uncertainty = value.uncertainty;
+    r.note = value.note;
+    r.element = table.element;
+  }
+  return records;
+}
+
 std::vector<Load> supports_of(const Experiment& e) {
   std::vector<Load> supports;
   std::copy_if(e.loads.begin(), e.loads.end(), std::back_inserter(supports), prescribes_displacement);
@@ -188,6 +227,7 @@ std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, co
     FrequencyTable& table = tables.emplace_back();
     table.material = material;
     table.lattice = &lattice;
+    table.element = element_of(prepared);
     table.form = reference.form;
     table.failure = reference.failure;
     table.rigid_motions = reference.rigid_motions;

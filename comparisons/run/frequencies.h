@@ -40,13 +40,17 @@ struct ModelFrequencies {
 struct FrequencyTable {
   IsotropicMaterial material;
   const Lattice* lattice = nullptr;
+  std::string element;  ///< of the reference: "q2", "p2"
   std::string form;     ///< of the reference
   std::string failure;  ///< why there is no reference
   int rigid_motions = 0;
-  std::vector<ReferenceValue> reference;  ///< [Hz], from three grids
+  std::vector<ReferenceValue> reference;  ///< [Hz], from three grids, ascending
   ModeSet shapes;                         ///< of the finest grid, at the nodes of the lattice's mesh; some more modes
   std::vector<ModelFrequencies> models;
 };
+
+/// The reference as records of measures "frequency.1", "frequency.2", ... [Hz].
+std::vector<ReferenceRecord> records_of(const FrequencyTable& table);
 
 /// The loads of a case that hold the body.
 std::vector<Load> supports_of(const Experiment& experiment);

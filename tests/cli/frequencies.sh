@@ -55,7 +55,38 @@ check "free: the reference knows itself to 1e-3" 'all(r["uncertainty_Hz"] < 1e-3
   fail "held: status $?: $(cat "$work/stdout" "$work/stderr")"
 check "held: no rigid motion, the force is no support" 'len(tables) == 1 and tables[0]["reference"]["rigid_motions"] == 0 and case["supports"] == "held on z_min"'
 check "held: errors" 'tables[0]["models"][0]["rms_error"] < 0.02 and tables[0]["models"][0]["mass_consistency"] == 0.6'
+check "held: no mode is less uncertain than most: grids may agree by accident" 'all(min(u) > 0.999 * sorted(u)[len(u) // 2]
+   for t in tables for u in [[m["uncertainty_Hz"] / m["frequency_Hz"] for m in t["reference"]["modes"]]])'
 grep -q "held on z_min" "$work/stdout" || fail "the table does not say what is held: $(cat "$work/stdout")"
+
+# Columns have heads with units, within 80 letters.
+head=$(grep -m1 '^mode' "$work/stdout")
+[ "$(echo $head)" = "mode FEM [Hz] +- [Hz] [Hz] error [%] MAC" ] || fail "the heads of the table: '$head'"
+[ "$(awk '/^mode/ { table = 1 } table && length > most { most = length } END { print most }' "$work/stdout")" -le 80 ] || fail "wide: $(cat "$work/stdout")"
+check "modes are in ascending order" 'all(fs == sorted(fs) for t in tables for fs in [[m["frequency_Hz"] for m in t["reference"]["modes"]]] + [m["frequencies_Hz"] for m in t["models"]])'
+
+# Tetrahedra at the Poisson ratio of tissue.  A sphere: the torsional mode T2, 2.50113 c_s/(2 pi a), five times, and S2 (Lamb 1882).
+cat >"$work/sphere.toml" <<'TOML'
+[body]
+geo = "sphere.geo"
+size_m = [0.1, 0.1, 0.1]
+voxels = 60
+[material]
+youngs_modulus_Pa = 3000
+poisson_ratio = 0.49
+density_kg_m3 = 1000
+[[load]]
+gravity_m_s2 = [0, 0, -1]
+[compare]
+models = ["hybmss_avg"]
+[reference]
+edge_m = 0.016
+TOML
+"$program" frequencies "$work/sphere.toml" --free --modes 10 --mass-consistency 1 --out "$work/out" >"$work/stdout" 2>"$work/stderr" ||
+  fail "sphere: status $?: $(cat "$work/stdout" "$work/stderr")"
+check "sphere: the mixed form of tetrahedra, six rigid motions" '"P2-P1 mixed" in tables[0]["reference"]["form"] and tables[0]["reference"]["rigid_motions"] == 6'
+check "sphere: T2 and S2 within their uncertainty and 2 %" 'all(abs(r["frequency_Hz"] / (eta * (3000 / 2.98 / 1000)**.5 / (2 * 3.14159265 * 0.05)) - 1) < min(0.02, r["uncertainty_Hz"] / r["frequency_Hz"])
+   for eta, r in zip(5 * [2.501134] + 5 * [2.664831], tables[0]["reference"]["modes"]))'
 
 # An interrupt is heard between the iterations of a model.  Without a reference, which is interrupted as everywhere.
 sed 's/cells = \[6, 6, 6\]/cells = [24, 24, 24]/' "$work/cube.toml" >"$work/fine.toml"

@@ -61,8 +61,41 @@ TEST_F(Calibration, CountsByKindOfReference) {
   EXPECT_NE(
       calibration_table(known).find("outside: cube, nu = 0.25, p2, force.top.z: 10 +- 1.0e+00 N, known 12 (the same)"),
       std::string::npos);
+  result.experiment.body.geo = "organ.stl";
+  EXPECT_EQ(with("cube,0.25,p2,force.top.z,9.2,0,x\n").front().kind, "bodies in files");
+  EXPECT_EQ(with("cube,0.4999,p2,force.top.z,9.2,0,x\n").front().kind, "near-incompressible");
   result.experiment.kinematics = "hencky";
   EXPECT_EQ(with("cube,0.4999,q2,force.top.z,9.2,0,x\n").front().kind, "finite strain");
+}
+
+TEST_F(Calibration, TakesReferencesInTimeFromTheRowsOfModelsInMotion) {
+  result.references.clear();
+  for (const char* model : {"hybmss in motion", "emsm in motion"}) {
+    Row row;
+    row.model = model;
+    row.poisson_ratio = 0.25;
+    row.measure = "motion.period";
+    row.unit = "s";
+    row.value = 1.3;  // the model's own
+    row.reference = 1.2;
+    row.reference_uncertainty = 0.1;
+    result.rows.push_back(row);
+  }
+  const auto known = with("cube,0.25,q2,motion.period,1.25,0,two times finer\n");
+  ASSERT_EQ(known.size(), 1u);
+  EXPECT_EQ(known[0].kind, "in motion");
+  EXPECT_EQ(known[0].value, 1.2);
+  EXPECT_EQ(known[0].uncertainty, 0.1);
+  result.experiment.body.voxel_counts = {100};
+  EXPECT_EQ(with("cube,0.25,p2,motion.period,1.25,0,two times finer\n").size(), 1u);
+}
+
+TEST_F(Calibration, TakesFrequenciesAsRecordsOfTheirNumber) {
+  result.references = {{0.25, "frequency.2", "Hz", {}, {}, {}, 440, 1, "Richardson, GCI", "p2"}};
+  const auto known = with("cube,0.25,p2,frequency.2,440.5,0,Lamb\n");
+  ASSERT_EQ(known.size(), 1u);
+  EXPECT_EQ(known[0].kind, "frequencies");
+  EXPECT_EQ(known[0].unit, "Hz");
 }
 
 TEST_F(Calibration, LeavesOutWhatIsKnownTooBadlyToJudge) {
