@@ -52,10 +52,19 @@ foreach(case ${cases})
   endif()
 endforeach()
 
-# One test of all: what counts is the share of values within their uncertainties.
-add_test(NAME experiment.calibration COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/calibration.sh $<TARGET_FILE:springproof>
-                                             ${CMAKE_BINARY_DIR}/experiments/calibration)
-set_tests_properties(experiment.calibration PROPERTIES LABELS experiment TIMEOUT 1800 COST 100)  # first, not alone at the end
+# One test of many: what counts is the share of values within their uncertainties.  Blocks and built-in bodies; bodies in files, as
+# users have; and, at length, frequencies and motions.
+set(calibration ${CMAKE_CURRENT_SOURCE_DIR}/cli/calibration.sh $<TARGET_FILE:springproof> ${CMAKE_BINARY_DIR}/experiments/calibration)
+add_test(NAME experiment.calibration COMMAND ${calibration} 200 "compare calibration --jobs 1")
+add_test(NAME experiment.calibration_files COMMAND ${calibration}_files 250 "compare calibration/files --jobs 1"
+         "frequencies calibration/frequencies/box_on_rollers --poisson-ratio 0.45"
+         "frequencies calibration/frequencies/sphere_free --free --modes 20 --poisson-ratio 0.49")
+add_test(NAME experiment.calibration_motion COMMAND ${calibration}_motion 100 "compare calibration/motion --jobs 1"
+         "frequencies calibration/frequencies/sphere_free --free --modes 20"
+         "frequencies calibration/frequencies/block_on_rollers" "frequencies calibration/frequencies/box_on_rollers"
+         "frequencies calibration/frequencies/tee_held" "frequencies calibration/frequencies/bracket_held")
+set_tests_properties(experiment.calibration experiment.calibration_files PROPERTIES LABELS experiment TIMEOUT 1800 COST 100)  # first
+set_tests_properties(experiment.calibration_motion PROPERTIES LABELS long TIMEOUT 3600)
 
 add_test(NAME experiment.figures COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/figures.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/experiments)
 set(drawn ${cases})
