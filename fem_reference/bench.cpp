@@ -10,6 +10,7 @@
 
 #include "fem_reference/solve_grid.h"
 #include "problem/system/named_files.h"
+#include "problem/system/streams.h"
 
 namespace springproof::fem {
 namespace {
@@ -49,7 +50,7 @@ GridProblem compressed_cube(const BenchRow& row) {
 
 // Each run in a child process, so that the peak memory is that of this run.
 void measure(BenchRow& row) {
-  fmt::print(stderr, "{}, {}^3 cells, nu = {} ...\n", row.name, row.cells, row.poisson_ratio);
+  to_stderr("{}, {}^3 cells, nu = {} ...\n", row.name, row.cells, row.poisson_ratio);
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   const pid_t child = fork();
@@ -121,21 +122,21 @@ void bench(const BenchOptions& options) {
   if (options.baseline) rows.push_back({"Q2 assembled, PETSc CG + GAMG", n, 0.25, "q2", Method::assembled_gamg});
   for (BenchRow& row : rows) measure(row);
 
-  fmt::print("{}\n\n{:<30} {:>6} {:>7} {:>10} {:>5} {:>8} {:>10} {:>8} {:>12}\n", library_versions(), "run", "cells",
-             "nu", "unknowns", "iter.", "CPU s", "us/unknown", "MiB", "force [N]");
+  to_stdout("{}\n\n{:<30} {:>6} {:>7} {:>10} {:>5} {:>8} {:>10} {:>8} {:>12}\n", library_versions(), "run", "cells",
+            "nu", "unknowns", "iter.", "CPU s", "us/unknown", "MiB", "force [N]");
   for (const BenchRow& row : rows)
-    fmt::print("{:<30} {:>4}^3 {:>7} {:>10} {:>5} {:>8.2f} {:>10} {:>8.0f} {:>12.4f}{}\n", row.name, row.cells,
-               row.poisson_ratio, row.unknowns, row.iterations, row.seconds, seconds_per(row, 1e6), row.memory_MiB,
-               row.force, row.ok ? "" : "  FAILED: " + row.form);
+    to_stdout("{:<30} {:>4}^3 {:>7} {:>10} {:>5} {:>8.2f} {:>10} {:>8.0f} {:>12.4f}{}\n", row.name, row.cells,
+              row.poisson_ratio, row.unknowns, row.iterations, row.seconds, seconds_per(row, 1e6), row.memory_MiB,
+              row.force, row.ok ? "" : "  FAILED: " + row.form);
 
   nlohmann::json ratios, targets = nlohmann::json::object();
   const auto ratio = [&](const std::string& what, double value, const std::string& sense = {}, double limit = 0) {
-    fmt::print("{:<62} {:>7.2f}   {}\n", what, value,
-               sense.empty() ? "" : fmt::format("{} {:g}", sense == "at_most" ? "at most" : "at least", limit));
+    to_stdout("{:<62} {:>7.2f}   {}\n", what, value,
+              sense.empty() ? "" : fmt::format("{} {:g}", sense == "at_most" ? "at most" : "at least", limit));
     ratios[what] = value;
     if (!sense.empty()) targets[what] = {{sense, limit}};
   };
-  fmt::print("\n");
+  to_stdout("\n");
   const BenchRow &half = rows[0], &full = rows[1], &large = rows[2], &stiff = rows[3], &assembled = rows[5];
   const double cost = full.seconds / double(full.unknowns);
   ratio("cost per unknown, smallest over middle (flat: 1)", half.seconds / double(half.unknowns) / cost);

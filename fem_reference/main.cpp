@@ -16,6 +16,7 @@
 #include "fem_reference/solve_grid.h"
 #include "problem/system/fork_server.h"
 #include "problem/system/progress.h"
+#include "problem/system/streams.h"
 
 namespace springproof::fem {
 namespace {
@@ -124,27 +125,27 @@ void answer_request(const std::string& request_file, const std::string& answer_f
 
 void print(const std::vector<Probe>& probes, const Solution& s, int digits) {
   const auto& [nx, ny, nz] = s.grid.cells;
-  fmt::print("{} x {} x {} cells, grading {}, {} degrees of freedom\n", nx, ny, nz, s.grid.grading,
-             s.degrees_of_freedom);
-  fmt::print("  form                  {}\n  law                   {}\n", s.form, s.law);
-  if (!s.ok) fmt::print("  FAILED                {}\n", s.message);
-  fmt::print("  solver                {} iterations, relative residual {:.1e}, {:.2f} CPU s, {:.0f} MiB\n",
-             s.iterations, s.residual, s.seconds, s.memory_MiB);
+  to_stdout("{} x {} x {} cells, grading {}, {} degrees of freedom\n", nx, ny, nz, s.grid.grading,
+            s.degrees_of_freedom);
+  to_stdout("  form                  {}\n  law                   {}\n", s.form, s.law);
+  if (!s.ok) to_stdout("  FAILED                {}\n", s.message);
+  to_stdout("  solver                {} iterations, relative residual {:.1e}, {:.2f} CPU s, {:.0f} MiB\n", s.iterations,
+            s.residual, s.seconds, s.memory_MiB);
   if (process_count() > 1)
-    fmt::print("  processes             {}, which store up to {} of {} cells each\n", process_count(),
-               s.cells_per_process, s.cells);
+    to_stdout("  processes             {}, which store up to {} of {} cells each\n", process_count(),
+              s.cells_per_process, s.cells);
   const auto number = [&](double x) { return fmt::format("{:.{}g}", x, digits); };
   const auto vector = [&](const auto& v) { return fmt::format("{} {} {}", number(v[0]), number(v[1]), number(v[2])); };
-  fmt::print("  volume change         {} (first order {}), smallest det F {:.6g}\n", number(s.volume_change),
-             number(s.volume_change_first_order), s.min_jacobian);
+  to_stdout("  volume change         {} (first order {}), smallest det F {:.6g}\n", number(s.volume_change),
+            number(s.volume_change_first_order), s.min_jacobian);
   for (const PatchReaction& r : s.reactions)
-    fmt::print("  reaction on {:<9} force [N] {}   torque [N m] {}\n", r.patch, vector(r.force), vector(r.torque));
+    to_stdout("  reaction on {:<9} force [N] {}   torque [N m] {}\n", r.patch, vector(r.force), vector(r.torque));
   for (Eigen::Index p = 0; p < s.displacement.rows(); ++p)
-    fmt::print("  {:<21} {} m\n", probes[p].name, vector(s.displacement.row(p)));
+    to_stdout("  {:<21} {} m\n", probes[p].name, vector(s.displacement.row(p)));
   for (Eigen::Index p = 0; p < s.stress.rows(); ++p) {
     const auto stress = s.stress.row(p);
-    fmt::print("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", probes[p].name, number(stress[0]),
-               number(stress[1]), number(stress[2]), number(stress[3]), number(stress[4]), number(stress[5]));
+    to_stdout("  {:<21} xx {} yy {} zz {} xy {} yz {} xz {} Pa\n", probes[p].name, number(stress[0]), number(stress[1]),
+              number(stress[2]), number(stress[3]), number(stress[4]), number(stress[5]));
   }
 }
 
@@ -185,7 +186,7 @@ bool solve_case(const Options& options) {
       mesh_grids(r);
       return r;
     });
-    fmt::print("{}, Poisson's ratio {}: ", experiment.name, material.poisson_ratio);
+    to_stdout("{}, Poisson's ratio {}: ", experiment.name, material.poisson_ratio);
     for (const Solution& s : solve_all(request, options.method)) {
       print(experiment.probes, s, options.digits);
       ok = ok && s.ok;
@@ -197,7 +198,7 @@ bool solve_case(const Options& options) {
 // An error common to all processes is printed by the first alone, any other by the process where it occurred.
 int fail(const std::exception& e, int exit_status) {
   const bool everywhere = all_failed();
-  if (!everywhere || process_rank() == 0) fmt::print(stderr, "{}\n", plain_words(e.what()));
+  if (!everywhere || process_rank() == 0) to_stderr("{}\n", plain_words(e.what()));
   if (!everywhere) end_all(exit_status);
   return exit_status;
 }
@@ -286,5 +287,5 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of writing
   if (argc == 2 && std::string_view(argv[1]) == springproof::fork_server_argument)
     return springproof::serve_forks(springproof::fem::run);
-  return springproof::fem::run(argc, argv);
+  return springproof::run_as_program([&] { return springproof::fem::run(argc, argv); });
 }

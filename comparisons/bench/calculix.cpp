@@ -11,6 +11,7 @@
 #include "comparisons/run/find_cases.h"
 #include "fem_reference/case_request.h"
 #include "meshes/mesher/mesher.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -84,7 +85,7 @@ Entry by_us(const Question& q, const Cells& cells) {
 }
 
 void run(const Contest& contest, Findings& findings) try {
-  fmt::print(stderr, "{}: CalculiX and our finite elements ...\n", contest.name);
+  to_stderr("{}: CalculiX and our finite elements ...\n", contest.name);
   const Question q(contest);
   const Eigen::VectorXd volumes = nodal_volumes(q.coarse);
   std::vector<NodalVectors> fine;

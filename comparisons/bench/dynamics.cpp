@@ -10,6 +10,7 @@
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/lammps.h"
 #include "comparisons/bench/motion.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -27,9 +28,7 @@ struct Context {
   double target(double avx512, double avx2) const { return wide ? avx512 : avx2; }
 };
 
-void progress(const std::string& what, const std::string& size) {
-  fmt::print(stderr, "dynamics: {}, {} ...\n", what, size);
-}
+void progress(const std::string& what, const std::string& size) { to_stderr("dynamics: {}, {} ...\n", what, size); }
 
 double ns_per_spring(const Motion& motion, double seconds) { return 1e9 * seconds / double(motion.springs); }
 

@@ -12,6 +12,7 @@
 #include "msm/models.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -177,7 +178,7 @@ void install_packages() {
   fs::create_directories(folder);
   for (const char* file : {"package.json", "package-lock.json"})
     write_file(folder / file, text_of_file(adapters_folder() / file));
-  fmt::print(stderr, "npm ci in {} ...\n", folder.string());
+  to_stderr("npm ci in {} ...\n", folder.string());
   const ChildEnd end =
       run_child({npm, {"ci", "--ignore-scripts", "--no-audit", "--no-fund"}, folder, {}, {}, time_limit});
   if (!end.ok())

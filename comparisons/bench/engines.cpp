@@ -15,6 +15,7 @@
 #include "comparisons/bench/motion.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/statics/equilibrium.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -99,13 +100,13 @@ class EngineBench {
   }
 
   void say(const std::string& engine, const std::string& what, const EngineRuns& runs) const {
-    fmt::print(stderr, "engines: {}, {}, {} ...\n", engine, what, size_of(runs.bar().cells));
+    to_stderr("engines: {}, {}, {} ...\n", engine, what, size_of(runs.bar().cells));
   }
 
   const ReferenceValue& reference(const std::string& quantity, double nu) {
     const std::string key = fmt::format("{}, nu = {:g}", quantity, nu);
     if (const auto known = out_.references.find(key); known != out_.references.end()) return known->second;
-    fmt::print(stderr, "engines: finite element reference, {} ...\n", key);
+    to_stderr("engines: finite element reference, {} ...\n", key);
     const BarLoad load = quantity == "twist"           ? BarLoad::torque
                          : quantity == "volume change" ? BarLoad::pressure
                                                        : BarLoad::gravity;

@@ -7,6 +7,7 @@
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/timer.h"
 #include "problem/system/child.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -30,7 +31,7 @@ Solvers solver_times(const Json& results) {
 }
 
 void run_case(const fs::path& springproof, const std::string& name, Findings& findings) {
-  fmt::print(stderr, "experiments: {} ...\n", name);
+  to_stderr("experiments: {} ...\n", name);
   const TemporaryFolder folder;
   const double start = seconds_of(Clock::wall);
   const ChildEnd end = run_child({springproof,

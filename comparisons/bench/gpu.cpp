@@ -9,6 +9,7 @@
 #include "msm/gpu/gpu_multigrid.h"
 #include "msm/multigrid/cell_stiffness.h"
 #include "msm/multigrid/multigrid.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -23,7 +24,7 @@ struct Explicit {
 /// One model's steps in double precision over several threads', and in single precision over double.
 void steps(const BenchOptions& options, const Explicit& e, int n, Findings& findings) {
   const std::string size = fmt::format("{}^3", n);
-  fmt::print(stderr, "gpu: {}, {} ...\n", e.name, size);
+  to_stderr("gpu: {}, {} ...\n", e.name, size);
   const MassSpringModel model = lattice(e.model, {n, n, n}, e.poisson_ratio);
   const TimerOptions timer = {options.quick ? 5e-3 : 2e-2, options.quick ? 0.05 : 0.3, Clock::wall};
   const auto seconds_of_step = [&](const MotionOptions& of) {
@@ -53,7 +54,7 @@ void steps(const BenchOptions& options, const Explicit& e, int n, Findings& find
 /// Conjugate gradients with the same cycle on both; neither with its set-up.
 void statics(const BenchOptions& options, int n, double poisson_ratio, Findings& findings) {
   const std::string size = fmt::format("{}^3", n);
-  fmt::print(stderr, "gpu: equilibrium, {} ...\n", size);
+  to_stderr("gpu: equilibrium, {} ...\n", size);
   const MassSpringModel model = lattice("hybmss_bt", {n, n, n}, poisson_ratio);
   const BoundaryConditions conditions = clamped_bottom(model.network);
   const CellMatrix cell = cell_stiffness(model).total;

@@ -1,7 +1,6 @@
 // springproof-bench, started by `springproof bench`: benchmarks on this machine, each with its baseline.
 //
 // A separate program because it may link PETSc, whose libraries would slow the start of springproof.
-#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -22,6 +21,7 @@
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/named_files.h"
+#include "problem/system/streams.h"
 
 namespace {
 
@@ -78,7 +78,7 @@ void measure(const BenchOptions& options, Measured& m) {
   auto& [machine, findings, engines, fem] = m;
   if (wants(options, "statics")) bench_statics(options, findings);
   if (wants(options, "dynamics")) {
-    fmt::print(stderr, "limits of this machine ...\n");
+    to_stderr("limits of this machine ...\n");
     measure_limits(options.quick, machine);
     bench_dynamics(options, machine, findings);
   }
@@ -102,7 +102,7 @@ void write(const BenchOptions& options, const Json& document) {
   std::filesystem::create_directories(options.out);
   write_file(options.out / "bench.json", text);
   write_page(options.out / "bench.html", document);
-  fmt::print(stderr, "{}\n", (options.out / "bench.html").string());
+  to_stderr("{}\n", (options.out / "bench.html").string());
 }
 
 int run(const BenchOptions& options) {
@@ -124,17 +124,15 @@ int run(const BenchOptions& options) {
   if (!fem.is_null()) document["fem"] = fem;
   if (options.what == "engines") {
     document["engines"] = to_json(engines);
-    fmt::print("{}\n", text_of(engines));
+    to_stdout("{}\n", text_of(engines));
   }
-  fmt::print("{}", table_text(machine, findings));
+  to_stdout("{}", table_text(machine, findings));
   write(options, document);
   if (interrupted()) return 130;
   return complete(findings) ? 0 : 1;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
+int parse_and_run(int argc, char** argv) {
   CLI::App app{"What things cost on this machine: each row beside its baseline, measured in the same run.",
                "springproof bench"};
   BenchOptions options;
@@ -145,10 +143,10 @@ int main(int argc, char** argv) try {
     return app.exit(e) == 0 ? 0 : 2;
   }
   return run(options);
-} catch (const springproof::InputError& e) {
-  fmt::print(stderr, "error: {}\n", e.what());
-  return 2;
-} catch (const std::exception& e) {
-  fmt::print(stderr, "error: {}\n", e.what());
-  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return springproof::run_as_program([&] { return parse_and_run(argc, argv); });
 }

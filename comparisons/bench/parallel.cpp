@@ -11,6 +11,7 @@
 #include "comparisons/run/find_cases.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -84,7 +85,7 @@ Run run(const Programs& programs, const Task& task, int processes, int length) {
 
 /// Rows of a task on `processes` beside one; the least of runs that alternate.
 void measure(const Programs& programs, const Task& task, int processes, bool quick, Findings& findings) try {
-  fmt::print(stderr, "parallel: {}, {} processes ...\n", task.name, processes);
+  to_stderr("parallel: {}, {} processes ...\n", task.name, processes);
   enum { one, strong, weak, kinds };
   std::array<Run, kinds> best;
   for (int sample = 0; sample < (quick ? 1 : 3); ++sample)

@@ -17,6 +17,7 @@
 #include "meshes/voxels/voxelise.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
+#include "problem/system/streams.h"
 
 namespace springproof::bench {
 namespace {
@@ -93,7 +94,7 @@ Json answer(const Equilibrium& e) {
 /// without a result.
 template <class Work, class Rows>
 void measure(Findings& findings, const BenchRow& first, const Work& work, const Rows& rows) {
-  fmt::print(stderr, "statics: {}, {} ...\n", first.what, first.size);
+  to_stderr("statics: {}, {} ...\n", first.what, first.size);
   try {
     rows(in_child(work));
   } catch (const Interrupted&) {

@@ -16,6 +16,7 @@
 #include "comparisons/run/status.h"
 #include "fem_reference/case_request.h"
 #include "meshes/mesher/mesher.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -235,29 +236,29 @@ bool vanishes(const SecondOpinion& r) {
 }
 
 void print_table(const std::vector<SecondOpinion>& rows) {
-  fmt::print("{:<26} {:>4} {:>13} {:>9} {:>13} {:>9} {:>10}  {}\n", "quantity", "", "CalculiX", "+-", "ours", "+-",
-             "difference", "within both");
+  to_stdout("{:<26} {:>4} {:>13} {:>9} {:>13} {:>9} {:>10}  {}\n", "quantity", "", "CalculiX", "+-", "ours", "+-",
+            "difference", "within both");
   for (const SecondOpinion& r : rows)
     if (!vanishes(r))
-      fmt::print("{:<26} {:>4} {:>13.6g} {:>9.1e} {:>13.6g} {:>9.1e} {:>10.1e}  {}\n", r.measure, r.unit,
-                 r.calculix.value, r.calculix.uncertainty, r.ours.value, r.ours.uncertainty, r.difference,
-                 r.agrees ? "yes" : "NO");
+      to_stdout("{:<26} {:>4} {:>13.6g} {:>9.1e} {:>13.6g} {:>9.1e} {:>10.1e}  {}\n", r.measure, r.unit,
+                r.calculix.value, r.calculix.uncertainty, r.ours.value, r.ours.uncertainty, r.difference,
+                r.agrees ? "yes" : "NO");
   if (const auto zeros = std::count_if(rows.begin(), rows.end(), vanishes))
-    fmt::print("and {} component{} that both find to be zero\n", zeros, zeros == 1 ? "" : "s");
+    to_stdout("and {} component{} that both find to be zero\n", zeros, zeros == 1 ? "" : "s");
 }
 
 void print_title(const Question& q) {
   const auto& e = q.experiment();
   const Cells& c = q.cells[2];
   const bool reduced = is_reduced(q.material);
-  fmt::print("\n{}: nu = {:g}, {}\n", e.name, q.material.poisson_ratio, e.kinematics);
-  fmt::print("CalculiX {}: {} up to {} x {} x {}, {}\n", calculix::version(), reduced ? "C3D20R" : "C3D20", c[0], c[1],
-             c[2], reduced ? "integrated with 8 points: with 27 they lock as nu nears 1/2" : "fully integrated");
+  to_stdout("\n{}: nu = {:g}, {}\n", e.name, q.material.poisson_ratio, e.kinematics);
+  to_stdout("CalculiX {}: {} up to {} x {} x {}, {}\n", calculix::version(), reduced ? "C3D20R" : "C3D20", c[0], c[1],
+            c[2], reduced ? "integrated with 8 points: with 27 they lock as nu nears 1/2" : "fully integrated");
   const Cells& r = q.prepared.reference_cells;
-  fmt::print("ours: Q2 up to {} x {} x {}\n", r[0], r[1], r[2]);
+  to_stdout("ours: Q2 up to {} x {} x {}\n", r[0], r[1], r[2]);
   if (!q.prepared.sharing.empty())
-    fmt::print("left out, as held edges in common make them a convention: forces on {}\n",
-               fmt::join(q.prepared.sharing, ", "));
+    to_stdout("left out, as held edges in common make them a convention: forces on {}\n",
+              fmt::join(q.prepared.sharing, ", "));
 }
 
 Question question(const PreparedCase& prepared, const IsotropicMaterial& material, const CrossCheckOptions& options) {
@@ -284,7 +285,7 @@ int check_material(const Question& q) {
   if (interrupted) return 1;
   print_title(q);
   if (!calculix || !ours) {
-    fmt::print("no answer from {}\n", calculix ? "our reference" : "CalculiX");
+    to_stdout("no answer from {}\n", calculix ? "our reference" : "CalculiX");
     return 1;
   }
   const std::vector<SecondOpinion> rows = compare_opinions(*calculix, *ours);
@@ -295,10 +296,8 @@ int check_material(const Question& q) {
 
 bool programs_are_there() {
   const bool ccx = !calculix::program().empty(), fem = fem::available();
-  if (!ccx)
-    fmt::print(stderr, "error: CalculiX is not here: no `ccx` on PATH.  To install it: apt-get install calculix-ccx\n");
-  if (!fem)
-    fmt::print(stderr, "error: springproof-fem is neither beside springproof nor named by SPRINGPROOF_FEM_PROGRAM\n");
+  if (!ccx) to_stderr("error: CalculiX is not here: no `ccx` on PATH.  To install it: apt-get install calculix-ccx\n");
+  if (!fem) to_stderr("error: springproof-fem is neither beside springproof nor named by SPRINGPROOF_FEM_PROGRAM\n");
   return ccx && fem;
 }
 
@@ -342,9 +341,9 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
     if (interrupted) return cross_check_interrupted;
   }
   if (differing == 0)
-    fmt::print("\nCalculiX and our reference agree within their uncertainties in every row\n");
+    to_stdout("\nCalculiX and our reference agree within their uncertainties in every row\n");
   else
-    fmt::print("\n{} row{} beyond the two uncertainties, or without an answer\n", differing, differing == 1 ? "" : "s");
+    to_stdout("\n{} row{} beyond the two uncertainties, or without an answer\n", differing, differing == 1 ? "" : "s");
   return differing == 0 ? all_agree : some_differ;
 } catch (const std::runtime_error&) {
   if (interrupted) return cross_check_interrupted;  // the mesher was stopped by the same signal

@@ -13,6 +13,7 @@
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/status.h"
 #include "msm/parameters/model_table.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -127,10 +128,10 @@ int AdviseCommand::check() const {
   const std::vector<Judged> judged = judge_predictions(read_measurements(advise_folder() / "held_out.csv").rows,
                                                        check_name_, {pilot_cells_, 20 * pilot_cells_});
   if (judged.empty()) throw InputError(fmt::format("--check: no held-out case is called '{}'", check_name_));
-  fmt::print("{:<24}{:>7} {:<12}{:>8}{:>10}{:>10}{:>8}\n", "case", "nu", "model", "cells", "error", "predicted",
+  to_stdout("{:<24}{:>7} {:<12}{:>8}{:>10}{:>10}{:>8}\n", "case", "nu", "model", "cells", "error", "predicted",
              "ratio");
   for (const Judged& j : judged)
-    fmt::print("{:<24}{:>7g} {:<12}{:>8.0f}{:>10.3g}{:>10.3g}{:>8.2f}  {}{}\n", j.truth.case_name,
+    to_stdout("{:<24}{:>7g} {:<12}{:>8.0f}{:>10.3g}{:>10.3g}{:>8.2f}  {}{}\n", j.truth.case_name,
                j.truth.poisson_ratio, j.truth.model, j.truth.cells, j.truth.error, j.predicted.error,
                j.predicted.error / j.truth.error, hit(j.truth, j.predicted) ? "" : "MISS ",
                j.predicted.beyond ? "extrapolated" : "");
@@ -138,9 +139,9 @@ int AdviseCommand::check() const {
   const auto share = [](int part, int all) {
     return fmt::format("{} of {} ({:.1f} %)", part, all, 100.0 * part / std::max(1, all));
   };
-  fmt::print("within a factor of 1.5: {}; of those extrapolated {}\n", share(r.hits, r.all),
+  to_stdout("within a factor of 1.5: {}; of those extrapolated {}\n", share(r.hits, r.all),
              share(r.beyond_hits, r.beyond));
-  fmt::print("within the stated range: {}\n", share(r.inside, r.all));
+  to_stdout("within the stated range: {}\n", share(r.inside, r.all));
   return 10 * r.hits >= 9 * r.all ? 0 : 1;
 }
 
@@ -149,7 +150,7 @@ int AdviseCommand::run() const {
   if (check_) return check();
   check_models(wish_.models);
   const Advice advice = advise(forecast(), wish_);
-  fmt::print("{}", json_ ? json_of(advice).dump(2) + "\n" : text_of(advice));
+  to_stdout("{}", json_ ? json_of(advice).dump(2) + "\n" : text_of(advice));
   return !advice.choices.empty() && advice.choices.front().suits() ? 0 : 1;
 }
 

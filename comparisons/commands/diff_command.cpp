@@ -8,6 +8,7 @@
 #include <map>
 
 #include "comparisons/judge/differences.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -17,12 +18,12 @@ std::string times_uncertainty(const Difference& d) {
 }
 
 void print_csv(const Differences& all) {
-  fmt::print("case,kinematics,model,poisson_ratio,cells,measure,what,first,second,unit,relative,of_uncertainty\n");
+  to_stdout("case,kinematics,model,poisson_ratio,cells,measure,what,first,second,unit,relative,of_uncertainty\n");
   for (const Difference& d : all.changed)
-    fmt::print("{},{},{},{},{},{},{},{},{},{},{:.3g},{}\n", csv_text(d.row.case_name), csv_text(d.row.kinematics),
-               csv_text(d.row.model), csv_number(d.row.poisson_ratio), cells_text(d.row.cells), csv_text(d.row.measure),
-               d.what, csv_number(d.first), csv_number(d.second), csv_text(d.row.unit), d.relative,
-               times_uncertainty(d));
+    to_stdout("{},{},{},{},{},{},{},{},{},{},{:.3g},{}\n", csv_text(d.row.case_name), csv_text(d.row.kinematics),
+              csv_text(d.row.model), csv_number(d.row.poisson_ratio), cells_text(d.row.cells), csv_text(d.row.measure),
+              d.what, csv_number(d.first), csv_number(d.second), csv_text(d.row.unit), d.relative,
+              times_uncertainty(d));
 }
 
 /// Rows that have no partner, counted by case and model.
@@ -30,25 +31,25 @@ void print_lonely(const std::filesystem::path& folder, const std::vector<Row>& r
   if (rows.empty()) return;
   std::map<std::string, int> counts;
   for (const Row& row : rows) ++counts[fmt::format("{}  nu {}  {}", row.case_name, row.poisson_ratio, row.model)];
-  fmt::print("\n{} numbers are in {} alone:\n", rows.size(), folder.string());
+  to_stdout("\n{} numbers are in {} alone:\n", rows.size(), folder.string());
   std::size_t printed = 0;
   for (const auto& [run, count] : counts)
-    if (printed++ < lines) fmt::print("  {:<60} {}\n", run, count);
-  if (printed > lines) fmt::print("  ... and of {} other runs\n", printed - lines);
+    if (printed++ < lines) to_stdout("  {:<60} {}\n", run, count);
+  if (printed > lines) to_stdout("  ... and of {} other runs\n", printed - lines);
 }
 
 void print_changed(const Differences& all, std::size_t lines) {
   if (all.changed.empty()) return;
-  fmt::print("\n{:<26} {:>7} {:<12} {:<10} {:<32} {:>13} {:>13} {:<4} {:>8} {:>12}\n", "case", "nu", "model", "cells",
-             "measure", "first", "second", "", "relative", "uncertainties");
+  to_stdout("\n{:<26} {:>7} {:<12} {:<10} {:<32} {:>13} {:>13} {:<4} {:>8} {:>12}\n", "case", "nu", "model", "cells",
+            "measure", "first", "second", "", "relative", "uncertainties");
   for (std::size_t i = 0; i < std::min(lines, all.changed.size()); ++i) {
     const Difference& d = all.changed[i];
     const std::string measure = d.what == "value" ? d.row.measure : fmt::format("{} ({})", d.row.measure, d.what);
-    fmt::print("{:<26} {:>7} {:<12} {:<10} {:<32} {:>13.6g} {:>13.6g} {:<4} {:>8.1e} {:>12}\n", d.row.case_name,
-               d.row.poisson_ratio, d.row.model, cells_text(d.row.cells), measure, d.first, d.second, d.row.unit,
-               d.relative, times_uncertainty(d));
+    to_stdout("{:<26} {:>7} {:<12} {:<10} {:<32} {:>13.6g} {:>13.6g} {:<4} {:>8.1e} {:>12}\n", d.row.case_name,
+              d.row.poisson_ratio, d.row.model, cells_text(d.row.cells), measure, d.first, d.second, d.row.unit,
+              d.relative, times_uncertainty(d));
   }
-  if (all.changed.size() > lines) fmt::print("... and {} more (--lines, --csv)\n", all.changed.size() - lines);
+  if (all.changed.size() > lines) to_stdout("... and {} more (--lines, --csv)\n", all.changed.size() - lines);
 }
 
 }  // namespace
@@ -75,16 +76,16 @@ int DiffCommand::run() const {
     return all.none() ? 0 : 1;
   }
   for (const auto& [folder, results] : {std::pair{&first_, &first}, std::pair{&second_, &second}})
-    fmt::print("{}: {} numbers, version {}, {}\n", folder->string(), results->rows.size(), results->version,
-               results->generated);
-  fmt::print(
+    to_stdout("{}: {} numbers, version {}, {}\n", folder->string(), results->rows.size(), results->version,
+              results->generated);
+  to_stdout(
       "{} numbers are in both; {} values, references and uncertainties of them differ by more than {:g}, the "
       "largest by {:.1e}\n",
       all.in_both, all.changed.size(), tolerance_, all.largest);
   const auto beyond = std::count_if(all.changed.begin(), all.changed.end(), [](const Difference& d) {
     return d.what != "reference_uncertainty" && d.of_uncertainty > 1;
   });
-  if (!all.changed.empty()) fmt::print("{} of the differences exceed the uncertainty of the reference\n", beyond);
+  if (!all.changed.empty()) to_stdout("{} of the differences exceed the uncertainty of the reference\n", beyond);
   print_changed(all, lines_);
   print_lonely(first_, all.only_first, lines_);
   print_lonely(second_, all.only_second, lines_);

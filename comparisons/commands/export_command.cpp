@@ -23,6 +23,7 @@
 #include "problem/case_file/external.h"
 #include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -81,7 +82,7 @@ int export_calculix(const ExportRequest& request) {
   std::ostringstream out;
   calculix::write(deck, out);
   write_named_file(file, out.view());
-  fmt::print("{}: {} nodes, {} elements {}, nu = {:g}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
+  to_stdout("{}: {} nodes, {} elements {}, nu = {:g}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
              deck.element, material.poisson_ratio);
   return 0;
 }
@@ -205,9 +206,9 @@ void report(const fs::path& file, const SpringsFile& s) {
   const Network& network = s.model.network;
   const std::string parts = network.filled.empty() ? fmt::format("{} springs", network.springs.size())
                                                    : fmt::format("{} cut cells", network.cells.size());
-  fmt::print("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(), s.origin.model,
-             network.nodes(), parts, s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
-             s.material->poisson_ratio);
+  to_stdout("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(), s.origin.model,
+            network.nodes(), parts, s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
+            s.material->poisson_ratio);
 }
 
 int export_springs(const ExportRequest& request) {

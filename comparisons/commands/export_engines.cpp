@@ -7,7 +7,9 @@
 
 #include "comparisons/engines/engine_files.h"
 #include "problem/case_file/experiment.h"
+#include "problem/system/files.h"
 #include "problem/system/named_files.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -71,12 +73,12 @@ int export_to_engine(const ExportRequest& request, const SpringsFile& springs, c
   const std::string text = engine.write({springs, held});
   write_named_file(file_of(request), text);
   const Network& network = springs.model.network;
-  fmt::print("{}: {} nodes, {}, {:.4g} kg, E = {:g} Pa, nu = {:g}, pinned: {}\n", file_of(request).string(),
-             network.nodes(),
-             engine.without_springs ? fmt::format("{} tetrahedra", 5 * network.cells.size())
-                                    : fmt::format("{} edges", network.springs.size()),
-             springs.derived.at("mass_kg"), springs.material->youngs_modulus, springs.material->poisson_ratio,
-             held.empty() ? "none" : fmt::format("{}", fmt::join(held, ", ")));
+  to_stdout("{}: {} nodes, {}, {:.4g} kg, E = {:g} Pa, nu = {:g}, pinned: {}\n", file_of(request).string(),
+            network.nodes(),
+            engine.without_springs ? fmt::format("{} tetrahedra", 5 * network.cells.size())
+                                   : fmt::format("{} edges", network.springs.size()),
+            springs.derived.at("mass_kg"), springs.material->youngs_modulus, springs.material->poisson_ratio,
+            held.empty() ? "none" : fmt::format("{}", fmt::join(held, ", ")));
   return 0;
 }
 

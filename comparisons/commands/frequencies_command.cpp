@@ -20,6 +20,7 @@
 #include "meshes/field.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -45,9 +46,9 @@ constexpr std::size_t models_abreast = 2;       // in 80 columns
 
 void print_line(const std::string& mode, const std::string& fem, const std::string& uncertainty,
                 const std::vector<ModelCells>& models) {
-  fmt::print("{:>4}{:>11}{:>10}", mode, fem, uncertainty);
-  for (const auto& [frequency, error, mac] : models) fmt::print("{:>12}{:>10}{:>5}", frequency, error, mac);
-  fmt::print("\n");
+  to_stdout("{:>4}{:>11}{:>10}", mode, fem, uncertainty);
+  for (const auto& [frequency, error, mac] : models) to_stdout("{:>12}{:>10}{:>5}", frequency, error, mac);
+  to_stdout("\n");
 }
 
 ModelCells cells_of(const FrequencyTable& t, const ModelFrequencies& m, std::size_t i) {
@@ -61,14 +62,14 @@ ModelCells cells_of(const FrequencyTable& t, const ModelFrequencies& m, std::siz
 }
 
 void print_modes(const FrequencyTable& t, const std::vector<const ModelFrequencies*>& models, int modes) {
-  fmt::print("\n{:{}}", "", models.empty() ? 0 : 25);
+  to_stdout("\n{:{}}", "", models.empty() ? 0 : 25);
   std::vector<ModelCells> rms, largest;
   for (const ModelFrequencies* m : models) {
-    fmt::print("{:>27.26}", name_of(*m));
+    to_stdout("{:>27.26}", name_of(*m));
     rms.push_back({"", fmt::format("{:.2f}", 100 * m->rms), ""});
     largest.push_back({"", fmt::format("{:.2f}", 100 * m->largest), ""});
   }
-  if (!models.empty()) fmt::print("\n");
+  if (!models.empty()) to_stdout("\n");
   print_line("mode", "FEM [Hz]", "+- [Hz]", std::vector<ModelCells>(models.size(), {"[Hz]", "error [%]", "MAC"}));
   for (std::size_t i = 0; i < static_cast<std::size_t>(modes); ++i) {
     const bool known = i < t.reference.size();
@@ -83,22 +84,22 @@ void print_modes(const FrequencyTable& t, const std::vector<const ModelFrequenci
 }
 
 void print(const Experiment& e, const FrequencyTable& t, int modes) {
-  fmt::print("\n{}: nu = {:g}, {} cells, {}, E = {:g} Pa, {:g} kg/m^3\n", e.name, t.material.poisson_ratio,
-             cells_text(t.lattice->cells, " x "), supports_words(e), t.material.youngs_modulus, t.material.density);
+  to_stdout("\n{}: nu = {:g}, {} cells, {}, E = {:g} Pa, {:g} kg/m^3\n", e.name, t.material.poisson_ratio,
+            cells_text(t.lattice->cells, " x "), supports_words(e), t.material.youngs_modulus, t.material.density);
   if (t.failure.empty())
-    fmt::print(
+    to_stdout(
         "FEM: {}; {} rigid motions left out.\n"
         "Error of a model's frequency from that of FEM; MAC: likeness of their shapes, 1: the same.\n"
         "A number after a model's name: share of consistent mass.\n",
         t.form, t.rigid_motions);
   else
-    fmt::print("no reference: {}\n", t.failure);
+    to_stdout("no reference: {}\n", t.failure);
   std::vector<const ModelFrequencies*> shown;
   for (const ModelFrequencies& m : t.models) {
     if (m.message.empty())
       shown.push_back(&m);
     else
-      fmt::print("{}: {}\n", name_of(m), m.message);
+      to_stdout("{}: {}\n", name_of(m), m.message);
   }
   for (std::size_t first = 0; first == 0 || first < shown.size(); first += models_abreast)
     print_modes(t, {shown.begin() + first, shown.begin() + std::min(first + models_abreast, shown.size())}, modes);
@@ -235,7 +236,7 @@ int FrequenciesCommand::run() const try {
                                                                    {"calibration", calibration_json(known)}}
                                                             .dump(2) +
                                                         "\n");
-  if (!known.empty()) fmt::print("\n{}", calibration_table(known));
+  if (!known.empty()) to_stdout("\n{}", calibration_table(known));
   return all ? 0 : 1;
 } catch (const std::runtime_error&) {
   if (children_interrupted()) return frequencies_interrupted;

@@ -16,6 +16,7 @@
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/periodic_model.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -151,28 +152,28 @@ std::string ratio_words(const std::vector<Sample>& samples, const ModelParameter
 
 void print(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m, double spacing) {
   const Sample& first = samples.front();
-  fmt::print("model      {}: {}\n", p.row.name, p.row.what);
-  fmt::print("cell       {} nodes, {:.3g} springs per node, spacing {:.6g} m, {} sample{}\n\n", first.nodes,
-             first.springs_per_node, spacing, samples.size(), samples.size() > 1 ? "s" : "");
-  fmt::print("C [Pa]     xx yy zz yz zx xy{}\n", samples.size() > 1 ? fmt::format(", seed {}", first.seed) : "");
+  to_stdout("model      {}: {}\n", p.row.name, p.row.what);
+  to_stdout("cell       {} nodes, {:.3g} springs per node, spacing {:.6g} m, {} sample{}\n\n", first.nodes,
+            first.springs_per_node, spacing, samples.size(), samples.size() > 1 ? "s" : "");
+  to_stdout("C [Pa]     xx yy zz yz zx xy{}\n", samples.size() > 1 ? fmt::format(", seed {}", first.seed) : "");
   const double round_off = 1e-12 * first.h.C.cwiseAbs().maxCoeff();
   for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) fmt::print("{:>14.6g}", std::abs(first.h.C(i, j)) > round_off ? first.h.C(i, j) : 0.0);
-    fmt::print("\n");
+    for (int j = 0; j < 6; ++j) to_stdout("{:>14.6g}", std::abs(first.h.C(i, j)) > round_off ? first.h.C(i, j) : 0.0);
+    to_stdout("\n");
   }
-  fmt::print("\n{:<12}{:>14}{:>14}{:>14}{:>10}\n", "", "mean", "spread", "calibrated to", "ratio");
+  to_stdout("\n{:<12}{:>14}{:>14}{:>14}{:>10}\n", "", "mean", "spread", "calibrated to", "ratio");
   for (const Quantity& q : quantities) {
     const MeanAndSpread result = over(samples, q);
     const double aim = wanted(q, p, m);
-    fmt::print("{:<12}{:>14.6g}{:>14.2g}", q.label, result.mean, result.spread);
-    if (q.modulus) fmt::print("{:>14.6g}{:>10.4f}", aim, result.mean / aim);
-    if (std::string(q.key) == "poisson_ratio") fmt::print("{:>14.6g}", aim);
-    fmt::print("\n");
+    to_stdout("{:<12}{:>14.6g}{:>14.2g}", q.label, result.mean, result.spread);
+    if (q.modulus) to_stdout("{:>14.6g}{:>10.4f}", aim, result.mean / aim);
+    if (std::string(q.key) == "poisson_ratio") to_stdout("{:>14.6g}", aim);
+    to_stdout("\n");
   }
   for (const Sample& s : samples)
     if (!stable(s.h))
-      fmt::print("\nwarning: seed {}: the stiffness is not positive definite; such a body is unstable\n", s.seed);
-  fmt::print("\n{}\n", ratio_words(samples, p, m));
+      to_stdout("\nwarning: seed {}: the stiffness is not positive definite; such a body is unstable\n", s.seed);
+  to_stdout("\n{}\n", ratio_words(samples, p, m));
 }
 
 }  // namespace
@@ -226,7 +227,7 @@ int HomogeniseCommand::run() const {
   const int nodes = nodes_.value_or(p.row.topology == Topology::random ? random_nodes : lattice_nodes);
   const std::vector<Sample> samples = measure_seeds(p, m, spacing_, nodes);
   if (json_)
-    fmt::print("{}\n", to_json(samples, p, m, spacing_).dump(2));
+    to_stdout("{}\n", to_json(samples, p, m, spacing_).dump(2));
   else
     print(samples, p, m, spacing_);
   return 0;

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 
 #include "comparisons/commands/advise_command.h"
@@ -28,21 +27,21 @@
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/child.h"
-#include "problem/system/shortened.h"
+#include "problem/system/streams.h"
 
 namespace {
 
 using namespace springproof;
 
 int list() {
-  fmt::print("Cases (springproof compare NAME):\n");
+  to_stdout("Cases (springproof compare NAME):\n");
   for (const auto& file : built_in_cases()) {
-    fmt::print("  {:<38} {}\n", case_name(file), read_experiment(file).what);
+    to_stdout("  {:<38} {}\n", case_name(file), read_experiment(file).what);
   }
-  fmt::print("\nModels ([compare] models = [...]):\n");
-  for (const ModelRow& row : model_table()) fmt::print("  {:<38} {}\n", row.name, row.what);
-  fmt::print("\nMeasures ([compare] measures = [...]):\n");
-  for (const Measure& measure : measure_table()) fmt::print("  {:<28}{}\n", measure.name, measure.what);
+  to_stdout("\nModels ([compare] models = [...]):\n");
+  for (const ModelRow& row : model_table()) to_stdout("  {:<38} {}\n", row.name, row.what);
+  to_stdout("\nMeasures ([compare] measures = [...]):\n");
+  for (const Measure& measure : measure_table()) to_stdout("  {:<28}{}\n", measure.name, measure.what);
   return 0;
 }
 
@@ -74,16 +73,12 @@ int describe(const CLI::App& app, const std::string& form) {
   for (const Paper& paper : papers()) paper_names.push_back(paper.name);
   for (const auto& file : built_in_cases()) cases.push_back(case_name(file));
   for (const ModelRow& row : model_table()) models.push_back(row.name);
-  fmt::print("{}", form == "man"
-                       ? man_page(app, SPRINGPROOF_VERSION)
-                       : bash_completion(app, {{"CASE", cases}, {"--model", models}, {"PAPER", paper_names}}));
+  to_stdout("{}", form == "man" ? man_page(app, SPRINGPROOF_VERSION)
+                                : bash_completion(app, {{"CASE", cases}, {"--model", models}, {"PAPER", paper_names}}));
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of writing; children inherit it
+int parse_and_run(int argc, char** argv) {
   CLI::App app{"Mass-spring models of elastic solids, proved against finite elements.", "springproof"};
   app.require_subcommand(1);
   app.set_version_flag("--version", versions);
@@ -105,7 +100,7 @@ int main(int argc, char** argv) try {
       ->add_option("--finer", options.finer,
                    "reference grids with so many times the cells along each direction (known values for a calibration)")
       ->check(CLI::Range(1, 16));
-  compare_command->add_flag("--resume", options.resume, "keep the parts that an interrupted run finished");
+  compare_command->add_flag("--resume", options.resume, "keep what an interrupted run finished");
   compare_command->add_flag("--quiet", options.quiet, "say nothing of what is under way");
   compare_command->add_flag("--verbose", options.verbose,
                             "also print a sentence on every model, and how far each case deforms");
@@ -217,13 +212,10 @@ int main(int argc, char** argv) try {
   if (*reproduce_command) return reproduction.run();
   if (*cross_check_command) return second_opinion.run();
   return material.run();
-} catch (const springproof::InputError& e) {
-  fmt::print(stderr, "error: {}\n", e.what());
-  return 2;
-} catch (const std::filesystem::filesystem_error& e) {
-  fmt::print(stderr, "error: {}: {}\n", springproof::shortened(e.path1().string()), e.code().message());
-  return 2;
-} catch (const std::exception& e) {
-  fmt::print(stderr, "error: {}\n", e.what());
-  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_as_program([&] { return parse_and_run(argc, argv); });
 }

@@ -19,6 +19,7 @@
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/bulk_calibration.h"
 #include "msm/topology/cubic_lattice.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -95,19 +96,19 @@ nlohmann::json json_of(const DispersionFacts& f, const ModelParameters& p, const
 
 void print(const DispersionFacts& f, const ModelParameters& p, const IsotropicMaterial& m) {
   if (p.row.topology == Topology::random)
-    fmt::print(
+    to_stdout(
         "network    <S> = {:.3g}   <L> = {:.4g} m (of a block of 5 x 5 x 5)   springs = {:.4g} times those of eq. "
         "(20)\n",
         f.network.springs_per_node, f.network.mean_length, f.spring_factor);
   if (p.has(Extension::momentum_dispersion))
-    fmt::print(
+    to_stdout(
         "dispersion q = {:.6g}   form {}{}   {}\n", f.q, name_of(p.dispersion),
         !has_energy(p.dispersion) ? ""
         : exact_volumes(p, m)     ? ", weights volume"
                                   : ", weights kL",
         has_energy(p.dispersion) ? "conservative, symmetric stiffness" : "not conservative, stiffness not symmetric");
-  fmt::print("stable     {}\n", stable_range(p, m));
-  fmt::print(
+  to_stdout("stable     {}\n", stable_range(p, m));
+  to_stdout(
       "           measured on a small free block: |K - K^T| / |K| = {:.2g}, smallest eigenvalue {:.2g} of the largest, "
       "{}\n\n",
       f.stability.asymmetry, f.stability.smallest_eigenvalue,
@@ -163,14 +164,14 @@ nlohmann::json stable_strains_json(const ModelParameters& p, const IsotropicMate
 }
 
 void print_stable_strains(const ModelParameters& p, const IsotropicMaterial& m) {
-  fmt::print("\nthe lattice without end, strained along an axis, is stable (no wave grows)\n");
+  to_stdout("\nthe lattice without end, strained along an axis, is stable (no wave grows)\n");
   for (const auto& [sides, name] : kinds_of_sides)
     for (const double sign : {-1.0, 1.0}) {
       const auto limit = strain_limit(p, m, sides, sign * asked_strain);
-      fmt::print("  sides {}, {:<11} {}\n", name, sign < 0 ? "compression" : "tension",
-                 limit
-                     ? fmt::format("up to {:.1f} %; beyond, {}", 100 * std::abs(limit->strain), describe_wave(limit->k))
-                     : fmt::format("up to {:g} % and more", 100 * asked_strain));
+      to_stdout("  sides {}, {:<11} {}\n", name, sign < 0 ? "compression" : "tension",
+                limit
+                    ? fmt::format("up to {:.1f} %; beyond, {}", 100 * std::abs(limit->strain), describe_wave(limit->k))
+                    : fmt::format("up to {:g} % and more", 100 * asked_strain));
     }
 }
 
@@ -237,93 +238,93 @@ nlohmann::json json_of(const MaterialFacts& f) {
 
 void print_model(const MaterialFacts& f) {
   const IsotropicMaterial& m = f.m;
-  fmt::print(
+  to_stdout(
       "material   E = {:.6g} Pa   nu = {:.6g}   G = {:.6g} Pa   K = {:.6g} Pa   lambda = {:.6g} Pa   rho = {:.6g} "
       "kg/m^3\n",
       m.youngs_modulus, m.poisson_ratio, shear_modulus(m), bulk_modulus(m), lame_lambda(m), m.density);
   const bool has_face_to_cube = f.lattice || f.p.row.topology == Topology::centres;
-  fmt::print("model      {}: {}{}   cell edge l = {:.6g} m\n\n", f.p.row.name, f.p.row.what,
-             has_face_to_cube && !f.p.has(Extension::averaging) ? fmt::format("   A = {:g}", f.p.face_to_cube) : "",
-             f.l);
+  to_stdout("model      {}: {}{}   cell edge l = {:.6g} m\n\n", f.p.row.name, f.p.row.what,
+            has_face_to_cube && !f.p.has(Extension::averaging) ? fmt::format("   A = {:g}", f.p.face_to_cube) : "",
+            f.l);
 }
 
 void print_springs(const MaterialFacts& f) {
-  fmt::print("springs inside the lattice (a free edge has 1/4, a surface edge or face diagonal 1/2 of it)\n");
+  to_stdout("springs inside the lattice (a free edge has 1/4, a surface edge or face diagonal 1/2 of it)\n");
   const char* names[] = {"k_e  cell edge    ", "k_f  face diagonal", "k_c  cube diagonal"};
   for (int i = 0; i < 3; ++i)
-    fmt::print("  {}   {:>14.6g} N/m   rest length {:.6g} m\n", names[i], f.k[i], f.l * std::sqrt(i + 1.0));
+    to_stdout("  {}   {:>14.6g} N/m   rest length {:.6g} m\n", names[i], f.k[i], f.l * std::sqrt(i + 1.0));
 }
 
 void print_limits(const MaterialFacts& f) {
   if (f.lattice) {
     if (f.p.has(Extension::averaging))
-      fmt::print("volume term            {:>14.6g} Pa    (K, the whole bulk modulus)\n", bulk_modulus(f.m));
+      to_stdout("volume term            {:>14.6g} Pa    (K, the whole bulk modulus)\n", bulk_modulus(f.m));
     else
-      fmt::print("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", f.correction,
-                 f.p.has(Extension::volume_correction) ? "" : "    (this model has none)");
-    fmt::print("mass per cell corner   {:>14.6g} kg\n", f.corner_mass());
+      to_stdout("volume correction\n  kappa = lambda - G   {:>14.6g} Pa{}\n", f.correction,
+                f.p.has(Extension::volume_correction) ? "" : "    (this model has none)");
+    to_stdout("mass per cell corner   {:>14.6g} kg\n", f.corner_mass());
   }
-  fmt::print("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", f.time_step,
-             f.has_limits                                ? "any mesh of these cells"
-             : f.p.row.topology == Topology::macro_cells ? "a cell of 27 nodes alone, which no motion takes"
-                                                         : "a block of 5 cells; safe_time_step() knows each network's");
+  to_stdout("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", f.time_step,
+            f.has_limits                                ? "any mesh of these cells"
+            : f.p.row.topology == Topology::macro_cells ? "a cell of 27 nodes alone, which no motion takes"
+                                                        : "a block of 5 cells; safe_time_step() knows each network's");
   const auto strain = [](double limit) {
     return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %");
   };
   if (f.p.has(Extension::volume_correction))
-    fmt::print("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n",
-               strain(f.limits.bounded_energy), strain(f.limits.paper_energy));
+    to_stdout("tension limit of a free-sided cell: {} (bounded volume energy), {} (the paper's)\n",
+              strain(f.limits.bounded_energy), strain(f.limits.paper_energy));
   else if (f.has_limits)
-    fmt::print("tension limit of a free-sided cell: {}\n", strain(f.limits.bounded_energy));
+    to_stdout("tension limit of a free-sided cell: {}\n", strain(f.limits.bounded_energy));
 }
 
 void print_waves(const MaterialFacts& f) {
   const SoftestWave softest = softest_wave(f.model, shear_modulus(f.m));
-  fmt::print("\nwaves of {:g} cells, velocity of crests (phase) and of pulses (group) in the worst direction\n",
-             wave_cells);
+  to_stdout("\nwaves of {:g} cells, velocity of crests (phase) and of pulses (group) in the worst direction\n",
+            wave_cells);
   for (const auto& [consistent, masses] : {std::pair(0.0, "corner masses"), {0.5, "half of the mass consistent"}}) {
     const auto [phase, group] = wave_errors_of(f, consistent);
-    fmt::print("  longitudinal {:+.2f} %, group {:+.2f} %; transverse {:+.2f} %, group {:+.2f} %   ({})\n",
-               100 * phase.longitudinal, 100 * group.longitudinal, 100 * phase.transverse, 100 * group.transverse,
-               masses);
+    to_stdout("  longitudinal {:+.2f} %, group {:+.2f} %; transverse {:+.2f} %, group {:+.2f} %   ({})\n",
+              100 * phase.longitudinal, 100 * group.longitudinal, 100 * phase.transverse, 100 * group.transverse,
+              masses);
   }
-  fmt::print("softest wave of less than four cells: {:.2g} G l at k l = ({:.2g}, {:.2g}, {:.2g}) pi{}\n",
-             std::max(0.0, softest.stiffness), softest.k[0], softest.k[1], softest.k[2],
-             softest.stiffness < 1e-9 ? ", which costs no energy" : "");
+  to_stdout("softest wave of less than four cells: {:.2g} G l at k l = ({:.2g}, {:.2g}, {:.2g}) pi{}\n",
+            std::max(0.0, softest.stiffness), softest.k[0], softest.k[1], softest.k[2],
+            softest.stiffness < 1e-9 ? ", which costs no energy" : "");
 }
 
 void print_stresses(const MaterialFacts& f) {
   if (f.stresses.empty()) return;
-  fmt::print("\nstress of a bar with free sides, force over area at rest [Pa]\n");
-  fmt::print("  stretch {:>14} {:>14} {:>14}\n", f.p.row.name, "Hencky", "neo-Hooke");
+  to_stdout("\nstress of a bar with free sides, force over area at rest [Pa]\n");
+  to_stdout("  stretch {:>14} {:>14} {:>14}\n", f.p.row.name, "Hencky", "neo-Hooke");
   const auto text = [](const std::optional<double>& stress) {
     return stress ? fmt::format("{:.5g}", *stress) : "none found";
   };
   for (const StressAtStretch& s : f.stresses)
-    fmt::print("  {:>7.2f} {:>14} {:>14.5g} {:>14}\n", s.stretch, text(s.model), s.hencky, text(s.neo_hooke));
+    to_stdout("  {:>7.2f} {:>14} {:>14.5g} {:>14}\n", s.stretch, text(s.model), s.hencky, text(s.neo_hooke));
 }
 
 void print_measured(const MaterialFacts& f) {
   const IsotropicMaterial& m = f.m;
-  fmt::print("\nmeasured back from {}\n", f.lattice                                 ? "a block of 4 x 4 x 4 cells"
-                                          : f.p.row.topology == Topology::hexagonal ? "a sheet of 4 rows"
-                                          : f.p.row.topology == Topology::macro_cells
-                                              ? "a block of 4 x 4 x 4 cells of 27 nodes"
-                                              : "an infinite periodic network");
-  fmt::print("  E  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.youngs_modulus,
-             f.measured.youngs_modulus / m.youngs_modulus - 1);
-  fmt::print("  nu = {:.8g}   ({:+.2e})\n", f.measured.poisson_ratio, f.measured.poisson_ratio - m.poisson_ratio);
-  fmt::print("  G  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.shear_modulus,
-             f.measured.shear_modulus / shear_modulus(m) - 1);
+  to_stdout("\nmeasured back from {}\n", f.lattice                                 ? "a block of 4 x 4 x 4 cells"
+                                         : f.p.row.topology == Topology::hexagonal ? "a sheet of 4 rows"
+                                         : f.p.row.topology == Topology::macro_cells
+                                             ? "a block of 4 x 4 x 4 cells of 27 nodes"
+                                             : "an infinite periodic network");
+  to_stdout("  E  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.youngs_modulus,
+            f.measured.youngs_modulus / m.youngs_modulus - 1);
+  to_stdout("  nu = {:.8g}   ({:+.2e})\n", f.measured.poisson_ratio, f.measured.poisson_ratio - m.poisson_ratio);
+  to_stdout("  G  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.shear_modulus,
+            f.measured.shear_modulus / shear_modulus(m) - 1);
 }
 
 void print_warnings(const ModelParameters& p, const IsotropicMaterial& m) {
   if (p.has(Extension::none) && !same_poisson_ratio(m.poisson_ratio, 0.25))
-    fmt::print("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss or emsm for nu = {:g}\n",
-               m.poisson_ratio);
+    to_stdout("\nwarning: springs alone have nu = 1/4 (Cauchy relation); use hybmss or emsm for nu = {:g}\n",
+              m.poisson_ratio);
   if (p.row.topology == Topology::cells && !p.has(Extension::averaging) && p.face_to_cube < 0.2)
-    fmt::print("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");
-  if (p.paper_e_form) fmt::print("\nwarning: paper_e_form is right for nu = 1/4 only\n");
+    to_stdout("\nwarning: without face diagonals (A < 0.2) the lattice has (nearly) zero-energy modes and wrinkles\n");
+  if (p.paper_e_form) to_stdout("\nwarning: paper_e_form is right for nu = 1/4 only\n");
 }
 
 }  // namespace
@@ -366,7 +367,7 @@ int MaterialCommand::run() const {
   const ModelParameters p = resolve(choice);
   const MaterialFacts facts{m, p, cell_size_, frequency_};
   if (json_) {
-    fmt::print("{}\n", json_of(facts).dump(2));
+    to_stdout("{}\n", json_of(facts).dump(2));
     return 0;
   }
   print_model(facts);
@@ -379,7 +380,7 @@ int MaterialCommand::run() const {
     print_waves(facts);
   }
   print_measured(facts);
-  fmt::print("{}", text_of(facts.for_engines()));
+  to_stdout("{}", text_of(facts.for_engines()));
   print_warnings(p, m);
   return 0;
 }

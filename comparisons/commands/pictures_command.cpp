@@ -11,6 +11,7 @@
 #include "comparisons/run/status.h"
 #include "problem/case_file/experiment.h"
 #include "problem/system/files.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -81,8 +82,8 @@ int PicturesCommand::run() const {
       }
     }
   }
-  fmt::print("{} pictures in {}\n", written, out.string());
-  if (written == 0 && failed == 0) fmt::print(stderr, "no picture has '{}' in its name\n", only_);
+  to_stdout("{} pictures in {}\n", written, out.string());
+  if (written == 0 && failed == 0) to_stderr("no picture has '{}' in its name\n", only_);
   return failed == 0 && written > 0 ? 0 : 1;
 }
 

@@ -9,6 +9,7 @@
 #include "comparisons/reproduce/reproduce.h"
 #include "comparisons/run/find_cases.h"
 #include "problem/system/input_error.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -40,7 +41,7 @@ void ReproduceCommand::add_options(CLI::App& command) {
                      "folder for the figures, and for the results of the cases (default: PAPER-redone)");
   command.add_option("--from", from_, "results folders of the cases; nothing is computed")->take_all();
   command.add_option("--jobs", options_.jobs, "parts to run at once (0: one per core)");
-  command.add_flag("--resume", options_.resume, "keep the parts that an interrupted run finished");
+  command.add_flag("--resume", options_.resume, "keep what an interrupted run finished");
   command.add_flag("--quiet", options_.quiet, "say nothing of what is under way");
   command.footer(
       "Runs the paper's cases as `springproof compare` does, and writes OUT/reproduce.html and, of each figure,\n"
@@ -70,9 +71,9 @@ int ReproduceCommand::run() {
   std::vector<DrawnFigure> drawn;
   for (const PaperFigure& figure : figures) drawn.push_back(draw_figure(results, figure));
   const bool pdfs = write_figures(drawn, paper, options_.out);
-  fmt::print("\n{}", verdict_table(drawn));
-  if (!pdfs) fmt::print("note: no PDF: rsvg-convert is not installed (Debian: sudo apt-get install librsvg2-bin)\n");
-  fmt::print("figures: {}\n", (options_.out / "reproduce.html").string());
+  to_stdout("\n{}", verdict_table(drawn));
+  if (!pdfs) to_stdout("note: no PDF: rsvg-convert is not installed (Debian: sudo apt-get install librsvg2-bin)\n");
+  to_stdout("figures: {}\n", (options_.out / "reproduce.html").string());
   return status;
 }
 

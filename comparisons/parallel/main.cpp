@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <thread>
 
 #include "comparisons/commands/number_checks.h"
@@ -13,6 +12,7 @@
 #include "problem/system/input_error.h"
 #include "problem/system/mpi_start.h"
 #include "problem/system/named_files.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -36,18 +36,18 @@ nlohmann::json run(const ParallelOptions& options, MPI_Comm communicator) {
 }
 
 void print(const nlohmann::json& r) {
-  fmt::print("{}, nu = {}: {:.0f} unknowns, {} process{}\n", r["model"].get<std::string>(),
-             r["poisson_ratio"].get<double>(), r["unknowns"].get<double>(), r["processes"].get<int>(),
-             r["processes"] == 1 ? "" : "es");
+  to_stdout("{}, nu = {}: {:.0f} unknowns, {} process{}\n", r["model"].get<std::string>(),
+            r["poisson_ratio"].get<double>(), r["unknowns"].get<double>(), r["processes"].get<int>(),
+            r["processes"] == 1 ? "" : "es");
   if (r.contains("steps"))
-    fmt::print("{} steps of {:.3g} s\n", r["steps"].get<long>(), r["time_step_s"].get<double>());
+    to_stdout("{} steps of {:.3g} s\n", r["steps"].get<long>(), r["time_step_s"].get<double>());
   else
-    fmt::print("{}: {} iterations, residual {:.2e}{}\n", r["solver"].get<std::string>(), r["iterations"].get<int>(),
-               r["residual"].get<double>(), r["converged"].get<bool>() ? "" : ": NOT CONVERGED");
-  fmt::print("set-up {:.3f} s, then {:.3f} s, {:.0f} MiB per process\n", r["set_up_seconds"].get<double>(),
-             r["solve_seconds"].get<double>(), r["MiB_per_process"].get<double>());
-  fmt::print("displacement, root mean square: {:.12e} m\n", r["displacement_rms_m"].get<double>());
-  for (const auto& [name, value] : r["measures"].items()) fmt::print("{}: {:.12e}\n", name, value.get<double>());
+    to_stdout("{}: {} iterations, residual {:.2e}{}\n", r["solver"].get<std::string>(), r["iterations"].get<int>(),
+              r["residual"].get<double>(), r["converged"].get<bool>() ? "" : ": NOT CONVERGED");
+  to_stdout("set-up {:.3f} s, then {:.3f} s, {:.0f} MiB per process\n", r["set_up_seconds"].get<double>(),
+            r["solve_seconds"].get<double>(), r["MiB_per_process"].get<double>());
+  to_stdout("displacement, root mean square: {:.12e} m\n", r["displacement_rms_m"].get<double>());
+  for (const auto& [name, value] : r["measures"].items()) to_stdout("{}: {:.12e}\n", name, value.get<double>());
 }
 
 void add_options(CLI::App& app, ParallelOptions& options) {
@@ -107,28 +107,32 @@ int parse_and_run(int argc, char** argv) {
   } catch (const std::exception& e) {
     const bool of_input = dynamic_cast<const InputError*>(&e), alike = all_fail_alike();
     if (rank == 0 || !alike)
-      fmt::print(stderr, "{}\n", of_input ? e.what() : fmt::format("{}: {}", options.case_file, e.what()));
+      to_stderr("{}\n", of_input ? e.what() : fmt::format("{}: {}", options.case_file, e.what()));
     if (!alike) MPI_Abort(PETSC_COMM_WORLD, 1);
     return 2;
   }
+}
+
+/// Between the start of MPI and its end.
+int run_with_mpi(int argc, char** argv) {
+  int none = 0, status = 1;
+  start_mpi_without_network();
+  PetscInitialize(&none, nullptr, nullptr, nullptr);
+  PetscPopSignalHandler();
+  try {
+    set_solver_options();
+    status = parse_and_run(argc, argv);
+  } catch (const std::exception& e) {
+    to_stderr("springproof-lattice: {}\n", e.what());
+    MPI_Abort(PETSC_COMM_WORLD, 1);
+  }
+  PetscFinalize();
+  return status;
 }
 
 }  // namespace
 }  // namespace springproof
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of writing
-  int none = 0, status = 1;
-  springproof::start_mpi_without_network();
-  PetscInitialize(&none, nullptr, nullptr, nullptr);
-  PetscPopSignalHandler();
-  try {
-    springproof::set_solver_options();
-    status = springproof::parse_and_run(argc, argv);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "springproof-lattice: {}\n", e.what());
-    MPI_Abort(PETSC_COMM_WORLD, 1);
-  }
-  PetscFinalize();
-  return status;
+  return springproof::run_as_program([&] { return springproof::run_with_mpi(argc, argv); });
 }

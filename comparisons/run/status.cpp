@@ -9,6 +9,8 @@
 #include <cmath>
 #include <csignal>
 
+#include "problem/system/streams.h"
+
 namespace springproof {
 namespace {
 
@@ -113,12 +115,12 @@ Status::~Status() {
   }
   ended_.notify_one();
   thread_.join();
-  if (line_is_shown_) fmt::print(stderr, clear_line);
+  if (line_is_shown_) to_stderr(clear_line);
 }
 
 void Status::print(const std::string& line) {
   const std::lock_guard lock(mutex_);
-  fmt::print(stderr, "{}{}\n", line_is_shown_ ? clear_line : "", line);
+  to_stderr("{}{}\n", line_is_shown_ ? clear_line : "", line);
   line_is_shown_ = false;
 }
 
@@ -129,15 +131,14 @@ void Status::show() {
     running.push_back(e.activity());
     if (terminal_ || e.phase_is_said || running.back().phase_seconds < long_phase) continue;
     e.phase_is_said = true;
-    fmt::print(stderr, "{}\n", phase_line(running.back(), left));
+    to_stderr("{}\n", phase_line(running.back(), left));
   }
   if (terminal_) rewrite(live_line(running, left, terminal_width() - 1));
 }
 
 void Status::rewrite(const std::string& live_line) {
   if (live_line.empty() && !line_is_shown_) return;
-  fmt::print(stderr, "{}{}", clear_line, live_line);
-  std::fflush(stderr);
+  to_stderr("{}{}", clear_line, live_line);
   line_is_shown_ = !live_line.empty();
 }
 

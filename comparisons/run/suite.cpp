@@ -28,6 +28,7 @@
 #include "problem/system/file_name.h"
 #include "problem/system/new_file.h"
 #include "problem/system/shortened.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -108,7 +109,7 @@ std::vector<PreparedCase> prepare_all(const std::vector<Experiment>& cases, bool
     } catch (const std::runtime_error&) {
       if (!interrupted) throw;
     }
-  if (interrupted) fmt::print(stderr, "interrupted before any part was run\n");
+  if (interrupted) to_stderr("interrupted before any part was run\n");
   return prepared;
 }
 
@@ -186,7 +187,7 @@ class Progress {
 std::optional<Part> kept_part(const Task& task) try {
   return load_part(task.file, task.stamp);
 } catch (const DamagedFile& e) {
-  fmt::print(stderr, "note: {}; this part is computed anew\n", e.what());
+  to_stderr("note: {}; this part is computed anew\n", e.what());
   return {};
 }
 
@@ -241,18 +242,17 @@ void check_names(const std::vector<fs::path>& cases) {
 /// Says which models may lose their equilibrium, before anything is run.
 void warn_of_limits(const std::vector<PreparedCase>& prepared) {
   for (const PreparedCase& p : prepared)
-    for (const LatticeLimit& limit : p.limits)
-      fmt::print(stderr, "warning: {}\n", limit_sentence(p.experiment.name, limit));
+    for (const LatticeLimit& limit : p.limits) to_stderr("warning: {}\n", limit_sentence(p.experiment.name, limit));
 }
 
 /// Runs the tasks; false if interrupted, which is said.
 bool completed(std::vector<Task>& tasks, const SuiteOptions& options) {
-  if (!fem::available()) fmt::print(stderr, "note: springproof-fem is not here; there will be no reference\n");
+  if (!fem::available()) to_stderr("note: springproof-fem is not here; there will be no reference\n");
   run_tasks(tasks, options);
   if (!interrupted) return true;
   const auto done = std::count_if(tasks.begin(), tasks.end(), [](const Task& t) { return t.done; });
-  fmt::print(stderr, "interrupted; {} of {} parts are kept in {}: the same command {}goes on from there\n", done,
-             tasks.size(), options.out.string(), options.shard ? "" : "with --resume ");
+  to_stderr("interrupted; {} of {} parts are kept in {}: the same command {}goes on from there\n", done, tasks.size(),
+            options.out.string(), options.shard ? "" : "with --resume ");
   return false;
 }
 
@@ -275,8 +275,8 @@ int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
   for (const PreparedCase& p : prepared) save_meshed(options.out, key_of(p.experiment.file), case_of(p));
   std::vector<Task> tasks = tasks_of(sweep, prepared, options);
   if (!completed(tasks, options)) return 130;
-  fmt::print("shard {}/{}: its {} part{} in {}; once every shard has ended: springproof report {}\n", number, count,
-             tasks.size(), tasks.size() == 1 ? " is" : "s are", out, out);
+  to_stdout("shard {}/{}: its {} part{} in {}; once every shard has ended: springproof report {}\n", number, count,
+            tasks.size(), tasks.size() == 1 ? " is" : "s are", out, out);
   return 0;
 }
 

@@ -20,6 +20,7 @@
 #include "comparisons/run/vtu_output.h"
 #include "problem/system/file_name.h"
 #include "problem/system/files.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -129,7 +130,7 @@ bool write_results(std::vector<CaseResult> results, const std::string& libraries
   write_crack_pictures(results, out);
   const Headline h = headline(results);
   write_report(out / "report.html", h, doc, pictures);
-  fmt::print("{}{}report: {}\n", terminal_text(h, choice.verbose), calibration_table(known),
+  to_stdout("{}{}report: {}\n", terminal_text(h, choice.verbose), calibration_table(known),
              (out / "report.html").string());
   return success(h);
 }

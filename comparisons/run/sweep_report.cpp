@@ -13,6 +13,7 @@
 #include "comparisons/run/part_file.h"
 #include "comparisons/run/suite_results.h"
 #include "comparisons/run/sweep.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -68,9 +69,9 @@ CaseResult collect(const fs::path& folder, const Sweep& sweep, const PlannedCase
 
 void say(const Missing& missing, const Sweep& sweep, const fs::path& folder) {
   for (const auto& [shard, titles] : missing)
-    fmt::print(stderr, "shard {}/{}{}: {} part{} missing: {}\n", shard, sweep.shards,
-               is_locked(sweep_file(folder), shard) ? " (at work)" : "", titles.size(), titles.size() == 1 ? "" : "s",
-               fmt::join(titles, ", "));
+    to_stderr("shard {}/{}{}: {} part{} missing: {}\n", shard, sweep.shards,
+              is_locked(sweep_file(folder), shard) ? " (at work)" : "", titles.size(), titles.size() == 1 ? "" : "s",
+              fmt::join(titles, ", "));
 }
 
 }  // namespace

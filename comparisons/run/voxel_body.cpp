@@ -18,6 +18,7 @@
 #include "meshes/volume.h"
 #include "meshes/voxels/voxelise.h"
 #include "problem/system/progress.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -363,7 +364,7 @@ void prepare_voxel_body(PreparedCase& prepared) {
   };
   try {
     prepare_body(prepared, hint);
-    if (!hint.empty()) fmt::print(stderr, "note: {}: {}\n", prepared.experiment.file.string(), hint);
+    if (!hint.empty()) to_stderr("note: {}: {}\n", prepared.experiment.file.string(), hint);
   } catch (const InputError& e) {
     if (hint.empty()) throw;
     throw InputError(with_hint(e));

@@ -11,6 +11,7 @@
 #include "meshes/gmsh/session.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "problem/system/child.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -44,11 +45,11 @@ std::string library_versions() {
 
 int run(int argc, char** argv) try {
   if (argc == 2 && argv[1] == std::string("--version")) {
-    fmt::print("{}\n", library_versions());
+    to_stdout("{}\n", library_versions());
     return 0;
   }
   if (argc != 3) {
-    fmt::print(stderr, "usage: springproof-mesh REQUEST.cbor ANSWER.cbor   (run by springproof and springproof-fem)\n");
+    to_stderr("usage: springproof-mesh REQUEST.cbor ANSWER.cbor   (run by springproof and springproof-fem)\n");
     return 2;
   }
   limit_memory();
@@ -58,11 +59,13 @@ int run(int argc, char** argv) try {
   if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", argv[2]));
   return 0;
 } catch (const std::exception& e) {
-  fmt::print(stderr, "{}\n", e.what());
+  to_stderr("{}\n", e.what());
   return 1;
 }
 
 }  // namespace
 }  // namespace springproof
 
-int main(int argc, char** argv) { return springproof::run(argc, argv); }
+int main(int argc, char** argv) {
+  return springproof::run_as_program([&] { return springproof::run(argc, argv); });
+}

@@ -17,6 +17,7 @@
 #include "problem/system/child.h"
 #include "problem/system/named_files.h"
 #include "problem/system/progress.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -62,10 +63,10 @@ void check_facets(const fs::path& stl) {
                             "reference needs as many, or set SPRINGPROOF_MESH_SECONDS)",
                             facets, limit / seconds_each, seconds, limit));
   if (facets > many)
-    fmt::print(stderr,
-               "note: {}: about {:.2g} facets, which take some {:.2g} s and {:.2g} GB before they are meshed (fewer "
-               "would do)\n",
-               stl.string(), facets, seconds, 1e-9 * bytes_each * facets);
+    to_stderr(
+        "note: {}: about {:.2g} facets, which take some {:.2g} s and {:.2g} GB before they are meshed (fewer "
+        "would do)\n",
+        stl.string(), facets, seconds, 1e-9 * bytes_each * facets);
 }
 
 /// @param farthest the largest coordinate
