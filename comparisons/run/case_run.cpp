@@ -13,6 +13,7 @@
 #include "comparisons/run/case_checks.h"
 #include "comparisons/run/case_motion.h"
 #include "comparisons/run/cut_extrapolation.h"
+#include "comparisons/run/external.h"
 #include "comparisons/run/external_points.h"
 #include "comparisons/run/fracture_run.h"
 #include "comparisons/run/model_run.h"
@@ -320,6 +321,8 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   }
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
+  if (const auto* reference = reference_at_rest(run, lattice, label); reference && is_external(e.models[number]))
+    run.part.runs.back().message = unit_doubt(fields.front(), reference->field.displacement);
   if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
   const CutBody& cut = *run.prepared.lattices[lattice].cut;
   const bool macro = run.prepared.models[number].row.topology == Topology::macro_cells;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "comparisons/run/external_points.h"
 #include "comparisons/run/reference_grids.h"
@@ -122,10 +123,49 @@ WantedPoints wanted_points(const External& e) {
   return {e.prepared.body_points, false};
 }
 
+/// Typical distance of the points from each other, also of such that lie in pairs [m].
+double spacing_of(const External& e) {
+  return std::max(e.field.spacing(), std::cbrt(volume(e.mesh(), e.mesh().nodes) / double(e.points.X.rows())));
+}
+
+/// Several states of one point, as in a file of several times.
+void check_one_state(const External& e) {
+  const double allowed = 1e-3 * e.points.u.rowwise().norm().maxCoeff();
+  for (Eigen::Index n = 0; n < e.points.X.rows(); ++n)
+    for (const int other : e.field.points_at(e.points.X.row(n).transpose()))
+      if (other < n && (e.points.u.row(n) - e.points.u.row(other)).norm() > allowed)
+        e.fail(fmt::format("is the point of line {} with another displacement, {} and {} m (allowed: one state of the "
+                           "body in a file)",
+                           e.points.lines[other], vector_text(e.points.u.row(n)), vector_text(e.points.u.row(other))),
+               e.points.lines[n]);
+}
+
+/// A body that lies elsewhere or is longer: an end of the points is farther than half their spacing from that of the
+/// body, of a body of voxels from that of its cells and of the body itself.
+void check_ends(const External& e) {
+  const double allowed = 0.5 * spacing_of(e);
+  std::vector<const NodalVectors*> bodies = {&e.mesh().nodes};
+  if (!e.prepared.tetrahedra.empty()) bodies.push_back(&e.prepared.tetrahedra.back()->nodes);
+  const auto ends = [](const NodalVectors& X, int axis) {
+    return Eigen::Vector2d(X.col(axis).minCoeff(), X.col(axis).maxCoeff());
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector2d data = ends(e.points.X, axis);
+    Eigen::Vector2d off = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+    for (const NodalVectors* body : bodies) off = off.cwiseMin((ends(*body, axis) - data).cwiseAbs());
+    if (off.maxCoeff() <= 1.001 * allowed) continue;
+    const Eigen::Vector2d body = ends(*bodies.back(), axis);
+    e.fail(
+        fmt::format("the points reach along {} from {:.6g} to {:.6g} m, the body from {:.6g} to {:.6g} m (allowed: "
+                    "ends that differ by up to {:.4g} m, half the spacing of the points; move the points to where "
+                    "the body of the case lies)",
+                    "xyz"[axis], data[0], data[1], body[0], body[1], allowed));
+  }
+}
+
 /// A node where nothing is known: no point within the spacing of the points.
 void check_covered(const External& e) {
-  const double volume_spacing = std::cbrt(volume(e.mesh(), e.mesh().nodes) / double(e.points.X.rows()));
-  const double allowed = 1.1 * std::max(e.field.spacing(), volume_spacing);
+  const double allowed = 1.1 * spacing_of(e);
   const auto covered = [&](const Vec3& p) { return e.field.distance(p) <= allowed; };
   const auto refuse_gap = [&](const std::string& what) {
     e.fail(
@@ -179,7 +219,34 @@ void add_reactions(const ModelChoice& choice, std::map<std::string, double>& sca
   for (const auto& [patch, square] : squares) scalars[patch + ".magnitude"] = std::sqrt(square);
 }
 
+/// What makes displacements 10^digits times as large.
+std::string cause_of(int digits) {
+  struct Units {
+    int digits;
+    const char *length, *modulus;
+  };
+  for (const auto& [of, length, modulus] : {Units{2, "cm", ""}, {3, "mm", "kPa"}, {6, "um", "MPa"}, {9, "nm", "GPa"}})
+    if (std::abs(digits) == of) {
+      const auto taken = [&](const char* small, const char* SI) {
+        return digits > 0 ? fmt::format("in {} taken for {}", small, SI) : fmt::format("in {} taken for {}", SI, small);
+      };
+      return fmt::format("displacements {}{}", taken(length, "m"),
+                         *modulus ? ", or a modulus " + taken(modulus, "Pa") : "");
+    }
+  return "another unit of displacement, load or modulus";
+}
+
 }  // namespace
+
+std::string unit_doubt(const NodalVectors& u, const NodalVectors& reference) {
+  const double factor = u.norm() / reference.norm();
+  if (!(factor > 0) || !std::isfinite(factor)) return {};
+  const int digits = static_cast<int>(std::lround(std::log10(factor)));
+  const double power = std::pow(10, digits);
+  if (digits == 0 || (u / power - reference).norm() > 0.2 * reference.norm()) return {};
+  return fmt::format("the displacements are {:g} times those of the reference; {} would explain it", power,
+                     cause_of(digits));
+}
 
 ModelParameters parameters_of_external(const ModelChoice& choice) {
   ModelParameters p;
@@ -200,7 +267,9 @@ void check_external(const PreparedCase& prepared, std::size_t number) {
   const External e = read_external(prepared, number);
   check_units(e);
   check_inside(e);
+  check_one_state(e);
   check_covered(e);
+  check_ends(e);
   check_reactions(e);
   displacement_of(e);
 }

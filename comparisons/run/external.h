@@ -16,6 +16,10 @@ ModelParameters parameters_of_external(const ModelChoice& choice);
 /// displacement is not known; for a reaction on a patch that the body lacks.
 void check_external(const PreparedCase& prepared, std::size_t number);
 
+/// Where displacements are a power of ten times those of the reference, to a fifth, a sentence on the units that would
+/// explain it; else empty.
+std::string unit_doubt(const NodalVectors& u, const NodalVectors& reference);
+
 /// The entry as the result of a model, if this lattice is the one whose number of nodes is nearest to its number of
 /// points and this material its own; else nothing.  At a node where it has a point the displacement is the file's,
 /// elsewhere as ScatteredField::at() says, in a body of voxels as the finite elements' is carried to nodes outside.

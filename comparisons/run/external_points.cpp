@@ -47,6 +47,14 @@ char separator_of(std::string_view header) {
   return ',';
 }
 
+std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
 constexpr const char* rest_columns[] = {"x", "y", "z"};
 constexpr const char* displacement_columns[] = {"ux", "uy", "uz"};
 constexpr const char* deformed_columns[] = {"X", "Y", "Z"};
@@ -122,6 +130,8 @@ class CsvReader {
   }
 
   CsvColumns columns_of(const std::vector<CsvField>& header, int line) const {
+    if (std::all_of(header.begin(), header.end(), [](const CsvField& f) { return number_in(f.text).has_value(); }))
+      fail(line, 1, fmt::format("the file has no header: its first line holds numbers (needed: {})", header_words));
     const std::map<std::string, std::size_t> names = names_of(header, line);
     CsvColumns columns;
     columns.count = header.size();
@@ -152,14 +162,11 @@ class CsvReader {
   }
 
   double number_at(const std::vector<CsvField>& fields, std::size_t i, int line) const {
-    std::string_view text = fields[i].text;
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    const std::optional<double> value = number_in(fields[i].text);
+    if (!value || !std::isfinite(*value))
       fail(line, fields[i].column,
            shortened(fmt::format("is '{}' (allowed: a finite number, with a point for decimals)", fields[i].text)));
-    return value;
+    return *value;
   }
 
   /// Rest position and displacement [m].

@@ -19,6 +19,7 @@ class ScatteredField {
 
   /// Whether there is a point at p, to 1e-4 of the spacing.
   bool is_at(const Vec3& p) const { return distance(p) <= same_place(); }
+  std::vector<int> points_at(const Vec3& p) const { return near(p, same_place()); }  ///< their rows
 
   /// At a point its displacement (of several the mean); elsewhere that of the affine field fitted to the points around
   /// p by moving least squares, with weights (1 - (d / R)^2)^3 up to a distance R of 1.6 spacings, or as many more as

@@ -169,6 +169,9 @@ class Progress {
     std::string remark = taken_back ? "kept from before" : fmt::format("{:.1f} s", seconds);
     if (failed) remark += fmt::format(", {} run{} without a result", failed, failed == 1 ? "" : "s");
     if (!quiet_) status_.print(fmt::format("[{}/{}] {:<44} {}", count_, tasks_.size(), tasks_[task].title, remark));
+    for (const Run& r : runs)
+      if (r.ok && r.kind == "external" && !r.message.empty())
+        status_.print(fmt::format("note: {}: {}: {}", tasks_[task].title, r.model, r.message));
   }
 
  private:

@@ -131,6 +131,29 @@ refused 'spoilt.csv: there is no point near .0.(15|2), 0, 0. m, where the body i
 refused 'spoilt.csv:2:[0-9]+: poisson_ratio is 0.4, and ..external.. is of a solid of 0.25' 'NR == 1 { print $0, "poisson_ratio"; next } { print $0, 0.4 }'
 refused "spoilt.toml:[0-9]+:[0-9]+: external.reaction_N: the body has no patch 'x_mim'.*did you mean 'x_min'" 1 'reaction_N = { x_mim = [0, 0, 1] }'
 refused 'spoilt.csv:1:1: there is no point' 'NR == 1'
+refused 'spoilt.csv:1:1: the file has no header: its first line holds numbers \(needed: a header with x, y, z' 'NR > 1'
+# A body that lies elsewhere, by less than a cell, or is longer: what is compared is extrapolated.
+refused 'spoilt.csv: the points reach along x from 0.03 to 0.43 m, the body from 0 to 0.4 m \(allowed: ends that differ by up to 0.025 m' 'NR > 1 { $1 += 0.03 } 1'
+refused 'spoilt.csv: the points reach along y from -0.03 to 0.07 m, the body from 0 to 0.1 m' 'NR > 1 { $2 -= 0.03 } 1'
+refused 'spoilt.csv: the points reach along z from 0 to 0.16 m' 'NR > 1 { $3 *= 1.6 } 1'
+# Two states of the body in a file.
+refused 'spoilt.csv:[0-9]+:1: is the point of line [0-9]+ with another displacement' 'NR == 1 { print; next } { print; $4 = $5 = $6 = 0; print }'
+
+# Displacements in another unit than the positions: compared as they are, with a word.
+make units '"hybmss_avg"' <<TOML
+[[external]]
+name = "metres"
+file = "metres.csv"
+poisson_ratio = 0.25
+[[external]]
+name = "ours"
+file = "$csv"
+poisson_ratio = 0.25
+TOML
+awk -F, -v OFS=, 'NR > 1 { for (i = 4; i <= 6; ++i) $i /= 1000 } 1' $csv >metres.csv
+"$program" compare units.toml --quiet --out units >log 2>&1 || fail "units.toml: $(cat log)"
+grep -q '^note: units  nu0.25: metres: the displacements are 0.001 times those of the reference; displacements in m taken for mm, or a modulus in Pa taken for kPa would explain it' log || fail "no word on units: $(cat log)"
+grep -q 'note: .*ours' log && fail "a word on units that are right"
 make spoilt '"hybmss"' <<<$'[[external]]\nname = "none"\nfile = "none.csv"\npoisson_ratio = 0.4'
 "$program" compare spoilt.toml --quiet --out refused >log 2>&1
 [ $? -eq 2 ] && grep -q 'none.csv: no such file' log && [ ! -e refused ] || fail "a missing file: $(cat log)"
