@@ -68,8 +68,6 @@ class SpringOrder {
     for (std::size_t s = 0; s < springs.size(); ++s) turned_[s] = springs[number_[s]].i > springs[number_[s]].j;
   }
 
-  std::size_t number(std::size_t place) const { return number_[place]; }
-
   std::vector<Spring> operator()(const std::vector<Spring>& springs) const {
     std::vector<Spring> sorted;
     for (const std::size_t s : number_) sorted.push_back(springs[s]);
@@ -111,6 +109,22 @@ std::vector<std::array<int, n>> rows(const JsonPlace& place, int largest) {
   return all;
 }
 
+/// What acts between the same nodes counts once: named twice it would be twice as stiff.
+template <std::size_t n>
+void require_each_once(const std::vector<std::array<int, n>>& all, const char* what, const JsonPlace& place) {
+  std::vector<std::pair<std::array<int, n>, std::size_t>> sorted;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    sorted.emplace_back(all[r], r);
+    std::sort(sorted.back().first.begin(), sorted.back().first.end());
+  }
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice =
+      std::adjacent_find(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (twice != sorted.end())
+    place.refuse(fmt::format("{}s {} and {} connect the same nodes", what, twice->second, std::next(twice)->second),
+                 fmt::format("one {} for the same nodes", what));
+}
+
 void read_nodes(const JsonPlace& document, SpringsFile& file) {
   file.density = document.at("density_kg_m3").number(smallest_of_file, largest_number_of_file);
   const JsonPlace nodes = document.at("nodes");
@@ -130,6 +144,7 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
   const JsonPlace place = document.at("springs");
   place.require_known({"nodes", "stiffness_N_m", "rest_length_m"});
   const auto ends = rows<2>(place.at("nodes"), static_cast<int>(X.rows()) - 1);
+  require_each_once(ends, "spring", place.at("nodes"));
   const auto stiffness = place.at("stiffness_N_m").numbers(1, ends.size(), "springs", smallest_of_file);
   const auto length = place.at("rest_length_m").numbers(1, ends.size(), "springs", smallest_of_file, farthest_node);
   std::vector<Spring> springs;
@@ -148,11 +163,15 @@ double version_of(const JsonPlace& document) {
 
 void read_cells(const JsonPlace& document, Network& network) {
   const int last = network.nodes() - 1;
-  if (const auto triangles = document.find("triangles")) network.triangles = rows<3>(*triangles, last);
+  if (const auto triangles = document.find("triangles")) {
+    network.triangles = rows<3>(*triangles, last);
+    require_each_once(network.triangles, "triangle", *triangles);
+  }
   const auto cells = document.find("cells");
   if (!cells) return;
   cells->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance"});
   network.cells = rows<8>(cells->at("nodes"), last);
+  require_each_once(network.cells, "cell", cells->at("nodes"));
   read_edges(*cells, version_of(document), network);
   read_proportions(*cells, version_of(document), network);
   for (std::size_t c = 0; c < network.cells.size(); ++c)
@@ -305,11 +324,6 @@ SpringsFile read_document(const JsonPlace& document) {
   const std::vector<Spring> unsorted = read_springs_of(document, network.X);
   const SpringOrder order(unsorted);
   network.springs = order(unsorted);
-  for (std::size_t s = 1; s < network.springs.size(); ++s)
-    if (const Spring& a = network.springs[s - 1], &b = network.springs[s]; a.i == b.i && a.j == b.j)
-      document.at("springs").at("nodes").refuse(
-          fmt::format("springs {} and {} connect the same nodes", order.number(s - 1), order.number(s)),
-          "one spring for each pair of nodes");
   read_cells(document, network);
   read_carried(document, network);
   read_laws(document, order, file.model);

@@ -175,6 +175,23 @@ TEST(SpringsFile, IsRefusedWithItsPlace) {
   EXPECT_NE(message_of(no_cells).find("/laws/volume_correction: has no cells to act on"), std::string::npos);
 }
 
+/// Twice the same cell would be twice as stiff, whatever the order of its corners.
+TEST(SpringsFile, WhatIsNamedTwiceIsRefused) {
+  SpringsFile file = file_of("hybmss");
+  file.model = build_model(test::model("hybmss"), block_mesh({1, 1, 1}, {2, 2, 2}), material);
+  file.surface = {};
+  file.model.network.cells.push_back(file.model.network.cells[3]);
+  EXPECT_NE(
+      message_of(springs_as_json(file)).find("/cells/nodes: cells 3 and 8 connect the same nodes (allowed: one cell "),
+      std::string::npos)
+      << message_of(springs_as_json(file));
+  SpringsFile planar = file_of("kirkwood");
+  auto& triangles = planar.model.network.triangles;
+  triangles.push_back({triangles[1][1], triangles[1][2], triangles[1][0]});
+  EXPECT_NE(message_of(springs_as_json(planar)).find("/triangles: triangles 1 and "), std::string::npos)
+      << message_of(springs_as_json(planar));
+}
+
 TEST(SpringsFile, DamagedIsReadOrRefused) {
   const char* all = std::getenv("SPRINGPROOF_DAMAGES");
   const int damages = all ? std::atoi(all) : 5000;
