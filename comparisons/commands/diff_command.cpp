@@ -22,7 +22,7 @@ void print_csv(const Differences& all) {
   for (const Difference& d : all.changed)
     to_stdout("{},{},{},{},{},{},{},{},{},{},{:.3g},{}\n", csv_text(d.row.case_name), csv_text(d.row.kinematics),
               csv_text(d.row.model), csv_number(d.row.poisson_ratio), cells_text(d.row.cells), csv_text(d.row.measure),
-              d.what, csv_number(d.first), csv_number(d.second), csv_text(d.row.unit), d.relative,
+              csv_text(d.what), csv_number(d.first), csv_number(d.second), csv_text(d.row.unit), d.relative,
               times_uncertainty(d));
 }
 
@@ -70,6 +70,9 @@ void DiffCommand::add_options(CLI::App& command) {
 
 int DiffCommand::run() const {
   const ResultsFolder first = read_results(first_), second = read_results(second_);
+  for (const auto& [folder, results] : {std::pair{&first_, &first}, std::pair{&second_, &second}})
+    if (results->rows.empty())
+      throw InputError(fmt::format("{}: holds no number (allowed: results of at least one run)", folder->string()));
   const Differences all = differences(first, second, tolerance_);
   if (csv_) {
     print_csv(all);

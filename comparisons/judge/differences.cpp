@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -64,6 +65,11 @@ double relative_difference(double a, double b, double size) {
 
 }  // namespace
 
+void refuse_results(const std::filesystem::path& folder, const std::string& why) {
+  throw InputError(
+      fmt::format("{}: not the results of `springproof compare`: {}", (folder / "results.json").string(), why));
+}
+
 ResultsFolder read_results(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "results.json";
   if (std::error_code ignored; !std::filesystem::exists(file, ignored))
@@ -81,24 +87,24 @@ ResultsFolder read_results(const std::filesystem::path& folder) {
     }
     return found;
   } catch (const json::exception& e) {
-    throw InputError(fmt::format("{}: not the results of `springproof compare`: {}", file.string(), e.what()));
+    refuse_results(folder, e.what());
   }
 }
 
 Differences differences(const ResultsFolder& first, const ResultsFolder& second, double tolerance) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::map<std::string, double> size_of_vector = sizes(first, second);
-  std::map<std::string, const Row*> others;
-  for (const Row& row : second.rows) others[key_of(row)] = &row;
+  std::map<std::string, std::deque<const Row*>> others;  // of a number that a folder holds twice the first is the first
+  for (const Row& row : second.rows) others[key_of(row)].push_back(&row);
   Differences all;
   for (const Row& a : first.rows) {
-    const auto found = others.find(key_of(a));
-    if (found == others.end()) {
+    std::deque<const Row*>& alike = others[key_of(a)];
+    if (alike.empty()) {
       all.only_first.push_back(a);
       continue;
     }
-    const Row& b = *found->second;
-    others.erase(found);
+    const Row& b = *alike.front();
+    alike.pop_front();
     ++all.in_both;
     const double size = size_of_vector.at(run_of(a) + '|' + without_component(a.measure));
     const double uncertainty = std::max(a.reference_uncertainty.value_or(0), b.reference_uncertainty.value_or(0));
@@ -108,12 +114,17 @@ Differences differences(const ResultsFolder& first, const ResultsFolder& second,
       if (relative > tolerance)
         all.changed.push_back({a, what, x, y, relative, uncertainty > 0 ? std::abs(y - x) / uncertainty : nan});
     };
+    if (a.unit != b.unit) {
+      all.largest = std::numeric_limits<double>::infinity();
+      all.changed.push_back({a, fmt::format("unit {} for {}", b.unit, a.unit), a.value, b.value, all.largest, nan});
+      continue;
+    }
     compare("value", a.value, b.value);
     compare("reference", a.reference.value_or(nan), b.reference.value_or(nan));
     compare("reference_uncertainty", a.reference_uncertainty.value_or(nan), b.reference_uncertainty.value_or(nan));
   }
   for (const Row& row : second.rows)
-    if (const auto left = others.find(key_of(row)); left != others.end() && left->second == &row)
+    if (const auto& left = others.at(key_of(row)); std::find(left.begin(), left.end(), &row) != left.end())
       all.only_second.push_back(row);
   std::stable_sort(all.changed.begin(), all.changed.end(),
                    [](const Difference& a, const Difference& b) { return a.relative > b.relative; });

@@ -19,10 +19,13 @@ struct ResultsFolder {
 /// @throws InputError if FOLDER/results.json is missing or no document of results; the message names file and reason.
 ResultsFolder read_results(const std::filesystem::path& folder);
 
+/// @throws InputError that FOLDER/results.json is no document of results, and why.
+[[noreturn]] void refuse_results(const std::filesystem::path& folder, const std::string& why);
+
 /// One number that differs.
 struct Difference {
   Row row;           ///< of the first folder
-  std::string what;  ///< "value", "reference" or "reference_uncertainty"
+  std::string what;  ///< "value", "reference", "reference_uncertainty", or of numbers in two units "unit mm for m"
   double first, second;
   double relative;  ///< |second - first| over the size of the quantity; infinite if only one of the two is a number
   double of_uncertainty;  ///< |second - first| over the larger reference uncertainty of the two rows; NaN: none stated
@@ -39,7 +42,8 @@ struct Differences {
   bool none() const { return only_first.empty() && only_second.empty() && changed.empty(); }
 };
 
-/// Rows belong together if case, kinematics, model, Poisson's ratio, cells and measure are the same.
+/// Rows belong together if case, kinematics, model, Poisson's ratio, cells and measure are the same; of several that do
+/// in one folder, the first with the first of the other.
 Differences differences(const ResultsFolder& first, const ResultsFolder& second, double tolerance);
 
 }  // namespace springproof

@@ -91,24 +91,28 @@ std::string name_in_results(const std::string& case_name) {
 
 }  // namespace
 
-PaperResults::PaperResults(const std::vector<std::filesystem::path>& folders) {
-  for (const std::filesystem::path& folder : folders) {
-    const ResultsFolder found = read_results(folder);
-    const json document = json::parse(text_of_file(folder / "results.json"));
-    for (std::size_t i = 0; i < found.cases.size(); ++i) {
-      const json& result = document.at("cases").at(i);
-      ReadCase read;
-      for (const Row& row : found.rows)
-        if (row.case_name == found.cases[i]) read.rows.push_back(row);
-      read.printed = printed_of(result, found.cases[i], read.rows);
-      for (const json& line : result.at("lines")) read.lines.push_back(line_of(line));
-      for (const json& run : result.at("runs"))
-        if (!run.at("ok").get<bool>())
-          read.failed.push_back({run.at("model"), run.at("poisson_ratio"), run.at("message")});
-      read.folder = folder;
-      cases_[found.cases[i]] = std::move(read);
-    }
+void PaperResults::add(const std::filesystem::path& folder) try {
+  const ResultsFolder found = read_results(folder);
+  const json document = json::parse(text_of_file(folder / "results.json"));
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    const json& result = document.at("cases").at(i);
+    ReadCase read;
+    for (const Row& row : found.rows)
+      if (row.case_name == found.cases[i]) read.rows.push_back(row);
+    read.printed = printed_of(result, found.cases[i], read.rows);
+    for (const json& line : result.at("lines")) read.lines.push_back(line_of(line));
+    for (const json& run : result.at("runs"))
+      if (!run.at("ok").get<bool>())
+        read.failed.push_back({run.at("model"), run.at("poisson_ratio"), run.at("message")});
+    read.folder = folder;
+    cases_[found.cases[i]] = std::move(read);
   }
+} catch (const json::exception& e) {
+  refuse_results(folder, e.what());
+}
+
+PaperResults::PaperResults(const std::vector<std::filesystem::path>& folders) {
+  for (const std::filesystem::path& folder : folders) add(folder);
 }
 
 const PaperResults::ReadCase* PaperResults::find(const std::string& case_name) const {
@@ -158,7 +162,15 @@ std::string PaperResults::cracks(const std::string& case_name, const std::string
   for (const Row& row : rows(case_name))
     if (row.model == model && (!finest || cell_count(row.cells) > cell_count(finest->cells))) finest = &row;
   if (!finest) return "";
-  return text_of_file(find(case_name)->folder / crack_file(case_name.substr(case_name.rfind('/') + 1), *finest));
+  const std::filesystem::path file =
+      find(case_name)->folder / crack_file(case_name.substr(case_name.rfind('/') + 1), *finest);
+  std::string svg = text_of_file(file);
+  if (!svg.empty() && !is_crack_svg(svg))
+    throw InputError(
+        fmt::format("{}: is no drawing of cracks by `springproof compare` (a page with it could run what "
+                    "others wrote; allowed: the file as it was written)",
+                    file.string()));
+  return svg;
 }
 
 std::string PaperResults::failure(const std::string& case_name, const std::string& model, double poisson_ratio) const {

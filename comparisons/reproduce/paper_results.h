@@ -54,6 +54,7 @@ class PaperResults {
                              const std::optional<Cells>& cells = {}) const;
 
   /// Cracks of a model in a drying body seen from above, on the finest lattice: an SVG document.  Empty: there is none.
+  /// @throws InputError if the folder holds another file in its place.
   std::string cracks(const std::string& case_name, const std::string& model) const;
 
   /// Why a model has no result: "no stable equilibrium beyond 0.21 of the load"; empty: it has one, or was not run.
@@ -72,6 +73,7 @@ class PaperResults {
     std::vector<FailedRun> failed;
     std::filesystem::path folder;
   };
+  void add(const std::filesystem::path& folder);
   const ReadCase* find(const std::string& case_name) const;  ///< null: none
   const std::vector<Picture>& pictures(const std::string& case_name) const;
 

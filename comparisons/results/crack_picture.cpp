@@ -15,6 +15,17 @@ namespace {
 constexpr double picture_width = 2000;  // units of the drawing
 constexpr std::array<const char*, 4> crack_colours = {"#67000d", "#cb181d", "#f16913", "#fdae6b"};  // ColorBrewer
 
+// The pieces of a drawing.
+constexpr char svg_heading[] =
+    "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-20 -20 {0:g} {0:g}\" fill=\"none\" stroke-linecap=\"round\">"
+    "<rect x=\"-20\" y=\"-20\" width=\"{0:g}\" height=\"{0:g}\" fill=\"#fff\"/>";
+constexpr char grey_path[] = "<path stroke=\"#b4bcc5\" stroke-width=\"3\" d=\"", path_end[] = "\"/>",
+               svg_end[] = "</svg>\n";
+
+std::string crack_path(const char* colour) {
+  return fmt::format("<path stroke=\"{}\" stroke-width=\"7\" d=\"", colour);
+}
+
 /// The box around all strokes.
 struct Frame {
   double left = 0, bottom = 0, size = 1;
@@ -53,16 +64,26 @@ std::string crack_svg(const std::vector<Stroke>& springs, const std::vector<Stro
   }
   std::string grey;
   for (const Stroke& s : springs) grey += frame.path(s);
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-20 -20 {0:g} {0:g}\" fill=\"none\" "
-      "stroke-linecap=\"round\">"
-      "<rect x=\"-20\" y=\"-20\" width=\"{0:g}\" height=\"{0:g}\" fill=\"#fff\"/>"
-      "<path stroke=\"#b4bcc5\" stroke-width=\"3\" d=\"{1}\"/>",
-      picture_width + 40, grey);
+  std::string out = fmt::format(svg_heading, picture_width + 40) + grey_path + grey + path_end;
   for (std::size_t i = 0; i < drawn.size(); ++i)
-    if (!drawn[i].empty())
-      out += fmt::format("<path stroke=\"{}\" stroke-width=\"7\" d=\"{}\"/>", crack_colours[i], drawn[i]);
-  return out + "</svg>\n";
+    if (!drawn[i].empty()) out += crack_path(crack_colours[i]) + drawn[i] + path_end;
+  return out + svg_end;
+}
+
+bool is_crack_svg(std::string_view text) {
+  const auto take = [&](std::string_view expected) {
+    if (!text.starts_with(expected)) return false;
+    text.remove_prefix(expected.size());
+    return true;
+  };
+  const auto take_strokes = [&] {
+    text.remove_prefix(std::min(text.find_first_not_of("ML -0123456789"), text.size()));
+    return take(path_end);
+  };
+  if (!take(fmt::format(svg_heading, picture_width + 40)) || !take(grey_path) || !take_strokes()) return false;
+  for (const char* colour : crack_colours)
+    if (take(crack_path(colour)) && !take_strokes()) return false;
+  return text == svg_end;
 }
 
 std::string crack_file(const std::string& case_name, const RunKey& key) {

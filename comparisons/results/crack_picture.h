@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "comparisons/results/records.h"
@@ -18,6 +19,9 @@ struct Stroke {
 /// Springs grey, cracks from dark red (first) to orange (last); y upwards.  Coordinates are rounded to 1/2000 of the
 /// larger extent.  The text holds no names from outside.
 std::string crack_svg(const std::vector<Stroke>& springs, const std::vector<Stroke>& cracks);
+
+/// Whether the text is one that crack_svg() writes, to the last letter but for the numbers: nothing in it can run.
+bool is_crack_svg(std::string_view text);
 
 /// CASE-cracks-MODEL-CELLS-nuNU.svg
 std::string crack_file(const std::string& case_name, const RunKey& key);

@@ -148,6 +148,9 @@ expect "differences of no results" "/nowhere: no results.json here" diff /nowher
 echo '{"cases": 1}' >"$work/results.json"
 expect "differences of other files" "results.json: not the results" diff "$work" "$work"
 
+echo '{"program": {"version": "0.1.0"}, "generated": "now", "cases": []}' >"$work/results.json"
+expect "differences of no numbers" "^error: .*: holds no number" diff "$work" "$work"
+
 # What is no fault of the case.
 SPRINGPROOF_MESH_CACHE=$work/cache TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
 

@@ -87,6 +87,28 @@ TEST(Differences, NameWhatOnlyOneOfTheTwoHas) {
   EXPECT_EQ(d.only_second.size(), 2u);
 }
 
+TEST(Differences, OfUnitsAreDifferencesWhateverTheNumbers) {
+  ResultsFolder other = results;
+  other.rows[1].unit = "mm";
+  const Differences d = differences(results, other, 1e-9);
+  ASSERT_EQ(d.changed.size(), 1u);
+  EXPECT_EQ(d.changed[0].what, "unit mm for m");
+  EXPECT_TRUE(std::isinf(d.largest));
+}
+
+TEST(Differences, ANumberThatAFolderHoldsTwiceIsComparedOnce) {
+  ResultsFolder twice = results;
+  twice.rows.insert(twice.rows.begin(), row("volume_change", -0.01));
+  twice.rows.back().value = -0.5;
+  const Differences d = differences(results, twice, 1e-9), reversed = differences(twice, results, 1e-9);
+  EXPECT_TRUE(d.changed.empty());  // the first with the first
+  ASSERT_EQ(d.only_second.size(), 1u);
+  EXPECT_EQ(d.only_second[0].value, -0.5);
+  ASSERT_EQ(reversed.only_first.size(), 1u);
+  EXPECT_EQ(reversed.only_first[0].value, -0.5);
+  EXPECT_TRUE(differences(twice, twice, 0).none());
+}
+
 TEST(ResultsFolder, WithoutResultsIsRefused) {
   const auto folder = std::filesystem::temp_directory_path() / "springproof_differences_test";
   std::filesystem::remove_all(folder);

@@ -107,6 +107,18 @@ TEST(CrackPicture, DrawsSpringsAndCracksByAge) {
   EXPECT_NE(svg.find("stroke=\"#67000d\" stroke-width=\"7\" d=\"M1000 2000L1000 0\""), std::string::npos) << svg;
   EXPECT_NE(svg.find("stroke=\"#fdae6b\" stroke-width=\"7\" d=\"M0 2000L0 0\""), std::string::npos) << svg;
   EXPECT_TRUE(crack_svg({}, {}).ends_with("</svg>\n"));
+  for (const std::string& ours : {svg, crack_svg({}, {})}) EXPECT_TRUE(is_crack_svg(ours));
+}
+
+/// Whatever stands between what we write could run in the page that shows it.
+TEST(CrackPicture, WithAnythingElseInItIsNone) {
+  const std::string svg = crack_svg({{0, 0, 2, 0}}, {{1, -1, 1, 1, 0}, {0, -1, 0, 1, 1}});
+  for (std::size_t at = 0; at <= svg.size(); ++at) {
+    std::string other = svg;
+    EXPECT_FALSE(is_crack_svg(other.insert(at, "<script>"))) << at;
+  }
+  EXPECT_FALSE(is_crack_svg(svg.substr(0, svg.size() - 1)));
+  EXPECT_FALSE(is_crack_svg(""));
 }
 
 }  // namespace
