@@ -3,21 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/status.h"
 #include "fem_reference/reference.h"
+#include "problem/system/child.h"
+#include "problem/system/interrupts.h"
 
 namespace springproof {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> measuring_stopped = false;
 
 constexpr double most_unknowns = 30000;  // of models and elements
 
@@ -44,11 +42,7 @@ int measure_held_out(const fs::path& file) {
   MeasuredFile out;
   if (fs::exists(file)) out = read_measurements(file);
   out.header = header;
-  for (const int signal : {SIGINT, SIGTERM})
-    std::signal(signal, [](int) {
-      measuring_stopped = true;
-      fem::interrupt();
-    });
+  end_at_interrupts();
   Status status;
   for (const Experiment& e : held_out_cases())
     for (const IsotropicMaterial& material : e.materials) {
@@ -62,7 +56,7 @@ int measure_held_out(const fs::path& file) {
         const Status::Working working(status, title);
         add_rows(e, material, out);
       }
-      if (measuring_stopped) return 130;
+      if (children_interrupted()) return interrupted_status;
       write_measurements(file, out);
       status.print(fmt::format("{}: {} errors", title, out.rows.size() - before));
     }

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <map>
 
 #include "comparisons/calculix/run.h"
@@ -16,6 +14,8 @@
 #include "comparisons/run/status.h"
 #include "fem_reference/case_request.h"
 #include "meshes/mesher/mesher.h"
+#include "problem/system/child.h"
+#include "problem/system/interrupts.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
@@ -26,14 +26,6 @@ namespace {
 constexpr double linear_elements = 1728, finite_elements = 512;
 
 constexpr const char* field_measure = "displacement field, peak";
-
-std::atomic<bool> interrupted = false;
-
-void on_interrupt(int) {
-  interrupted = true;
-  fem::interrupt();
-  calculix::interrupt();
-}
 
 /// One case at one Poisson's ratio, to be solved by both programs.
 struct Question {
@@ -154,18 +146,18 @@ Answer calculix_answer(const Question& q, const calculix::Deck& deck, const calc
 std::optional<Opinion> ask_calculix(const Question& q, Status& status) {
   std::vector<Answer> answers;
   Noise noise;
-  for (int g = 0; g < 3 && !interrupted; ++g) {
+  for (int g = 0; g < 3 && !children_interrupted(); ++g) {
     const calculix::Deck deck = calculix::make_deck(q.experiment(), q.material, q.meshes[g]);
     const std::string run = fmt::format("CalculiX {} {}", deck.element, cells_text(q.cells[g], " x "));
     progress::phase(run);
     const calculix::Solution s = calculix::solve(deck, q.time_limit);
-    if (interrupted) break;
+    if (children_interrupted()) break;
     status.print(fmt::format("  {}: {}", run, s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
     if (!s.ok) return {};
     answers.push_back(calculix_answer(q, deck, s));
     noise = s.floor;
   }
-  if (interrupted) return {};
+  if (children_interrupted()) return {};
   return opinion(q.prepared, q.meshes[0], answers, noise);
 }
 
@@ -197,7 +189,7 @@ std::optional<Opinion> ask_fem(const Question& q, Status& status) {
   try {
     solutions = fem::solve(request);
   } catch (const std::runtime_error& e) {
-    if (!interrupted) status.print(fmt::format("  FEM: {}", e.what()));
+    if (!children_interrupted()) status.print(fmt::format("  FEM: {}", e.what()));
     return {};
   }
   for (const fem::Solution& s : solutions) {
@@ -280,9 +272,9 @@ int check_material(const Question& q) {
     status.print(title);
     const Status::Working working(status, title);
     calculix = ask_calculix(q, status);
-    if (!interrupted) ours = ask_fem(q, status);
+    if (!children_interrupted()) ours = ask_fem(q, status);
   }
-  if (interrupted) return 1;
+  if (children_interrupted()) return 1;
   print_title(q);
   if (!calculix || !ours) {
     to_stdout("no answer from {}\n", calculix ? "our reference" : "CalculiX");
@@ -326,19 +318,18 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
     throw InputError(experiment.body.where,
                      "a body of voxels has no cross-check of its own; `springproof export` writes its tetrahedra with "
                      "the loads for CalculiX");
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  end_at_interrupts();
   const PreparedCase prepared = prepare(experiment);
   std::vector<IsotropicMaterial> materials = experiment.materials;
   if (options.poisson_ratio) materials = {material_of(experiment, options.poisson_ratio)};
   std::vector<Question> questions;
   for (const IsotropicMaterial& m : materials) questions.push_back(question(prepared, m, options));
   if (!programs_are_there()) return no_program;
-  if (interrupted) return cross_check_interrupted;
+  if (children_interrupted()) return interrupted_status;
   int differing = 0;
   for (const Question& q : questions) {
     differing += check_material(q);
-    if (interrupted) return cross_check_interrupted;
+    if (children_interrupted()) return interrupted_status;
   }
   if (differing == 0)
     to_stdout("\nCalculiX and our reference agree within their uncertainties in every row\n");
@@ -346,7 +337,7 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
     to_stdout("\n{} row{} beyond the two uncertainties, or without an answer\n", differing, differing == 1 ? "" : "s");
   return differing == 0 ? all_agree : some_differ;
 } catch (const std::runtime_error&) {
-  if (interrupted) return cross_check_interrupted;  // the mesher was stopped by the same signal
+  if (children_interrupted()) return interrupted_status;  // the mesher was stopped by the same signal
   throw;
 }
 

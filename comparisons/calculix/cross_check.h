@@ -34,7 +34,7 @@ SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& c
 const IsotropicMaterial& material_of(const Experiment& experiment, std::optional<double> poisson_ratio);
 
 /// Exit statuses of cross_check.
-enum CrossCheckStatus { all_agree = 0, some_differ = 1, no_program = 3, cross_check_interrupted = 130 };
+enum CrossCheckStatus { all_agree = 0, some_differ = 1, no_program = 3 };
 
 /// Runs both programs, on three grids each, and prints a table per Poisson's ratio; progress goes to stderr.
 /// A program without a result counts as not agreeing.

@@ -149,6 +149,4 @@ Solution solve(const Deck& deck, double time_limit) {
   return solution;
 }
 
-void interrupt() { interrupt_children(); }
-
 }  // namespace springproof::calculix

@@ -53,7 +53,4 @@ struct Solution {
 /// @throws std::runtime_error if ccx cannot be started.
 Solution solve(const Deck& deck, double time_limit);
 
-/// Terminates a running solve(); may be called in a signal handler.
-void interrupt();
-
 }  // namespace springproof::calculix

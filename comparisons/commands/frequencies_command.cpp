@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -20,14 +19,13 @@
 #include "meshes/field.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"
+#include "problem/system/interrupts.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int frequencies_interrupted = 130;
 
 std::string name_of(const ModelFrequencies& m) {
   return m.consistency > 0 ? fmt::format("{} {:g}", m.label, m.consistency) : m.label;
@@ -203,7 +201,7 @@ int FrequenciesCommand::run() const try {
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
   const Experiment experiment =
       with_materials(case_of_modes(read_experiment(found.front()), options_), poisson_ratios_);
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { fem::interrupt(); });
+  end_at_interrupts();
   Status status;
   bool all = true;
   nlohmann::json tables = nlohmann::json::array();
@@ -239,7 +237,7 @@ int FrequenciesCommand::run() const try {
   if (!known.empty()) to_stdout("\n{}", calibration_table(known));
   return all ? 0 : 1;
 } catch (const std::runtime_error&) {
-  if (children_interrupted()) return frequencies_interrupted;
+  if (children_interrupted()) return interrupted_status;
   throw;
 }
 

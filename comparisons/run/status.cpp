@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 
+#include "problem/system/child.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
@@ -125,6 +126,7 @@ void Status::print(const std::string& line) {
 }
 
 void Status::show() {
+  if (children_interrupted()) return rewrite({});
   const std::optional<double> left = left_ ? left_() : std::nullopt;
   std::vector<Activity> running;
   for (Entry& e : entries_) {
