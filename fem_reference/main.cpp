@@ -80,21 +80,13 @@ std::string words_for(const Discretisation& grid) {
   return fmt::format("{} on {} x {} x {} cells{}", grid.element, nx, ny, nz, grid.grading == 1 ? "" : ", graded");
 }
 
-// Graded grids of one element are a sequence, coarse to fine: after a failure on one, the next would take minutes to
-// fail.
-bool is_hopeless(const Discretisation& grid, const std::vector<Solution>& before) {
-  return grid.grading != 1 && std::any_of(before.begin(), before.end(), [&](const Solution& s) {
-           return !s.ok && s.grid.element == grid.element && s.grid.grading == grid.grading;
-         });
-}
-
 std::vector<Solution> solve_all(const Request& request, Method method = Method::automatic) {
   std::vector<Solution> solutions;
   for (const Discretisation& grid : request.grids) {
-    progress::phase(
-        fmt::format("finite elements {} of {}, {}", solutions.size() + 1, request.grids.size(), words_for(grid)));
+    const std::string which =
+        request.grids.size() > 1 ? fmt::format(" {} of {}", solutions.size() + 1, request.grids.size()) : "";
+    progress::phase(fmt::format("finite elements{}, {}", which, words_for(grid)));
     try {
-      if (is_hopeless(grid, solutions)) throw std::runtime_error("not tried, as the coarser grid has no result");
       solutions.push_back(solve_one(request, grid, method));
     } catch (const InputError&) {
       throw;

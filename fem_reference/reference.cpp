@@ -127,8 +127,6 @@ int run_program(const std::vector<std::string>& arguments) {
   return end.status;
 }
 
-void interrupt() { interrupt_children(); }
-
 bool available() { return !program().empty(); }
 
 std::string version() {

@@ -107,9 +107,6 @@ std::vector<Solution> solve(const Request& request);
 /// @throws std::runtime_error if it is not found or is killed.
 int run_program(const std::vector<std::string>& arguments);
 
-/// Terminates every running solve(), which then throws; may be called in a signal handler.
-void interrupt();
-
 /// True if `springproof-fem` is found.
 bool available();
 

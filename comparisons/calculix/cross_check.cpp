@@ -11,6 +11,7 @@
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/reference_grids.h"
+#include "comparisons/run/solve_each.h"
 #include "comparisons/run/status.h"
 #include "fem_reference/case_request.h"
 #include "meshes/mesher/mesher.h"
@@ -187,7 +188,7 @@ std::optional<Opinion> ask_fem(const Question& q, Status& status) {
   std::vector<Answer> answers;
   std::vector<fem::Solution> solutions;
   try {
-    solutions = fem::solve(request);
+    solutions = solve_each(request);
   } catch (const std::runtime_error& e) {
     if (!children_interrupted()) status.print(fmt::format("  FEM: {}", e.what()));
     return {};

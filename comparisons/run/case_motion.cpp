@@ -62,7 +62,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
 }
 
 void run_motion_reference(PartRun& run) {
-  run.in_time = solve_motion(run.prepared, run.material);
+  run.in_time = solve_motion(run.prepared, run.material, run.keeper);
   MotionReference& r = *run.in_time;
   const RunKey key = run.key(fem_in_motion, r.run.cells);
   static_cast<RunKey&>(r.run) = static_cast<RunKey&>(r.history) = key;

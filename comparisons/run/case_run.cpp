@@ -15,8 +15,7 @@
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/external.h"
 #include "comparisons/run/external_points.h"
-#include "comparisons/run/fracture_run.h"
-#include "comparisons/run/model_run.h"
+#include "comparisons/run/model_samples.h"
 #include "comparisons/run/motion_reference.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_body.h"
@@ -51,7 +50,7 @@ Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model
 /// Runs the finite elements.
 void run_fem(PartRun& run) {
   const auto solve = run.experiment().body.is_voxels() ? solve_body_grids : solve_grids;
-  run.grids = solve(run.prepared, run.material, run.vtu);
+  run.grids = solve(run.prepared, run.material, run.vtu, run.keeper);
   if (run.grids.elements.empty())
     run.part.runs.push_back(
         {run.key("fem_" + run.experiment().reference.elements.front(), run.prepared.reference_cells), "fem",
@@ -262,9 +261,7 @@ void add_splits_of_cut_cells(PartRun& run, std::size_t lattice, std::size_t numb
                              const std::vector<std::map<std::string, double>>& scalars) {
   const std::string& label = run.experiment().models[number].label;
   if (!reference_at_rest(run, lattice, label) || !run.voxels[lattice]) return;
-  PreparedCase whole = run.prepared;
-  whole.models[number].cut = false;
-  const std::vector<ModelSample> cubes = run_samples(whole, run.prepared.lattices[lattice], number, run.material);
+  const std::vector<ModelSample> cubes = samples_of(run, lattice, number, true);
   if (!cubes.front().state.ok) return;
   const std::size_t first = run.part.splits.size();
   add_splits(run, lattice, label, {cubes.front().field.displacement}, {cubes.front().scalars});
@@ -293,8 +290,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const std::string kind = e.model_kinematics() == Kinematics::linear ? "linear" : "finite";
-  const std::vector<ModelSample> samples =
-      run_samples(run.prepared, run.prepared.lattices[lattice], number, run.material);
+  const std::vector<ModelSample> samples = samples_of(run, lattice, number);
   std::vector<NodalVectors> fields;
   std::vector<std::map<std::string, double>> scalars;
   for (const ModelSample& sample : samples) {
@@ -349,9 +345,7 @@ void add_extrapolated(PartRun& run) {
 /// A model of a body that dries.
 void run_fracture_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const RunKey key = run.key(run.experiment().models[number].label, lattice);
-  FractureSamples samples =
-      run_fracture_samples(run.prepared, run.prepared.lattices[lattice], number, run.material,
-                           run.vtu.folder.empty() ? run.vtu.folder : run.vtu.folder / (vtu_stem(key) + ".vtu"));
+  FractureSamples samples = fracture_samples_of(run, lattice, number);
   for (Run& sample : samples.runs) {
     static_cast<RunKey&>(sample) = key;
     run.part.runs.push_back(std::move(sample));
@@ -395,11 +389,20 @@ void add_fem(PartRun& run, std::size_t lattice) {
 
 }  // namespace
 
-Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu) {
-  PartRun run{prepared, prepared.experiment.materials[material], vtu, {}, {}, {}, {}, {}, {}};
+Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu, const RunKeeper& keeper) {
+  PartRun run{prepared, prepared.experiment.materials[material], vtu, keeper, {}, {}, {}, {}, {}, {}};
   if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);
   for (const LatticeLimit& limit : prepared.limits)
     if (same_poisson_ratio(limit.poisson_ratio, run.material.poisson_ratio)) run.part.limits.push_back(limit);
+  const bool dries = prepared.experiment.fracture.has_value();
+  const auto for_each_model = [&](std::size_t lattice, const auto& act) {
+    if (!small_enough(prepared.experiment, run.mesh(lattice))) return;
+    for (std::size_t m = 0; m < prepared.models.size(); ++m) act(m);
+  };
+  for (std::size_t lattice = 0; keeper.keeps() && lattice < prepared.lattices.size(); ++lattice)
+    for_each_model(lattice, [&](std::size_t m) {
+      dries ? void(fracture_samples_of(run, lattice, m)) : void(samples_of(run, lattice, m));
+    });
   if (!prepared.experiment.reference.elements.empty()) run_fem(run);
   if (prepared.experiment.reference.in_time) run_motion_reference(run);
   record_elements(run);
@@ -407,9 +410,8 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutpu
   measure_deformation(run);
   for (std::size_t lattice = 0; lattice < prepared.lattices.size(); ++lattice) {
     add_fem(run, lattice);
-    if (!small_enough(prepared.experiment, run.mesh(lattice))) continue;
-    for (std::size_t m = 0; m < prepared.models.size(); ++m)
-      prepared.experiment.fracture ? run_fracture_model(run, lattice, m) : run_model(run, lattice, m);
+    for_each_model(lattice,
+                   [&](std::size_t m) { dries ? run_fracture_model(run, lattice, m) : run_model(run, lattice, m); });
   }
   add_extrapolated(run);
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);

@@ -3,12 +3,14 @@
 
 #include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
+#include "comparisons/run/run_keeper.h"
 #include "comparisons/run/vtu_output.h"
 
 namespace springproof {
 
 /// Runs everything for experiment.materials[material]; writes one VTU per run.
-/// A solver that finds no result leaves a Run with ok = false and no rows.
-Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu);
+/// A solver that finds no result leaves a Run with ok = false and no rows.  Where its runs are kept the models run
+/// first, then the finite elements, the coarsest first, and what needs both is computed from what is kept.
+Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu, const RunKeeper& keeper = {});
 
 }  // namespace springproof

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "comparisons/run/reference_grids.h"
+#include "comparisons/run/solve_each.h"
 #include "fem_reference/case_request.h"
 #include "meshes/volume.h"
 #include "msm/dynamics/natural_modes.h"
@@ -98,7 +99,7 @@ void put_in_order(ReferenceModes& m) {
 
 ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
   ReferenceModes out;
-  const ElementGrids grids{element_of(prepared), fem::solve(mode_request(prepared, material, modes + modes_beside))};
+  const ElementGrids grids{element_of(prepared), solve_each(mode_request(prepared, material, modes + modes_beside))};
   for (const fem::Solution& s : grids.grids)
     if (!s.ok) {
       out.failure = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);

@@ -8,6 +8,7 @@
 #include "comparisons/run/motion_run.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
+#include "comparisons/run/solve_each.h"
 #include "fem_reference/case_request.h"
 #include "problem/system/child.h"
 
@@ -17,28 +18,6 @@ namespace {
 // Elements (Q2) of the finest grid of a block.
 constexpr double motion_elements = 512;
 constexpr int steps_per_sample = 2;  // an even number
-
-fem::Request motion_request(const PreparedCase& prepared, const IsotropicMaterial& material) {
-  const Experiment& e = prepared.experiment;
-  const MotionChoice& motion = *e.dynamics;
-  fem::Request request = fem::request_of(e, material);
-  request.loads = prepared.loads;
-  request.points = probe_points(e);
-  request.cost = false;
-  request.motion = fem::Motion{motion.duration, motion.damping, motion.course,    motion.released,
-                               motion.velocity, motion.spin,    motion.viscosity, e.reference.energy_momentum};
-  const Cells fine = e.reference.cells[0] > 0 ? e.reference.cells : divisible_cells(e.body.size, motion_elements);
-  for (int g = 0; g < 3; ++g) {
-    fem::Discretisation grid{divided(fine, 4 >> g), "q2", e.reference.grading};
-    if (e.body.is_voxels()) grid = {{prepared.uncut[g], 0, 0}, "p2", 1.0, g};
-    grid.steps = steps_per_sample * motion.samples;
-    request.grids.push_back(grid);
-  }
-  request.grids.push_back(request.grids[1]);
-  request.grids.back().steps /= 2;
-  if (e.body.is_voxels()) request.meshes = prepared.tetrahedra;
-  return request;
-}
 
 /// Displacements of every probe at every time, one below the other.
 NodalVectors at_times(const fem::Solution& s, const std::vector<double>& times) {
@@ -72,6 +51,28 @@ HistoryRecord history_of(const Experiment& e, const std::vector<double>& times, 
 
 }  // namespace
 
+fem::Request motion_request(const PreparedCase& prepared, const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  const MotionChoice& motion = *e.dynamics;
+  fem::Request request = fem::request_of(e, material);
+  request.loads = prepared.loads;
+  request.points = probe_points(e);
+  request.cost = false;
+  request.motion = fem::Motion{motion.duration, motion.damping, motion.course,    motion.released,
+                               motion.velocity, motion.spin,    motion.viscosity, e.reference.energy_momentum};
+  const Cells fine = e.reference.cells[0] > 0 ? e.reference.cells : divisible_cells(e.body.size, motion_elements);
+  for (int g = 0; g < 3; ++g) {
+    fem::Discretisation grid{divided(fine, 4 >> g), "q2", e.reference.grading};
+    if (e.body.is_voxels()) grid = {{prepared.uncut[g], 0, 0}, "p2", 1.0, g};
+    grid.steps = steps_per_sample * motion.samples;
+    request.grids.push_back(grid);
+  }
+  request.grids.push_back(request.grids[1]);
+  request.grids.back().steps /= 2;
+  if (e.body.is_voxels()) request.meshes = prepared.tetrahedra;
+  return request;
+}
+
 double at_time(const std::vector<double>& t, const std::vector<double>& u, double time) {
   const auto count = static_cast<long>(t.size()), points = std::min(4L, count);
   const long after = std::upper_bound(t.begin(), t.end(), time) - t.begin();
@@ -88,13 +89,14 @@ double at_time(const std::vector<double>& t, const std::vector<double>& u, doubl
 
 NodalVectors step_correction(const NodalVectors& fine, const NodalVectors& coarse) { return (fine - coarse) / 3; }
 
-MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material) try {
+MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material,
+                             const RunKeeper& keeper) try {
   const Experiment& e = prepared.experiment;
   const MotionChoice& motion = *e.dynamics;
   MotionReference out;
   const fem::Request request = motion_request(prepared, material);
   out.run.cells = request.grids[2].cells;
-  std::vector<fem::Solution> solutions = fem::solve(request);
+  std::vector<fem::Solution> solutions = solve_each(request, keeper);
   for (const fem::Solution& s : solutions)
     if (!s.ok) {
       out.run.message = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);

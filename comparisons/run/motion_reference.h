@@ -8,6 +8,8 @@
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
+#include "comparisons/run/run_keeper.h"
+#include "fem_reference/reference.h"
 
 namespace springproof {
 
@@ -22,12 +24,16 @@ struct MotionReference {
 /// What steps of dt lack, from the same with 2 dt, of second order.
 NodalVectors step_correction(const NodalVectors& fine, const NodalVectors& coarse);
 
+/// What solve_motion() asks the finite elements.
+fem::Request motion_request(const PreparedCase& prepared, const IsotropicMaterial& material);
+
 /// Integrates in time on three grids with equal steps, and on the middle one with steps twice as long, whose difference
 /// gives the error of the steps (order two).  The displacements are corrected by it and extrapolated over the grids;
 /// three times the correction, which first order would need, counts as uncertainty beside that of the grids.  Blocks:
 /// Q2, on coarser grids than equilibria, as each step takes as long as one; bodies of voxels: P2 on the three meshes of
 /// the static reference.
-MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material);
+MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material,
+                             const RunKeeper& keeper = {});
 
 /// Distance of the probes' displacements from the reference in time: root of the mean square over time, divided by
 /// that of the reference.

@@ -28,6 +28,7 @@ struct PartRun {
   const PreparedCase& prepared;
   const IsotropicMaterial& material;
   const VtuOutput& vtu;
+  const RunKeeper& keeper;
   Part part;
 
   ReferenceGrids grids;                             ///< no elements: no reference

@@ -8,6 +8,7 @@
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
+#include "comparisons/run/solve_each.h"
 #include "fem_reference/case_request.h"
 #include "msm/embedding/boundary.h"
 #include "problem/case_file/measures.h"
@@ -34,45 +35,8 @@ void add_reference_grids(const PreparedCase& prepared, const std::string& elemen
   request.grids.back().vtu = reference_file(vtu, element, request.material.poisson_ratio);
 }
 
-/// Solutions without a result, for a request on which the program fails.
-std::vector<fem::Solution> without_answer(const fem::Request& request, const std::string& why) {
-  std::vector<fem::Solution> none(request.grids.size());
-  for (std::size_t i = 0; i < none.size(); ++i) {
-    none[i].grid = request.grids[i];
-    none[i].message = why;
-  }
-  return none;
-}
-
-/// Solves on every grid; if the program fails, once more for each element separately.
-/// @throws std::runtime_error if no element has a result.
-std::vector<fem::Solution> solve_apart(const fem::Request& request) try {
-  return fem::solve(request);
-} catch (const std::runtime_error&) {
-  std::vector<fem::Solution> all;
-  bool any = false;
-  for (auto from = request.grids.begin(), to = from; from != request.grids.end() && !children_interrupted();
-       from = to) {
-    to = std::find_if(from, request.grids.end(),
-                      [&](const fem::Discretisation& g) { return g.element != from->element; });
-    if (to - from == static_cast<std::ptrdiff_t>(request.grids.size())) throw;
-    fem::Request part = request;
-    part.grids.assign(from, to);
-    std::vector<fem::Solution> solutions;
-    try {
-      solutions = fem::solve(part);
-      any = true;
-    } catch (const std::runtime_error& own) {
-      solutions = without_answer(part, own.what());
-    }
-    all.insert(all.end(), solutions.begin(), solutions.end());
-  }
-  if (!any) throw;
-  return all;
-}
-
 /// Elements that fail on graded grids, whose thin cells are inverted first, are solved on three uniform ones.
-void fall_back(const PreparedCase& prepared, fem::Request request, const VtuOutput& vtu,
+void fall_back(const PreparedCase& prepared, fem::Request request, const VtuOutput& vtu, const RunKeeper& keeper,
                std::vector<ElementGrids>& elements) {
   if (prepared.experiment.reference.grading == 1) return;
   for (ElementGrids& e : elements) {
@@ -83,9 +47,11 @@ void fall_back(const PreparedCase& prepared, fem::Request request, const VtuOutp
     request.grids.clear();
     add_reference_grids(prepared, e.element, 1, vtu, request);
     try {
-      e.grids = fem::solve(request);
+      e.grids = solve_each(request, keeper);
+    } catch (const NoRoom&) {
+      throw;
     } catch (const std::runtime_error& error) {
-      e.grids = without_answer(request, error.what());
+      for (fem::Solution& s : e.grids) s.ok = false, s.message = error.what();
     }
     e.note = "uniform grids: " + why;
     for (fem::Solution& s : e.grids)
@@ -183,7 +149,8 @@ std::string with_note(const ElementGrids& e, const std::string& note) {
   return e.note.empty() || note.empty() ? e.note + note : note + "; " + e.note;
 }
 
-ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu) {
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu,
+                           const RunKeeper& keeper) {
   const Experiment& experiment = prepared.experiment;
   fem::Request request = fem::request_of(experiment, material);
   request.points = sample_points(prepared);
@@ -201,14 +168,14 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
           lattices.push_back(i);
         }
   try {
-    const std::vector<fem::Solution> solutions = solve_apart(request);
+    const std::vector<fem::Solution> solutions = solve_each(request, keeper);
     ReferenceGrids out;
     auto at = solutions.begin();
     for (const std::string& element : experiment.reference.elements) {
       out.elements.push_back({element, {at, at + 3}});
       at += 3;
     }
-    fall_back(prepared, request, vtu, out.elements);
+    fall_back(prepared, request, vtu, keeper, out.elements);
     out.peers.resize(prepared.lattices.size());
     for (std::size_t i = 0; i < lattices.size(); ++i) out.peers[lattices[i]].push_back(solutions[references + i]);
     return out;

@@ -7,6 +7,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/results/records.h"
+#include "comparisons/run/run_keeper.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/vtu_output.h"
 #include "fem_reference/reference.h"
@@ -39,7 +40,8 @@ struct ReferenceGrids {
 /// of every lattice and at the measured points, stresses at the probes if the case measures them. An element without a
 /// result on some graded grid is solved on uniform ones; an element on which the program fails does not affect the
 /// others.  The finest grid of each element of [reference] leaves a file in `vtu`.
-ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu = {});
+ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu = {},
+                           const RunKeeper& keeper = {});
 
 /// A coarser grid; a direction of one cell (plane strain) is not divided.
 Cells divided(const Cells& cells, int divisor);

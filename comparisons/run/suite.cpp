@@ -7,9 +7,9 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "comparisons/report/stability_words.h"
 #include "comparisons/run/case_run.h"
@@ -26,6 +26,7 @@
 #include "fem_reference/reference.h"
 #include "problem/system/child.h"
 #include "problem/system/file_name.h"
+#include "problem/system/interrupts.h"
 #include "problem/system/new_file.h"
 #include "problem/system/shortened.h"
 #include "problem/system/streams.h"
@@ -34,14 +35,6 @@ namespace springproof {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> interrupted = false;
-
-/// The first ends the children, and the run as soon as a model has been solved; the second ends it at once.
-void on_interrupt(int) {
-  if (interrupted.exchange(true)) _exit(130);
-  fem::interrupt();
-}
 
 /// One part of one case: the unit of work.
 struct Task {
@@ -52,7 +45,6 @@ struct Task {
   std::string stamp;
   std::string title;
   Part part;
-  bool done = false;
 };
 
 void require_writable(const fs::path& folder) {
@@ -105,11 +97,11 @@ std::vector<PreparedCase> prepare_all(const std::vector<Experiment>& cases, bool
   Status status(quiet);
   for (const Experiment& e : cases) try {
       const Status::Working working(status, case_name(e.file));
-      if (!interrupted) prepared.push_back(prepare(e));
+      if (!children_interrupted()) prepared.push_back(prepare(e));
     } catch (const std::runtime_error&) {
-      if (!interrupted) throw;
+      if (!children_interrupted()) throw;
     }
-  if (interrupted) to_stderr("interrupted before any part was run\n");
+  if (children_interrupted()) to_stderr("interrupted before any part was run\n");
   return prepared;
 }
 
@@ -133,26 +125,21 @@ std::vector<Task> tasks_of(const Sweep& sweep, const std::vector<PreparedCase>& 
   return tasks;
 }
 
-std::vector<double> expected(const std::vector<Task>& tasks) {
-  std::vector<double> seconds;
-  for (const Task& t : tasks)
-    seconds.push_back(expected_seconds(*t.prepared, t.prepared->experiment.materials[t.material]));
-  return seconds;
+std::vector<std::vector<RunCost>> expected(const std::vector<Task>& tasks) {
+  std::vector<std::vector<RunCost>> runs;
+  for (const Task& t : tasks) runs.push_back(expected_runs(*t.prepared, t.prepared->experiment.materials[t.material]));
+  return runs;
 }
 
 /// Shows the running parts and prints those finished, with the time left; thread-safe.
 class Progress {
  public:
-  Progress(const std::vector<Task>& tasks, const std::vector<double>& expected_seconds, int jobs, bool quiet)
+  Progress(const std::vector<Task>& tasks, const std::vector<std::vector<RunCost>>& expected, int jobs, bool quiet)
       : tasks_(tasks),
-        time_left_(expected_seconds, jobs),
+        jobs_(jobs),
+        time_left_(expected, jobs),
         status_(quiet, [this] { return time_left_.at(now()); }),
-        quiet_(quiet) {
-    const std::size_t parts = tasks.size(), at_once = std::min<std::size_t>(parts, jobs);
-    if (const auto all = time_left_.at(0); all && *all > 60 && !quiet)
-      status_.print(
-          fmt::format("about {} for {} part{}, {} at once", time_words(*all), parts, parts == 1 ? "" : "s", at_once));
-  }
+        quiet_(quiet) {}
 
   /// Marks a task as running until the end of the scope.
   auto working(std::size_t task) {
@@ -160,10 +147,16 @@ class Progress {
     return Status::Working(status_, fmt::format("[{}/{}] {}", task + 1, tasks_.size(), tasks_[task].title));
   }
 
+  void ran(std::size_t task, const RunCost& expected, std::optional<double> took) {
+    time_left_.ran(task, expected, took, now());
+    if (took && expected.kind != RunKind::springs) say_how_long();
+  }
+
   void finished(std::size_t task, double seconds, bool taken_back) {
+    time_left_.finished(task);
+    say_how_long();
     const std::lock_guard lock(mutex_);
     ++count_;
-    taken_back ? time_left_.kept(task) : time_left_.finished(task, now());
     const auto& runs = tasks_[task].part.runs;
     const auto failed = std::count_if(runs.begin(), runs.end(), [](const Run& r) { return !r.ok; });
     std::string remark = taken_back ? "kept from before" : fmt::format("{:.1f} s", seconds);
@@ -175,12 +168,24 @@ class Progress {
   }
 
  private:
+  /// Once, when the first grid of finite elements has shown how fast they are here.
+  void say_how_long() {
+    const std::lock_guard lock(mutex_);
+    if (quiet_ || std::exchange(is_said_, true)) return;
+    const std::size_t parts = tasks_.size(), at_once = std::min<std::size_t>(parts, jobs_);
+    if (const auto all = time_left_.at(now()); all && *all > 60)
+      status_.print(
+          fmt::format("about {} for {} part{}, {} at once", time_words(*all), parts, parts == 1 ? "" : "s", at_once));
+  }
+
   double now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   const std::vector<Task>& tasks_;
+  const int jobs_;
   std::mutex mutex_;
   std::size_t count_ = 0;
+  bool is_said_ = false;
   TimeLeft time_left_;
   Status status_;
   const bool quiet_;
@@ -197,24 +202,31 @@ std::optional<Part> kept_part(const Task& task) try {
 void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
   const int jobs =
       options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const std::vector<double> seconds = expected(tasks);
+  const std::vector<std::vector<RunCost>> runs = expected(tasks);
+  std::vector<double> seconds;
+  for (const std::vector<RunCost>& of_part : runs) seconds.push_back(sum_of(of_part));
   const std::vector<std::size_t> order = longest_first(seconds);
   std::atomic<std::size_t> next = 0;
-  Progress progress(tasks, seconds, jobs, options.quiet);
+  Progress progress(tasks, runs, jobs, options.quiet);
   std::mutex failure_mutex;
   std::exception_ptr failure;
   const auto work = [&] {
-    for (std::size_t k; !interrupted && (k = next++) < tasks.size();) try {
+    for (std::size_t k; !children_interrupted() && (k = next++) < tasks.size();) try {
         const std::size_t i = order[k];
         Task& task = tasks[i];
         const auto start = std::chrono::steady_clock::now();
         const Status::Working working = progress.working(i);
         std::optional<Part> kept;
-        if (options.resume || options.shard) kept = kept_part(task);
-        task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu);
-        if (interrupted) return;  // its FEM program may have been stopped by the same signal
+        const RunKeeper keeper(
+            fs::path(task.file).replace_extension(".runs"), task.stamp,
+            [&, i](const RunCost& expected, std::optional<double> took) { progress.ran(i, expected, took); });
+        const bool goes_on = options.resume || options.shard;
+        if (goes_on) kept = kept_part(task);
+        if (!goes_on) keeper.forget();
+        task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu, keeper);
+        if (children_interrupted()) return;  // its FEM program may have been stopped by the same signal
         if (!kept) save_part(task.file, task.stamp, task.part);
-        task.done = true;
+        keeper.forget();
         progress.finished(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
                           kept.has_value());
       } catch (...) {
@@ -226,7 +238,7 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
   std::vector<std::thread> workers;
   for (std::size_t j = 0; j < std::min(static_cast<std::size_t>(jobs), tasks.size()); ++j) workers.emplace_back(work);
   for (std::thread& w : workers) w.join();
-  if (failure && !interrupted) std::rethrow_exception(failure);
+  if (failure && !children_interrupted()) std::rethrow_exception(failure);
 }
 
 /// @throws InputError if two cases would write the same files, or one could write none.
@@ -251,12 +263,13 @@ void warn_of_limits(const std::vector<PreparedCase>& prepared) {
 /// Runs the tasks; false if interrupted, which is said.
 bool completed(std::vector<Task>& tasks, const SuiteOptions& options) {
   if (!fem::available()) to_stderr("note: springproof-fem is not here; there will be no reference\n");
+  const std::string words =
+      fmt::format("interrupted; what is finished is kept in {}: the same command {}goes on from there",
+                  options.out.string(), options.shard ? "" : "with --resume ");
+  set_last_words(words);
   run_tasks(tasks, options);
-  if (!interrupted) return true;
-  const auto done = std::count_if(tasks.begin(), tasks.end(), [](const Task& t) { return t.done; });
-  to_stderr("interrupted; {} of {} parts are kept in {}: the same command {}goes on from there\n", done, tasks.size(),
-            options.out.string(), options.shard ? "" : "with --resume ");
-  return false;
+  if (children_interrupted()) to_stderr("{}\n", words);
+  return !children_interrupted();
 }
 
 int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
@@ -273,11 +286,11 @@ int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
     return std::none_of(parts.begin(), parts.end(), [&](const PlannedPart& p) { return p.shard == shard; });
   });
   const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
-  if (interrupted) return 130;
+  if (children_interrupted()) return interrupted_status;
   warn_of_limits(prepared);
   for (const PreparedCase& p : prepared) save_meshed(options.out, key_of(p.experiment.file), case_of(p));
   std::vector<Task> tasks = tasks_of(sweep, prepared, options);
-  if (!completed(tasks, options)) return 130;
+  if (!completed(tasks, options)) return interrupted_status;
   to_stdout("shard {}/{}: its {} part{} in {}; once every shard has ended: springproof report {}\n", number, count,
             tasks.size(), tasks.size() == 1 ? " is" : "s are", out, out);
   return 0;
@@ -286,7 +299,7 @@ int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
 int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
   const std::vector<Experiment> cases = read_all(files, options);
   const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
-  if (interrupted) return 130;
+  if (children_interrupted()) return interrupted_status;
   warn_of_limits(prepared);
   require_writable(options.out);
   const FolderLock lock(options.out);
@@ -295,7 +308,7 @@ int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
       fmt::format("--out: {} is in use by shards (wait for their end, or name another folder)", options.out.string()));
   const Sweep plan = planned(cases, options);
   std::vector<Task> tasks = tasks_of(plan, prepared, options);
-  if (!completed(tasks, options)) return 130;
+  if (!completed(tasks, options)) return interrupted_status;
   std::vector<CaseResult> results;
   for (const PreparedCase& p : prepared) {
     results.push_back(case_of(p));
@@ -311,8 +324,8 @@ int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
 }  // namespace
 
 int compare(const std::vector<fs::path>& cases, const SuiteOptions& options) {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  set_last_words("interrupted before any part was run");
+  end_at_interrupts();
   constexpr int most_jobs = 1024;
   if (options.jobs < 0 || options.jobs > most_jobs)
     throw InputError(fmt::format("--jobs: is {} (allowed: 0 to {})", options.jobs, most_jobs));

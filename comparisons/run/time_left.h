@@ -1,16 +1,31 @@
-// Estimates how long a comparison takes, from its numbers of unknowns and the times of finished parts.
+// Estimates how long a comparison takes, from its numbers of unknowns and the times of finished runs.
 #pragma once
 
+#include <array>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "comparisons/run/prepared_case.h"
+#include "comparisons/run/run_keeper.h"
+#include "fem_reference/reference.h"
 
 namespace springproof {
 
-/// Rough estimate of a part's time on one core [s], from the unknowns of its finite elements and springs.
-double expected_seconds(const PreparedCase& prepared, const IsotropicMaterial& material);
+/// Of the displacement, on a grid of the request: about three per node.
+double unknowns_of(const fem::Request& request, const fem::Discretisation& grid);
+
+/// What the first grid of the request is expected to take on one core.
+RunCost cost_of(const fem::Request& request);
+
+/// What a model of the case, all its networks, is expected to take on a lattice.
+RunCost cost_of_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
+                      const IsotropicMaterial& material);
+
+/// The same of all runs of a part, without what fails.
+std::vector<RunCost> expected_runs(const PreparedCase& prepared, const IsotropicMaterial& material);
+
+double sum_of(const std::vector<RunCost>& runs);  ///< [s]
 
 /// The same before the body is meshed, so that only the part's own machine has to mesh it; of a body of voxels rougher
 /// still.
@@ -20,25 +35,35 @@ double unmeshed_seconds(const Experiment& experiment, const IsotropicMaterial& m
 /// Parts of a run, by number; times are seconds since it began.  Safe from several threads.
 class TimeLeft {
  public:
-  /// The expected time of each part [s], and how many run at once.
-  TimeLeft(std::vector<double> expected, int jobs);
+  /// The expected runs of each part, and how many parts run at once.
+  TimeLeft(const std::vector<std::vector<RunCost>>& expected, int jobs);
 
   void started(std::size_t part, double now);
-  void finished(std::size_t part, double now);
-  void kept(std::size_t part);  ///< loaded from an earlier run
 
-  /// Seconds left at the rate of the finished parts, and no faster than the running ones; empty: unknown.
+  /// A run of the part has ended and took so long [s]; empty: it was kept from before.
+  void ran(std::size_t part, const RunCost& expected, std::optional<double> took, double now);
+
+  void finished(std::size_t part);  ///< also: loaded from an earlier run
+
+  /// Seconds left: what is expected of the runs that are left, at the rate of the finished runs of their kind, above
+  /// all of the same part; the run at hand lasts at least half as long again as it has lasted.  Empty: nothing is left.
   std::optional<double> at(double now) const;
 
  private:
-  struct Part {
-    double expected;
-    std::optional<double> start = {}, took = {};
+  struct Rate {
+    double expected = 0, took = 0;          ///< of finished runs [s]
+    double beside(double otherwise) const;  ///< took / expected, of short runs rather `otherwise`
   };
-  double rate(double now) const;
+  struct Part {
+    std::array<double, run_kinds> left = {};  ///< expected [s]
+    std::array<Rate, run_kinds> rates = {};
+    std::optional<double> since = {};  ///< when the run at hand began
+  };
+  double left_of(const Part& part, double now) const;
 
   mutable std::mutex mutex_;
   std::vector<Part> parts_;
+  std::array<Rate, run_kinds> rates_ = {};
   int jobs_;
 };
 

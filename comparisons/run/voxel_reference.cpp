@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/run/solve_each.h"
 #include "comparisons/run/voxel_body.h"
 #include "fem_reference/case_request.h"
 
@@ -29,7 +30,7 @@ std::vector<fem::Discretisation> grids_on(const Meshes& meshes, const std::vecto
 
 std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const IsotropicMaterial& material,
                                             const std::vector<fem::Discretisation>& grids, const Meshes& meshes,
-                                            bool vtu_single = false) {
+                                            const RunKeeper& keeper, bool vtu_single = false) {
   if (grids.empty()) return {};
   const Experiment& e = prepared.experiment;
   const NodalVectors measured = measured_points(prepared);
@@ -40,7 +41,7 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   request.stress_points = stress_points(prepared);
   request.meshes = meshes;
   request.vtu_single = vtu_single;
-  std::vector<fem::Solution> solutions = fem::solve(request);
+  std::vector<fem::Solution> solutions = solve_each(request, keeper);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     const Mesh& own = *meshes[s.grid.mesh];
@@ -54,7 +55,8 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
 /// Solves on the cubes of one lattice: with these elements, and for the parts of the errors with q2, and q2 on cubes
 /// cut into eight, if they are not too many.
 std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Lattice& lattice,
-                                       const IsotropicMaterial& material, const std::vector<std::string>& elements) {
+                                       const IsotropicMaterial& material, const std::vector<std::string>& elements,
+                                       const RunKeeper& keeper) {
   const Experiment& e = prepared.experiment;
   const auto& mesh = lattice.mesh;
   const Cells& cells = lattice.cells;
@@ -68,7 +70,8 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Latti
     request.grids.push_back({cells, "q2", 1.0, 0, 0});
     request.grids.push_back({{2 * cells[0], 2 * cells[1], 2 * cells[2]}, "q2", 1.0, 0, 1});
   }
-  std::vector<fem::Solution> solutions = fem::solve(request);
+  if (request.grids.empty()) return {};
+  std::vector<fem::Solution> solutions = solve_each(request, keeper);
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     s.reactions = about_true_patches(prepared, *mesh, s.reactions);
@@ -109,15 +112,16 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
 
 }  // namespace
 
-ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material,
-                                const VtuOutput& vtu) try {
+ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu,
+                                const RunKeeper& keeper) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
   std::vector<fem::Discretisation> grids = grids_on(prepared.tetrahedra, e.reference.elements);
   for (fem::Discretisation& grid : grids)
     if (grid.mesh + 1 == static_cast<int>(prepared.tetrahedra.size()))
       grid.vtu = reference_file(vtu, grid.element, material.poisson_ratio);
-  std::vector<fem::Solution> solutions = solve_tetrahedra(prepared, material, grids, prepared.tetrahedra, vtu.single);
+  std::vector<fem::Solution> solutions =
+      solve_tetrahedra(prepared, material, grids, prepared.tetrahedra, keeper, vtu.single);
   for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {
@@ -134,14 +138,14 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
     std::vector<std::string> on_cubes = elements_of(e, 'q');
     std::erase_if(on_cubes, [&](const std::string& element) { return too_fine(*lattice.mesh, element); });
     if (e.parts && std::find(on_cubes.begin(), on_cubes.end(), "q1") == on_cubes.end()) on_cubes.push_back("q1");
-    const std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material, on_cubes);
+    const std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material, on_cubes, keeper);
     const auto refined = cubes.begin() + static_cast<std::ptrdiff_t>(std::min(on_cubes.size(), cubes.size()));
     out.peers.emplace_back(cubes.begin(), refined);
     out.refined.emplace_back(refined, cubes.end());
   }
   std::vector<fem::Discretisation> on_fitted = grids_on(fitted, elements_of(e, 'p'));
   std::erase_if(on_fitted, [&](const fem::Discretisation& grid) { return too_fine(*fitted[grid.mesh], grid.element); });
-  for (const fem::Solution& s : solve_tetrahedra(prepared, material, on_fitted, fitted))
+  for (const fem::Solution& s : solve_tetrahedra(prepared, material, on_fitted, fitted, keeper))
     out.peers[s.grid.mesh].push_back(s);
   return out;
 } catch (const InputError&) {

@@ -33,46 +33,70 @@ fail() {
   cat "$work/log"
   exit 1
 }
-# at_work FOLDER: a comparison that has finished a part and is at the next one; its process is $pid.
+# at_work FOLDER [MORE]: a comparison that has finished a part, and the models and MORE grids of the next; its process is $pid.
 at_work() {
-  FOLDER=$1 FEM=$(dirname "$program")/springproof-fem SPRINGPROOF_FEM_PROGRAM=$(dirname "$0")/one_part_fem \
+  FOLDER=$1 MORE=${2:-0} FEM=$(dirname "$program")/springproof-fem SPRINGPROOF_FEM_PROGRAM=$(dirname "$0")/one_part_fem \
     "$program" compare "$work/case.toml" --out "$1" --jobs 1 2>"$work/log.first" >/dev/null &
   pid=$!
-  until compgen -G "$1/parts/*nu*.cbor" >/dev/null; do
+  until [ "$(cat "$1.asked" 2>/dev/null | wc -l)" -gt "${2:-0}" ]; do
     kill -0 $pid 2>/dev/null || fail "a comparison ended before its first part"
     sleep 0.05
   done
 }
-at_work "$work/out"
-kill -INT $pid
-wait $pid
-[ $? -eq 130 ] || fail "an interrupted run should end with 130"
+# ended_by SIGNAL: the comparison $pid, whatever it is at, which by itself would never end.
+ended_by() {
+  kill -"$1" $pid
+  for _ in $(seq 600); do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
+  kill -0 $pid 2>/dev/null && { kill -9 $pid; fail "$1 does not end a run"; }
+  wait $pid
+  [ $? -eq 130 ] || fail "a run that is ended by $1 should end with 130"
+}
+at_work "$work/out" 2
+ended_by INT
 [ ! -e "$work/out/report.html" ] || fail "an interrupted run should not leave a report"
-kept=$(ls "$work/out/parts" | wc -l)
+kept=$(ls "$work/out/parts" | grep -c 'nu.*cbor$')
 [ "$kept" -eq 1 ] || fail "$kept of 4 parts kept"
-"$program" compare "$work/case.toml" --out "$work/out" --resume 2>"$work/log" >/dev/null || fail "resuming failed"
+# Of the part at hand what is finished: its model and two grids.
+[ "$(ls "$work"/out/parts/*.runs | grep -c '^model')" -eq 1 ] && [ "$(ls "$work"/out/parts/*.runs | grep -c '^grid')" -eq 2 ] ||
+  fail "kept of the part at hand: $(ls "$work"/out/parts/*.runs)"
+grep -q "^interrupted; what is finished is kept in $work/out: the same command with --resume goes on from there" "$work/log.first" || fail "it is not said: $(cat "$work/log.first")"
+# asked FOLDER [OPTION]: how many grids a comparison into the folder solves.
+cat >"$work/counting_fem" <<COUNT
+#!/usr/bin/env bash
+[ "\$1" = --version ] || echo grid >>"$work/asked"
+exec "$(dirname "$program")/springproof-fem" "\$@"
+COUNT
+chmod +x "$work/counting_fem"
+asked() {
+  : >"$work/asked"
+  SPRINGPROOF_FEM_PROGRAM=$work/counting_fem "$program" compare "$work/case.toml" --jobs 1 --out "$@" 2>"$work/log" >/dev/null || fail "comparing into $* failed"
+  wc -l <"$work/asked"
+}
+damaged=$(ls "$work"/out/parts/*.runs/grid* | head -1)
+printf x >>"$damaged"
+resumed=$(asked "$work/out" --resume) || exit 1
+grep -q "$(basename "$damaged") is damaged; this run is made anew" "$work/log" || fail "a damaged run is not noted: $(cat "$work/log")"
 [ "$(grep -c 'kept from before' "$work/log")" -eq "$kept" ] || fail "not all $kept parts were taken back"
 [ -s "$work/out/report.html" ] && [ -s "$work/out/results.csv" ] || fail "no results"
+[ -z "$(ls "$work/out/parts" | grep -v 'cbor$')" ] || fail "left of finished parts: $(ls "$work/out/parts")"
 cp "$work/out/results.csv" "$work/resumed.csv"
-"$program" compare "$work/case.toml" --out "$work/out" 2>"$work/log" >/dev/null || fail "running afresh failed"
+fresh=$(asked "$work/out") || exit 1
 cmp -s "$work/resumed.csv" "$work/out/results.csv" || fail "a resumed run gives other numbers than a fresh one"
+# Of four parts, one and one grid of another were there, and whole.
+[ "$resumed" -eq $((fresh * 3 / 4 - 1)) ] || fail "$resumed grids after the interrupt, of $fresh in all"
 
-# A first interrupt waits for the model that is being solved, a second does not.
+# The first interrupt ends a model that would go on for years; so does SIGTERM.
 sed -e '/^\[reference\]/,$d' -e 's/^models.*/&\nmeasures = ["motion"]/' "$work/case.toml" >"$work/long.toml"
 printf '[reference]\nelements = []\n[dynamics]\nduration_s = 1e6\nequilibrium = false\n' >>"$work/long.toml"
 sed -i -e '1i kinematics = "hencky"' -e 's/^poisson_ratio.*/&\ndensity_kg_m3 = 1000/' "$work/long.toml"
-"$program" compare "$work/long.toml" --out "$work/long" --jobs 1 >"$work/log" 2>&1 &
-pid=$!
-until [ -e "$work/long/parts" ]; do kill -0 $pid 2>/dev/null || fail "a long motion ended at once"; sleep 0.05; done
-sleep 1
-kill -INT $pid
-sleep 0.5
-kill -0 $pid 2>/dev/null || fail "a first interrupt should wait for the model"
-kill -INT $pid
-for _ in $(seq 20); do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
-kill -0 $pid 2>/dev/null && { kill -9 $pid; fail "a second interrupt should end a run at once"; }
-wait $pid
-[ $? -eq 130 ] || fail "a run that is interrupted twice should end with 130"
+for signal in INT TERM; do
+  "$program" compare "$work/long.toml" --out "$work/long$signal" --jobs 1 >"$work/log" 2>&1 &
+  pid=$!
+  until [ -e "$work/long$signal/parts" ]; do kill -0 $pid 2>/dev/null || fail "a long motion ended at once"; sleep 0.05; done
+  sleep 1
+  ended_by $signal
+  grep -q '^interrupted; what is finished is kept' "$work/log" || fail "$signal during a model: it is not said"
+done
 
 # A flipped bit is found wherever it lies, and the part computed anew; the others are kept.
 part=$(ls "$work"/out/parts/*nu0.25* | head -1)

@@ -61,36 +61,70 @@ TEST(Status, PhaseLineSaysHowLongItHasTaken) {
             "  [4/8] cube  nu0.3: hybmss on 10 x 10 x 10 cells (1 s so far, about 10 min left)");
 }
 
+/// Parts of two runs of springs each, which take what they take.
+std::vector<std::vector<RunCost>> parts_of(const std::vector<double>& seconds) {
+  std::vector<std::vector<RunCost>> parts;
+  for (const double s : seconds) parts.push_back({{RunKind::springs, s / 4}, {RunKind::springs, 3 * s / 4}});
+  return parts;
+}
+
 TEST(TimeLeft, StartsFromWhatIsExpected) {
-  const TimeLeft two_at_once({10, 20, 30}, 2);
+  const TimeLeft two_at_once(parts_of({10, 20, 30}), 2);
   EXPECT_DOUBLE_EQ(*two_at_once.at(0), 30);  // not less than the longest
-  const TimeLeft one_at_a_time({10, 20, 30}, 1);
+  const TimeLeft one_at_a_time(parts_of({10, 20, 30}), 1);
   EXPECT_DOUBLE_EQ(*one_at_a_time.at(0), 60);
 }
 
-TEST(TimeLeft, LearnsFromThePartsThatAreDone) {
-  TimeLeft left({10, 20, 30}, 1);
+/// The first run tells of the others of its kind, before its part is finished.
+TEST(TimeLeft, LearnsFromTheRunsThatAreDone) {
+  TimeLeft left(parts_of({4000, 4000}), 1);
   left.started(0, 0);
-  EXPECT_DOUBLE_EQ(*left.at(4), 56);
-  left.finished(0, 5);  // twice as fast as expected
-  EXPECT_DOUBLE_EQ(*left.at(5), 25);
-  left.started(1, 5);
-  EXPECT_DOUBLE_EQ(*left.at(6), 24);
+  EXPECT_DOUBLE_EQ(*left.at(10), 7990);
+  left.ran(0, {RunKind::springs, 1000}, 100, 100);  // ten times as fast as expected
+  EXPECT_NEAR(*left.at(100), 700, 10);
+  left.ran(0, {RunKind::springs, 3000}, 300, 400);
+  left.finished(0);
+  EXPECT_NEAR(*left.at(400), 400, 10);
+  left.started(1, 400);
+  EXPECT_NEAR(*left.at(500), 300, 10);
 }
 
-TEST(TimeLeft, APartThatTakesLongerSlowsTheRest) {
-  TimeLeft left({10, 20}, 1);
+/// Finite elements that take longer say nothing of springs; what a part has shown of itself counts before others.
+TEST(TimeLeft, KindsAndPartsHaveRatesOfTheirOwn) {
+  const std::vector<RunCost> runs = {{RunKind::matrix_free, 100}, {RunKind::matrix_free, 100}, {RunKind::springs, 100}};
+  TimeLeft left({runs, runs}, 1);
   left.started(0, 0);
-  EXPECT_DOUBLE_EQ(*left.at(30), 60);
-  left.finished(0, 30);
-  left.started(1, 30);
-  EXPECT_FALSE(left.at(90));
+  left.ran(0, runs[0], 1000, 1000);
+  EXPECT_NEAR(*left.at(1000), (1000 + 100) + (2000 + 100), 50);
+  left.started(1, 1000);
+  left.ran(1, runs[0], 100, 1100);
+  EXPECT_NEAR(*left.at(1100), (1000 - 100 + 100) + (100 + 100), 50);
+}
+
+/// The start of a program takes longer than a small grid.
+TEST(TimeLeft, ShortRunsSayLittle) {
+  TimeLeft left({{{RunKind::matrix_free, 0.03}, {RunKind::matrix_free, 60}}}, 1);
+  left.started(0, 0);
+  left.ran(0, {RunKind::matrix_free, 0.03}, 0.6, 0.6);
+  EXPECT_LT(*left.at(0.6), 150);
+}
+
+/// Whatever was expected of it: a run that lasts for four minutes is not "about 3 s" from its end.
+TEST(TimeLeft, ARunThatTakesLongerIsNotAboutToEnd) {
+  TimeLeft left({{{RunKind::matrix_free, 3}}}, 1);
+  left.started(0, 0);
+  EXPECT_DOUBLE_EQ(*left.at(1), 2);
+  for (const double t : {4., 40., 240.}) EXPECT_GE(*left.at(t), t / 2) << t;
+  left.finished(0);
+  EXPECT_FALSE(left.at(250));
 }
 
 TEST(TimeLeft, WhatIsKeptFromBeforeTellsNothing) {
-  TimeLeft left({10, 20}, 1);
+  TimeLeft left(parts_of({10, 20}), 1);
   left.started(0, 0);
-  left.kept(0);
+  left.ran(0, {RunKind::springs, 2.5}, {}, 0);
+  EXPECT_DOUBLE_EQ(*left.at(0), 27.5);
+  left.finished(0);
   EXPECT_DOUBLE_EQ(*left.at(0), 20);
 }
 
@@ -131,7 +165,7 @@ PreparedCase block_case(int reference, double nu) {
 }
 
 TEST(ExpectedSeconds, GrowWithTheReferenceTheRatioAndTheStrain) {
-  const auto seconds = [](const PreparedCase& p) { return expected_seconds(p, p.experiment.materials[0]); };
+  const auto seconds = [](const PreparedCase& p) { return sum_of(expected_runs(p, p.experiment.materials[0])); };
   PreparedCase fine = block_case(32, 0.3);
   EXPECT_GT(seconds(fine), 5 * seconds(block_case(16, 0.3)));
   EXPECT_GT(seconds(block_case(32, 0.499)), 2 * seconds(fine));
@@ -163,8 +197,8 @@ TEST(ExpectedSeconds, OfABlockNeedNoMesh) {
                                               "[reference]\ncells = [16, 16, 16]",
                                           "case.toml");
     prepared.experiment.reference = e.reference;
-    EXPECT_NEAR(unmeshed_seconds(e, e.materials[0]), expected_seconds(prepared, e.materials[0]),
-                0.01 * expected_seconds(prepared, e.materials[0]));
+    const double meshed = sum_of(expected_runs(prepared, e.materials[0]));
+    EXPECT_NEAR(unmeshed_seconds(e, e.materials[0]), meshed, 0.01 * meshed);
   }
 }
 

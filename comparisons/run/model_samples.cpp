@@ -1,0 +1,37 @@
+#include "comparisons/run/model_samples.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "comparisons/run/run_json.h"
+#include "comparisons/run/time_left.h"
+
+namespace springproof {
+
+std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, std::size_t number, bool whole) {
+  const Lattice& on = run.prepared.lattices[lattice];
+  PreparedCase changed;
+  if (whole) {
+    changed = run.prepared;
+    changed.models[number].cut = false;
+  }
+  return run.keeper.run(
+      fmt::format("model-{}-{}{}", number, lattice, whole ? "-whole" : ""),
+      cost_of_model(run.prepared, on, number, run.material),
+      [&] { return run_samples(whole ? changed : run.prepared, on, number, run.material); },
+      [](const std::vector<ModelSample>& samples) { return json_of(samples); },
+      [&](const nlohmann::json& kept) { return samples_from(kept, on); });
+}
+
+FractureSamples fracture_samples_of(const PartRun& run, std::size_t lattice, std::size_t number) {
+  const Lattice& on = run.prepared.lattices[lattice];
+  const RunKey key = run.key(run.experiment().models[number].label, lattice);
+  const std::filesystem::path vtu = run.vtu.folder.empty() ? run.vtu.folder : run.vtu.folder / (vtu_stem(key) + ".vtu");
+  return run.keeper.run(
+      fmt::format("model-{}-{}", number, lattice), cost_of_model(run.prepared, on, number, run.material),
+      [&] { return run_fracture_samples(run.prepared, on, number, run.material, vtu); },
+      [](const FractureSamples& samples) { return json_of(samples); }, fracture_samples_from);
+}
+
+}  // namespace springproof

@@ -1,0 +1,17 @@
+// The grids of a finite element request, one by one.
+#pragma once
+
+#include <vector>
+
+#include "comparisons/run/run_keeper.h"
+#include "fem_reference/reference.h"
+
+namespace springproof {
+
+/// Solves each grid by itself, the coarsest first, and gives the solutions in the order of the request.  What the
+/// program dies of on one grid takes with it the finer ones of that element, no other; graded grids are not tried after
+/// a coarser one that has no result, as they would take minutes to fail.
+/// @throws what fem::solve() throws, if it throws on every grid; NoRoom; std::runtime_error if interrupted.
+std::vector<fem::Solution> solve_each(const fem::Request& request, const RunKeeper& keeper = {});
+
+}  // namespace springproof
