@@ -12,8 +12,8 @@ namespace springproof::paper_results_test {
 namespace {
 
 const std::string row =
-    R"({"model": "m", "poisson_ratio": 0.25, "cells": [1, 1, 1], "kinematics": "linear", "measure": "cracks", "value": 1,
-        "unit": "1", "reference": null, "reference_uncertainty": null})";
+    R"({"model": "m", "poisson_ratio": 0.25, "cells": [1, 1, 1], "kinematics": "linear", "measure": "cracks",
+        "value": 1, "unit": "1", "reference": null, "reference_uncertainty": null})";
 
 /// results.json of one case with these lists.
 std::string results(const std::string& lists) {
