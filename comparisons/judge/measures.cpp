@@ -107,10 +107,6 @@ double displacement_error(const NodalVectors& u, const NodalVectors& v, const Ei
   return norm(u - v) / norm(v);
 }
 
-double displacement_error_max(const NodalVectors& u, const NodalVectors& v) {
-  return (u - v).rowwise().norm().maxCoeff() / v.rowwise().norm().maxCoeff();
-}
-
 double section_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v) {
   double sum = 0;
   const std::vector<int> nodes = nodes_on(section, mesh);

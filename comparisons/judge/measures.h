@@ -44,8 +44,6 @@ std::map<std::string, double> values_of(const std::map<std::string, ReferenceVal
 
 /// |u - v| in weighted L2, divided by |v| [1].
 double displacement_error(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights);
-/// max |u - v| / max |v| [1].
-double displacement_error_max(const NodalVectors& u, const NodalVectors& v);
 
 /// Mean |u - v| over the nodes of a plane [m].
 /// @throws InputError if the plane holds no node of the mesh.

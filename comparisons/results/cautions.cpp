@@ -1,5 +1,6 @@
-// What to know of a case of large strain or in motion before its errors are read.
+// What to know of a case before its errors are read.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -10,12 +11,22 @@ namespace {
 
 bool is_pressure(const Load& load) { return std::holds_alternative<Pressure>(load); }
 
-}  // namespace
+/// Of a body that its supports carry along.
+void add_ride(const CaseResult& result, std::vector<std::string>& out) {
+  std::vector<std::string> shares;
+  for (const Deformation& d : result.deformations)
+    if (d.strained_share < 1)
+      shares.push_back(fmt::format("{:.2g} % of it at nu = {:g}", 100 * d.strained_share, d.poisson_ratio));
+  if (!shares.empty())
+    out.push_back(
+        fmt::format("the supports carry the body along: its displacement is a rigid motion but for {}. Displacement "
+                    "errors are relative to that part alone",
+                    fmt::join(shares, ", ")));
+}
 
-std::vector<std::string> cautions(const CaseResult& result) {
+/// Of large strain and of motions.
+void add_kinematics(const CaseResult& result, std::vector<std::string>& out) {
   const Experiment& e = result.experiment;
-  std::vector<std::string> out;
-  if (e.model_kinematics() == Kinematics::linear) return out;
   if (std::any_of(e.loads.begin(), e.loads.end(), is_pressure))
     out.push_back(
         "pressure_Pa is a dead load, per area at rest and against the normals at rest; a pressure that follows the "
@@ -25,7 +36,7 @@ std::vector<std::string> cautions(const CaseResult& result) {
         "damping in proportion to the mass (loss_factor, damping_1_s) also brakes what the free body does as "
         "a whole, its fall and its turning, at a rate of {:.3g}/s; viscosity_s alone does not",
         e.dynamics->damping));
-  if (e.reference.elements.empty()) return out;
+  if (e.reference.elements.empty()) return;
   std::map<std::string, std::vector<std::string>> others;
   for (const auto& [label, law] : result.laws)
     if (law != e.kinematics) others[law].push_back(label);
@@ -34,6 +45,14 @@ std::vector<std::string> cautions(const CaseResult& result) {
         fmt::format("{} follow{} the law \"{}\", the reference \"{}\": what these differ by at large strain counts "
                     "among the errors",
                     fmt::join(labels, ", "), labels.size() == 1 ? "s" : "", law, e.kinematics));
+}
+
+}  // namespace
+
+std::vector<std::string> cautions(const CaseResult& result) {
+  std::vector<std::string> out;
+  add_ride(result, out);
+  if (result.experiment.model_kinematics() != Kinematics::linear) add_kinematics(result, out);
   return out;
 }
 

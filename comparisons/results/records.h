@@ -185,6 +185,7 @@ struct Deformation {
   double poisson_ratio = 0;
   double principal_strain = 0;  ///< [1]
   double rotation_deg = 0;
+  double strained_share = 1;  ///< of the displacement, which errors are relative to (judge/rigid_motion.h) [1]
   Vec3 applied_N = Vec3::Zero();  ///< sum of the loads
   Vec3 reacted_N = Vec3::Zero();  ///< sum of the supports' forces in the reference, on its finest grid
 };
@@ -237,7 +238,8 @@ std::string cells_text(const Cells& cells, std::string_view times = "x");
 /// Number of hexahedra or tetrahedra; of a body of voxels that of its bounding box.
 double cell_count(const Cells& cells);
 
-/// Of a case of large strain one clause each on loads and on models that follow another law than the reference.
+/// What to know before the errors of a case are read, one clause each: a body that its supports carry along; at large
+/// strain loads, and models that follow another law than the reference.
 std::vector<std::string> cautions(const CaseResult& result);
 
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".

@@ -25,7 +25,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HistoryRecord, model, poisson_ratio, cells, t
                                    integrator, measured, probe)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorSplit, model, poisson_ratio, cells, voxel_edge_m, measure, unit, total,
                                    model_error, discretisation_error, geometry_error, voxel_uncertainty, uncertainty)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain, rotation_deg, applied_N, reacted_N)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain, rotation_deg, strained_share,
+                                   applied_N, reacted_N)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CrackRecord, model, poisson_ratio, cells, shrinkage, broken, fragments, stored,
                                    released, directions, svg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedRow, model, poisson_ratio, cells, measure, unit, published, computed, where,

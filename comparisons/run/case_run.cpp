@@ -100,9 +100,12 @@ void build_reference(PartRun& run) {
     const Mesh& mesh = *lattice.mesh;
     std::vector<NodalVectors> fields;
     for (const fem::Solution& s : first.grids) fields.push_back(at_nodes(lattice, s.displacement));
-    run.reference[i] =
-        Reference{extrapolate(fields, nodal_volumes(mesh), ratios_of(first), doubt_of(scalars)), scalars};
-    widen(run.prepared.load_spread, run.reference[i]->field);
+    const double share = scale_of_errors(run.prepared, lattice, fields.back()).share;
+    ReferenceField field = extrapolate(fields, nodal_volumes(mesh), ratios_of(first), share * doubt_of(scalars));
+    widen(share * run.prepared.load_spread, field);
+    field.uncertainty /= share;
+    const DisplacementScale scale = scale_of_errors(run.prepared, lattice, field.displacement);
+    run.reference[i] = Reference{std::move(field), scalars, scale};
     if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
     if (i > 0 || !run.experiment().exact.empty()) continue;
     const ReferenceField& f = run.reference[i]->field;
@@ -120,7 +123,7 @@ void build_reference(PartRun& run) {
                            f.correlation};
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
-      record.values.push_back(displacement_error(fields[g], f.displacement, nodal_volumes(mesh)));
+      record.values.push_back(weighted_norm(fields[g] - f.displacement, nodal_volumes(mesh)) / scale.mean);
     }
     run.part.references.push_back(record);
   }
@@ -132,7 +135,8 @@ void measure_deformation(PartRun& run) {
   if (!run.reference[finest]) return;
   const NodalVectors& u = run.reference[finest]->field.displacement;
   const DeformationSize size = deformation_size(run.mesh(finest), u, run.experiment().model_kinematics());
-  Deformation record{run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi};
+  Deformation record{run.material.poisson_ratio, size.principal_strain, size.rotation * 180 / std::numbers::pi,
+                     run.reference[finest]->scale.share};
   record.applied_N = sum_of_loads(run.prepared);
   for (const PatchReaction& r : run.grids.elements.front().grids.back().reactions) record.reacted_N += r.force;
   run.part.deformations.push_back(record);
@@ -142,8 +146,9 @@ void measure_deformation(PartRun& run) {
 std::map<std::string, double> distances(const PartRun& run, std::size_t lattice, const NodalVectors& u) {
   const Mesh& mesh = run.mesh(lattice);
   const NodalVectors& v = run.reference[lattice]->field.displacement;
-  std::map<std::string, double> out = {{"displacement_error", displacement_error(u, v, nodal_volumes(mesh))},
-                                       {"displacement_error_max", displacement_error_max(u, v)}};
+  const DisplacementScale& scale = run.reference[lattice]->scale;
+  std::map<std::string, double> out = {{"displacement_error", weighted_norm(u - v, nodal_volumes(mesh)) / scale.mean},
+                                       {"displacement_error_max", (u - v).rowwise().norm().maxCoeff() / scale.largest}};
   if (run.experiment().section) {
     out["section_distance"] = section_distance(mesh, *run.experiment().section, u, v);
     out["section_axis_distance"] = section_axis_distance(mesh, *run.experiment().section, u, v);
@@ -251,7 +256,7 @@ void add_splits(PartRun& run, std::size_t lattice, const std::string& model, con
   const auto& voxels = run.voxels[lattice];
   if (!reference || !voxels) return;
   for (ErrorSplit& split : split_error(run.prepared, run.prepared.lattices[lattice], run.key(model, lattice), *voxels,
-                                       {reference->field, reference->scalars}, u, scalars))
+                                       {reference->field, reference->scalars, reference->scale}, u, scalars))
     run.part.splits.push_back(std::move(split));
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "comparisons/judge/reference_value.h"
+#include "comparisons/judge/rigid_motion.h"
 #include "comparisons/results/records.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/motion_reference.h"
@@ -21,6 +22,7 @@ namespace springproof {
 struct Reference {
   ReferenceField field;
   std::map<std::string, ReferenceValue> scalars;  ///< the same for every lattice
+  DisplacementScale scale;                        ///< what errors of the displacement are relative to
 };
 
 /// Its inputs, what is known of it so far, and its results.

@@ -228,6 +228,11 @@ std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared) 
   return patches;
 }
 
+DisplacementScale scale_of_errors(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& truth) {
+  const Experiment& e = prepared.experiment;
+  return displacement_scale(*lattice.mesh, truth, !moved_patches(e).empty(), e.model_kinematics());
+}
+
 GridRatios ratios_of(const ElementGrids& e) {
   const Cells& finest = e.grids[2].grid.cells;
   const auto refined =

@@ -6,6 +6,7 @@
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
+#include "comparisons/judge/rigid_motion.h"
 #include "comparisons/results/records.h"
 #include "comparisons/run/run_keeper.h"
 #include "comparisons/run/sampling.h"
@@ -74,6 +75,9 @@ Vec3 sum_of_loads(const PreparedCase& prepared);
 
 /// The exact field of the case at the nodes of its first lattice; empty if there is none.
 NodalVectors exact_at_nodes(const PreparedCase& prepared);
+
+/// What errors are relative to where this is the true displacement at the nodes of a lattice.
+DisplacementScale scale_of_errors(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& truth);
 
 /// Refinement ratios of the three grids, from their numbers of cells; directions of one cell do not count.
 GridRatios ratios_of(const ElementGrids& e);

@@ -196,7 +196,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
   std::vector<ErrorSplit> splits;
 
   const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
-  const double size = weighted_norm(body.field.displacement, weights);
+  const double size = body.scale.mean;
   const auto distance = [&](const NodalVectors& a, const NodalVectors& b) {
     return weighted_norm(a - b, weights) / size;
   };

@@ -33,6 +33,7 @@ std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t 
 struct BodyLimit {
   const ReferenceField& field;
   const std::map<std::string, ReferenceValue>& scalars;
+  const DisplacementScale& scale;
 };
 
 /// Splits the difference of one model from the body-fitted limit by source; `u` and `values` one per sample.

@@ -18,6 +18,7 @@
 #include "problem/system/checked_file.h"
 #include "problem/system/checksum.h"
 #include "problem/system/child.h"
+#include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
@@ -102,7 +103,7 @@ std::optional<MeshedBody> MeshCache::find() const {
     fs::last_write_time(file_, fs::file_time_type::clock::now(), error);  // when it was used
     return answer_from_cbor(content.substr(key_.size()));
   } catch (const std::runtime_error&) {
-    fmt::print(stderr, "note: the kept mesh {} is damaged; it is made anew\n", file_.string());
+    to_stderr("note: the kept mesh {} is damaged; it is made anew\n", file_.string());
     return {};
   }
 }
