@@ -129,7 +129,7 @@ double doubt_of(const std::map<std::string, ReferenceValue>& limits) {
   std::vector<double> relative;
   int balance = 0;
   for (const auto& [measure, limit] : limits) {
-    if (!limit.matters) continue;
+    if (!limit.matters || kind_of(measure) == "stress") continue;
     balance += limit.sequence == Sequence::not_converging ? -1 : 1;
     relative.push_back(limit.uncertainty / std::abs(limit.value));
   }

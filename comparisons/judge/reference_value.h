@@ -70,7 +70,8 @@ ReferenceValue extrapolate_two(double f1, double f2);
 /// 0 there.
 void raise_to_usual(std::map<std::string, ReferenceValue>& limits);
 
-/// Median relative uncertainty of the values that matter, if most of them do not converge; otherwise 0.
+/// Median relative uncertainty of the values that matter, if most of them do not converge; otherwise 0.  What it casts
+/// doubt on is the displacement: stresses, which converge one order later, have no vote.
 double doubt_of(const std::map<std::string, ReferenceValue>& limits);
 
 /// "force", "displacement", "stress", "volume_change", ... of a measure.

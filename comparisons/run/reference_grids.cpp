@@ -70,20 +70,29 @@ NodalVectors nodal_loads(const PreparedCase& prepared) {
 /// Sum of their magnitudes: it does not vanish where the loads balance each other.
 double force_of_loads(const PreparedCase& prepared) { return nodal_loads(prepared).rowwise().norm().sum(); }
 
+/// What the values of a body's measures are large or small beside.
+struct BodyScale {
+  double size = 0;            ///< [m]
+  double displacement = 0;    ///< the largest [m]
+  double force = 0;           ///< of the loads at least [N]
+  double youngs_modulus = 0;  ///< [Pa]
+};
+
 /// Scale of the values of a measure: the largest displacement, the strain, the largest force (also of those that
-/// balance torques, and times the body's size for torques; the loads at least), or the largest stress.
-double scale_of(const std::string& measure, const std::map<std::string, double>& values, double body_size,
-                double largest_displacement, double loads) {
-  if (measure.starts_with("displacement.") || measure.starts_with("mean_displacement.")) return largest_displacement;
-  if (measure.starts_with("volume_change")) return largest_displacement / body_size;
-  const bool is_stress = measure.starts_with("stress.");
-  double force = loads, stress = 0;
+/// balance torques, and times the body's size for torques), or the largest stress, at least that of the strain: probes
+/// may all lie where there is none.
+double scale_of(const std::string& measure, const std::map<std::string, double>& values, const BodyScale& body) {
+  const std::string kind = kind_of(measure);
+  if (kind == "displacement" || kind == "mean_displacement") return body.displacement;
+  const double strain = body.displacement / body.size;
+  if (kind == "volume_change") return strain;
+  double force = body.force, stress = body.youngs_modulus * strain;
   for (const auto& [name, value] : values) {
     if (name.starts_with("force.")) force = std::max(force, std::abs(value));
-    if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body_size);
+    if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body.size);
     if (name.starts_with("stress.")) stress = std::max(stress, std::abs(value));
   }
-  return is_stress ? stress : force * (measure.starts_with("torque.") ? body_size : 1);
+  return kind == "stress" ? stress : force * (kind == "torque" ? body.size : 1);
 }
 
 std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double nu, const ElementGrids& e) {
@@ -252,15 +261,16 @@ void widen(double spread, ReferenceField& field) {
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
-  const double largest_displacement = e.grids[2].displacement.rowwise().norm().maxCoeff();
-  const double loads = force_of_loads(prepared);
   const Experiment& experiment = prepared.experiment;
+  const BodyScale body{prepared.size.norm(), e.grids[2].displacement.rowwise().norm().maxCoeff(),
+                       force_of_loads(prepared), experiment.materials.front().youngs_modulus};
   std::map<std::string, ReferenceValue> limits;
   for (const auto& [measure, fine] : values[2]) {
-    const double scale = scale_of(measure, values[2], prepared.size.norm(), largest_displacement, loads);
+    const double scale = scale_of(measure, values[2], body);
+    const std::vector<double> sequence = {values[0].at(measure), values[1].at(measure), fine};
     ReferenceValue& limit = limits[measure];
-    limit = extrapolate({values[0].at(measure), values[1].at(measure), fine}, solver_noise * scale,
-                        trusted_order(measure, e.element, experiment.reference.smooth), ratios_of(e));
+    limit = extrapolate(sequence, solver_noise * scale, trusted_order(measure, e.element, experiment.reference.smooth),
+                        ratios_of(e));
     limit.matters = std::abs(limit.value) >= 0.1 * scale;
   }
   raise_to_usual(limits);

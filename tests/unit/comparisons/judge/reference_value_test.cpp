@@ -228,6 +228,12 @@ TEST(ReferenceField, IsInDoubtWhereMostValuesThatMatterDoNotConverge) {
   EXPECT_EQ(doubt_of({}), 0);
 }
 
+TEST(ReferenceField, StressesHaveNoVoteOnDisplacements) {
+  const ReferenceValue good{1, 0.1, 2, ""}, bad{2, 3, {}, "", Sequence::not_converging};
+  EXPECT_EQ(doubt_of({{"displacement.a.x", good}, {"stress.a.xx", bad}, {"stress.a.yy", bad}}), 0);
+  EXPECT_EQ(doubt_of({{"displacement.a.x", bad}, {"stress.a.xx", good}, {"stress.a.yy", good}}), 1.5);
+}
+
 TEST(ReferenceField, GridsThatAreNotRefinedAreNotExtrapolated) {
   NodalVectors limit;
   const auto fields = fields_of(1, limit);
