@@ -229,34 +229,22 @@ void set_wrenches(PreparedCase& prepared) {
   }
 }
 
-/// Relative difference of a quantity between the finest mesh and the next; without `in_order` the largest to any mesh.
-double spread(const PreparedCase& prepared, bool in_order, const std::function<double(const Mesh&)>& quantity) {
+/// Relative difference of a quantity between the two finest meshes; 0: there is one.
+double spread(const PreparedCase& prepared, const std::function<double(const Mesh&)>& quantity) {
   const auto& meshes = prepared.tetrahedra;
-  const double fine = quantity(*meshes.back());
-  double most = 0;
-  for (std::size_t i = in_order && meshes.size() > 2 ? meshes.size() - 2 : 0; i + 1 < meshes.size(); ++i)
-    most = std::max(most, std::abs(quantity(*meshes[i]) / fine - 1));
-  return most;
-}
-
-/// True if the patch consists of whole facets by their normals, so that its border differs from mesh to mesh.
-bool has_ragged_border(const Experiment& e, const std::string& patch) {
-  return std::any_of(e.patches.begin(), e.patches.end(),
-                     [&](const PatchRule& r) { return r.name == patch && r.facing; });
+  return meshes.size() < 2 ? 0 : std::abs(quantity(*meshes[meshes.size() - 2]) / quantity(*meshes.back()) - 1);
 }
 
 /// Sets the uncertainty of loads proportional to an area or a volume, as every mesh carries the resultants of the
-/// finest; and of supports with ragged borders.
+/// finest.
 void set_load_spread(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (const Load& load : e.loads) {
     const std::string* on = patch_of(load);
-    const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load) ||
-                         (prescribes_displacement(load) && has_ragged_border(e, *on));
+    const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load);
     if (!by_area && (!std::holds_alternative<Gravity>(load) || flies(e))) continue;
-    const double off = spread(prepared, !on || !has_ragged_border(e, *on), [&](const Mesh& m) {
-      return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes);
-    });
+    const double off =
+        spread(prepared, [&](const Mesh& m) { return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes); });
     if (off <= least_spread) continue;
     prepared.load_spread = std::max(prepared.load_spread, off);
     prepared.notes.push_back(fmt::format("the meshes differ by {:.2g} % in {}: so much is added to the uncertainties",
