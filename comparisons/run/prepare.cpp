@@ -231,7 +231,7 @@ Cells reference_cells(const Experiment& e) {
   if (e.reference.cells[0] > 0) return e.reference.cells;
   const double elements =
       e.model_kinematics() == Kinematics::linear ? linear_reference_elements : finite_reference_elements;
-  return divisible_cells(e.body.size, elements);
+  return divisible_cells(e.body.size, elements, fewest_across(e));
 }
 
 PreparedCase prepare_lattices(const Experiment& experiment) {

@@ -135,10 +135,17 @@ Cells divided(const Cells& cells, int divisor) {
   return coarse;
 }
 
-Cells divisible_cells(const Vec3& size, double elements) {
+int fewest_across(const Experiment& e) {
+  constexpr double pressures_above = 0.4;  // Poisson's ratio; of quadratic elements
+  const bool any = std::any_of(e.materials.begin(), e.materials.end(),
+                               [](const IsotropicMaterial& m) { return m.poisson_ratio > pressures_above; });
+  return any ? 8 : 4;
+}
+
+Cells divisible_cells(const Vec3& size, double elements, int fewest) {
   const double edge = std::cbrt(size.prod() / elements);
   Cells cells;
-  for (int d = 0; d < 3; ++d) cells[d] = 4 * std::max(1, static_cast<int>(std::lround(size[d] / edge / 4)));
+  for (int d = 0; d < 3; ++d) cells[d] = std::max(fewest, 4 * static_cast<int>(std::lround(size[d] / edge / 4)));
   return cells;
 }
 

@@ -47,8 +47,13 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
 /// A coarser grid; a direction of one cell (plane strain) is not divided.
 Cells divided(const Cells& cells, int divisor);
 
-/// Nearly cubic cells of a block, about `elements` of them, that can be divided by two and four.
-Cells divisible_cells(const Vec3& size, double elements);
+/// The fewest cells in any direction on the finest of three grids: 4, and near nu = 1/2 8.  There a coarsest grid of
+/// one cell across, with pressures of its own, is too soft, and the sequence has no order.
+int fewest_across(const Experiment& experiment);
+
+/// Nearly cubic cells of a block, about `elements` of them, that can be divided by two and four; no fewer than `fewest`
+/// in any direction.
+Cells divisible_cells(const Vec3& size, double elements, int fewest = 4);
 
 Field sampled_field(const Lattice& lattice, const fem::Solution& s);
 

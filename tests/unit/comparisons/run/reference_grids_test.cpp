@@ -138,6 +138,31 @@ TEST(ReferenceGrids, RowsStandBesideWhatIsExpectedOfTheElement) {
   EXPECT_EQ(stresses, 3);
 }
 
+/// A bar of silicone under its own weight, nu = 0.499: three grids whose coarsest has one cell across had no order.
+TEST(ReferenceGrids, NearOneHalfTheCoarsestGridHasTwoCellsAcross) {
+  const auto cells = [](const std::string& nu) {
+    return reference_cells(parse_experiment(fmt::format(R"(kinematics = "hencky"
+[body]
+geo = "block.geo"
+size_m = [0.2, 0.03, 0.03]
+cells = [10, 2, 2]
+[material]
+youngs_modulus_Pa = 1e5
+poisson_ratio = {}
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[compare]
+models = ["hybmss"]
+)",
+                                                        nu),
+                                            "bar.toml"));
+  };
+  EXPECT_EQ(cells("[0.3, 0.499]"), (Cells{36, 8, 8}));
+  EXPECT_EQ(cells("0.3"), (Cells{36, 4, 4}));
+  EXPECT_EQ(divisible_cells({1, 1, 1}, 4096, 8), (Cells{16, 16, 16}));
+}
+
 ElementGrids grids_with(const std::vector<Cells>& cells) {
   ElementGrids e{"q2", {}};
   for (const Cells& c : cells) e.grids.emplace_back().grid.cells = c;
