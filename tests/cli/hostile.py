@@ -1,8 +1,9 @@
 """Attacks springproof and prints a table of them: hostile.py PROGRAM [ROUNDS [SEED]]
 
-Random damage in every file that it keeps or reads back, files of others in every folder that it cleans, streams closed or
-full, paths that are no files, links planted where it writes, a limit on the size of files.  Of every attack: no crash, no
-endless wait, an error is one sentence with status 2, and where nothing was lost the numbers of an undisturbed run.
+Random damage in every file that it keeps or reads back, files of others in every folder that it cleans, streams closed
+or full, paths that are no files, links planted where it writes, a limit on the size of files.  Of every attack: no
+crash, no endless wait, an error is one sentence with status 2, and where nothing was lost the numbers of an undisturbed
+run.
 """
 
 import os
@@ -60,7 +61,8 @@ def case(name, models='"hybmss"', more="", reference="elements = []", geo=None):
     text = CASE.replace("MODELS", models).replace("REFERENCE", reference) + more
     text = text.replace("EXPECTED", EXPECTED if "hybmss" in models else "")
     if geo:
-        text = text.replace('"block.geo"', f'"{geo}"').replace("size_m = [1, 1, 1]\n", "").replace("cells = [2, 2, 2]", "voxels = 100")
+        text = text.replace('"block.geo"', f'"{geo}"').replace("size_m = [1, 1, 1]\n", "")
+        text = text.replace("cells = [2, 2, 2]", "voxels = 100")
     (work / name).write_text(text)
     return str(work / name)
 
@@ -160,7 +162,8 @@ def kept_files():
     for _ in range(3 * rounds):
         what = damaged(chance.choice(sorted(whole)))
         shutil.rmtree(out)
-        attack("damaged meshes of the cache", what, as_before(run("compare", good, "--out", out, "--no-vtu"), out, before, "damaged"))
+        ended = run("compare", good, "--out", out, "--no-vtu")
+        attack("damaged meshes of the cache", what, as_before(ended, out, before, "damaged"))
     part = next((out / "parts").iterdir())
     for _ in range(3 * rounds):
         what = damaged(part)
@@ -202,7 +205,8 @@ def read_back_files():
         for _ in range(2 * rounds):
             (other / name).write_bytes(whole)
             what = damaged(other / name)
-            for command in (["diff", work / "out", other], ["reproduce", "golec_2019", "--figure", "5", "--from", other, "--out", work / "redone"]):
+            redone = ["reproduce", "golec_2019", "--figure", "5", "--from", other, "--out", work / "redone"]
+            for command in (["diff", work / "out", other], redone):
                 ended = run(*command)
                 attack("damaged results", f"{what}, {command[0]}", ended.wrong(0, 1, 2))
         (other / name).write_bytes(whole)
@@ -211,7 +215,8 @@ def read_back_files():
 def folders_of_others():
     """Everything in the folders that are cleaned or written into, by any name, stays as it is."""
     temporary, cache, out = work / "tmp", work / "cache", work / "full"
-    names = {temporary: (".springproof-notes/list", ".springproof-photos/list", "springproof-temporary-copy/results.csv",
+    names = {temporary: (".springproof-notes/list", ".springproof-photos/list",
+                         "springproof-temporary-copy/results.csv",
                          "springproof-temporary-1-abcdef/results.csv", "springproof-temporary/x", "springproof-1.txt"),
              cache: ("thesis.txt", "mesh-1.cbor", "0123456789abcdef.cbor", "mesh-00112233445566778899aabbccddeeff.cbor",
                      "mesh-00112233445566778899aabbccddeeff.cbor.01234567.part"),
@@ -231,20 +236,23 @@ def folders_of_others():
     os.utime(large, (1, 1))
     fine = case("fine.toml")
     for i in range(min(rounds, 5)):
-        (work / "fine.toml").write_text((work / "good.toml").read_text().replace("[1, 1, 1]", f"[{i + 2}, {i + 2}, {i + 2}]"))
+        text = (work / "good.toml").read_text().replace("[1, 1, 1]", f"[{i + 2}, {i + 2}, {i + 2}]")
+        (work / "fine.toml").write_text(text)
         why = run("compare", fine, "--out", out, "--vtu").wrong(0)
         for file, text in files.items():
             there = file.is_file() and file.read_text() == text
-            attack("files of others in our folders", str(file.relative_to(work)), why or (not there and "gone or changed") or None)
+            attack("files of others in our folders", str(file.relative_to(work)),
+                   why or (not there and "gone or changed") or None)
         attack("files of others in our folders", "1.1 GB", (not large.exists() and "gone") or None)
-    large.unlink()
+    large.unlink(missing_ok=True)
 
 
 def streams():
     """Status and results do not depend on a log; lost output is no success."""
     good, out = case("good.toml"), work / "streams"
-    commands = [("compare", good, "--out", out, "--no-vtu"), ("export", good, "--to", "springs", "--out", work / "x.json"),
-                ("export", good, "--to", "calculix", "--out", work / "x.inp"), ("diff", work / "out", work / "out"), ("list",),
+    commands = [("compare", good, "--out", out, "--no-vtu"), ("diff", work / "out", work / "out"), ("list",),
+                ("export", good, "--to", "springs", "--out", work / "x.json"),
+                ("export", good, "--to", "calculix", "--out", work / "x.inp"),
                 ("material", "-E", "1e4", "--nu", "0.3"), ("homogenise", "-E", "1e4", "--nu", "0.25", "--json"),
                 ("report", work / "sweep"), ("describe", "man"), ("--version",), ("--help",),
                 ("compare", "--help"), ("compare", work / "none.toml"), ("no_such_command",)]
@@ -252,12 +260,14 @@ def streams():
         commands += [("advise", "--nu", "0.3"), ("frequencies", good)]
     for command in chance.sample(commands, min(len(commands), 4 * rounds)):
         usual = run(*command)
-        for redirection in (">&-", ">/dev/full", "2>&-", "2>/dev/full", ">&- 2>&-", "</dev/null >/dev/full 2>/dev/full"):
+        for redirection in (">&-", ">/dev/full", "2>&-", "2>/dev/full", ">&- 2>&-", ">/dev/full 2>/dev/full"):
             shutil.rmtree(out, ignore_errors=True)
             ended = run(*command, streams=redirection)
             lost = usual.out and redirection != "2>&-" and redirection != "2>/dev/full"
             allowed = (usual.status, 1, 2) if lost else (usual.status,)
-            why = None if ended.status in allowed else f"status {ended.status}, usually {usual.status}: {ended.err[-300:]}"
+            why = None
+            if ended.status not in allowed:
+                why = f"status {ended.status}, usually {usual.status}: {ended.err[-300:]}"
             if lost and usual.status == 0 and ended.status == 0:
                 why = "output was lost, and the status is 0"
             if out in command and numbers(out) is None:
@@ -276,18 +286,21 @@ def paths():
     (sources / "dangling").symlink_to("nowhere")
     (sources / "large").touch()
     os.truncate(sources / "large", 10_000_000_000)
-    kinds = [*sorted(sources.iterdir()), pathlib.Path("/dev/zero"), pathlib.Path("/dev/full"), pathlib.Path("/proc/self/mem"), work / "none"]
+    system = map(pathlib.Path, ("/dev/zero", "/dev/full", "/proc/self/mem"))
+    kinds = [*sorted(sources.iterdir()), work / "none", *system]
     for kind in kinds:
         for name in ("n.toml", "n.stl", "n.STEP", "n.csv", "n.json", "results.json", "n.vtu"):
             (work / "h" / name).unlink(missing_ok=True)
             (work / "h" / name).parent.mkdir(exist_ok=True)
             (work / "h" / name).symlink_to(kind)
         to = ["--out", work / "refused"]
+        springs = ["--to", "springs", "-E", "1e4", "--nu", "0.3", "--out", work / "refused.json"]
+        table_case = case("h/table.toml", "", '[[external]]\nname = "e"\nfile = "n.csv"\n', "cells = [4, 4, 4]")
         readers = {
             "n.toml": ["compare", work / "h" / "n.toml", *to],
-            "n.stl": ["export", work / "h" / "n.stl", "--to", "springs", "-E", "1e4", "--nu", "0.3", "--out", work / "refused.json"],
+            "n.stl": ["export", work / "h" / "n.stl", *springs],
             "n.STEP": ["compare", case("h/body.toml", geo="n.STEP"), *to],
-            "n.csv": ["compare", case("h/table.toml", "", '[[external]]\nname = "e"\nfile = "n.csv"\n', "cells = [4, 4, 4]"), *to],
+            "n.csv": ["compare", table_case, *to],
             "n.json": ["compare", case("h/springs.toml", '{ file = "n.json", label = "e" }'), *to],
             "results.json": ["diff", work / "h", work / "out"],
         }
@@ -301,22 +314,23 @@ def paths():
 def written():
     """Links that others planted in the folder of results are replaced; what the user named is written through."""
     good, victim = case("good.toml"), work / "victim"
-    for name in ("results.json", "results.csv", "report.html", "parts/good-nu0.3.cbor", ".writable", "results.json.part",
-                 "report.html.part", "trial"):
+    for name in ("results.json", "results.csv", "report.html", "parts/good-nu0.3.cbor", ".writable",
+                 "results.json.part", "report.html.part", "trial"):
         out = work / "planted"
         shutil.rmtree(out, ignore_errors=True)
         (out / "parts").mkdir(parents=True)
         victim.write_text("theirs")
         (out / name).symlink_to(victim)
         ended = run("compare", good, "--out", out, "--no-vtu")
-        attack("links planted where we write", name, ended.wrong(0) or (victim.read_text() != "theirs" and "written through") or None)
+        attack("links planted where we write", name,
+               ended.wrong(0) or (victim.read_text() != "theirs" and "written through") or None)
     named = work / "named.json"
     named.symlink_to(victim)
     ended = run("export", good, "--to", "springs", "--out", named)
     attack("links planted where we write", "a link that was named", ended.wrong(0) or
            (not (named.is_symlink() and victim.read_text().startswith("{")) and "not written through") or None)
-    for to, name in (("calculix", "/dev/full"), ("calculix", "/dev/null"), ("calculix", work), ("calculix", work / "none" / "x")):
-        ended = run("export", good, "--to", to, "--out", name)
+    for name in ("/dev/full", "/dev/null", work, work / "none" / "x"):
+        ended = run("export", good, "--to", "calculix", "--out", name)
         attack("paths that are no files, written", str(name), ended.wrong(0 if name == "/dev/null" else 1, 2))
     attack("paths that are no files, written", "what /dev/null is now",
            None if stat.S_ISCHR(os.stat("/dev/null").st_mode) else "a file")
@@ -325,7 +339,8 @@ def written():
                         ["export", good, "--to", "springs", "--out", work / "limited.json"]):
             ended = run(*command, files=size)
             whole = ended.status == 0 or ended.err.count("\n") >= 1
-            attack("limits on the size of files", f"{size} bytes, {command[0]}", ended.wrong(0, 1, 2) or (not whole and "unsaid") or None)
+            attack("limits on the size of files", f"{size} bytes, {command[0]}",
+                   ended.wrong(0, 1, 2) or (not whole and "unsaid") or None)
 
 
 def main():
