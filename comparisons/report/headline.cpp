@@ -108,7 +108,7 @@ class Collector {
     motions_.clear();
     for (const ModelChoice& model : e.models) {
       if (model.in_motion) motions_.insert(model.label);
-      if (is_only_shown(model)) beside_.insert(model.label);
+      if (is_external(model) && !is_own_model(model)) beside_.insert(model.label);
     }
     for (const Check& check : result.checks) add_check(check);
     for (const Run& run : result.runs) add_run(run);
