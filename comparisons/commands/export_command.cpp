@@ -19,6 +19,7 @@
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "msm/exchange/lammps.h"
+#include "msm/parameters/made_of.h"
 #include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
 #include "problem/system/named_files.h"
@@ -202,13 +203,31 @@ fs::path out_or(const ExportRequest& request, const std::string& ending) {
   return request.out.empty() ? fs::path(request.what).stem().string() + ending : request.out;
 }
 
-void report(const fs::path& file, const SpringsFile& s) {
+/// What the forces are made of, with how many there are: "springs + a term per cell (5856 springs, 384 cells)".
+std::string parts_of(const SpringsFile& s) {
   const Network& network = s.model.network;
-  const std::string parts = network.filled.empty() ? fmt::format("{} springs", network.springs.size())
-                                                   : fmt::format("{} cut cells", network.cells.size());
+  const std::string made = made_of(s.model);
+  const std::string springs =
+      network.springs.empty() ? "no springs" : fmt::format("{} springs", network.springs.size());
+  if (made.find("per cell") == std::string::npos) return fmt::format("{} ({})", made, springs);
+  return fmt::format("{} ({}, {} {})", made, springs, network.cells.size(),
+                     network.filled.empty() ? "cells" : "cut cells");
+}
+
+void report(const fs::path& file, const SpringsFile& s) {
   to_stdout("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(), s.origin.model,
-            network.nodes(), parts, s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
-            s.material->poisson_ratio);
+             s.model.network.nodes(), parts_of(s), s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
+             s.material->poisson_ratio);
+}
+
+/// Says so where the cells of a cut body hold something else than the model has by its name.
+void report_averaging(const SpringsFile& s) {
+  for (const ModelRow& row : model_table())
+    if (row.name == s.origin.model && !s.model.network.filled.empty() && made_of(row) != made_of(s.model))
+      to_stdout(
+          "note: {} is {} on whole cubes; cut cells hold its springs averaged over each cell, which leaves {} "
+          "(--whole-cubes: the springs)\n",
+          row.name, made_of(row), made_of(s.model));
 }
 
 int export_springs(const ExportRequest& request) {
@@ -218,6 +237,7 @@ int export_springs(const ExportRequest& request) {
   const SpringsFile springs = springs_of(request, !request.whole_cubes);
   write_springs(file, springs);
   report(file, springs);
+  report_averaging(springs);
   return 0;
 }
 

@@ -23,6 +23,7 @@
 #include "comparisons/run/suite.h"
 #include "fem_reference/reference.h"
 #include "msm/gpu/gpu.h"
+#include "msm/parameters/made_of.h"
 #include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/measures.h"
@@ -33,13 +34,18 @@ namespace {
 
 using namespace springproof;
 
-int list() {
+/// Without names all that is built in, else the files of these cases.
+int list(const std::vector<std::string>& names) {
+  if (!names.empty()) {
+    for (const auto& file : find_cases(names)) to_stdout("{}\n", file.string());
+    return 0;
+  }
   to_stdout("Cases (springproof compare NAME):\n");
   for (const auto& file : built_in_cases()) {
     to_stdout("  {:<38} {}\n", case_name(file), read_experiment(file).what);
   }
   to_stdout("\nModels ([compare] models = [...]):\n");
-  for (const ModelRow& row : model_table()) to_stdout("  {:<38} {}\n", row.name, row.what);
+  for (const ModelRow& row : model_table()) to_stdout("  {:<15} {:<26} {}\n", row.name, made_of(row), row.what);
   to_stdout("\nMeasures ([compare] measures = [...]):\n");
   for (const Measure& measure : measure_table()) to_stdout("  {:<28}{}\n", measure.name, measure.what);
   return 0;
@@ -126,7 +132,9 @@ int parse_and_run(int argc, char** argv) {
       "The results of a comparison whose parts were computed by shards: compare --shard, on several machines");
   sweep_report.add_options(*report_command, live_page);
 
-  CLI::App* list_command = app.add_subcommand("list", "Built-in cases, models and measures");
+  CLI::App* list_command =
+      app.add_subcommand("list", "Built-in cases, models and measures; of cases named: their files");
+  list_command->add_option("CASE", names, "built-in cases or folders, whose files are listed");
 
   MaterialCommand material;
   CLI::App* material_command = app.add_subcommand(
@@ -197,7 +205,7 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  if (*list_command) return list();
+  if (*list_command) return list(names);
   if (*describe_command) return describe(app, form);
   springproof::gpu::wants_gpu();  // refuses what cannot be had before anything runs
   if (*compare_command) return compare(find_cases(names), options);

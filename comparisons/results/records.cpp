@@ -98,10 +98,13 @@ double cell_count(const Cells& cells) {
 Json to_json(const CaseResult& result) {
   Json experiment = json_of(result);
   for (Json& model : experiment["models"]) {
-    const auto own = result.own_poisson_ratios.find(model["label"]);
-    model["own_poisson_ratio"] = own == result.own_poisson_ratios.end() ? Json(nullptr) : Json(own->second);
-    const auto law = result.laws.find(model["label"]);
-    model["law"] = law == result.laws.end() ? Json(nullptr) : Json(law->second);
+    const auto of = [&](const auto& by_label) {
+      const auto found = by_label.find(model["label"]);
+      return found == by_label.end() ? Json(nullptr) : Json(found->second);
+    };
+    model["own_poisson_ratio"] = of(result.own_poisson_ratios);
+    model["law"] = of(result.laws);
+    model["made_of"] = of(result.made_of);
   }
   Json out = static_cast<const Part&>(result);
   out.erase("pictures");

@@ -224,6 +224,7 @@ struct CaseResult : Part {
       own_poisson_ratios;                   ///< of the models, by label, that are solids of one Poisson's ratio only
   std::map<std::string, std::string> laws;  ///< of the models, by label, whose springs follow a law of finite strain:
                                             ///< its name among `kinematics`; none in linear cases
+  std::map<std::string, std::string> made_of;  ///< of the models, by label: "springs", "a term per cell", ...
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
   std::vector<std::string> notes;  ///< what was repaired or left out of the body

@@ -89,6 +89,7 @@ SpringsFile springs_of(const PreparedCase& prepared) {
                  prepared.experiment.text.empty() ? prepared.geo.filename().string()
                                                   : prepared.experiment.file.filename().string(),
                  input_checksum(prepared.experiment)};
+  if (parameters.cut.value_or(false)) file.origin.options["cut"] = true;  // not what the name says: averaged springs
   file.derived = derived_of(file, parameters);
   return file;
 }

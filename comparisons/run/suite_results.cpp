@@ -18,6 +18,8 @@
 #include "comparisons/results/crack_picture.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/vtu_output.h"
+#include "msm/parameters/made_of.h"
+#include "problem/case_file/external.h"
 #include "problem/system/file_name.h"
 #include "problem/system/files.h"
 #include "problem/system/streams.h"
@@ -63,6 +65,13 @@ nlohmann::json document(const std::vector<CaseResult>& results, const std::vecto
           {"calibration", calibration_json(known)}};
 }
 
+/// What a model of the case is made of.
+std::string made_of(const PreparedCase& p, std::size_t model) {
+  const ModelChoice& choice = p.experiment.models[model];
+  if (!is_external(choice)) return made_of(p.models[model]);
+  return is_own_model(choice) ? "springs of another program" : "another program's, for comparison";
+}
+
 /// The law, as `kinematics` names it, that a curve follows or is tuned to.
 const char* law_of(StrainCurve curve) {
   switch (curve) {
@@ -94,6 +103,7 @@ CaseResult case_of(const PreparedCase& p) {
   result.notes = p.notes;
   for (std::size_t m = 0; m < p.models.size(); ++m) {
     const std::string& label = p.experiment.models[m].label;
+    result.made_of[label] = made_of(p, m);
     if (const auto own = own_poisson_ratio(p.models[m].row)) result.own_poisson_ratios[label] = *own;
     if (p.models[m].curve && p.experiment.model_kinematics() == Kinematics::finite)
       result.laws[label] = law_of(*p.models[m].curve);

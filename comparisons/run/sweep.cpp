@@ -19,7 +19,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sweep, version, libraries, shards, finer, vtu
 
 namespace {
 
-constexpr std::string_view plan_heading = "springproof sweep 1 ", meshed_heading = "springproof case 1 ";
+constexpr std::string_view plan_heading = "springproof sweep 1 ", meshed_heading = "springproof case 2 ";
 
 fs::path meshed_file(const fs::path& folder, const std::string& key) { return folder / "parts" / (key + ".case.cbor"); }
 
@@ -117,7 +117,8 @@ void save_meshed(const fs::path& folder, const std::string& key, const CaseResul
                       {"cells", meshed.cells},
                       {"notes", meshed.notes},
                       {"own_poisson_ratios", meshed.own_poisson_ratios},
-                      {"laws", meshed.laws}}));
+                      {"laws", meshed.laws},
+                      {"made_of", meshed.made_of}}));
 }
 
 bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& result) try {
@@ -127,6 +128,7 @@ bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& res
   meshed.at("notes").get_to(result.notes);
   meshed.at("own_poisson_ratios").get_to(result.own_poisson_ratios);
   meshed.at("laws").get_to(result.laws);
+  meshed.at("made_of").get_to(result.made_of);
   return true;
 } catch (const std::exception&) {  // not there, or damaged
   return false;

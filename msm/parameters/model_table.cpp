@@ -1,6 +1,11 @@
 #include "msm/parameters/model_table.h"
 
 #include <limits>
+#include <stdexcept>
+#include <variant>
+
+#include "msm/exchange/springs_file.h"
+#include "msm/parameters/made_of.h"
 
 namespace springproof {
 namespace {
@@ -34,6 +39,24 @@ const std::vector<ModelRow> table = {
 };
 // clang-format on
 
+constexpr const char *per_node = "a term per node", *per_angle = "a term per angle", *per_cell = "a term per cell";
+
+std::string joined(bool springs, const std::string& terms) {
+  return !springs ? terms : terms.empty() ? "springs" : "springs + " + terms;
+}
+
+/// What each law adds to springs; none of springs themselves and of anchors, which are supports.
+struct TermOf {
+  const char* operator()(const Springs&) const { return ""; }
+  const char* operator()(const Anchors&) const { return ""; }
+  const char* operator()(const AngularSprings&) const { return per_angle; }
+  const char* operator()(const MomentumDispersion&) const { return per_node; }
+  const char* operator()(const VolumeCorrection&) const { return per_cell; }
+  const char* operator()(const HourglassCorrection&) const { return per_cell; }
+  const char* operator()(const AveragedSprings&) const { return per_cell; }
+  const char* operator()(const MacroSprings&) const { return per_cell; }
+};
+
 }  // namespace
 
 const std::vector<ModelRow>& model_table() { return table; }
@@ -47,6 +70,39 @@ double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& m
   if (p.has(angular_springs)) return (lame_lambda(material) + shear_modulus(material)) / 2;
   const bool as_if_quarter = p.paper_e_form || p.row.calibration == Calibration::youngs_modulus;
   return as_if_quarter ? 0.4 * material.youngs_modulus : shear_modulus(material);
+}
+
+std::string made_of(const ModelRow& row) {
+  switch (row.extension) {
+    case none:
+      return joined(true, row.bending_correction ? per_cell : "");
+    case volume_correction:
+      return joined(true, per_cell);
+    case momentum_dispersion:
+      return joined(true, per_node);
+    case angular_springs:
+      return joined(true, per_angle);
+    case averaging:
+    case volume_modes:
+      return joined(false, per_cell);
+  }
+  throw std::invalid_argument("no such extension");
+}
+
+std::string made_of(const ModelParameters& parameters) {
+  if (parameters.cut.value_or(false)) return joined(false, per_cell);
+  return parameters.springs ? made_of(parameters.springs->model) : made_of(parameters.row);
+}
+
+std::string made_of(const MassSpringModel& model) {
+  bool springs = false;
+  std::string terms;
+  for (const ForceLaw& law : model.laws) {
+    springs = springs || std::holds_alternative<Springs>(law);
+    const std::string term = std::visit(TermOf{}, law);
+    if (terms.find(term) == std::string::npos) terms += (terms.empty() ? "" : " + ") + term;
+  }
+  return joined(springs, terms);
 }
 
 }  // namespace springproof

@@ -7,6 +7,7 @@
 
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
+#include "msm/parameters/made_of.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/periodic_model.h"
 #include "msm/python/bindings.h"
@@ -84,7 +85,8 @@ void write(const BodyModel& model, const fs::path& file) {
 py::list table() {
   py::list rows;
   for (const ModelRow& row : model_table())
-    rows.append(py::dict("name"_a = row.name, "what"_a = row.what, "poisson_ratio"_a = own_poisson_ratio(row),
+    rows.append(py::dict("name"_a = row.name, "what"_a = row.what, "made_of"_a = made_of(row),
+                         "poisson_ratio"_a = own_poisson_ratio(row),
                          "large_displacements"_a = holds_at_large_displacement(row),
                          "cut_cells"_a = has_cut_cells(row)));
   return rows;

@@ -81,6 +81,10 @@ up_axis = "y"
 name = "holes"
 file = "holes.csv"
 poisson_ratio = 0.4
+[[external]]
+name = "ratios"
+springs = false
+files = [{ poisson_ratio = 0.25, file = "$csv" }, { poisson_ratio = 0.4, file = "$fine" }]
 [[expect]]
 model = "same"
 measure = "displacement_error"
@@ -96,6 +100,13 @@ for measure in displacement_error displacement_error_max volume_change displacem
     [ -z "$(value both $name 0.25 16x4x4 $measure value)$(value both $name 0.4 8x2x2 $measure value)" ] || fail "$name is compared elsewhere too"
   done
 done
+# One label at two Poisson's ratios, each at the lattice of its points.
+for at in "0.25 8x2x2" "0.4 16x4x4"; do
+  # shellcheck disable=SC2086
+  same "$(value both ratios $at displacement.tip.z value)" "$(value both hybmss_avg $at displacement.tip.z value)" 1e-9 "one label, at $at"
+done
+grep -q "\"made_of\": \"another program's, for comparison\"" both/results.json && grep -q '"made_of": "springs of another program"' both/results.json &&
+  grep -q '"made_of": "a term per cell"' both/results.json || fail "results.json does not say what the models are made of"
 same "$(value both same 0.25 8x2x2 force.x_min.z value)" 39.24 1e-12 "the reaction"
 [ -z "$(value both turned 0.25 8x2x2 force.x_min.z value)" ] || fail "a reaction that was not given"
 # Nodes without a point: the displacement is that of the points around, the volume is not measured.

@@ -4,6 +4,8 @@
 #   models.sh PROGRAM SOURCE-FOLDER
 set -u
 program=$1 page=$2/docs/models.md
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 failures=0
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
@@ -17,6 +19,13 @@ for row in $rows; do
   "$program" material --model "$row" -E 1e5 --nu 0.25 >/dev/null 2>&1 || fail "springproof material --model $row"
 done
 for section in $sections; do grep -qx "$section" <<<"$rows" || fail "docs/models.md describes $section, which is no model"; done
+# Which are springs: the table of the page is that of the program, and the best of each kind follow from the page's own numbers.
+while read -r row made; do
+  line=$(grep -E "^\| $(sed 's/+/[+]/' <<<"$made") \| \`" "$page")
+  grep -qF "\`$row\`" <<<"$line" || fail "docs/models.md does not say that $row is $made"
+done < <("$program" list | awk '/^Models/ { inside = 1; next } inside && NF == 0 { exit } inside { print $1, substr($0, 19, 26) }')
+"$2/docs/best_of_kind.sh" "$program" | while read -r line; do grep -qxF "$line" "$page" || echo "$line"; done >"$work/missing"
+[ ! -s "$work/missing" ] || fail "docs/models.md lacks lines of docs/best_of_kind.sh: $(cat "$work/missing")"
 "$program" homogenise -E 1e4 --nu 0.25 --model msm_random --seeds 5 | grep -qE 'a bias of the model: .*K by [+]3 %, [0-9]+ standard errors' ||
   fail "homogenise takes for scatter what is off by many standard errors of the mean"
 "$program" homogenise -E 1e4 --nu 0.25 --model msm_random | grep -q -- '--seeds 10' ||

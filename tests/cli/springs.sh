@@ -44,6 +44,8 @@ for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { insi
   for form in $forms; do
     # shellcheck disable=SC2086
     export_to case.toml --to springs --model "$model" --nu 0.4 --cells $cells --out "$model.$form"  # every constant differs from 0
+    made=$("$program" list | awk -v m="$model" '$1 == m { print substr($0, 19, 26) }' | sed 's/ *$//')
+    [ -n "$made" ] && grep -qF "nodes, $made (" log || fail "$model is '$made' in the list, and exported: $(cat log)"
     if [ -n "$numpy" ]; then
       off=$("$numpy" springs.py "$model.$form" | awk '{ print $3 }')
       awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-9) }' || fail "forces of $model.$form by docs/springs_file.md: off by '$off'"
@@ -64,9 +66,13 @@ body=(icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 100 -
 export_to "${body[@]}" --out cut.json
 grep -q '"model": "hybmss_avg"' cut.json || fail "a body alone gets another model than the recommended one"
 grep -q '"version": 2' cut.json && grep -q '"fraction": ' cut.json && grep -q '"anchors": ' cut.json || fail "a body has no cut cells"
+grep -qE 'nodes, a term per cell \(no springs, [0-9]+ cut cells\)' log && ! grep -q '^note:' log || fail "what cut cells are: $(cat log)"
 export_to "${body[@]}" --out cut.npz
 export_to "${body[@]}" --model hybmss_bt --out cut_bt.json
+grep -qE '^note: hybmss_bt is springs \+ a term per cell on whole cubes; cut cells hold its springs averaged' log && grep -q '"cut": true' cut_bt.json ||
+  fail "averaged cells under the name of springs: $(cat log)"
 export_to "${body[@]}" --model hybmss_bt --whole-cubes --out whole.json
+grep -qE 'nodes, springs \+ a term per cell \([0-9]+ springs, [0-9]+ cells\)' log && ! grep -q '^note:' log || fail "what whole cubes are: $(cat log)"
 grep -q '"version": 1' whole.json && ! grep -q '"fraction": ' whole.json || fail "--whole-cubes gives cut cells"
 export_to "${body[@]}" --out cut.vtu
 grep -q 'Name="fraction"' cut.vtu || fail "cut.vtu"

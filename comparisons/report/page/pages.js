@@ -140,9 +140,9 @@ function kinematicsText(result) {
   return result.linear ? 'linear (small displacements)' : `finite; the reference follows the law “${law}”, the springs their own`;
 }
 
-function modelText({name, label, options = {}, own_poisson_ratio}) {
+function modelText({name, label, options = {}, own_poisson_ratio, made_of}) {
   const list = Object.entries(options).map(([key, value]) => `${key} = ${value}`).join(', ');
-  return [modelName(label || name), list && (label || name) !== list ? ` ${list}` : '',
+  return [modelName(label || name), list && (label || name) !== list ? ` ${list}` : '', made_of ? `: ${made_of}` : '',
     isNumber(own_poisson_ratio) ? ` (a solid of ν = ${nuText(own_poisson_ratio)} alone)` : ''];
 }
 

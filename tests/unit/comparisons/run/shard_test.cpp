@@ -107,6 +107,7 @@ TEST(Sweep, KeepsWhatMeshingToldOfACase) {
   meshed.notes = {"a note"};
   meshed.own_poisson_ratios = {{"msm_18", 0.25}};
   meshed.laws = {{"hybmss_avg", "hencky"}};
+  meshed.made_of = {{"hybmss_avg", "a term per cell"}};
   EXPECT_FALSE(load_meshed(folder.path, "a", back));
   save_meshed(folder.path, "a", meshed);
   EXPECT_TRUE(load_meshed(folder.path, "a", back));
@@ -115,6 +116,7 @@ TEST(Sweep, KeepsWhatMeshingToldOfACase) {
   EXPECT_EQ(back.notes, meshed.notes);
   EXPECT_EQ(back.own_poisson_ratios, meshed.own_poisson_ratios);
   EXPECT_EQ(back.laws, meshed.laws);
+  EXPECT_EQ(back.made_of, meshed.made_of);
 }
 
 TEST(Sweep, PlanThatIsNotWholeIsRefused) {
