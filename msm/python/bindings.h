@@ -123,6 +123,7 @@ BoundaryConditions conditions_of(const BodyModel& model, const std::vector<Load>
 std::map<std::string, std::variant<bool, double, std::string>> options_of(const py::dict& given);
 
 void bind_bodies(py::module_& m);
+void bind_cases(py::module_& m);
 void bind_loads(py::module_& m);
 void bind_models(py::module_& m);
 void bind_statics(py::module_& m, py::class_<BodyModel, std::shared_ptr<BodyModel>>& model);

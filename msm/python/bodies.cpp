@@ -160,7 +160,8 @@ facing: a direction and the largest angle to it [degrees]; near: a point [m] and
       .def(py::init(&rule_of), "name"_a, py::kw_only(), "box"_a = py::none(), "beyond"_a = py::none(),
            "facing"_a = py::none(), "near"_a = py::none())
       .def_readonly("name", &PatchRule::name);
-  py::class_<SolidBody, std::shared_ptr<SolidBody>>(m, "Body", R"(A body in cubes; made by block() or voxels().)")
+  py::class_<SolidBody, std::shared_ptr<SolidBody>>(
+      m, "Body", R"(A body in cubes, made by block() or voxels(), or in tetrahedra, as compare() hands it out.)")
       .def_property_readonly(
           "nodes", [](const py::object& self) { return view(self.cast<SolidBody&>().mesh->nodes, self); },
           "corners of the cubes at rest, n x 3 [m]; a view")
@@ -171,6 +172,13 @@ facing: a direction and the largest angle to it [degrees]; near: a point [m] and
             return view(reinterpret_cast<const int*>(cells.data()), {py::ssize_t(cells.size()), 8}, self);
           },
           "corners of each cube, c x 8, in the order of VTK's hexahedron; a view")
+      .def_property_readonly(
+          "tetrahedra",
+          [](const py::object& self) {
+            const auto& cells = self.cast<SolidBody&>().mesh->tetrahedra;
+            return view(reinterpret_cast<const int*>(cells.data()), {py::ssize_t(cells.size()), 4}, self);
+          },
+          "corners of each tetrahedron, t x 4, of the body that compare() hands to a function; of cubes none; a view")
       .def_property_readonly("patches", &patches_of, "name -> numbers of the patch's nodes, ascending")
       .def_property_readonly(
           "edge", [](const SolidBody& b) { return b.mesh->grid ? b.mesh->grid->spacing.maxCoeff() : 0.0; },

@@ -55,4 +55,5 @@ PYBIND11_MODULE(_springproof, m) {
   python::bind_bodies(m);
   python::bind_loads(m);
   python::bind_models(m);
+  python::bind_cases(m);
 }

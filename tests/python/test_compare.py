@@ -110,3 +110,100 @@ def test_a_body_by_voxels_is_that_of_compare(tmp_path):
         sp.voxels("rabit.geo", size=(1, 1, 1))
     with pytest.raises(sp.InputError, match="foot"):
         sp.Model("hybmss_avg", body, sp.Material(1e4, 0.4), cut=True, held=["feet"])
+
+
+def affine(body, material, loads):
+    """The tip of a bar in tension, as it were."""
+    return body.nodes * [1e-3 * material.nu, 0, 0]
+
+
+def test_a_function_is_a_model():
+    """It is called for each Poisson's ratio with the body in tetrahedra, the material and the loads; its displacements are a row."""
+    calls = []
+
+    def mine(body, material, loads):
+        calls.append(material.nu)
+        X, tets = body.nodes, body.tetrahedra
+        volumes = np.linalg.det(X[tets[:, 1:]] - X[tets[:, :1]]) / 6
+        assert np.abs(volumes).sum() == pytest.approx(0.2 * 0.1 * 0.1) and material.density == 1100
+        assert (X[body.patches["x_min"], 0] == 0).all() and len(body.patches["x_min"]) >= 9
+        assert loads.forces.sum(0) == pytest.approx([0, 0, -0.1]) and (X[np.abs(loads.forces).sum(1) > 0, 0] == 0.2).all()
+        held = ~np.isnan(loads.displacement).any(1)
+        assert sorted(np.flatnonzero(held)) == sorted(body.patches["x_min"]) and (loads.displacement[held] == 0).all()
+        return affine(body, material, loads)
+
+    rows = sp.compare(CASE, models={"mine": mine})
+    assert calls == [0.25, 0.4]
+    for nu in (0.25, 0.4):
+        own = {row["measure"]: row for row in rows if row["model"] == "mine" and row["poisson_ratio"] == nu}
+        assert own["displacement.tip.x"]["value"] == pytest.approx(0.2e-3 * nu, rel=1e-12)
+        assert own["volume_change"]["value"] == pytest.approx(1e-3 * nu, rel=1e-6)  # known at every node of the lattice
+
+
+def test_a_function_on_its_own_nodes_in_a_case_file_and_a_body(tmp_path):
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, 1)]) * 0.1
+    text = "solid t\n"
+    for facet in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)):
+        text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex {} {} {}\n".format(*corners[i]) for i in facet) + "endloop\nendfacet\n"
+    (tmp_path / "t.stl").write_text(text + "endsolid t\n")
+    case = tmp_path / "own.toml"
+    case.write_text("""
+[body]
+geo = "t.stl"
+voxels = [100, 300]
+[[patch]]
+name = "foot"
+beyond = { point_m = [0, 0, 0.005], normal = [0, 0, -1] }
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+[[load]]
+on = "foot"
+displacement_m = [0, 0, 0]
+[[load]]
+gravity_m_s2 = [0, 0, -9.81]
+[[probe]]
+name = "middle"
+at_m = [0.03, 0.03, 0.03]
+[compare]
+models = ["hybmss_avg"]
+measures = ["probe"]
+[reference]
+elements = []
+[[expect]]
+model = "mine"
+measure = "displacement.middle.x"
+source = "analytic"
+value = 3e-5
+within = 1e-9
+where = "the function"
+""")
+
+    def mine(body, material, loads):
+        points = np.vstack([body.nodes, body.nodes[body.tetrahedra].mean(1)])
+        weight = loads.forces[:, 2].sum()
+        assert weight == pytest.approx(-9.81 * 1000 * 0.1**3 / 6, rel=1e-6) and len(body.patches["foot"]) > 5
+        return points, 1e-3 * points
+
+    assert sp.compare(case, models={"mine": mine})  # warns, and so fails, where the expectation does not hold
+
+
+def test_what_a_function_raises_reaches_the_caller():
+    class Mine(Exception):
+        pass
+
+    def fails(body, material, loads):
+        raise Mine("no solver")
+
+    with pytest.raises(Mine, match="no solver"):
+        sp.compare(CASE, models={"mine": fails})
+    with pytest.raises(sp.InputError, match=r"models: 'mine': its displacements have shape \(3,\) \(allowed: \(45, 3\)"):
+        sp.compare(CASE, models={"mine": lambda body, material, loads: np.zeros(3)})
+    with pytest.raises(sp.InputError, match="models: 'mine': its displacements at row 0 are not finite"):
+        sp.compare(CASE, models={"mine": lambda body, material, loads: np.nan * body.nodes})
+    with pytest.raises(sp.InputError, match="the label 'hybmss_avg' is taken"):
+        sp.compare(CASE, models={"hybmss_avg": affine})
+    with pytest.raises(sp.InputError, match=r"folder of \d+ cases"):
+        sp.compare("golec_2019", models={"mine": affine})
+    with pytest.raises(sp.InputError, match="no such case"):
+        sp.compare("golec_2020", models={"mine": affine})

@@ -93,3 +93,17 @@ def test_springs_alone(tmp_path):
     assert float(sag) == pytest.approx(-value, rel=1e-6) and float(sag) > 1e-4
     rebound = re.search(r"rebounds after (\S+) s, squeezed to (\S+) of", out)
     assert float(rebound.group(1)) < 1 and 0.3 < float(rebound.group(2)) < 0.999, out
+
+
+def test_own_springs(tmp_path):
+    """The page shows the example's model; it is a row at each Poisson's ratio, and the two that stand beside it are better."""
+    example = (EXAMPLES / "own_springs.py").read_text()
+    shown = re.search(r"```python\n(def van_gelder.*?)```", (SOURCE / "docs" / "tutorial.md").read_text(), re.S).group(1)
+    assert shown in example
+    if not sp.find_program("springproof-fem"):
+        pytest.skip("no finite elements")
+    out = run(sys.executable, EXAMPLES / "own_springs.py", cwd=tmp_path)
+    off = {(nu, model): float(error) for nu, model, error in re.findall(r"nu = (\S+) +(\w+) +off by (\S+) %", out)}
+    assert {model for _, model in off} >= {"van_gelder", "msm_18", "hybmss_avg"} and (tmp_path / "own-report" / "report.html").is_file()
+    for nu in ("0.25", "0.4"):
+        assert off[nu, "hybmss_avg"] < 5 and off[nu, "hybmss_avg"] < off[nu, "van_gelder"] < 100, out

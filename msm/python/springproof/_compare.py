@@ -9,9 +9,12 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from typing import NamedTuple
 
-from ._springproof import InputError
+import numpy
+
+from ._springproof import InputError, _problems_of
 
 _NUMBERS = ("poisson_ratio", "value", "reference", "reference_uncertainty", "error", "spread", "published")
 
@@ -33,9 +36,17 @@ if "SPRINGPROOF_MESH_PROGRAM" not in os.environ and (_mesher := find_program("sp
     os.environ["SPRINGPROOF_MESH_PROGRAM"] = str(_mesher)
 
 
+class Loads(NamedTuple):
+    """The loads of a case at the nodes of a body of tetrahedra, as compare() hands them to a function."""
+
+    forces: numpy.ndarray  #: on each node, n x 3 [N]: of tractions, pressures, weight and point forces
+    displacement: numpy.ndarray  #: that supports prescribe, n x 3 [m]; NaN: free
+
+
 def compare(
     case: "str | os.PathLike[str] | Mapping[str, object]",
     *,
+    models: "Mapping[str, Callable[..., object]] | None" = None,
     poisson_ratio: "float | Iterable[float] | None" = None,
     out: "str | os.PathLike[str] | None" = None,
     jobs: "int | None" = None,
@@ -44,7 +55,11 @@ def compare(
     """Models beside finite elements: runs `springproof compare` and returns the rows of its results.csv.
 
     case: a case file, the name of a built-in case or folder, or a case as a dict of the keys of a case file, whose files are
-    relative to the working directory.  poisson_ratio: only these of the case's.  out: a folder that keeps report.html,
+    relative to the working directory.  models: your own beside the case's, label -> function(body, material, loads), called for
+    each Poisson's ratio.  body: the case's body in tetrahedra as fine as its finest lattice (nodes n x 3 [m], tetrahedra t x 4,
+    patches: name -> nodes); material: E, nu, G, K, density; loads: at these nodes, forces n x 3 [N] and displacement n x 3 [m]
+    of the supports, NaN where free.  It returns the displacements of body.nodes, n x 3 [m], or (points, displacements) at points
+    of its own, all over the body.  Each is ranked and drawn as a model.  poisson_ratio: only these of the case's.  out: a folder that keeps report.html,
     results.csv and results.json; by default nothing is kept.  jobs: parts to run at once.  resume: take finished parts from
     `out`.
 
@@ -52,19 +67,21 @@ def compare(
     reference_uncertainty, error, samples, spread, published, published_where.  Numbers are floats (samples: int), None where
     there is none.  pandas.DataFrame(rows) takes them.
 
-    Raises InputError with the program's message if the input cannot be used; warns where an [[expect]] of the case does not
+    Raises InputError with the program's message if the input cannot be used, and what a function of yours raises; warns where an [[expect]] of the case does not
     hold or a run has no result.
     """
     program = find_program()
     if not program:
         raise RuntimeError("compare: there is no program springproof (allowed: on PATH, or named by the environment variable SPRINGPROOF)")
+    ratios = None if poisson_ratio is None else [float(nu) for nu in (poisson_ratio if isinstance(poisson_ratio, Iterable) else [poisson_ratio])]
     with tempfile.TemporaryDirectory() as folder:
         name = os.fspath(case) if not isinstance(case, Mapping) else str(_write_case(case, pathlib.Path(folder)))
+        if models:
+            name = str(_with_models(name, models, ratios, program, pathlib.Path(folder)))
         results = pathlib.Path(out) if out is not None else pathlib.Path(folder) / "results"
         command = [str(program), "compare", name, "--out", str(results), "--quiet"]
-        if poisson_ratio is not None:
-            ratios = poisson_ratio if isinstance(poisson_ratio, Iterable) else [poisson_ratio]
-            command.append("--poisson-ratio=" + ",".join(repr(float(ratio)) for ratio in ratios))
+        if ratios is not None:
+            command.append("--poisson-ratio=" + ",".join(repr(ratio) for ratio in ratios))
         command += [f"--jobs={jobs}"] if jobs is not None else []
         command += ["--resume"] if resume else []
         run = subprocess.run(command, capture_output=True, text=True)
@@ -79,6 +96,64 @@ def compare(
         if run.returncode == 1:
             warnings.warn(f"springproof compare {name}: {said or run.stdout.strip()}", stacklevel=2)
         return rows
+
+
+def _with_models(name, models, ratios, program, folder):
+    """The case with what the functions compute as [[external]]; what is computed lies beside it."""
+    listed = subprocess.run([str(program), "list", name], capture_output=True, text=True)
+    if listed.returncode != 0:
+        raise InputError(listed.stderr.strip())
+    files = listed.stdout.splitlines()
+    if len(files) != 1:
+        raise InputError(f"{name} is a folder of {len(files)} cases (allowed with models: one case)")
+    problems = [p for p in _problems_of(files[0]) if ratios is None or any(abs(p[1].nu - nu) < 1e-9 for nu in ratios)]
+    external = []
+    for label, function in models.items():
+        computed = []
+        for body, material, forces, displacement in problems:
+            file = folder / f"own_{len(external)}_{material.nu!r}.csv"
+            file.write_text(_points_text(label, body, function(body, material, Loads(forces, displacement))), encoding="ascii")
+            computed.append({"poisson_ratio": material.nu, "file": str(file)})
+        if computed:
+            external.append({"name": label, "files": computed})
+    tree = _read_case(pathlib.Path(files[0]))
+    tree["external"] = [*tree.get("external", []), *external]
+    place = folder / pathlib.Path(files[0]).absolute().parent.name
+    place.mkdir(exist_ok=True)
+    return _write_case({**tree, "name": pathlib.Path(files[0]).stem}, place)
+
+
+def _points_text(label, body, result):
+    """Points and displacements as CSV, every digit."""
+    points, displacement = result if isinstance(result, tuple) else (body.nodes, result)
+    arrays = []
+    for array, what in ((points, "points"), (displacement, "displacements")):
+        array = numpy.asarray(array, dtype=float)
+        if array.ndim != 2 or array.shape[1] != 3 or (arrays and len(array) != len(arrays[0])):
+            rows = len(arrays[0]) if arrays else "n"
+            raise InputError(f"models: '{label}': its {what} have shape {array.shape} (allowed: ({rows}, 3), or a tuple of points and displacements)")
+        if not numpy.isfinite(array).all():
+            raise InputError(f"models: '{label}': its {what} at row {numpy.argwhere(~numpy.isfinite(array))[0, 0]} are not finite (allowed: finite numbers [m])")
+        arrays.append(array)
+    lines = (",".join(map(repr, row)) for row in numpy.hstack(arrays).tolist())
+    return "x,y,z,ux,uy,uz\n" + "\n".join(lines) + "\n"
+
+
+def _read_case(file):
+    """A case file as a dict, files by their full names."""
+    try:
+        import tomllib
+    except ImportError:
+        raise RuntimeError("compare: models beside those of a case need tomllib (allowed: Python 3.11 and later)") from None
+    tree = tomllib.loads(file.read_text(encoding="utf-8"))
+    beside = file.absolute().parent
+    if (beside / tree["body"]["geo"]).is_file():
+        tree["body"]["geo"] = str(beside / tree["body"]["geo"])
+    entries = [m for m in tree.get("compare", {}).get("models", []) if isinstance(m, dict)] + tree.get("external", [])
+    for entry in entries + [of for e in tree.get("external", []) for of in e.get("files", [])]:
+        if "file" in entry:
+            entry["file"] = str(beside / entry["file"])
+    return tree
 
 
 def _read_rows(file):
