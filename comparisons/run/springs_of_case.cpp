@@ -34,7 +34,7 @@ EmbeddedSurface carried_surface(const PreparedCase& prepared, const CutBody& bod
 void add_network(const PreparedCase& prepared, SpringsFile& file) {
   const Lattice& lattice = prepared.lattices.front();
   const ModelParameters& parameters = prepared.models.front();
-  EmbeddedModel built = build_embedded(parameters, *lattice.mesh, *file.material, lattice.region.get());
+  EmbeddedModel built = build_on(prepared, lattice, parameters, *file.material, false);
   file.grip = parameters.springs ? parameters.springs->grip : grip_of(parameters, *lattice.mesh);
   file.grip_from_cells =
       parameters.springs ? parameters.springs->grip_from_cells : parameters.row.topology != Topology::random;

@@ -1,5 +1,7 @@
 #include "msm/embedding/surface_shares.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -120,8 +122,9 @@ struct SurfaceInterpolation {
     return found;
   }
 
-  SurfaceWeights at(const Vec3& p, const Vec3& normal) const {
-    SurfaceWeights best;
+  /// Empty: there are no nodes on the surface nearby, or all are on one line.
+  std::optional<SurfaceWeights> at(const Vec3& p, const Vec3& normal) const {
+    std::optional<SurfaceWeights> best;
     double least = std::numeric_limits<double>::infinity();
     std::array<std::vector<int>, reaches.size()> candidates;
     for (const double height : heights)
@@ -130,13 +133,12 @@ struct SurfaceInterpolation {
         auto found = in_plane(candidates[r], p, normal, height * spacing, reaches[r] * spacing);
         if (!found) continue;
         const double sum = found->weight.cwiseAbs().sum();
-        if (sum <= largest_sum) return *std::move(found);
+        if (sum <= largest_sum) return found;
         if (sum < least) {
           least = sum;
-          best = *std::move(found);
+          best = std::move(found);
         }
       }
-    if (best.nodes.empty()) throw std::invalid_argument("a part of the surface is far from all nodes on the surface");
     return best;
   }
 
@@ -150,13 +152,21 @@ struct SurfaceInterpolation {
                  const double area = (b - a).cross(c - a).norm() / 2;
                  const Vec3 middle = (a + b + c) / 3;
                  for (const Vec3& corner : {a, b, c}) excess -= area * (corner - middle).squaredNorm() / 12;
-                 const SurfaceWeights w = at(middle, normal);
-                 for (std::size_t i = 0; i < w.nodes.size(); ++i) {
-                   give(w.nodes[i], area * w.weight[i], normal, shares);
-                   excess += area * w.weight[i] * std::pow(distance(w.nodes[i], middle), 2);
+                 const std::optional<SurfaceWeights> w = at(middle, normal);
+                 if (!w) refuse(middle);
+                 for (std::size_t i = 0; i < w->nodes.size(); ++i) {
+                   give(w->nodes[i], area * w->weight[i], normal, shares);
+                   excess += area * w->weight[i] * std::pow(distance(w->nodes[i], middle), 2);
                  }
                });
     return excess;
+  }
+
+  [[noreturn]] void refuse(const Vec3& p) const {
+    throw std::invalid_argument(fmt::format(
+        "the surface near ({:.4g}, {:.4g}, {:.4g}) m is far from all of the {} nodes on it, which lie {:.3g} m "
+        "apart (allowed: more nodes, by smaller cells or nodes_per_m3, so that thin parts have some)",
+        p[0], p[1], p[2], std::count(at_surface.begin(), at_surface.end(), 1), spacing));
   }
 
   static void give(int node, double area, const Vec3& normal, PatchShares& shares) {
@@ -184,7 +194,8 @@ struct SurfaceInterpolation {
     return found;
   }
 
-  /// Moves `moment` [m^2] times the length of the side ab of a facet inwards, from nodes of areas `unthinned`.
+  /// Moves `moment` [m^2] times the length of the side ab of a facet inwards, from nodes of areas `unthinned`.  Not
+  /// where the face is too narrow to have nodes there.
   void thin(const Vec3& a, const Vec3& b, const Vec3& normal, double moment, const NodalVectors& unthinned,
             PatchShares& shares) const {
     const Vec3 along = (b - a).normalized(), inwards = normal.cross(along);
@@ -202,11 +213,13 @@ struct SurfaceInterpolation {
       };
       const double of_before = weight(before, after), of_after = weight(after, before);
       const double share = of_after / (of_before + of_after);
+      const Vec3 from = (network.X.row(before) + share * (network.X.row(after) - network.X.row(before))).transpose();
+      const std::optional<SurfaceWeights> inside = at(from + spacing * inwards, normal);
+      if (!inside) continue;
       give(before, -area * (1 - share), normal, shares);
       give(after, -area * share, normal, shares);
-      const Vec3 from = (network.X.row(before) + share * (network.X.row(after) - network.X.row(before))).transpose();
-      const SurfaceWeights w = at(from + spacing * inwards, normal);
-      for (std::size_t i = 0; i < w.nodes.size(); ++i) give(w.nodes[i], area * w.weight[i], normal, shares);
+      for (std::size_t i = 0; i < inside->nodes.size(); ++i)
+        give(inside->nodes[i], area * inside->weight[i], normal, shares);
     }
   }
 

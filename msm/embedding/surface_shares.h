@@ -20,12 +20,11 @@ struct SurfaceShares {
 /// of a bar of eight spacings are 2.5 % too large.  By Gauss's theorem that is m times the integral of the normal
 /// derivative along the border of the face.  So at sharp edges between plane faces both give m ds of area times length
 /// to the inside: nodes of the edge lose what the surface one spacing inwards gains (Gregory's end correction).
-/// @throws std::invalid_argument if a part of the surface has no node.
+/// @throws std::invalid_argument naming a place of the surface that has no node nearby.
 SurfaceShares surface_shares(const Region& region, const Network& network);
 
 /// Those of a network whose nodes are the vertices of a body's tetrahedra: of linear fields on the facets, then as
-/// above at the sharp edges.
-/// @throws as above
+/// above at the sharp edges, but for those of faces too narrow to have nodes a spacing inwards.
 SurfaceShares vertex_shares(const Mesh& tetrahedra, const Network& network);
 
 }  // namespace springproof

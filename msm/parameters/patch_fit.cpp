@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "msm/algebra/krylov.h"
 #include "msm/parameters/patch_conditions.h"
@@ -142,6 +143,19 @@ double mean_residual(const PatchDual& dual, const Eigen::VectorXd& t) {
   return (dual.sum(t) - dual.b).norm() / std::sqrt(dual.network.nodes()) / of_face;
 }
 
+/// "near (0.1, 0.02, 0) m": the node whose condition is farthest from being met.
+std::string worst_place(const PatchDual& dual, const Eigen::VectorXd& t) {
+  const Eigen::VectorXd unmet = dual.sum(t) - dual.b;
+  Eigen::Index worst = 0;
+  Eigen::Map<const Eigen::Matrix<double, patch_moments, Eigen::Dynamic>>(unmet.data(), patch_moments,
+                                                                         dual.network.nodes())
+      .colwise()
+      .norm()
+      .maxCoeff(&worst);
+  const Eigen::RowVector3d at = dual.network.X.row(worst);
+  return fmt::format("near ({:.4g}, {:.4g}, {:.4g}) m", at[0], at[1], at[2]);
+}
+
 /// Newton's method with the present slack.
 void minimise(PatchDual& dual, double tolerance, Eigen::VectorXd& y, Eigen::VectorXd& t) {
   double value = dual.objective(y, t);
@@ -186,10 +200,11 @@ void fit_patch(const NodalVectors& area, double shear_modulus, Network& network)
   const Eigen::VectorXd t = fitted(dual);
   const double unmet = mean_residual(dual, t);
   if (!(unmet < largest_unmet))
-    throw std::runtime_error(
-        fmt::format("springs_per_node: no spring constants hold every affine strain in equilibrium at the nodes "
-                    "(mean residual {:.1e}, allowed: {:g}); choose more springs per node or more nodes",
-                    unmet, largest_unmet));
+    throw std::runtime_error(fmt::format(
+        "springs_per_node: no spring constants hold every affine strain in equilibrium at the {} nodes "
+        "(mean residual {:.1e}, allowed: {:g}; worst {}); choose more nodes (smaller cells: thin parts need "
+        "three across) or more springs per node",
+        network.nodes(), unmet, largest_unmet, worst_place(dual, t)));
   for (std::size_t s = 0; s < network.springs.size(); ++s)
     network.springs[s].stiffness = shear_modulus * dual.guess(s) * t[static_cast<Eigen::Index>(s)];
 }
