@@ -129,18 +129,17 @@ int AdviseCommand::check() const {
                                                        check_name_, {pilot_cells_, 20 * pilot_cells_});
   if (judged.empty()) throw InputError(fmt::format("--check: no held-out case is called '{}'", check_name_));
   to_stdout("{:<24}{:>7} {:<12}{:>8}{:>10}{:>10}{:>8}\n", "case", "nu", "model", "cells", "error", "predicted",
-             "ratio");
+            "ratio");
   for (const Judged& j : judged)
-    to_stdout("{:<24}{:>7g} {:<12}{:>8.0f}{:>10.3g}{:>10.3g}{:>8.2f}  {}{}\n", j.truth.case_name,
-               j.truth.poisson_ratio, j.truth.model, j.truth.cells, j.truth.error, j.predicted.error,
-               j.predicted.error / j.truth.error, hit(j.truth, j.predicted) ? "" : "MISS ",
-               j.predicted.beyond ? "extrapolated" : "");
+    to_stdout("{:<24}{:>7g} {:<12}{:>8.0f}{:>10.3g}{:>10.3g}{:>8.2f}  {}{}\n", j.truth.case_name, j.truth.poisson_ratio,
+              j.truth.model, j.truth.cells, j.truth.error, j.predicted.error, j.predicted.error / j.truth.error,
+              hit(j.truth, j.predicted) ? "" : "MISS ", j.predicted.beyond ? "extrapolated" : "");
   const HitRate r = hit_rate(judged);
   const auto share = [](int part, int all) {
     return fmt::format("{} of {} ({:.1f} %)", part, all, 100.0 * part / std::max(1, all));
   };
   to_stdout("within a factor of 1.5: {}; of those extrapolated {}\n", share(r.hits, r.all),
-             share(r.beyond_hits, r.beyond));
+            share(r.beyond_hits, r.beyond));
   to_stdout("within the stated range: {}\n", share(r.inside, r.all));
   return 10 * r.hits >= 9 * r.all ? 0 : 1;
 }

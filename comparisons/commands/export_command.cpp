@@ -84,7 +84,7 @@ int export_calculix(const ExportRequest& request) {
   calculix::write(deck, out);
   write_named_file(file, out.view());
   to_stdout("{}: {} nodes, {} elements {}, nu = {:g}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
-             deck.element, material.poisson_ratio);
+            deck.element, material.poisson_ratio);
   return 0;
 }
 
@@ -216,8 +216,8 @@ std::string parts_of(const SpringsFile& s) {
 
 void report(const fs::path& file, const SpringsFile& s) {
   to_stdout("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(), s.origin.model,
-             s.model.network.nodes(), parts_of(s), s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
-             s.material->poisson_ratio);
+            s.model.network.nodes(), parts_of(s), s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
+            s.material->poisson_ratio);
 }
 
 /// Says so where the cells of a cut body hold something else than the model has by its name.

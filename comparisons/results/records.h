@@ -185,7 +185,7 @@ struct Deformation {
   double poisson_ratio = 0;
   double principal_strain = 0;  ///< [1]
   double rotation_deg = 0;
-  double strained_share = 1;  ///< of the displacement, which errors are relative to (judge/rigid_motion.h) [1]
+  double strained_share = 1;      ///< of the displacement, which errors are relative to (judge/rigid_motion.h) [1]
   Vec3 applied_N = Vec3::Zero();  ///< sum of the loads
   Vec3 reacted_N = Vec3::Zero();  ///< sum of the supports' forces in the reference, on its finest grid
 };

@@ -60,7 +60,8 @@ fem::Request motion_request(const PreparedCase& prepared, const IsotropicMateria
   request.cost = false;
   request.motion = fem::Motion{motion.duration, motion.damping, motion.course,    motion.released,
                                motion.velocity, motion.spin,    motion.viscosity, e.reference.energy_momentum};
-  const Cells fine = e.reference.cells[0] > 0 ? e.reference.cells : divisible_cells(e.body.size, motion_elements, fewest_across(e));
+  const Cells fine =
+      e.reference.cells[0] > 0 ? e.reference.cells : divisible_cells(e.body.size, motion_elements, fewest_across(e));
   for (int g = 0; g < 3; ++g) {
     fem::Discretisation grid{divided(fine, 4 >> g), "q2", e.reference.grading};
     if (e.body.is_voxels()) grid = {{prepared.uncut[g], 0, 0}, "p2", 1.0, g};

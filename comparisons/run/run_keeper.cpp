@@ -42,8 +42,7 @@ std::unique_ptr<nlohmann::json> RunKeeper::find(const std::string& name) const t
 void RunKeeper::keep(const std::string& name, const nlohmann::json& content) const {
   if (children_interrupted()) return;
   fs::create_directories(folder_);
-  write_checked(folder_ / (name + std::string(run_ending)), run_heading,
-                cbor({{"stamp", stamp_}, {"run", content}}));
+  write_checked(folder_ / (name + std::string(run_ending)), run_heading, cbor({{"stamp", stamp_}, {"run", content}}));
 }
 
 void RunKeeper::tell(const std::string& name, const RunCost& expected, std::optional<double> took) const {

@@ -141,7 +141,7 @@ bool write_results(std::vector<CaseResult> results, const std::string& libraries
   const Headline h = headline(results);
   write_report(out / "report.html", h, doc, pictures);
   to_stdout("{}{}report: {}\n", terminal_text(h, choice.verbose), calibration_table(known),
-             (out / "report.html").string());
+            (out / "report.html").string());
   return success(h);
 }
 
