@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "comparisons/report/crack_picture.h"
+#include "comparisons/results/crack_picture.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"

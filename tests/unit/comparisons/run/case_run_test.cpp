@@ -29,8 +29,6 @@ TEST(Measures, DistancesAreWhatTheySay) {
   u.col(0).setConstant(0.1);
   EXPECT_NEAR(displacement_error(u, v, nodal_volumes(mesh)), 0.2, 1e-14);
   EXPECT_NEAR(section_distance(mesh, {{0.5, 0.5, 0.5}, {0, 0, 2}}, u, v), 0.1, 1e-14);
-  u(13, 1) = 0.4;
-  EXPECT_NEAR(displacement_error_max(u, v), std::hypot(0.1, 0.4) / 0.5, 1e-14);
   EXPECT_THROW(section_distance(mesh, {{0, 0, 0.3}, {0, 0, 1}}, u, v), InputError);
   u.col(1).setConstant(-0.3);
   u.col(2).setConstant(7);
