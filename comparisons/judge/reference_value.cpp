@@ -100,6 +100,14 @@ ReferenceValue extrapolate(const std::vector<double>& values, double noise, doub
           order > p ? lucky : richardson};
 }
 
+ReferenceValue finest_of(const std::vector<double>& values, ReferenceValue limit) {
+  const auto [least, most] = std::minmax_element(values.end() - 3, values.end());
+  limit.uncertainty = std::max(limit.uncertainty, coarse_safety_factor * (*most - *least));
+  limit.value = values.back();
+  limit.observed_order.reset();
+  return limit;
+}
+
 ReferenceValue extrapolate_two(double f1, double f2) {
   return {2 * f2 - f1, coarse_safety_factor * std::abs(f2 - f1), {}, "two grids, first order assumed"};
 }

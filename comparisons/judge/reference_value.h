@@ -60,6 +60,10 @@ bool are_refined(const GridRatios& ratios);
 ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order = clamped_order,
                            const GridRatios& ratios = {});
 
+/// The finest of three values beside their limit, at a place where the grids are hardly refined: as for ratios below
+/// smallest_ratio, with 3 times the spread of the three as uncertainty at least.
+ReferenceValue finest_of(const std::vector<double>& values, ReferenceValue limit);
+
 /// Limit from grids of cell sizes h and h/2 alone, first order being assumed (edges of cubes and of supports are
 /// singular): 2 f2 - f1, uncertainty 3 |f2 - f1| (Roache's safety factor for two grids).
 ReferenceValue extrapolate_two(double f1, double f2);

@@ -12,6 +12,7 @@
 #include "comparisons/results/picture.h"
 #include "comparisons/run/case_checks.h"
 #include "comparisons/run/case_motion.h"
+#include "comparisons/run/convergence_cause.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/external.h"
 #include "comparisons/run/external_points.h"
@@ -121,6 +122,7 @@ void build_reference(PartRun& run) {
                            first.element,
                            f.sequence != Sequence::not_converging,
                            f.correlation};
+    if (!record.converging) record.note += "; " + cause_and_remedy(run.prepared, run.material, first, record.measure);
     for (std::size_t g = 0; g < 3; ++g) {
       record.cells.push_back(first.grids[g].grid.cells);
       record.values.push_back(weighted_norm(fields[g] - f.displacement, nodal_volumes(mesh)) / scale.mean);

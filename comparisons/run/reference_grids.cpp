@@ -8,6 +8,8 @@
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
+#include "comparisons/run/convergence_cause.h"
+#include "comparisons/run/rims.h"
 #include "comparisons/run/solve_each.h"
 #include "fem_reference/case_request.h"
 #include "msm/embedding/boundary.h"
@@ -69,6 +71,22 @@ NodalVectors nodal_loads(const PreparedCase& prepared) {
 
 /// Sum of their magnitudes: it does not vanish where the loads balance each other.
 double force_of_loads(const PreparedCase& prepared) { return nodal_loads(prepared).rowwise().norm().sum(); }
+
+/// "tip" of "displacement.tip.x" and "stress.tip.xx"; of other measures nothing.
+std::string probe_of(const std::string& measure) {
+  const std::string kind = kind_of(measure);
+  if (kind != "displacement" && kind != "stress") return {};
+  const std::size_t from = kind.size() + 1;
+  return measure.substr(from, measure.rfind('.') - from);
+}
+
+/// The patch at whose rim each probe lies that lies at one, by the probe's name.
+std::map<std::string, std::string> rims_at_probes(const PreparedCase& prepared) {
+  std::map<std::string, std::string> rims;
+  for (const Probe& p : prepared.experiment.probes)
+    if (const auto rim = rim_near(prepared, p.at)) rims[p.name] = rim->patch;
+  return rims;
+}
 
 /// What the values of a body's measures are large or small beside.
 struct BodyScale {
@@ -271,6 +289,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
   const Experiment& experiment = prepared.experiment;
   const BodyScale body{prepared.size.norm(), e.grids[2].displacement.rowwise().norm().maxCoeff(),
                        force_of_loads(prepared), experiment.materials.front().youngs_modulus};
+  const std::map<std::string, std::string> rims = rims_at_probes(prepared);
   std::map<std::string, ReferenceValue> limits;
   for (const auto& [measure, fine] : values[2]) {
     const double scale = scale_of(measure, values[2], body);
@@ -278,6 +297,11 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
     ReferenceValue& limit = limits[measure];
     limit = extrapolate(sequence, solver_noise * scale, trusted_order(measure, e.element, experiment.reference.smooth),
                         ratios_of(e));
+    if (const auto rim = rims.find(probe_of(measure)); rim != rims.end()) {
+      limit = finest_of(sequence, limit);
+      if (limit.sequence == Sequence::converging)
+        limit.note = fmt::format("finest grid, 3 times the spread of the three: at the rim of patch '{}'", rim->second);
+    }
     limit.matters = std::abs(limit.value) >= 0.1 * scale;
   }
   raise_to_usual(limits);
@@ -305,6 +329,8 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
                        limit.note,
                        e.element,
                        limit.sequence != Sequence::not_converging});
+    if (!records.back().converging && limit.matters)
+      records.back().note += "; " + cause_and_remedy(prepared, material, e, measure);
   }
   if (!experiment.exact.empty())
     for (const ReferenceRecord& r : exact_records(prepared, nu, e))

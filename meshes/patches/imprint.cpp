@@ -11,10 +11,12 @@
 namespace springproof {
 namespace {
 
-constexpr double facets_across = 4;  // of a patch, and of a sphere's radius where its border runs; in the finest mesh
-constexpr double near_end = 0.3;     // of an edge: nodes so near to a border are moved onto it where they can
-constexpr double graze = 0.15;       // of an edge: what less of it reaches into a sphere is left there
-constexpr double sliver = 1e-3;      // of an edge: a plane so near to a face, as a tolerance puts it, runs in the face
+// Facets across a patch in the finest mesh, and along a sphere's radius where its border runs.  A plane is the same
+// border on every mesh, a circle another polygon.
+constexpr double facets_within_planes = 4, facets_within_sphere = 8;
+constexpr double near_end = 0.3;  // of an edge: nodes so near to a border are moved onto it where they can
+constexpr double graze = 0.15;    // of an edge: what less of it reaches into a sphere is left there
+constexpr double sliver = 1e-3;   // of an edge: a plane so near to a face, as a tolerance puts it, runs in the face
 constexpr int most_passes = 30, passes_with_moves = 4;
 
 struct Crossing {
@@ -25,7 +27,9 @@ struct Crossing {
 class Imprint {
  public:
   Imprint(const PatchRule& rule, double coarseness, CutMesh& mesh)
-      : mesh_(mesh), region_(rule_region(rule, mesh.surface())), facets_(facets_across / coarseness) {}
+      : mesh_(mesh),
+        region_(rule_region(rule, mesh.surface())),
+        facets_((region_.sphere ? facets_within_sphere : facets_within_planes) / coarseness) {}
 
   std::size_t into(int patch) {
     refine();

@@ -190,6 +190,59 @@ edge_m = 0.12
   EXPECT_GT(pulled.load_spread, 1e-4);
 }
 
+/// Love (1929): the difference of the displacement under a disc from that of its centre does not depend on the body,
+/// but for the cube of the disc's radius over the body's size.
+TEST(RulePatchesOfTheReference, AProbeAtTheRimOfASmallDiscIsAsCertainAsItSays) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
+  const double p = 1e4, E = 1e6, nu = 0.3, a = 0.05;
+  const PreparedCase prepared = prepare(parse_experiment(R"([body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+voxels = 300
+[[patch]]
+name = "disc"
+near = { point_m = [0.5, 0.5, 1], radius_m = 0.05 }
+[material]
+youngs_modulus_Pa = 1e6
+poisson_ratio = 0.3
+[[load]]
+on = "z_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "disc"
+pressure_Pa = 1e4
+[[probe]]
+name = "centre"
+at_m = [0.5, 0.5, 1]
+[[probe]]
+name = "east"
+at_m = [0.55, 0.5, 1]
+[[probe]]
+name = "north"
+at_m = [0.5, 0.55, 1]
+[[probe]]
+name = "askew"
+at_m = [0.53, 0.46, 1]
+[compare]
+models = []
+measures = ["probe"]
+[reference]
+elements = ["p2"]
+edge_m = 0.12
+)",
+                                                         "disc.toml"));
+  const ReferenceGrids grids = solve_body_grids(prepared, prepared.experiment.materials[0]);
+  ASSERT_EQ(grids.failure, "");
+  const auto limits = limits_of(prepared, grids.elements[0]);
+  const auto probe = [&](const std::string& name) { return limits.at("displacement." + name + ".z"); };
+  const double exact = (2 - 4 / M_PI) * (1 - nu * nu) * p * a / E;
+  for (const char* name : {"east", "north", "askew"}) {
+    const double difference = probe(name).value - probe("centre").value;
+    EXPECT_NEAR(difference, exact, probe(name).uncertainty + probe("centre").uncertainty) << name;
+    EXPECT_FALSE(probe(name).observed_order) << name << ": " << probe(name).note;
+  }
+}
+
 TEST(RulePatchReactions, AreTheRulesForceInLinearAndQuadraticElementsAndOnCubes) {
   if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
   for (const RuleCase& c : {cases[0], cases[4]}) {

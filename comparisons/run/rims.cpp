@@ -1,0 +1,64 @@
+#include "comparisons/run/rims.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "meshes/patches/rim.h"
+#include "meshes/volume.h"
+
+namespace springproof {
+namespace {
+
+std::set<std::string> patches_of_loads(const Experiment& e) {
+  std::set<std::string> names;
+  for (const Load& load : e.loads)
+    if (const std::string* on = patch_of(load)) names.insert(*on);
+  return names;
+}
+
+/// The rim of a patch on the finest mesh.
+std::vector<RimEdge> rim_of(const PreparedCase& prepared, const std::string& name) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  return rim_of(body, patch(body, name));
+}
+
+double distance(const Vec3& p, const RimEdge& e) {
+  const Vec3 along = e.b - e.a;
+  const double t = std::clamp(along.dot(p - e.a) / along.squaredNorm(), 0.0, 1.0);
+  return (p - e.a - t * along).norm();
+}
+
+}  // namespace
+
+double element_size(const PreparedCase& prepared) {
+  const Mesh& body = *prepared.tetrahedra.back();
+  return std::cbrt(6 * std::sqrt(2.0) * volume(body, body.nodes) / prepared.uncut.back());
+}
+
+std::optional<NearRim> rim_near(const PreparedCase& prepared, const Vec3& point) {
+  std::optional<NearRim> nearest;
+  if (prepared.tetrahedra.empty()) return nearest;
+  const double element = element_size(prepared);
+  for (const std::string& name : patches_of_loads(prepared.experiment)) {
+    const std::vector<RimEdge> rim = rim_of(prepared, name);
+    if (ends_at_edges(rim)) continue;
+    NearRim here{name, std::numeric_limits<double>::infinity()};
+    for (const RimEdge& e : rim) here.distance = std::min(here.distance, distance(point, e));
+    if (here.distance < element && (!nearest || here.distance < nearest->distance)) nearest = here;
+  }
+  return nearest;
+}
+
+std::vector<std::string> ragged_patches(const PreparedCase& prepared) {
+  std::vector<std::string> ragged;
+  const Experiment& e = prepared.experiment;
+  const std::set<std::string> loaded = patches_of_loads(e);
+  for (const PatchRule& rule : e.patches)
+    if (rule.facing && loaded.contains(rule.name) && !ends_at_edges(rim_of(prepared, rule.name)))
+      ragged.push_back(rule.name);
+  return ragged;
+}
+
+}  // namespace springproof

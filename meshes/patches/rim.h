@@ -1,0 +1,23 @@
+// The rim of a patch: where it ends on the surface of the body.
+#pragma once
+
+#include <vector>
+
+#include "meshes/mesh.h"
+
+namespace springproof {
+
+/// An edge of facets, between one that is in the patch and one that is not.
+struct RimEdge {
+  Vec3 a, b;        ///< its ends [m]
+  double turn = 0;  ///< angle between the normals of the two facets [rad]; 0 where the patch lies within the body
+};
+
+/// The rim of a patch of the mesh; none where the patch is closed.
+std::vector<RimEdge> rim_of(const Mesh& mesh, const Patch& patch);
+
+/// Whether the patch ends at edges of the body only, where its surface turns by 30 degrees or more: then it ends at the
+/// same place on every mesh of the body.
+bool ends_at_edges(const std::vector<RimEdge>& rim);
+
+}  // namespace springproof
