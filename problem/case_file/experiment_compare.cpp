@@ -250,6 +250,18 @@ Expectation read_expectation(const TomlValue& value, const Experiment& experimen
   return expect;
 }
 
+// Trilinear elements take about a second for so many cells, and ten times as long as springs: beside the models of
+// larger lattices they run where the case asks for them.
+constexpr double most_cells_with_elements = 20000;
+
+/// Of the finest lattice, as far as the case file tells.
+double most_cells(const Body& body) {
+  double most = 0;
+  for (const Cells& cells : body.cells) most = std::max(most, double(cells[0]) * cells[1] * cells[2]);
+  for (const int voxels : body.voxel_counts) most = std::max(most, double(voxels));
+  return most;
+}
+
 void read_compare_table(const TomlValue& value, const TomlTable& document, Experiment& experiment) {
   const TomlTable table(value, compare_schema);
   if (const auto models = table.find("models")) experiment.models = read_models(*models, document);
@@ -302,6 +314,7 @@ double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) 
 void read_compare(const TomlTable& document, Experiment& experiment) {
   experiment.models = {{"hybmss", {}, "hybmss", {experiment.file.string(), 0, 0}}};
   experiment.measures = experiment.fracture ? std::vector<std::string>{"fracture"} : default_measures;
+  if (most_cells(experiment.body) > most_cells_with_elements) experiment.elements.clear();
   if (const auto value = document.find("compare")) read_compare_table(*value, document, experiment);
   if (experiment.dynamics) experiment.models = with_motions(experiment.models, *experiment.dynamics);
   read_externals(document, experiment);

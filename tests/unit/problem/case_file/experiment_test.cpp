@@ -50,6 +50,17 @@ TEST(Experiment, SmallestCaseHasTheDefaults) {
   EXPECT_TRUE(e.probes.empty() && e.expectations.empty() && e.published.empty());
 }
 
+TEST(Experiment, ElementsBesideTheModelsOfLargeLatticesAreAskedFor) {
+  const auto elements_at = [](const std::string& cells, const std::string& more = "") {
+    std::string text = small_case;
+    const auto at = text.find("cells = [2, 2, 5]");
+    return parse(text.replace(at, 17, "cells = " + cells) + more).elements;
+  };
+  EXPECT_EQ(elements_at("[20, 20, 50]"), (std::vector<std::string>{"q1"}));
+  EXPECT_TRUE(elements_at("[[2, 2, 5], [24, 24, 60]]").empty());
+  EXPECT_EQ(elements_at("[24, 24, 60]", "[compare]\nelements = [\"q1\"]\n"), (std::vector<std::string>{"q1"}));
+}
+
 TEST(Experiment, AMovedSupportBringsTheReactionError) {
   const auto measures_with = [](const std::string& load, const std::string& more = "") {
     std::string text = small_case;
