@@ -203,12 +203,15 @@ TEST(ExpectedSeconds, OfABlockNeedNoMesh) {
 }
 
 TEST(ExpectedSeconds, OfVoxelsGrowWithTheirNumberBeforeTheyAreMeshed) {
-  const auto seconds = [](const std::string& body) {
-    const Experiment e = parse_experiment(case_text(body, 0.3), "case.toml");
+  const auto seconds = [](const std::string& body, const std::string& more = "") {
+    const Experiment e = parse_experiment(case_text(body, 0.3) + more, "case.toml");
     return unmeshed_seconds(e, e.materials[0]);
   };
-  const double few = seconds("geo = \"beam.geo\"\nsize_m = [1, 1, 1]\nvoxels = 500");
-  EXPECT_GT(seconds("geo = \"beam.geo\"\nsize_m = [1, 1, 1]\nvoxels = 5000"), 3 * few);
+  const std::string few_voxels = "geo = \"beam.geo\"\nsize_m = [1, 1, 1]\nvoxels = 500",
+                    parts = "parts = true\n";  // of [compare]
+  const double few = seconds(few_voxels);
+  EXPECT_GT(seconds(few_voxels + "0"), few);
+  EXPECT_GT(seconds(few_voxels + "0", parts), 3 * seconds(few_voxels, parts));
   EXPECT_NEAR(seconds("geo = \"beam.geo\"\nsize_m = [1, 1, 1]\nvoxel_edge_m = 0.1"), few, 0.01 * few);
   EXPECT_GT(seconds("geo = \"beam.stl\"\nvoxel_edge_m = 0.1"), few);
 }
