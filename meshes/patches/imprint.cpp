@@ -13,7 +13,7 @@ namespace {
 
 // Facets across a patch in the finest mesh, and along a sphere's radius where its border runs.  A plane is the same
 // border on every mesh, a circle another polygon.
-constexpr double facets_within_planes = 4, facets_within_sphere = 8;
+constexpr double facets_within_planes = 4, facets_within_sphere = 6;
 constexpr double near_end = 0.3;  // of an edge: nodes so near to a border are moved onto it where they can
 constexpr double graze = 0.15;    // of an edge: what less of it reaches into a sphere is left there
 constexpr double sliver = 1e-3;   // of an edge: a plane so near to a face, as a tolerance puts it, runs in the face

@@ -81,7 +81,7 @@ body_with_fem() {
   local name=$1 file=$2 scale=$3 low=$4 high=$5 edge=$6
   [ -n "$fem" ] || return
   case_file "$file" "$scale" "$low" "$high" 800 "edge_m = $edge" >"$work/$name-fem.toml"
-  runs "$name-fem" 10
+  runs "$name-fem" 8
   compgen -G "$work/out-$name-fem/vtu/*/reference_p2_nu0.3.vtu" >/dev/null || fail "$name-fem: no file of the reference on its own mesh"
 }
 
