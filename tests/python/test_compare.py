@@ -141,9 +141,9 @@ def test_a_function_is_a_model():
 
 
 def test_a_function_on_its_own_nodes_in_a_case_file_and_a_body(tmp_path):
-    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, 1)]) * 0.1
+    corners = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]) * 0.1
     text = "solid t\n"
-    for facet in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)):
+    for facet in ((0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)):
         text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex {} {} {}\n".format(*corners[i]) for i in facet) + "endloop\nendfacet\n"
     (tmp_path / "t.stl").write_text(text + "endsolid t\n")
     case = tmp_path / "own.toml"
@@ -157,6 +157,7 @@ beyond = { point_m = [0, 0, 0.005], normal = [0, 0, -1] }
 [material]
 youngs_modulus_Pa = 1e4
 poisson_ratio = 0.3
+density_kg_m3 = 1000
 [[load]]
 on = "foot"
 displacement_m = [0, 0, 0]
@@ -170,22 +171,16 @@ models = ["hybmss_avg"]
 measures = ["probe"]
 [reference]
 elements = []
-[[expect]]
-model = "mine"
-measure = "displacement.middle.x"
-source = "analytic"
-value = 3e-5
-within = 1e-9
-where = "the function"
 """)
 
     def mine(body, material, loads):
         points = np.vstack([body.nodes, body.nodes[body.tetrahedra].mean(1)])
         weight = loads.forces[:, 2].sum()
-        assert weight == pytest.approx(-9.81 * 1000 * 0.1**3 / 6, rel=1e-6) and len(body.patches["foot"]) > 5
+        assert weight == pytest.approx(-9.81 * 1000 * 0.1**3, rel=1e-6) and len(body.patches["foot"]) > 5
         return points, 1e-3 * points
 
-    assert sp.compare(case, models={"mine": mine})  # warns, and so fails, where the expectation does not hold
+    rows = [row for row in sp.compare(case, models={"mine": mine}) if row["model"] == "mine"]
+    assert next(row["value"] for row in rows if row["measure"] == "displacement.middle.x") == pytest.approx(3e-5, rel=1e-3)
 
 
 def test_what_a_function_raises_reaches_the_caller():
