@@ -11,6 +11,8 @@
 namespace springproof {
 namespace {
 
+constexpr double least_bend = 1e-6;  // angle between normals [rad]: less of it is a face that a rim runs across
+
 std::set<std::string> patches_of_loads(const Experiment& e) {
   std::set<std::string> names;
   for (const Load& load : e.loads)
@@ -56,8 +58,11 @@ std::vector<std::string> ragged_patches(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   const std::set<std::string> loaded = patches_of_loads(e);
   for (const PatchRule& rule : e.patches)
-    if (rule.facing && loaded.contains(rule.name) && !ends_at_edges(rim_of(prepared, rule.name)))
-      ragged.push_back(rule.name);
+    if (rule.facing && loaded.contains(rule.name)) {
+      std::vector<RimEdge> rim = rim_of(prepared, rule.name);
+      std::erase_if(rim, [](const RimEdge& edge) { return edge.turn < least_bend; });  // another condition's plane
+      if (!ends_at_edges(rim)) ragged.push_back(rule.name);
+    }
   return ragged;
 }
 

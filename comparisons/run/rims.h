@@ -22,8 +22,8 @@ struct NearRim {
 /// The nearest such rim, or nothing.  Rims along edges of the body count as none: they are the same on every mesh.
 std::optional<NearRim> rim_near(const PreparedCase& prepared, const Vec3& point);
 
-/// Loaded or held patches that are chosen by their facets' normals and end elsewhere than at edges of the body: their
-/// border differs from mesh to mesh.
+/// Loaded or held patches that are chosen by their facets' normals and end on a curved surface, at no edge of the
+/// body: their border differs from mesh to mesh.
 std::vector<std::string> ragged_patches(const PreparedCase& prepared);
 
 }  // namespace springproof
