@@ -94,7 +94,7 @@ done
 grep -q 'finite elements, q' "$work/results" && fail "the live line went to standard output"
 gone_at_the_end "the live line is left behind"
 : >"$work/log"
-script -qefc "stty cols 200; '$program' compare '$work/minutes.toml' --jobs 1 --out '$work/out' & until grep -q 'finite elements, ' '$work/log'; do sleep 0.1; done; kill -INT \$!; wait \$!" "$work/log" >/dev/null
+script -qefc "stty cols 200; '$program' compare '$work/minutes.toml' --jobs 1 --out '$work/out' & until grep -q 'finite elements[,] ' '$work/log'; do sleep 0.1; done; kill -INT \$!; wait \$!" "$work/log" >/dev/null
 [ $? -eq 130 ] || fail "an interrupted run on a terminal should end with 130"
 gone_at_the_end "an interrupt leaves the live line behind"
 
