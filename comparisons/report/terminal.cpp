@@ -15,17 +15,8 @@ using namespace words;
 constexpr const char* row_format = "  {:<22} {:>13} {:<25} {:>8} {:>7} {:>11} {:>7}\n";
 
 /// At most `most` letters; a longer text ends in "…".
-std::string fitted(const std::string& text, std::size_t most) {
-  std::size_t letters = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if ((text[i] & 0xc0) == 0x80) continue;  // not the first byte of a letter in UTF-8
-    if (++letters == most && i + 1 < text.size()) {
-      const bool last = std::none_of(text.begin() + static_cast<std::ptrdiff_t>(i) + 1, text.end(),
-                                     [](char c) { return (c & 0xc0) != 0x80; });
-      return last ? text : text.substr(0, i) + "…";
-    }
-  }
-  return text;
+std::string fitted(const std::string& text, int most) {
+  return fmt::format("{:.{}}", text, most) == text ? text : fmt::format("{:.{}}…", text, most - 1);
 }
 
 std::string largest_text(const ByNu& errors) {

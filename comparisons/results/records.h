@@ -63,7 +63,7 @@ struct Run : RunKey {
                               ///< with `cost` the growth due to the run
   double set_up_seconds = 0;  ///< CPU time from the mesh in memory to that system
   std::optional<Stability> stability = {};  ///< of models that are lattices of cells
-  std::size_t filled = 0;                   ///< number of its cells, or of those cut by its body, in the body
+  std::size_t filled = 0;                   ///< number of its cells in the body, cut ones counted whole; 0: unknown
 };
 
 /// Uncertainty of the reference for one measure: three grids, observed order, Richardson limit, GCI.

@@ -1,17 +1,13 @@
 #include "comparisons/run/case_run.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "comparisons/judge/deformation.h"
 #include "comparisons/judge/line_measure.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/results/picture.h"
-#include "comparisons/run/case_checks.h"
 #include "comparisons/run/case_motion.h"
+#include "comparisons/run/case_rows.h"
 #include "comparisons/run/convergence_cause.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/external.h"
@@ -21,14 +17,10 @@
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_body.h"
 #include "comparisons/run/voxel_reference.h"
-#include "meshes/mesher/mesher.h"
-#include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
-#include "problem/system/child.h"
 #include "problem/system/files.h"
-#include "problem/system/progress.h"
 
 namespace springproof {
 namespace {
@@ -142,97 +134,6 @@ void measure_deformation(PartRun& run) {
   record.applied_N = sum_of_loads(run.prepared);
   for (const PatchReaction& r : run.grids.elements.front().grids.back().reactions) record.reacted_N += r.force;
   run.part.deformations.push_back(record);
-}
-
-/// Distances from the reference field [their units].
-std::map<std::string, double> distances(const PartRun& run, std::size_t lattice, const NodalVectors& u) {
-  const Mesh& mesh = run.mesh(lattice);
-  const NodalVectors& v = run.reference[lattice]->field.displacement;
-  const DisplacementScale& scale = run.reference[lattice]->scale;
-  std::map<std::string, double> out = {{"displacement_error", weighted_norm(u - v, nodal_volumes(mesh)) / scale.mean},
-                                       {"displacement_error_max", (u - v).rowwise().norm().maxCoeff() / scale.largest}};
-  if (run.experiment().section) {
-    out["section_distance"] = section_distance(mesh, *run.experiment().section, u, v);
-    out["section_axis_distance"] = section_axis_distance(mesh, *run.experiment().section, u, v);
-  }
-  return out;
-}
-
-/// Mean and standard deviation of a measure over the samples that have it.
-void set_value(const std::vector<std::map<std::string, double>>& samples, const std::string& measure, Row& row) {
-  double sum = 0, squares = 0;
-  row.samples = 0;
-  for (const auto& sample : samples) {
-    const auto at = sample.find(measure);
-    if (at == sample.end()) continue;
-    ++row.samples;
-    sum += at->second;
-    squares += at->second * at->second;
-  }
-  row.value = sum / row.samples;
-  if (row.samples > 1) row.spread = std::sqrt(std::max(0.0, squares - sum * row.value) / (row.samples - 1));
-}
-
-std::set<std::string> measures_in(const std::vector<std::map<std::string, double>>& samples) {
-  std::set<std::string> names;
-  for (const auto& sample : samples)
-    for (const auto& [measure, value] : sample) names.insert(measure);
-  return names;
-}
-
-/// Distances from the reference, one of each measure for each sample, as rows whose best value is 0.
-void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<std::string, double>>& samples,
-                   const std::map<std::string, double>& uncertainty) {
-  for (const std::string& measure : measures_in(samples)) {
-    if (!wanted(measure, run.experiment().measures)) continue;
-    Row row = blank;
-    row.measure = measure;
-    set_value(samples, measure, row);
-    row.unit = unit_of(measure);
-    row.reference = 0.0;
-    row.reference_uncertainty = uncertainty.at(measure);
-    row.error = row.value;
-    run.part.rows.push_back(row);
-  }
-}
-
-/// One displacement field and one set of scalars per sample.
-void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
-              const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
-  const auto* reference = reference_at_rest(run, lattice, model);
-  const Row blank{run.key(model, lattice), run.experiment().name, kinematics, "", 0, "", {}, {}, {}, 1, {}};
-  for (const std::string& measure : measures_in(scalars)) {
-    if (!wanted(measure, run.experiment().measures)) continue;
-    Row row = blank;
-    row.measure = measure;
-    set_value(scalars, measure, row);
-    row.unit = unit_of(measure);
-    if (is_deviation(measure)) row.error = row.value;
-    if (reference && reference->scalars.contains(measure) && comparable(run.prepared, measure)) {
-      const ReferenceValue& r = reference->scalars.at(measure);
-      row.reference = r.value;
-      row.reference_uncertainty = r.uncertainty;
-      row.error = row.value - r.value;
-    }
-    run.part.rows.push_back(row);
-  }
-  if (!reference) return;
-  // The nodal uncertainty of the reference, expressed in the same measures.
-  NodalVectors doubt = reference->field.displacement;
-  doubt.col(0) += reference->field.nodal_uncertainty;
-  const auto of_sample = [&](const NodalVectors& field, const std::map<std::string, double>& values) {
-    std::map<std::string, double> out = distances(run, lattice, field);
-    const auto reaction = reaction_error(run.prepared, values, reference->scalars);
-    if (reaction) out["reaction_error"] = reaction->error;
-    return out;
-  };
-  std::vector<std::map<std::string, double>> of_samples;
-  for (std::size_t s = 0; s < u.size(); ++s) of_samples.push_back(of_sample(u[s], scalars[s]));
-  const std::size_t first = run.part.rows.size();
-  add_distances(run, blank, of_samples, of_sample(doubt, values_of(reference->scalars, 1)));
-  for (std::size_t r = first; r < run.part.rows.size(); ++r)
-    if (run.part.rows[r].measure == "reaction_error")
-      run.part.rows[r].of = reaction_error(run.prepared, scalars.front(), reference->scalars)->of;
 }
 
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {

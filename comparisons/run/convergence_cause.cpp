@@ -16,7 +16,6 @@ namespace {
 
 constexpr double locks_above = 0.4;         // Poisson's ratio, of linear elements
 constexpr double differing_surface = 1e-3;  // of the volume, between the two finest meshes
-constexpr int fewest_across = 8;            // cells of the finest of three grids: two of the coarsest
 
 struct Question {
   const PreparedCase& prepared;
@@ -53,14 +52,14 @@ Clause element_that_locks(const Question& q) {
 }
 
 Clause probe_at_a_rim(const Question& q) {
-  for (const Probe& p : q.prepared.experiment.probes) {
-    if (q.measure.find('.' + p.name + '.') == std::string::npos) continue;
-    if (const auto rim = rim_near(q.prepared, p.at))
+  std::vector<Probe> probes = q.prepared.experiment.probes;
+  std::erase_if(probes, [&](const Probe& p) { return q.measure.find('.' + p.name + '.') == std::string::npos; });
+  for (const auto& rim : rims_near(q.prepared, probes))
+    if (rim)
       return fmt::format(
           "the probe lies {:.2g} m from the rim of patch '{}', less than an element ({:.2g} m): move it "
           "away, or {}",
           rim->distance, rim->patch, element_size(q.prepared), finer_grid(q));
-  }
   return {};
 }
 
@@ -87,7 +86,7 @@ Clause differing_rim(const Question& q) {
 
 Clause coarse_across(const Question& q) {
   const Cells& cells = q.grids.grids.back().grid.cells;
-  if (q.voxels() || std::none_of(cells.begin(), cells.end(), [](int n) { return n > 1 && n < fewest_across; }))
+  if (q.voxels() || std::none_of(cells.begin(), cells.end(), [](int n) { return n > 1 && n < two_on_the_coarsest; }))
     return {};
   return fmt::format("the coarsest grid has one cell across: {}", finer_cells(cells));
 }

@@ -82,9 +82,11 @@ std::string probe_of(const std::string& measure) {
 
 /// The patch at whose rim each probe lies that lies at one, by the probe's name.
 std::map<std::string, std::string> rims_at_probes(const PreparedCase& prepared) {
+  const std::vector<Probe>& probes = prepared.experiment.probes;
+  const std::vector<std::optional<NearRim>> near = rims_near(prepared, probes);
   std::map<std::string, std::string> rims;
-  for (const Probe& p : prepared.experiment.probes)
-    if (const auto rim = rim_near(prepared, p.at)) rims[p.name] = rim->patch;
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    if (near[i]) rims[probes[i].name] = near[i]->patch;
   return rims;
 }
 
@@ -157,7 +159,7 @@ int fewest_across(const Experiment& e) {
   constexpr double pressures_above = 0.4;  // Poisson's ratio; of quadratic elements
   const bool any = std::any_of(e.materials.begin(), e.materials.end(),
                                [](const IsotropicMaterial& m) { return m.poisson_ratio > pressures_above; });
-  return any ? 8 : 4;
+  return any ? two_on_the_coarsest : two_on_the_coarsest / 2;
 }
 
 Cells divisible_cells(const Vec3& size, double elements, int fewest) {
@@ -283,9 +285,19 @@ void widen(double spread, ReferenceField& field) {
   field.nodal_uncertainty += spread * field.displacement.rowwise().norm();
 }
 
-std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
+namespace {
+
+/// Every scalar measure on each grid.
+std::vector<std::map<std::string, double>> measures_on_grids(const PreparedCase& prepared, const ElementGrids& e) {
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
+  return values;
+}
+
+}  // namespace
+
+std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
+  const std::vector<std::map<std::string, double>> values = measures_on_grids(prepared, e);
   const Experiment& experiment = prepared.experiment;
   const BodyScale body{prepared.size.norm(), e.grids[2].displacement.rowwise().norm().maxCoeff(),
                        force_of_loads(prepared), experiment.materials.front().youngs_modulus};
@@ -313,11 +325,12 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
                                         const ElementGrids& e) {
   const Experiment& experiment = prepared.experiment;
   const double nu = material.poisson_ratio;
+  const std::vector<std::map<std::string, double>> values = measures_on_grids(prepared, e);
   std::vector<ReferenceRecord> records;
   for (const auto& [measure, limit] : limits_of(prepared, e)) {
     if (!wanted(measure, experiment.measures) || !comparable(prepared, measure)) continue;
     std::vector<double> sequence;
-    for (const fem::Solution& s : e.grids) sequence.push_back(measures_of(prepared, s).at(measure));
+    for (const auto& on_grid : values) sequence.push_back(on_grid.at(measure));
     records.push_back({nu,
                        measure,
                        unit_of(measure),

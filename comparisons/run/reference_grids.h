@@ -47,6 +47,9 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
 /// A coarser grid; a direction of one cell (plane strain) is not divided.
 Cells divided(const Cells& cells, int divisor);
 
+/// Cells of the finest of three grids, so that the coarsest has two of them.
+inline constexpr int two_on_the_coarsest = 8;
+
 /// The fewest cells in any direction on the finest of three grids: 4, and near nu = 1/2 8.  There a coarsest grid of
 /// one cell across, with pressures of its own, is too soft, and the sequence has no order.
 int fewest_across(const Experiment& experiment);

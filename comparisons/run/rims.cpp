@@ -39,16 +39,18 @@ double element_size(const PreparedCase& prepared) {
   return std::cbrt(6 * std::sqrt(2.0) * volume(body, body.nodes) / prepared.uncut.back());
 }
 
-std::optional<NearRim> rim_near(const PreparedCase& prepared, const Vec3& point) {
-  std::optional<NearRim> nearest;
-  if (prepared.tetrahedra.empty()) return nearest;
+std::vector<std::optional<NearRim>> rims_near(const PreparedCase& prepared, const std::vector<Probe>& probes) {
+  std::vector<std::optional<NearRim>> nearest(probes.size());
+  if (prepared.tetrahedra.empty() || probes.empty()) return nearest;
   const double element = element_size(prepared);
   for (const std::string& name : patches_of_loads(prepared.experiment)) {
     const std::vector<RimEdge> rim = rim_of(prepared, name);
     if (ends_at_edges(rim)) continue;
-    NearRim here{name, std::numeric_limits<double>::infinity()};
-    for (const RimEdge& e : rim) here.distance = std::min(here.distance, distance(point, e));
-    if (here.distance < element && (!nearest || here.distance < nearest->distance)) nearest = here;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+      NearRim here{name, std::numeric_limits<double>::infinity()};
+      for (const RimEdge& e : rim) here.distance = std::min(here.distance, distance(probes[i].at, e));
+      if (here.distance < element && (!nearest[i] || here.distance < nearest[i]->distance)) nearest[i] = here;
+    }
   }
   return nearest;
 }

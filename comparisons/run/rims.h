@@ -19,8 +19,9 @@ struct NearRim {
   double distance = 0;  ///< [m]
 };
 
-/// The nearest such rim, or nothing.  Rims along edges of the body count as none: they are the same on every mesh.
-std::optional<NearRim> rim_near(const PreparedCase& prepared, const Vec3& point);
+/// The nearest such rim to each of the probes, or nothing.  Rims along edges of the body count as none: they are the
+/// same on every mesh.
+std::vector<std::optional<NearRim>> rims_near(const PreparedCase& prepared, const std::vector<Probe>& probes);
 
 /// Loaded or held patches that are chosen by their facets' normals and end on a curved surface, at no edge of the
 /// body: their border differs from mesh to mesh.

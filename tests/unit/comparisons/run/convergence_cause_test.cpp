@@ -109,11 +109,11 @@ TEST(Rims, OfPatchesByNormalsDifferOnCurvedBodiesOnly) {
       << "they end at edges of the body, and at a plane across its upper face";
   const PreparedCase prepared = prepare(parse_experiment(case_of(ball, "edge_m = 0.2", 0.3), "ball.toml"));
   EXPECT_EQ(ragged_patches(prepared), std::vector<std::string>{"high"});
-  const auto near = rim_near(prepared, Vec3(0.9, 0.5, 0.25));
-  ASSERT_TRUE(near);
-  EXPECT_EQ(near->patch, "low");
-  EXPECT_NEAR(near->distance, 0.05, 0.03);
-  EXPECT_FALSE(rim_near(prepared, Vec3(0.5, 0.5, 0.5)));
+  const auto near = rims_near(prepared, {{"side", Vec3(0.9, 0.5, 0.25)}, {"middle", Vec3(0.5, 0.5, 0.5)}});
+  ASSERT_TRUE(near.at(0));
+  EXPECT_EQ(near[0]->patch, "low");
+  EXPECT_NEAR(near[0]->distance, 0.05, 0.03);
+  EXPECT_FALSE(near.at(1));
 }
 
 }  // namespace
