@@ -11,6 +11,7 @@
 #include "comparisons/run/convergence_cause.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/external.h"
+#include "comparisons/run/first_verdict.h"
 #include "comparisons/run/external_points.h"
 #include "comparisons/run/model_samples.h"
 #include "comparisons/run/motion_reference.h"
@@ -43,7 +44,11 @@ Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model
 /// Runs the finite elements.
 void run_fem(PartRun& run) {
   const auto solve = run.experiment().body.is_voxels() ? solve_body_grids : solve_grids;
-  run.grids = solve(run.prepared, run.material, run.vtu, run.keeper);
+  // Of runs that nobody keeps the models are not solved yet.
+  const auto say_first_verdict = [&run](const NodalVectors& u) {
+    if (run.keeper.keeps()) run.keeper.say(first_verdict(run, u));
+  };
+  run.grids = solve(run.prepared, run.material, run.vtu, run.keeper, say_first_verdict);
   if (run.grids.elements.empty())
     run.part.runs.push_back(
         {run.key("fem_" + run.experiment().reference.elements.front(), run.prepared.reference_cells), "fem",

@@ -186,7 +186,7 @@ std::string with_note(const ElementGrids& e, const std::string& note) {
 }
 
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu,
-                           const RunKeeper& keeper) {
+                           const RunKeeper& keeper, const CoarsestField& coarsest) {
   const Experiment& experiment = prepared.experiment;
   fem::Request request = fem::request_of(experiment, material);
   request.points = sample_points(prepared);
@@ -204,7 +204,9 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
           lattices.push_back(i);
         }
   try {
-    const std::vector<fem::Solution> solutions = solve_each(request, keeper);
+    const std::vector<fem::Solution> solutions = solve_each(request, keeper, [&](std::size_t g, const auto& s) {
+      if (coarsest && g == 0) coarsest(s.displacement);
+    });
     ReferenceGrids out;
     auto at = solutions.begin();
     for (const std::string& element : experiment.reference.elements) {

@@ -1,6 +1,7 @@
 // The finite element reference on its grids: requests, and limits from three grids of one element.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,12 +38,15 @@ struct ReferenceGrids {
   std::string failure;                              ///< why there is no result
 };
 
+/// Called with the displacement at the nodes of all lattices on the coarsest grid, before the others are solved.
+using CoarsestField = std::function<void(const NodalVectors& displacement)>;
+
 /// Solves on the grids of a block (for a body of voxels: solve_body_grids).  Displacements are requested at the nodes
 /// of every lattice and at the measured points, stresses at the probes if the case measures them. An element without a
 /// result on some graded grid is solved on uniform ones; an element on which the program fails does not affect the
 /// others.  The finest grid of each element of [reference] leaves a file in `vtu`.
 ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu = {},
-                           const RunKeeper& keeper = {});
+                           const RunKeeper& keeper = {}, const CoarsestField& coarsest = {});
 
 /// A coarser grid; a direction of one cell (plane strain) is not divided.
 Cells divided(const Cells& cells, int divisor);

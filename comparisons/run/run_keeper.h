@@ -33,9 +33,12 @@ class RunKeeper {
 
   RunKeeper() = default;  ///< keeps nothing and tells nobody
 
+  /// What is known before the part is finished, in words.
+  using Sayer = std::function<void(const std::string& words)>;
+
   /// @param folder for the files, made when it is needed
   /// @param stamp identifies the inputs: runs of others are not taken
-  RunKeeper(std::filesystem::path folder, std::string stamp, Listener listener);
+  RunKeeper(std::filesystem::path folder, std::string stamp, Listener listener, Sayer sayer = {});
 
   bool keeps() const { return !folder_.empty(); }
 
@@ -54,6 +57,10 @@ class RunKeeper {
     return result;
   }
 
+  void say(const std::string& words) const {
+    if (sayer_) sayer_(words);
+  }
+
   /// Removes what is kept.
   void forget() const;
 
@@ -65,6 +72,7 @@ class RunKeeper {
   std::filesystem::path folder_;
   std::string stamp_;
   Listener listener_;
+  Sayer sayer_;
   mutable std::set<std::string> told_;
 };
 

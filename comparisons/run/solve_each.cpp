@@ -60,7 +60,7 @@ fem::Solution solve_one(const fem::Request& request, const RunKeeper& keeper) {
 
 }  // namespace
 
-std::vector<fem::Solution> solve_each(const fem::Request& request, const RunKeeper& keeper) {
+std::vector<fem::Solution> solve_each(const fem::Request& request, const RunKeeper& keeper, const Solved& solved) {
   std::vector<fem::Solution> solutions(request.grids.size());
   std::map<std::string, std::string> lost;  // elements that the program died of, and how
   std::map<std::pair<std::string, double>, bool> hopeless;
@@ -87,6 +87,7 @@ std::vector<fem::Solution> solve_each(const fem::Request& request, const RunKeep
     }
     solutions[g].grid = request.grids[g];
     hopeless[{element, grading}] |= !solutions[g].ok;
+    if (solved && solutions[g].ok) solved(g, solutions[g]);
   }
   if (first && thrown == solutions.size()) std::rethrow_exception(first);
   return solutions;

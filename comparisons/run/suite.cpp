@@ -131,6 +131,8 @@ std::vector<std::vector<RunCost>> expected(const std::vector<Task>& tasks) {
   return runs;
 }
 
+constexpr double shortest_with_estimate = 60;  // [s]: shorter runs say nothing until they end
+
 /// Shows the running parts and prints those finished, with the time left; thread-safe.
 class Progress {
  public:
@@ -150,6 +152,11 @@ class Progress {
   void ran(std::size_t task, const RunCost& expected, std::optional<double> took) {
     time_left_.ran(task, expected, took, now());
     if (took && expected.kind != RunKind::springs) say_how_long();
+  }
+
+  void known_so_far(std::size_t task, const std::string& words) {
+    if (quiet_ || words.empty() || time_left_.at(now()).value_or(0) < shortest_with_estimate) return;
+    status_.print(fmt::format("[{}/{}] {}: {}", task + 1, tasks_.size(), tasks_[task].title, words));
   }
 
   void finished(std::size_t task, double seconds, bool taken_back) {
@@ -173,7 +180,7 @@ class Progress {
     const std::lock_guard lock(mutex_);
     if (quiet_ || std::exchange(is_said_, true)) return;
     const std::size_t parts = tasks_.size(), at_once = std::min<std::size_t>(parts, jobs_);
-    if (const auto all = time_left_.at(now()); all && *all > 60)
+    if (const auto all = time_left_.at(now()); all && *all > shortest_with_estimate)
       status_.print(
           fmt::format("about {} for {} part{}, {} at once", time_words(*all), parts, parts == 1 ? "" : "s", at_once));
   }
@@ -219,7 +226,8 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
         std::optional<Part> kept;
         const RunKeeper keeper(
             fs::path(task.file).replace_extension(".runs"), task.stamp,
-            [&, i](const RunCost& expected, std::optional<double> took) { progress.ran(i, expected, took); });
+            [&, i](const RunCost& expected, std::optional<double> took) { progress.ran(i, expected, took); },
+            [&, i](const std::string& words) { progress.known_so_far(i, words); });
         const bool goes_on = options.resume || options.shard;
         if (goes_on) kept = kept_part(task);
         if (!goes_on) keeper.forget();

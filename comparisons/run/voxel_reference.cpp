@@ -30,7 +30,8 @@ std::vector<fem::Discretisation> grids_on(const Meshes& meshes, const std::vecto
 
 std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const IsotropicMaterial& material,
                                             const std::vector<fem::Discretisation>& grids, const Meshes& meshes,
-                                            const RunKeeper& keeper, bool vtu_single = false) {
+                                            const RunKeeper& keeper, bool vtu_single = false,
+                                            const CoarsestField& coarsest = {}) {
   if (grids.empty()) return {};
   const Experiment& e = prepared.experiment;
   const NodalVectors measured = measured_points(prepared);
@@ -41,13 +42,17 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   request.stress_points = stress_points(prepared);
   request.meshes = meshes;
   request.vtu_single = vtu_single;
-  std::vector<fem::Solution> solutions = solve_each(request, keeper);
+  const auto to_lattices = [&](const fem::Solution& s) {
+    return at_lattice_nodes(prepared, s.displacement.topRows(prepared.body_points.rows()));
+  };
+  std::vector<fem::Solution> solutions = solve_each(request, keeper, [&](std::size_t g, const fem::Solution& s) {
+    if (coarsest && g == 0) coarsest(to_lattices(s));
+  });
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     const Mesh& own = *meshes[s.grid.mesh];
     s.reactions = about_true_patches(prepared, own, s.reactions);
-    s.displacement = stacked(at_lattice_nodes(prepared, s.displacement.topRows(prepared.body_points.rows())),
-                             s.displacement.bottomRows(measured.rows()));
+    s.displacement = stacked(to_lattices(s), s.displacement.bottomRows(measured.rows()));
   }
   return solutions;
 }
@@ -113,7 +118,7 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
 }  // namespace
 
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu,
-                                const RunKeeper& keeper) try {
+                                const RunKeeper& keeper, const CoarsestField& coarsest) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
   std::vector<fem::Discretisation> grids = grids_on(prepared.tetrahedra, e.reference.elements);
@@ -121,7 +126,7 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
     if (grid.mesh + 1 == static_cast<int>(prepared.tetrahedra.size()))
       grid.vtu = reference_file(vtu, grid.element, material.poisson_ratio);
   std::vector<fem::Solution> solutions =
-      solve_tetrahedra(prepared, material, grids, prepared.tetrahedra, keeper, vtu.single);
+      solve_tetrahedra(prepared, material, grids, prepared.tetrahedra, keeper, vtu.single, coarsest);
   for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {

@@ -15,7 +15,8 @@ inline constexpr std::size_t most_refined_cubes = 8000, most_cubes = 200000;
 
 /// The counterpart of solve_grids for such a body.
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material,
-                                const VtuOutput& vtu = {}, const RunKeeper& keeper = {});
+                                const VtuOutput& vtu = {}, const RunKeeper& keeper = {},
+                                const CoarsestField& coarsest = {});
 
 /// Finite element results on the cubes of one lattice: of eight-node elements, and extrapolated to the limit of
 /// refinement.

@@ -56,14 +56,15 @@ chmod +x "$work/slow"
 SPRINGPROOF_FEM_PROGRAM="$work/slow" "$program" compare "$work/short.toml" --poisson-ratio 0.3 --out "$work/slow_out" 2>"$work/slow_log" >"$work/slow_results" &
 slow=$!  # it sleeps while the others run
 
-# More than a minute: an estimate, once the coarsest grid has shown how fast this machine is.
+# More than a minute: an estimate, once the coarsest grid has shown how fast this machine is, and how the models compare with it.
 "$program" compare "$work/minutes.toml" --out "$work/out" 2>"$work/log" >"$work/results" &
 pid=$!
-until grep -q '^about ' "$work/log"; do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
+until grep -q 'beside the coarsest grid alone: ' "$work/log"; do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
 kill -INT $pid
 wait $pid
 [ $? -eq 130 ] || fail "an interrupted run should end with 130"
 head -1 "$work/log" | grep -Eq '^about ([0-9]+ (s|min|h) )+for 2 parts, [12] at once$' || fail "no estimate of a long run"
+grep -Eq '^\[[12]/2\] minutes  nu0\.(3|48): beside the coarsest grid alone: [a-z_]+ [0-9.]+ %' "$work/log" || fail "no first verdict of a long run"
 
 # A terminal: the live line says what springproof-fem is at, and is gone at the end, interrupted or not.
 script --version >/dev/null 2>&1 || { kill $slow; echo "no terminal to be had: install util-linux"; exit 77; }

@@ -1,0 +1,34 @@
+#include "comparisons/run/first_verdict.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "comparisons/judge/judge.h"
+#include "comparisons/run/model_samples.h"
+
+namespace springproof {
+
+std::string first_verdict(const PartRun& run, const NodalVectors& coarsest) {
+  const std::size_t lattice = finest_lattice(run.prepared);
+  const Experiment& e = run.experiment();
+  if (e.fracture || !small_enough(e, run.mesh(lattice))) return {};
+  const NodalVectors u = at_nodes(run.prepared.lattices[lattice], coarsest);
+  const double scale = scale_of_errors(run.prepared, run.prepared.lattices[lattice], u).mean;
+  std::vector<std::pair<double, std::string>> errors;
+  for (std::size_t m = 0; m < run.prepared.models.size(); ++m) {
+    if (e.models[m].in_motion) continue;
+    const ModelSample sample = samples_of(run, lattice, m).front();
+    if (sample.state.ok)
+      errors.emplace_back(weighted_norm(sample.field.displacement - u, nodal_volumes(run.mesh(lattice))) / scale,
+                          e.models[m].label);
+  }
+  if (errors.empty()) return {};
+  std::sort(errors.begin(), errors.end());
+  std::vector<std::string> words;
+  for (const auto& [error, label] : errors) words.push_back(fmt::format("{} {:.2g} %", label, 100 * error));
+  return fmt::format("beside the coarsest grid alone: {}", fmt::join(words, ", "));
+}
+
+}  // namespace springproof
