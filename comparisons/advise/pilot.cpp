@@ -193,12 +193,14 @@ void extrapolate_errors(PilotModel& model) {
 }
 
 /// Springs of another Poisson's ratio have a limit of their own; `fields`, two at least, are at the nodes of `truth`.
+/// @param share of the truth that errors are relative to
 void extrapolate_fields(PilotModel& model, const std::vector<NodalVectors>& fields, const NodalVectors& truth,
-                        const Eigen::VectorXd& weights) {
+                        const Eigen::VectorXd& weights, double share) {
   const std::size_t n = model.cells.size();
   const auto step = [&](std::size_t i) { return NodalVectors(fields[i] - fields[i - 1]); };
   const auto length = [&](const NodalVectors& u) { return std::sqrt(product(u, u, weights)); };
-  const double ratio = std::cbrt(model.cells[n - 1] / model.cells[n - 2]), size = product(truth, truth, weights);
+  const double ratio = std::cbrt(model.cells[n - 1] / model.cells[n - 2]),
+               size = share * share * product(truth, truth, weights);
   if (n > 2) model.order = order_of_errors(length(step(n - 2)), length(step(n - 1)), ratio);
   const NodalVectors b = -step(n - 1) / (std::pow(ratio, model.order) - 1), a = fields.back() - truth - b;
   model.beyond = {product(a, a, weights) / size, product(a, b, weights) / size, product(b, b, weights) / size};
@@ -211,6 +213,12 @@ struct PilotRun {
   std::vector<const Lattice*> every, reference;
   std::vector<LatticeSolve> reference_solves;
   std::vector<ReferenceField> truths;  ///< at the nodes of each of `every`
+  double share = 1;                    ///< of the displacement that errors are relative to (DisplacementScale)
+
+  /// Of a displacement at the nodes of every[i].
+  double error(std::size_t i, const NodalVectors& u) const {
+    return displacement_error(u, truths[i].displacement, nodal_volumes(*every[i]->mesh)) / share;
+  }
 };
 
 PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
@@ -228,13 +236,13 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
       continue;
     }
     out.cells.push_back(cells_of(lattice));
-    out.errors.push_back(displacement_error(s.field, run.truths[i].displacement, nodal_volumes(*lattice.mesh)));
+    out.errors.push_back(run.error(i, s.field));
     fields.push_back(at_points(lattice, p, s, last.mesh->nodes));
   }
   if (out.cells.empty()) return out;
   const auto own = own_poisson_ratio(p.row);
   if (own && !same_poisson_ratio(*own, run.material.poisson_ratio) && fields.size() > 1)
-    extrapolate_fields(out, fields, run.truths.back().displacement, nodal_volumes(*last.mesh));
+    extrapolate_fields(out, fields, run.truths.back().displacement, nodal_volumes(*last.mesh), run.share);
   else
     extrapolate_errors(out);
   if (p.cut.value_or(false))
@@ -266,8 +274,7 @@ std::vector<PilotModel> pilot_elements(const PilotRun& run) {
       for (const fem::Solution& s : grids.peers[i]) {
         if (!s.ok || s.grid.element != element) continue;
         m.cells.push_back(cells_of(coarse.lattices[i]));
-        m.errors.push_back(displacement_error(at_nodes(coarse.lattices[i], s.displacement), run.truths[i].displacement,
-                                              nodal_volumes(*coarse.lattices[i].mesh)));
+        m.errors.push_back(run.error(i, at_nodes(coarse.lattices[i], s.displacement)));
       }
     if (m.cells.empty()) continue;
     extrapolate_errors(m);
@@ -315,7 +322,7 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   const Experiment e = pilot_case(experiment, material, models, at, out.base);
   const PreparedCase prepared = prepare_lattices(e);
   check_loads(prepared);
-  PilotRun run{prepared, material, {}, {}, {}, {}};
+  PilotRun run{prepared, material, {}, {}, {}, {}, 1};
   const auto lattice_at = [&](int n) {
     const auto& counts = e.body.voxel_counts;
     const std::size_t i = e.body.is_voxels()
@@ -342,7 +349,8 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
     run.truths.push_back(reference_at(run.reference, run.reference_solves, prepared.models.front(), *lattice->mesh));
   const Mesh& mesh = *run.every.back()->mesh;
   const NodalVectors& u = run.truths.back().displacement;
-  out.uncertainty = run.truths.back().uncertainty;
+  run.share = scale_of_errors(prepared, *run.every.back(), u).share;
+  out.uncertainty = run.truths.back().uncertainty / run.share;
   out.shares = load_shares(mesh, u, material);
   const DeformationSize deformation = deformation_size(mesh, u, e.model_kinematics());
   out.strain = deformation.principal_strain;

@@ -1,7 +1,10 @@
 // What a pilot measures of a body in cut cells.
 #include "comparisons/advise/pilot.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace springproof::pilot_test {
 namespace {
@@ -34,6 +37,45 @@ models = ["hybmss_avg"]
   EXPECT_EQ(pilot.models[1].label, "hybmss_avg cut=false");
   EXPECT_FALSE(pilot.models[1].step) << "whole cubes step as blocks do";
   EXPECT_TRUE(pilot.elements.empty()) << "there are none on a staircase";
+}
+
+/// Of a cube shortened by a tenth of a per cent, which its supports carry along.
+Pilot of_carried_cube(double carried) {
+  const Experiment e = parse_experiment(fmt::format(R"(
+[body]
+geo = "block.geo"
+size_m = [1, 1, 1]
+cells = [6, 6, 6]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.4
+[[load]]
+on = "z_min"
+displacement_m = [{0}, 0, {0}]
+[[load]]
+on = "z_max"
+displacement_m = [{0}, 0, {1}]
+[compare]
+models = ["hybmss_avg"]
+)",
+                                                    carried, carried - 0.001),
+                                        "cube.toml");
+  return solve_pilot(e, e.materials.front(), {"hybmss_avg", "msm_18"}, {300, 2000});
+}
+
+TEST(Pilot, ErrorsOfACarriedBodyAreRelativeToItsStrain) {
+  const Pilot still = of_carried_cube(0), carried = of_carried_cube(0.5);
+  ASSERT_EQ(still.models.size(), carried.models.size());
+  // A linear displacement's root mean square is twice that of its distance from its mean; the sides bulge.
+  const double ratio = carried.uncertainty / still.uncertainty;
+  EXPECT_GT(ratio, 1.6);
+  EXPECT_LT(ratio, 2);
+  for (std::size_t m = 0; m < still.models.size(); ++m) {
+    const PilotModel &at_rest = still.models[m], &moved = carried.models[m];
+    ASSERT_FALSE(at_rest.errors.empty());
+    EXPECT_NEAR(moved.errors.back() / at_rest.errors.back(), ratio, 0.02) << at_rest.label;
+    EXPECT_NEAR(std::sqrt(moved.beyond.at(0.5) / at_rest.beyond.at(0.5)), ratio, 0.02) << at_rest.label;
+  }
 }
 
 }  // namespace
