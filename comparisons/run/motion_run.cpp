@@ -122,7 +122,7 @@ class Recorder {
     for (const PatchReaction& r : field.reactions) add_vector("force." + r.patch, "N", r.force);
     if (contact_) add_impulse(contact_->take_impulse());
     const std::vector<Probe>& probes = prepared_.experiment.probes;
-    const NodalVectors at_points = cut_ ? displacement_at(*lattice_.cut, u, measured_points(prepared_), false)
+    const NodalVectors at_points = cut_ ? displacement_at(*lattice_.cut, u, measured_points(prepared_))
                                         : at_measured_points(prepared_, lattice_, field.displacement);
     for (std::size_t p = 0; p < probes.size(); ++p)
       add_vector("displacement." + probes[p].name, "m", at_points.row(static_cast<Eigen::Index>(p)).transpose());

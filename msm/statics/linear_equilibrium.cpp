@@ -132,10 +132,9 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   const bool has_cells = consists_of_cells(model);
   const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
-    if (result.unknowns <=
-        (has_cells || NodalVolumes::covers(model) || CutMultigrid::covers(model) || MacroSolver::covers(model)
-             ? lattice_cholesky_limit
-             : cholesky_limit))
+    if (result.unknowns <= (has_cells || NodalVolumes::covers(model) || CutMultigrid::covers(model)
+                                ? lattice_cholesky_limit
+                                : cholesky_limit))
       solver = LinearSolver::cholesky;
     else
       solver = volume_stiffness(model, cell, G) >
