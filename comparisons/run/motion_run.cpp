@@ -40,7 +40,6 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
                     "a model of the case (allowed for it: explicit, auto; or cut = false)",
                     motion.integrator));
   if (motion.integrator == "implicit_euler") return Integrator::implicit_euler;
-  if (motion.integrator == "bdf2") return Integrator::bdf2;
   const std::string why = EnergyMomentum::lacks(model);
   if (motion.integrator == "auto") {
     const double wanted = motion.time_step.value_or(motion.duration / std::max(motion.frames, 1));
@@ -50,7 +49,7 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
   if (!why.empty())
     throw InputError(motion.integrator_where,
                      fmt::format("dynamics.integrator: energy_momentum does not suit a model of the case: {} (allowed "
-                                 "for it: explicit, implicit_euler, bdf2)",
+                                 "for it: explicit, implicit_euler)",
                                  why));
   return Integrator::energy_momentum;
 }

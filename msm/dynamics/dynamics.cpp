@@ -193,8 +193,6 @@ const char* name_of(Integrator integrator) {
       return "energy-momentum";
     case Integrator::implicit_euler:
       return "implicit Euler";
-    case Integrator::bdf2:
-      return "BDF2";
     default:
       return "semi-implicit Euler";
   }
