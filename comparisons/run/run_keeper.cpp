@@ -25,10 +25,7 @@ bool is_ours(const std::string& name) {
 }  // namespace
 
 RunKeeper::RunKeeper(fs::path folder, std::string stamp, Listener listener, Sayer sayer)
-    : folder_(std::move(folder)),
-      stamp_(std::move(stamp)),
-      listener_(std::move(listener)),
-      sayer_(std::move(sayer)) {}
+    : folder_(std::move(folder)), stamp_(std::move(stamp)), listener_(std::move(listener)), sayer_(std::move(sayer)) {}
 
 std::unique_ptr<nlohmann::json> RunKeeper::find(const std::string& name) const try {
   const fs::path file = folder_ / (name + std::string(run_ending));

@@ -17,6 +17,7 @@ using Solved = std::function<void(std::size_t grid, const fem::Solution& solutio
 /// program dies of on one grid takes with it the finer ones of that element, no other; graded grids are not tried after
 /// a coarser one that has no result, as they would take minutes to fail.
 /// @throws what fem::solve() throws, if it throws on every grid; NoRoom; std::runtime_error if interrupted.
-std::vector<fem::Solution> solve_each(const fem::Request& request, const RunKeeper& keeper = {}, const Solved& solved = {});
+std::vector<fem::Solution> solve_each(const fem::Request& request, const RunKeeper& keeper = {},
+                                      const Solved& solved = {});
 
 }  // namespace springproof
