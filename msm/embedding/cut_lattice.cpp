@@ -40,15 +40,6 @@ double weight_of_corner(const FilledPart& part, int corner) {
   return part.fraction * (0.125 + s.dot(part.mean) / 4 + mixed / 2);
 }
 
-/// Points and more of them.
-NodalVectors followed_by(const NodalVectors& points, const std::vector<Vec3>& more) {
-  NodalVectors all(points.rows() + static_cast<Eigen::Index>(more.size()), 3);
-  all.topRows(points.rows()) = points;
-  for (std::size_t a = 0; a < more.size(); ++a)
-    all.row(points.rows() + static_cast<Eigen::Index>(a)) = more[a].transpose();
-  return all;
-}
-
 }  // namespace
 
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus) {
@@ -72,7 +63,9 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
       anchored.push_back(centroid);
       network.anchors.push_back(anchor);
     }
-  network.X = followed_by(body.points, anchored);
+  network.X.resize(corners + static_cast<Eigen::Index>(anchored.size()), 3);
+  network.X.topRows(corners) = body.points;
+  for (const Anchor& anchor : network.anchors) network.X.row(anchor.node) = anchored[anchor.node - corners].transpose();
   network.volume = Eigen::VectorXd::Zero(network.X.rows());
   for (const CutCell& cell : body.cells) {
     network.cells.push_back(cell.corners);
