@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "meshes/volume.h"
-#include "msm/embedding/macro_shares.h"
 #include "msm/embedding/surface_shares.h"
 #include "msm/exchange/springs_file.h"
 #include "msm/parameters/calibrate.h"
@@ -16,7 +15,6 @@
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
 #include "msm/topology/hexagonal_lattice.h"
-#include "msm/topology/macro_cells.h"
 #include "msm/topology/node_lattice.h"
 #include "msm/vertex_models.h"
 
@@ -33,7 +31,7 @@ double mean_edge(const Mesh& mesh) {
 
 /// @throws InputError if the cells are boxes and the model is one of cubes.
 void require_cubes(const ModelRow& row, const Mesh& mesh) {
-  const bool of_cubes = row.topology == cells || row.topology == macro_cells || row.topology == centres;
+  const bool of_cubes = row.topology == cells || row.topology == centres;
   if (!of_cubes || takes_boxes(row) || !mesh.grid || has_cubes(*mesh.grid)) return;
   std::vector<std::string> names;
   for (const ModelRow& other : model_table())
@@ -50,12 +48,6 @@ Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* reg
     case cells:
       return takes_boxes(p.row) ? lattice_without_springs(mesh)
                                 : cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
-    case macro_cells: {
-      Network network = cubic_lattice(mesh, CubicPattern{});
-      network.macro_cells = macro_cells_of(mesh);
-      network.volume = nodes_of_macro_cells(mesh, network).volumes;
-      return network;
-    }
     case centres:
       return p.turned == 0 ? node_lattice(mesh, isotropic_pattern(p.face_to_cube))
                            : node_lattice(region ? *region : region_of(mesh), cube_edge(mesh), p.turned,
@@ -175,9 +167,7 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   auto& [network, laws, small_displacements_only] = built.model;
   network = network_of(p, mesh, region);
   const Region* filled = p.row.topology == random ? region : nullptr;
-  built.embedding = p.row.topology == cells         ? nodes_of_mesh(mesh)
-                    : p.row.topology == macro_cells ? nodes_of_macro_cells(mesh, network)
-                                                    : embed(mesh, network, grip_of(p, mesh), filled);
+  built.embedding = p.row.topology == cells ? nodes_of_mesh(mesh) : embed(mesh, network, grip_of(p, mesh), filled);
   network.volume *= (filled ? filled->volume : volume(mesh, mesh.nodes)) / network.volume.sum();
   const BulkCalibration calibration = bulk_calibration(p, material);
   NodalVectors gradient;
@@ -196,26 +186,20 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
 }
 
 bool has_cut_cells(const ModelRow& row) {
-  return (row.topology == cells && row.extension != Extension::momentum_dispersion) || row.topology == macro_cells;
+  return row.topology == cells && row.extension != Extension::momentum_dispersion;
 }
 
 EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std::vector<std::string>& held,
-                        const Mesh& mesh, const IsotropicMaterial& material) try {
+                        const Mesh& mesh, const IsotropicMaterial& material) {
   if (!has_cut_cells(p.row))
-    throw InputError(
-        fmt::format("{}: cannot be made of cut cells (allowed: lattices of cells without momentum "
-                    "dispersion, hybmss_macro)",
-                    p.row.name));
+    throw InputError(fmt::format(
+        "{}: cannot be made of cut cells (allowed: lattices of cells without momentum dispersion)", p.row.name));
   EmbeddedModel built;
-  const bool macro = p.row.topology == macro_cells;
-  built.model.network = (macro ? cut_macro_lattice : cut_lattice)(body, held, material.youngs_modulus);
-  built.model.laws = {macro ? ForceLaw(macro_law(p, material)) : averaged_law(p, material), Anchors{}};
-  built.model.small_displacements_only =
-      p.shift > 0 || !(p.has(Extension::averaging) || p.has(Extension::volume_modes));
+  built.model.network = cut_lattice(body, held, material.youngs_modulus);
+  built.model.laws = {averaged_law(p, material), Anchors{}};
+  built.model.small_displacements_only = p.shift > 0 || !p.has(Extension::averaging);
   built.embedding = embed(body, held, built.model.network, mesh);
   return built;
-} catch (const std::invalid_argument& e) {
-  throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
 }
 
 }  // namespace springproof

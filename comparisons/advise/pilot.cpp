@@ -57,8 +57,7 @@ LatticeSolve solve_on(const PreparedCase& prepared, const Lattice& lattice, cons
 /// The displacement of a solve at other points.
 NodalVectors at_points(const Lattice& lattice, const ModelParameters& p, const LatticeSolve& solve,
                        const NodalVectors& points) {
-  if (p.cut.value_or(false))
-    return displacement_at(*lattice.cut, solve.state.displacement, points, p.row.topology == Topology::macro_cells);
+  if (p.cut.value_or(false)) return displacement_at(*lattice.cut, solve.state.displacement, points);
   const Locator locator(*lattice.mesh);
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
@@ -135,11 +134,9 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
     const ModelRow row = resolve(choice_of(name, {})).row;
     const bool finite = e.model_kinematics() == Kinematics::finite;
     if (finite && !holds_at_large_displacement(row)) return;
-    const bool cuts = voxels && has_cut_cells(row) &&
-                      (!finite || row.extension == Extension::averaging || row.topology == Topology::macro_cells);
+    const bool cuts = voxels && has_cut_cells(row) && (!finite || row.extension == Extension::averaging);
     if (cuts) e.models.push_back(choice_of(name, true));
-    if (!cuts || row.topology == Topology::cells)  // macro-cells of whole cubes fill blocks only
-      e.models.push_back(choice_of(name, cuts ? std::optional(false) : std::nullopt));
+    e.models.push_back(choice_of(name, cuts ? std::optional(false) : std::nullopt));
   };
   add(pilot_reference_model);
   for (const std::string& name : models)

@@ -1,4 +1,4 @@
-// Lattices on the GPU against the same on this processor.
+// Steps of lattices on the GPU against the same on this processor.
 #pragma once
 
 #include "comparisons/bench/options.h"
@@ -6,7 +6,7 @@
 
 namespace springproof::bench {
 
-/// Explicit steps, and conjugate gradients with multigrid; a remark where there is no GPU.
+/// Explicit steps; a remark where there is no GPU.
 void bench_gpu(const BenchOptions& options, Findings& findings);
 
 }  // namespace springproof::bench

@@ -95,10 +95,11 @@ constexpr std::array environment = {
              "if set, .geo scripts other than the built-in ones are refused, as by --no-scripts"},
     Variable{"SPRINGPROOF_INSTRUCTION_SET",
              "portable, avx2 or avx512: what the kernels are to use (default: the widest of this processor)"},
-    Variable{"SPRINGPROOF_DEVICE",
-             "processor or gpu: where lattices of whole cells are computed (default: processor; gpu: in a build with "
-             "SPRINGPROOF_CUDA, explicit steps without viscosity, and equilibria at small strain away from nu = 1/2; "
-             "not by the live page and springproof-lattice)"},
+    Variable{
+        "SPRINGPROOF_DEVICE",
+        "processor or gpu: where steps of lattices of whole cells are made (default: processor; gpu: in a build with "
+        "SPRINGPROOF_CUDA, explicit steps without viscosity; equilibria are the processor's; not by the live page "
+        "and springproof-lattice)"},
     Variable{"SPRINGPROOF_LAMMPS", "the lmp of LAMMPS that the bench measures beside ours, instead of the one on PATH"},
     Variable{"SPRINGPROOF_ENGINES",
              "folder whose node_modules has the engines of bench engines (default: "

@@ -52,9 +52,7 @@ const char* name_of(Dispersion form) {
 
 /// A body for the row's safe time step: one cube where it bounds all meshes, else a block, or a sheet.
 Mesh sample_mesh(const ModelRow& row, double l) {
-  const int n = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion ? 1
-                : row.topology == Topology::macro_cells                                            ? 2
-                                                                                                   : 5;
+  const int n = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion ? 1 : 5;
   const int layers = row.topology == Topology::hexagonal ? 1 : n;
   return block_mesh(l * Vec3(n, n, layers), {n, n, layers});
 }
@@ -136,9 +134,7 @@ struct MaterialFacts {
                  : StrainLimits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   std::vector<StressAtStretch> stresses = has_limits ? stress_curve(p, m) : std::vector<StressAtStretch>{};
   DispersionFacts dispersion = facts_of(p, m, model, l);
-  double correction =
-      p.has(Extension::volume_correction) || p.has(Extension::averaging) || p.has(Extension::volume_modes) ? kappa(m)
-                                                                                                           : 0.0;
+  double correction = p.has(Extension::volume_correction) || p.has(Extension::averaging) ? kappa(m) : 0.0;
 
   double corner_mass() const { return m.density * l * l * l / 8; }
   EngineFacts for_engines() const {
@@ -265,9 +261,7 @@ void print_limits(const MaterialFacts& f) {
     to_stdout("mass per cell corner   {:>14.6g} kg\n", f.corner_mass());
   }
   to_stdout("safe time step         {:>14.6g} s     (explicit, undamped, {})\n", f.time_step,
-            f.has_limits                                ? "any mesh of these cells"
-            : f.p.row.topology == Topology::macro_cells ? "a cell of 27 nodes alone, which no motion takes"
-                                                        : "a block of 5 cells; safe_time_step() knows each network's");
+            f.has_limits ? "any mesh of these cells" : "a block of 5 cells; safe_time_step() knows each network's");
   const auto strain = [](double limit) {
     return std::isfinite(limit) ? fmt::format("{:.1f} %", 100 * limit) : std::string("none up to 50 %");
   };
@@ -308,9 +302,7 @@ void print_measured(const MaterialFacts& f) {
   const IsotropicMaterial& m = f.m;
   to_stdout("\nmeasured back from {}\n", f.lattice                                 ? "a block of 4 x 4 x 4 cells"
                                          : f.p.row.topology == Topology::hexagonal ? "a sheet of 4 rows"
-                                         : f.p.row.topology == Topology::macro_cells
-                                             ? "a block of 4 x 4 x 4 cells of 27 nodes"
-                                             : "an infinite periodic network");
+                                                                                   : "an infinite periodic network");
   to_stdout("  E  = {:.8g} Pa   ({:+.2e} relative)\n", f.measured.youngs_modulus,
             f.measured.youngs_modulus / m.youngs_modulus - 1);
   to_stdout("  nu = {:.8g}   ({:+.2e})\n", f.measured.poisson_ratio, f.measured.poisson_ratio - m.poisson_ratio);

@@ -169,7 +169,7 @@ void add_splits(PartRun& run, std::size_t lattice, const std::string& model, con
 }
 
 /// A model of cut cells has no staircase.  Its springs' part is that of the same model on whole cubes, where there are
-/// finite elements on the same cells; the rest is the cells' size.  Macro-cells have no whole cubes to compare with.
+/// finite elements on the same cells; the rest is the cells' size.
 void add_splits_of_cut_cells(PartRun& run, std::size_t lattice, std::size_t number, const std::vector<NodalVectors>& u,
                              const std::vector<std::map<std::string, double>>& scalars) {
   const std::string& label = run.experiment().models[number].label;
@@ -233,14 +233,12 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   if (const auto* reference = reference_at_rest(run, lattice, label); reference && is_external(e.models[number]))
     run.part.runs.back().message = unit_doubt(fields.front(), reference->field.displacement);
   if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
-  const CutBody& cut = *run.prepared.lattices[lattice].cut;
-  const bool macro = run.prepared.models[number].row.topology == Topology::macro_cells;
   const NodalVectors& u = samples.front().state.displacement;
   if (!run.vtu.folder.empty())
-    write_cells(run.vtu.folder / (vtu_stem(run.key(label, lattice)) + "_cells.vtu"), cut,
-                macro ? at_points_of_cells(cut, u) : u, run.notes(run.key(label, lattice)));
+    write_cells(run.vtu.folder / (vtu_stem(run.key(label, lattice)) + "_cells.vtu"),
+                *run.prepared.lattices[lattice].cut, u, run.notes(run.key(label, lattice)));
   run.cut_states.push_back({lattice, number, u, samples.front().field.displacement, scalars.front()});
-  if (!macro) add_splits_of_cut_cells(run, lattice, number, fields, scalars);
+  add_splits_of_cut_cells(run, lattice, number, fields, scalars);
 }
 
 /// The limits of models of cut cells as rows of their own; the last step is stated as the spread.

@@ -214,11 +214,6 @@ std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, co
   std::vector<std::string> patches;
   for (const Patch& p : prepared.lattices.front().mesh->patches) patches.push_back(p.name);
   check_patches(prepared.experiment, patches);
-  for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    if (prepared.models[m].row.topology == Topology::macro_cells)
-      throw InputError(prepared.experiment.models[m].where,
-                       fmt::format("{}: cells of 27 nodes have no natural modes (allowed: hybmss_avg)",
-                                   prepared.experiment.models[m].label));
   const ReferenceModes reference = reference_modes(prepared, material, options.modes);
   const auto go_on = [] {
     if (children_interrupted()) throw std::runtime_error("interrupted");

@@ -143,17 +143,17 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
   sample.field =
       to_field(sample.state, mesh, built.embedding, network, prepared.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  if (!network.filled.empty() || !network.macro_cells.empty()) {  // of their own fields
+  if (!network.filled.empty()) {  // of its own field
     const VolumeChange change = volume_change(network, sample.state.displacement);
     sample.field.volume_change = change.exact;
     sample.field.volume_change_first_order = change.first_order;
   }
   const bool cut = parameters.cut.value_or(false);
-  sample.scalars = field_measures(prepared, sample.field,
-                                  cut ? displacement_at(*lattice.cut, sample.state.displacement,
-                                                        measured_points(prepared), !network.macro_cells.empty())
-                                      : at_measured_points(prepared, lattice, sample.field.displacement));
-  if (cut && asked(e, "promised_error") && !in_motion && network.macro_cells.empty())
+  sample.scalars =
+      field_measures(prepared, sample.field,
+                     cut ? displacement_at(*lattice.cut, sample.state.displacement, measured_points(prepared))
+                         : at_measured_points(prepared, lattice, sample.field.displacement));
+  if (cut && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {

@@ -40,7 +40,6 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
                     "a model of the case (allowed for it: explicit, auto; or cut = false)",
                     motion.integrator));
   if (motion.integrator == "implicit_euler") return Integrator::implicit_euler;
-  if (motion.integrator == "bdf2") return Integrator::bdf2;
   const std::string why = EnergyMomentum::lacks(model);
   if (motion.integrator == "auto") {
     const double wanted = motion.time_step.value_or(motion.duration / std::max(motion.frames, 1));
@@ -50,7 +49,7 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
   if (!why.empty())
     throw InputError(motion.integrator_where,
                      fmt::format("dynamics.integrator: energy_momentum does not suit a model of the case: {} (allowed "
-                                 "for it: explicit, implicit_euler, bdf2)",
+                                 "for it: explicit, implicit_euler)",
                                  why));
   return Integrator::energy_momentum;
 }
@@ -122,7 +121,7 @@ class Recorder {
     for (const PatchReaction& r : field.reactions) add_vector("force." + r.patch, "N", r.force);
     if (contact_) add_impulse(contact_->take_impulse());
     const std::vector<Probe>& probes = prepared_.experiment.probes;
-    const NodalVectors at_points = cut_ ? displacement_at(*lattice_.cut, u, measured_points(prepared_), false)
+    const NodalVectors at_points = cut_ ? displacement_at(*lattice_.cut, u, measured_points(prepared_))
                                         : at_measured_points(prepared_, lattice_, field.displacement);
     for (std::size_t p = 0; p < probes.size(); ++p)
       add_vector("displacement." + probes[p].name, "m", at_points.row(static_cast<Eigen::Index>(p)).transpose());

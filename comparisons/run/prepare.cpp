@@ -49,19 +49,17 @@ void choose_cut_cells(PreparedCase& prepared) {
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     ModelParameters& p = prepared.models[m];
     const bool averaged = p.has(Extension::averaging), large = e.model_kinematics() != Kinematics::linear;
-    const char* reason = !has_cut_cells(p.row)                                          ? "this model has none"
-                         : !e.body.is_voxels()                                          ? "the body is a block"
-                         : e.fracture                                                   ? "the body breaks"
-                         : e.models[m].in_motion && !averaged                           ? "it is to move in time"
-                         : !e.body.accuracies.empty() && p.has(Extension::volume_modes) ? "its cells have several sizes"
-                         : large && !averaged && !p.has(Extension::volume_modes)        ? "the displacements are large"
-                                                                                        : nullptr;
+    const char* reason = !has_cut_cells(p.row)                ? "this model has none"
+                         : !e.body.is_voxels()                ? "the body is a block"
+                         : e.fracture                         ? "the body breaks"
+                         : e.models[m].in_motion && !averaged ? "it is to move in time"
+                         : large && !averaged                 ? "the displacements are large"
+                                                              : nullptr;
     if (reason && p.cut.value_or(false))
       throw InputError(
           e.models[m].where,
           fmt::format("compare.models: {}: cut = true: {} (allowed: lattices of cells in a body of "
-                      "voxels, at rest under small displacements; hybmss_avg and hybmss_macro also under large ones, "
-                      "hybmss_avg in motion)",
+                      "voxels, at rest under small displacements; hybmss_avg also under large ones and in motion)",
                       p.row.name, reason));
     p.cut = p.cut.value_or(e.body.cut && !reason);
   }
@@ -95,8 +93,7 @@ void check_vertex_options(const PreparedCase& prepared) {
 
 /// Averaged springs and momentum dispersion of finite strain follow the material law of the case.
 void choose_curve(const Experiment& e, ModelParameters& p) {
-  const bool follows =
-      p.has(Extension::averaging) || p.has(Extension::volume_modes) || p.dispersion == Dispersion::finite_strain;
+  const bool follows = p.has(Extension::averaging) || p.dispersion == Dispersion::finite_strain;
   if (!follows || p.curve) return;
   p.curve = e.kinematics == "neo_hooke"             ? StrainCurve::neo_hooke
             : e.kinematics == "neo_hooke_isochoric" ? StrainCurve::neo_hooke_isochoric
@@ -202,9 +199,8 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
       throw InputError(fmt::format("{}, or name no elements in [reference]: finite elements at rest", error.what()));
     }
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    if (const Topology t = prepared.models[m].row.topology; t == Topology::cells || t == Topology::macro_cells ||
-                                                            t == Topology::file ||
-                                                            &lattice == &prepared.lattices.front())
+    if (const Topology t = prepared.models[m].row.topology;
+        t == Topology::cells || t == Topology::file || &lattice == &prepared.lattices.front())
       try_model(prepared, lattice, m);
   const NodalVectors u = NodalVectors::Zero(mesh.nodes.rows(), 3);
   if (e.section) section_distance(mesh, *e.section, u, u);

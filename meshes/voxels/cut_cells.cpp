@@ -13,7 +13,6 @@
 
 #include "meshes/locate/outer_facets.h"
 #include "meshes/voxels/body_parts.h"
-#include "meshes/voxels/triquadratic.h"
 
 namespace springproof {
 namespace {
@@ -172,19 +171,12 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
                             if (is_new) {
                               at->second.cell = cell;
                               at->second.normal.fill(Vec3::Zero());
-                              at->second.quadratic_normal.fill(Vec3::Zero());
                             }
                             for (const TrianglePoint& q : rule) {
                               const std::array<double, 8> N = out.weights(cell, position(q.at));
                               for (int n = 0; n < 8; ++n) {
                                 at->second.area[n] += q.weight * N[n] * normal.norm();
                                 at->second.normal[n] += q.weight * N[n] * normal;
-                              }
-                              const Vec3 xi = (position(q.at) - out.centre(cell)) / (l * out.cells[cell].size);
-                              const std::array<double, 27> quadratic = triquadratic_weights(2 * xi);
-                              for (int n = 0; n < 27; ++n) {
-                                at->second.quadratic_area[n] += q.weight * quadratic[n] * normal.norm();
-                                at->second.quadratic_normal[n] += q.weight * quadratic[n] * normal;
                               }
                             }
                           });

@@ -24,14 +24,11 @@ struct CutCell {
   int size = 1;              ///< edge of the cube, in edges of the grid
 };
 
-/// The part of a patch in one cell, by the trilinear weights N_a of the cell's corners, and by the triquadratic
-/// weights of its 27 points, x + 3 y + 9 z at (x, y, z) half edges.
+/// The part of a patch in one cell, by the trilinear weights N_a of the cell's corners.
 struct PatchInCell {
-  int cell;                                 ///< its number
-  std::array<double, 8> area{};             ///< integral of N_a [m^2]
-  std::array<Vec3, 8> normal;               ///< integral of N_a n, n the outward unit normal [m^2]
-  std::array<double, 27> quadratic_area{};  ///< the same by triquadratic weights [m^2]
-  std::array<Vec3, 27> quadratic_normal;    ///< [m^2]
+  int cell;                      ///< its number
+  std::array<double, 8> area{};  ///< integral of N_a [m^2]
+  std::array<Vec3, 8> normal;    ///< integral of N_a n, n the outward unit normal [m^2]
 
   double total_area() const;  ///< [m^2]
 };

@@ -55,25 +55,6 @@ void BlockMatrix::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   }
 }
 
-Vec3 BlockMatrix::row_times(int i, const Eigen::VectorXd& x) const {
-  Vec3 sum = Vec3::Zero();
-  for (int b = row_begin_[i]; b < row_begin_[i + 1]; ++b) sum += blocks_[b] * x.segment<3>(3 * column_[b]);
-  return sum;
-}
-
-Eigen::MatrixXd BlockMatrix::dense(const std::vector<int>& unknowns) const {
-  const auto n = static_cast<Eigen::Index>(unknowns.size());
-  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const int row = unknowns[i] / 3, *begin = &column_[row_begin_[row]], *end = &column_[0] + row_begin_[row + 1];
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const int* at = std::lower_bound(begin, end, unknowns[j] / 3);
-      if (at != end && *at == unknowns[j] / 3) K(i, j) = blocks_[at - &column_[0]](unknowns[i] % 3, unknowns[j] % 3);
-    }
-  }
-  return K;
-}
-
 Eigen::VectorXd BlockMatrix::diagonal() const {
   Eigen::VectorXd d(3 * nodes());
   for (int i = 0; i < nodes(); ++i) d.segment<3>(3 * i) = blocks_[find(i, i)].diagonal();
@@ -139,18 +120,6 @@ std::vector<std::vector<int>> coupled_nodes(int nodes, const std::vector<Hexahed
 
 std::vector<std::vector<int>> coupled_nodes(const Network& network) {
   auto coupled = coupled_nodes(network.nodes(), network.cells);
-  for (const MacroCell& cell : network.macro_cells)
-    for (int a : cell) coupled[a].insert(coupled[a].end(), cell.begin(), cell.end());
-  for (const MacroFace& face : network.macro_faces) {
-    const MacroCell &lower = network.macro_cells[face.lower], &upper = network.macro_cells[face.upper];
-    for (int a : lower) coupled[a].insert(coupled[a].end(), upper.begin(), upper.end());
-    for (int a : upper) coupled[a].insert(coupled[a].end(), lower.begin(), lower.end());
-  }
-  for (const MacroAnchor& anchor : network.macro_anchors)
-    for (int a : network.macro_cells[anchor.cell]) {
-      coupled[a].push_back(anchor.node);
-      coupled[anchor.node].push_back(a);
-    }
   for (const Spring& s : network.springs) {
     coupled[s.i].push_back(s.j);
     coupled[s.j].push_back(s.i);

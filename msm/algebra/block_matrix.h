@@ -46,12 +46,6 @@ class BlockMatrix {
   /// y = A x (vectors of 3 n).
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
 
-  /// Row i of A x.
-  Vec3 row_times(int i, const Eigen::VectorXd& x) const;
-
-  /// The submatrix of some unknowns, 3 * node + axis; carried points have none.
-  Eigen::MatrixXd dense(const std::vector<int>& unknowns) const;
-
   /// Diagonal entries, 3 n.
   Eigen::VectorXd diagonal() const;
 

@@ -11,7 +11,6 @@
 #include "msm/dynamics/time_step.h"
 #include "msm/kernels/cell_forces.h"
 #include "msm/kernels/list_forces.h"
-#include "msm/topology/macro_cells.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
@@ -36,7 +35,6 @@ void check_mass(const MassSpringModel& model, const DynamicsOptions& options) {
 }  // namespace
 
 double checked_time_step(const MassSpringModel& model, double density, const DynamicsOptions& options) {
-  require_no_macro_cells(model.network, "motion");
   check_mass(model, options);
   const double safe = safe_time_step(model, density, options.lagged, options.mass_consistency),
                bound = viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
@@ -195,8 +193,6 @@ const char* name_of(Integrator integrator) {
       return "energy-momentum";
     case Integrator::implicit_euler:
       return "implicit Euler";
-    case Integrator::bdf2:
-      return "BDF2";
     default:
       return "semi-implicit Euler";
   }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "msm/algebra/dense.h"
 #include "msm/dynamics/time_step.h"
@@ -85,18 +84,13 @@ void ImplicitMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
   v_ = v;
   carry(model_.network.carried, x_);
   carry(model_.network.carried, v_);
-  steps_ = 0;
 }
 
 ImplicitMotion::Formula ImplicitMotion::formula() const {
   const double dt = dt_, retardation = options_.viscosity.time();
   if (options_.integrator == Integrator::energy_momentum)
-    return {2 / (dt * dt), 1 / dt, 0.5 + retardation / dt, x_ + dt * v_, x_};
-  if (options_.integrator == Integrator::implicit_euler || steps_ == 0)
-    return {1 / (dt * dt), 1 / dt, 1 + retardation / dt, x_ + dt * v_, x_};
-  const double rate = 1.5 / dt;
-  const NodalVectors before = (4 * x_ - x_before_) / 3;
-  return {rate * rate, rate, 1 + retardation * rate, before + (4 * v_ - v_before_) / (3 * rate), before};
+    return {2 / (dt * dt), 1 / dt, 0.5 + retardation / dt, x_ + dt * v_};
+  return {1 / (dt * dt), 1 / dt, 1 + retardation / dt, x_ + dt * v_};
 }
 
 /// Internal, viscous and external.  Over an energy-momentum step dashpots are those of its middle, where they have no
@@ -106,8 +100,7 @@ NodalVectors ImplicitMotion::force(const Formula& step, NodalVectors x1) const {
   NodalVectors f = secant_ ? NodalVectors(secant_->forces(x_, x1) + (external_before_ + conditions_.external) / 2)
                            : NodalVectors(springproof::forces(model_, x1) + conditions_.external);
   if (options_.viscosity.acts())
-    options_.viscosity.add_forces(model_.network, secant_ ? NodalVectors((x_ + x1) / 2) : x1,
-                                  step.rate * (x1 - step.before), f);
+    options_.viscosity.add_forces(model_.network, secant_ ? NodalVectors((x_ + x1) / 2) : x1, step.rate * (x1 - x_), f);
   return f;
 }
 
@@ -205,8 +198,7 @@ NodalVectors ImplicitMotion::predicted() const {
 ImplicitMotion::Balance ImplicitMotion::balance(const Formula& now, const NodalVectors& x1) {
   ++evaluations_;
   Balance b{force(now, x1), {}, {}};
-  b.whole =
-      b.force - mass_.asDiagonal() * (now.a * (x1 - now.inertial) + options_.damping * now.rate * (x1 - now.before));
+  b.whole = b.force - mass_.asDiagonal() * (now.a * (x1 - now.inertial) + options_.damping * now.rate * (x1 - x_));
   b.unbalanced = free_part(b.whole);
   return b;
 }
@@ -264,15 +256,12 @@ bool ImplicitMotion::step(double dt, int halvings) {
   if (halvings == 0) return false;
   failure_.clear();
   ++halved_;
-  steps_ = 0;  // BDF2 starts anew
   const BoundaryConditions at_end = conditions_;
   conditions_.external = (external_before_ + at_end.external) / 2;
   conditions_.prescribed = (x_ - model_.network.X + at_end.prescribed) / 2;
   const bool first = step(dt / 2, halvings - 1);
   conditions_ = at_end;
-  const bool both = first && step(dt / 2, halvings - 1);
-  steps_ = 0;
-  return both;
+  return first && step(dt / 2, halvings - 1);
 }
 
 /// Solves a step from x1 with the nodes on the plane as they are.
@@ -309,11 +298,9 @@ bool ImplicitMotion::solve(const Formula& now, NodalVectors& x1, Balance& b) {
   return true;
 }
 
-/// Nodes on the plane stop; counts what the plane gave.  A reaction r changes the momentum by r rate / a, of BDF2 by a
-/// third of what it did in the last step besides.
+/// Nodes on the plane stop; counts what the plane gave.  A reaction r changes the momentum by r rate / a.
 void ImplicitMotion::land(const Formula& now, const NodalVectors& x1, const Balance& b, NodalVectors& v1) {
   ContactImpulse given;
-  if (options_.integrator == Integrator::bdf2 && steps_ > 0) given = {of_plane_.linear / 3, of_plane_.angular / 3};
   const Vec3& normal = plane_->normal();
   for (const int n : plane_->held()) {
     const Vec3 end = x1.row(n).transpose(), middle = (x_.row(n) + x1.row(n)).transpose() / 2;
@@ -323,8 +310,7 @@ void ImplicitMotion::land(const Formula& now, const NodalVectors& x1, const Bala
     given.add(-mass_[n] * speed * normal, end);
     v1.row(n) -= speed * normal.transpose();
   }
-  options_.contact->count(given, !plane_->held().empty());
-  of_plane_ = given;
+  if (!plane_->held().empty()) options_.contact->count(given);
 }
 
 bool ImplicitMotion::solve_step() {
@@ -346,15 +332,14 @@ bool ImplicitMotion::solve_step() {
   for (Eigen::Index i = 0; i < x1.size(); ++i)
     (conditions_.fixed[i] ? support : unbalanced) += b.force.data()[i] * b.force.data()[i];
   norms_ = {std::sqrt(unbalanced), std::sqrt(support)};
-  NodalVectors v1 = now.rate * (x1 - now.before);
+  NodalVectors v1 = now.rate * (x1 - x_);
   if (secant_)
     for (Eigen::Index i = 0; i < v1.size(); ++i)
       if (!conditions_.fixed[i]) v1.data()[i] = 2 * v1.data()[i] - v_.data()[i];
   if (plane_) land(now, x1, b, v1);
-  x_before_ = std::exchange(x_, x1);
-  v_before_ = std::exchange(v_, v1);
+  x_ = x1;
+  v_ = v1;
   external_before_ = conditions_.external;
-  ++steps_;
   return true;
 }
 

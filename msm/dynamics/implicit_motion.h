@@ -20,7 +20,6 @@ enum class Integrator {
   explicit_euler,   ///< semi-implicit Euler: order 1 in the energy, 2 in the positions; a bounded step
   energy_momentum,  ///< midpoint kinematics with the forces of EnergyMomentum: order 2, undamped
   implicit_euler,   ///< order 1, damps strongly
-  bdf2,             ///< order 2, damps; its first step is one of implicit Euler
 };
 
 struct ImplicitOptions {
@@ -67,11 +66,11 @@ class ImplicitMotion {
   std::string description() const;
 
  private:
-  /// A step as m a (x1 - inertial) = force - damping m rate (x1 - before), v = rate (x1 - before).
+  /// A step from x0 as m a (x1 - inertial) = force - damping m rate (x1 - x0), rate (x1 - x0) the mean velocity.
   struct Formula {
     double a, rate;
     double of_stiffness;  ///< df/dx1 relative to the tangent stiffness, dashpots included
-    NodalVectors inertial, before;
+    NodalVectors inertial;
   };
   struct Balance {
     NodalVectors force;  ///< internal and external [N]
@@ -105,12 +104,10 @@ class ImplicitMotion {
   std::unique_ptr<EnergyMomentum> secant_;
   BoundaryConditions conditions_;
   NodalVectors external_before_;
-  NodalVectors x_, v_, x_before_, v_before_;
-  double dt_ = 0;   ///< of the present step [s]
-  long steps_ = 0;  ///< of equal size so far
+  NodalVectors x_, v_;
+  double dt_ = 0;  ///< of the present step [s]
   long advanced_ = 0, halved_ = 0, evaluations_ = 0, factorisations_ = 0;
   std::optional<PlaneConstraint> plane_;
-  ContactImpulse of_plane_;  ///< over the last step
   std::string failure_;
   ForceNorms norms_;
 

@@ -11,7 +11,6 @@
 #include "msm/embedding/boundary.h"
 #include "msm/embedding/rigid_motions.h"
 #include "msm/statics/tangent_solver.h"
-#include "msm/topology/macro_cells.h"
 #include "problem/system/child.h"
 #include "problem/system/run_cost.h"
 
@@ -150,7 +149,6 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
 
 NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>& fixed, double density, double theta,
                            int count) {
-  require_no_macro_cells(model.network, "natural modes");
   const double start = cpu_seconds();
   NaturalModes modes;
   if (!conservative(model))

@@ -106,8 +106,8 @@ bool PlaneContact::correct(double dt, double damping, const std::vector<char>& f
   return true;
 }
 
-void PlaneContact::count(const ContactImpulse& further, bool touches) {
-  touches_ |= touches;
+void PlaneContact::count(const ContactImpulse& further) {
+  touches_ = true;
   impulse_.linear += further.linear;
   impulse_.angular += further.angular;
 }

@@ -55,9 +55,8 @@ class PlaneContact {
   /// @return whether anything was changed
   bool correct(double dt, double damping, const std::vector<char>& fixed, NodalVectors& x, NodalVectors& v);
 
-  /// Counts an impulse that the body got otherwise, in a large step.
-  /// @param touches false: it lags behind the contact, as those of BDF2 do
-  void count(const ContactImpulse& further, bool touches);
+  /// Counts an impulse that the body got otherwise, in a large step that ends on the plane.
+  void count(const ContactImpulse& further);
 
   /// To be called at the start and after every step, for the bounce.
   /// @param v velocities of the nodes [m/s]

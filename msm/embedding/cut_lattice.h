@@ -12,20 +12,13 @@ namespace springproof {
 /// Stiffness of an anchor, in units of E A / l, A the area of the patch in the cell of edge l: a support gives way like
 /// a thirtieth of a cell.  Stiffer anchors make clamped bodies, which coarse cells leave too stiff, stiffer still.
 inline constexpr double anchor_stiffness = 30;
-/// Of macro-cells, which are not too stiff.
-inline constexpr double macro_anchor_stiffness = 100;
 
 /// The cells as a network: nodes are the corners of the cells, with an eighth of a cell's volume each, and one node, of
 /// no volume, in the centroid of each part of the patches `held` in a cell, anchored to that cell.
 /// `youngs_modulus` [Pa]: of the body, for the anchors.
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus);
 
-/// The same of macro-cells of two cubes along each axis (msm/topology/macro_cells.h): nodes are those of
-/// the macro-cells, some of no volume, then the anchored ones.
-/// @throws std::invalid_argument if the body has cells of several sizes.
-Network cut_macro_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus);
-
-/// Embedding in either network of a mesh in the body: the nodes of a cube of the mesh follow the cell that holds the
+/// Embedding in that network of a mesh in the body: the nodes of a cube of the mesh follow the cell that holds the
 /// cube's middle.  Loads are integrals over the true body and its patches.
 Embedding embed(const CutBody& body, const std::vector<std::string>& held, const Network& network, const Mesh& mesh);
 
@@ -34,11 +27,7 @@ Embedding embed(const CutBody& body, const std::vector<std::string>& held, const
 /// that is carried.
 std::vector<int> nodes_at_patch(const CutBody& body, const std::string& patch);
 
-/// Displacement of a network of macro-cells at the corners of the body's cells [m].
-NodalVectors at_points_of_cells(const CutBody& body, const NodalVectors& displacement);
-
-/// Displacement of the network, of cells or macro-cells, at points of the body [m].
-NodalVectors displacement_at(const CutBody& body, const NodalVectors& displacement, const NodalVectors& points,
-                             bool of_macro_cells);
+/// Displacement of the network at points of the body [m].
+NodalVectors displacement_at(const CutBody& body, const NodalVectors& displacement, const NodalVectors& points);
 
 }  // namespace springproof

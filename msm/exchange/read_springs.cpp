@@ -207,7 +207,6 @@ void require_its_parts(const ForceLaw& law, const Network& network, const JsonPl
     place.refuse("is beside cells of several sizes", "averaged_springs alone");
   if (network.has_boxes() && traits(law).reach == Reach::cells && !std::holds_alternative<AveragedSprings>(law))
     place.refuse("acts on cubes, the cells are boxes", "averaged_springs in boxes");
-  if (std::holds_alternative<MacroSprings>(law)) place.refuse("has no macro-cells to act on", "averaged_springs");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
   const auto* dispersion = std::get_if<MomentumDispersion>(&law);

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "msm/exchange/json_place.h"
-#include "msm/topology/macro_cells.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {
@@ -263,7 +262,6 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
-  require_no_macro_cells(network, "springs file");
   out.document.head = {{"format", springs_format},
                        {"version", network.has_boxes()           ? springs_version_of_boxes
                                    : !network.cell_edges.empty() ? springs_version_of_several_sizes

@@ -17,7 +17,7 @@
 namespace springproof::gpu {
 
 constexpr int tile_x = 32, tile_y = 8;  ///< threads of a block of a sweep
-constexpr int sums_of_launch = 2;       ///< sums that a launch can form, over all its threads
+constexpr int sums_of_launch = 2;       ///< sums that a sweep can form, over all its threads
 
 /// Before a loop: the compiler for GPUs repeats its body, so that the loads of all passes are under way together.
 #ifdef __CUDACC__
@@ -90,10 +90,8 @@ __global__ void __launch_bounds__(tile_x* tile_y, Sweep::blocks_at_once)
 }
 
 template <class Each>
-__global__ void each_on_device(const __grid_constant__ Each each, long n, double* partial) {
-  double sums[sums_of_launch] = {};
-  for (long i = blockIdx.x * long(blockDim.x) + threadIdx.x; i < n; i += long(blockDim.x) * gridDim.x) each(i, sums);
-  if (partial) add_up(sums, threadIdx.x, blockDim.x, blockIdx.x, partial);
+__global__ void each_on_device(const __grid_constant__ Each each, long n) {
+  for (long i = blockIdx.x * long(blockDim.x) + threadIdx.x; i < n; i += long(blockDim.x) * gridDim.x) each(i);
 }
 
 /// Runs a sweep (msm/gpu/sweep.h) on blocks of tile_x x tile_y threads.
@@ -103,18 +101,12 @@ void launch(const Sweep& sweep, const int (&blocks)[3]) {
   check(cudaGetLastError());
 }
 
-/// Blocks of threads for n values.
-constexpr int most_blocks = 1024, threads_of_each = 256;
-inline int blocks_for(long n) {
-  const long blocks = (n + threads_of_each - 1) / threads_of_each;
-  return blocks < most_blocks ? static_cast<int>(blocks) : most_blocks;
-}
-
-/// each(i, sums) for 0 <= i < n; the sums of the blocks_for(n) blocks to `partial`, unless it is null.
+/// each(i) for 0 <= i < n.
 template <class Each>
-void launch_each(const Each& each, long n, double* partial = nullptr) {
+void launch_each(const Each& each, long n) {
+  constexpr long most_blocks = 1024, threads = 256;
   if (n == 0) return;
-  each_on_device<<<blocks_for(n), threads_of_each>>>(each, n, partial);
+  each_on_device<<<std::min(most_blocks, (n + threads - 1) / threads), threads>>>(each, n);
   check(cudaGetLastError());
 }
 
@@ -158,13 +150,9 @@ void launch(const Sweep& sweep, const int (&blocks)[3]) {
       }
 }
 
-inline int blocks_for(long) { return 1; }
-
 template <class Each>
-void launch_each(const Each& each, long n, double* partial = nullptr) {
-  double sums[sums_of_launch] = {};
-  for (long i = 0; i < n; ++i) each(i, sums);
-  if (partial) std::copy(sums, sums + sums_of_launch, partial);
+void launch_each(const Each& each, long n) {
+  for (long i = 0; i < n; ++i) each(i);
 }
 
 #endif

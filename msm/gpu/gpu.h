@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "msm/gpu/box.h"
-#include "msm/kernels/cell_kernels.h"
 #include "msm/kernels/lattice_kernel.h"
 
 namespace springproof::gpu {
@@ -16,7 +15,7 @@ namespace springproof::gpu {
 std::string device_name();
 bool built_for_gpu();  ///< by CUDA
 
-/// Where lattices are computed that do not say it themselves: SPRINGPROOF_DEVICE, "processor" (default) or "gpu".
+/// Where steps of lattices are made that do not say it themselves: SPRINGPROOF_DEVICE, "processor" (default) or "gpu".
 /// @throws InputError for another value, or where there is no GPU.
 bool wants_gpu();
 
@@ -59,48 +58,6 @@ class LatticeSteps {
   /// Sums over the nodes of |force|^2 [N^2] at the beginning of the last step.
   LatticeSums advance(long steps, Real time_step, Real decay);
   std::vector<Real> forces();  ///< internal forces [N]
-  double bytes() const;
-
- private:
-  struct Data;
-  std::unique_ptr<Data> data_;
-};
-
-/// A level of lattice multigrid, in the units of its cycle.  The first points of all levels coincide.
-struct MultigridLevel {
-  Box box;
-  CellBlocks<float> K = {};
-  std::vector<float> fill;              ///< per place of a cell's lowest corner, 0: no cell
-  std::vector<float> inverse_diagonal;  ///< three components; 0 on fixed unknowns and where there is no node
-  double largest_eigenvalue = 0;
-};
-
-/// Lattice multigrid, finest level first; of the coarsest a dense inverse and the places of its unknowns.
-struct MultigridForGpu {
-  std::vector<MultigridLevel> levels;
-  CellBlocks<double> K = {};  ///< of the finest level
-  double unit = 1;            ///< that of the cycle's stiffness, in units of K
-  int smoothing_degree = 3;
-  std::vector<float> coarsest_inverse;
-  std::vector<int> coarsest_places;
-};
-
-/// Conjugate gradients in double precision, preconditioned by a V-cycle in single precision, in the GPU's memory.
-class MultigridSolver {
- public:
-  explicit MultigridSolver(const MultigridForGpu& multigrid);
-  ~MultigridSolver();
-
-  struct Result {
-    bool converged = false, negative_curvature = false;
-    int iterations = 0;
-    double residual = 0;  ///< |b - K u| / |b|, recomputed at the end
-    double seconds = 0;   ///< wall time, without moving b and u
-  };
-  /// u = K^-1 b: three components of the finest box's size; b zero on fixed unknowns and where there is no node.
-  Result solve(const std::vector<double>& b, double tolerance, int max_iterations, std::vector<double>& u);
-  /// y = K x, all unknowns.
-  void multiply(const std::vector<double>& x, std::vector<double>& y);
   double bytes() const;
 
  private:

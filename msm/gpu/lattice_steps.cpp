@@ -11,7 +11,7 @@ struct SetValues {
   const int* places;
   const Real* values;
   Real* to;
-  SPRINGPROOF_INLINE void operator()(long i, double (&)[sums_of_launch]) const { to[places[i]] = values[i]; }
+  SPRINGPROOF_INLINE void operator()(long i) const { to[places[i]] = values[i]; }
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace springproof {
 
-/// Energy sum k/2 |sum_a w_a x_a - x_node|^2 over Network::anchors and macro_anchors: springs of rest length zero, so
+/// Energy sum k/2 |sum_a w_a x_a - x_node|^2 over Network::anchors: springs of rest length zero, so
 /// the energy is quadratic and the same in every frame.
 struct Anchors {
   /// What solvers, kernels and the time step use of this law.

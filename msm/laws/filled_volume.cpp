@@ -3,8 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "msm/laws/macro_points.h"
-
 namespace springproof {
 namespace {
 
@@ -75,28 +73,7 @@ void add_volume_curvature(const Network& network, std::size_t cell, const NodalV
     for (int n = 0; n < 8; ++n) K.add(corners[m], corners[n], -cross_matrix(scale * F * g[m].cross(g[n])));
 }
 
-namespace {
-
-VolumeChange of_macro_cells(const Network& network, const NodalVectors& u) {
-  VolumeChange change{0, 0};
-  double volume = 0;
-  for (std::size_t c = 0; c < network.macro_cells.size(); ++c) {
-    const Eigen::Matrix<double, 3, 27> at = at_nodes(network.macro_cells[c], u);
-    const MacroPoints of_cell = macro_points(network, c);
-    volume += of_cell.volume;
-    for (const MacroPoint& p : of_cell.points) {
-      const Eigen::Matrix3d H = at * p.gradient.transpose() / network.cell_edge;
-      change.exact += of_cell.volume * p.share * ((Eigen::Matrix3d::Identity() + H).determinant() - 1);
-      change.first_order += of_cell.volume * p.share * H.trace();
-    }
-  }
-  return {change.first_order / volume, change.exact / volume};
-}
-
-}  // namespace
-
 VolumeChange volume_change(const Network& network, const NodalVectors& u) {
-  if (!network.macro_cells.empty()) return of_macro_cells(network, u);
   double volume = 0;
   VolumeChange change{0, 0};
   const Gradients of_full = mean_gradients(network.cell_edge, {}, network.proportions);

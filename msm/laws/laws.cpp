@@ -61,12 +61,6 @@ const AveragedSprings* averaged_springs_of(const MassSpringModel& model) {
   return nullptr;
 }
 
-const MacroSprings* macro_springs_of(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws)
-    if (const auto* springs = std::get_if<MacroSprings>(&law)) return springs;
-  return nullptr;
-}
-
 bool of_springs_alone(const MassSpringModel& model) {
   return std::all_of(model.laws.begin(), model.laws.end(),
                      [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });

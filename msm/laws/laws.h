@@ -9,7 +9,6 @@
 #include "msm/laws/angular_springs.h"
 #include "msm/laws/averaged_springs.h"
 #include "msm/laws/hourglass_correction.h"
-#include "msm/laws/macro_springs.h"
 #include "msm/laws/momentum_dispersion.h"
 #include "msm/laws/springs.h"
 #include "msm/laws/volume_correction.h"
@@ -18,7 +17,7 @@ namespace springproof {
 
 /// Any of the force laws.
 using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion, AngularSprings,
-                              AveragedSprings, MacroSprings, Anchors>;
+                              AveragedSprings, Anchors>;
 
 /// Properties of a law.
 /// @param law any of the list
@@ -67,11 +66,6 @@ const MomentumDispersion* dispersion_of(const MassSpringModel& model);
 /// @param model a model
 /// @return them, or nullptr if the model has none
 const AveragedSprings* averaged_springs_of(const MassSpringModel& model);
-
-/// The model's springs of macro-cells.
-/// @param model a model
-/// @return them, or nullptr if the model has none
-const MacroSprings* macro_springs_of(const MassSpringModel& model);
 
 /// Whether springs between nodes are all that the model has.
 /// @param model a model

@@ -173,9 +173,7 @@ VolumeDensity volume_term(StrainCurve curve, double J) {
   return {0.5 * e * e, e / J, (1 - e) / (J * J)};
 }
 
-double springs_volume_modulus(StrainCurve curve, double G) { return curve == StrainCurve::neo_hooke ? G : 5 * G / 3; }
-
-StrainEnergy distortion_energy(StrainCurve curve, double G, const Mat3& F, Derivative up_to) {
+StrainEnergy springs_energy(StrainCurve curve, double G, const Mat3& F, Derivative up_to) {
   const Strain strain(F, up_to);
   StrainEnergy W;
   if (curve == StrainCurve::neo_hooke) {
@@ -190,12 +188,8 @@ StrainEnergy distortion_energy(StrainCurve curve, double G, const Mat3& F, Deriv
     const Scalar lengths = strain.product(strain.power_of_J(-2.0 / 3), strain.lengths());
     strain.add(G / 2 * (lengths.value - 3), G / 2, 0, lengths, W);
   }
-  return W;
-}
-
-StrainEnergy springs_energy(StrainCurve curve, double G, const Mat3& F, Derivative up_to) {
-  StrainEnergy W = distortion_energy(curve, G, F, up_to);
-  add_volume_term(curve, springs_volume_modulus(curve, G), F, up_to, W);
+  // Springs of rest length 0, those of neo_hooke, know the volume themselves.
+  strain.add_volume(curve, curve == StrainCurve::neo_hooke ? G : 5 * G / 3, W);
   return W;
 }
 

@@ -45,13 +45,6 @@ enum class Derivative { none, first, second };
 /// U(J) per unit of bulk modulus, and its derivatives.
 VolumeDensity volume_term(StrainCurve curve, double J);
 
-/// Share of `springs_energy` in U(J), which is what a change of volume adds to their distortion: 5 G/3, and G in
-/// neo_hooke, whose springs of rest length 0 know the volume themselves [Pa].
-double springs_volume_modulus(StrainCurve curve, double shear_modulus);
-
-/// W of springs alone without that share, for det F > 0: all but neo_hooke have none for a change of volume.
-StrainEnergy distortion_energy(StrainCurve curve, double shear_modulus, const Eigen::Matrix3d& F, Derivative up_to);
-
 /// W of springs alone (lambda = G, nu = 1/4), for det F > 0.  That of a material is W + (lambda - G) U(J).
 StrainEnergy springs_energy(StrainCurve curve, double shear_modulus, const Eigen::Matrix3d& F, Derivative up_to);
 

@@ -87,8 +87,6 @@ MeasuredModuli measure_moduli(const ModelParameters& parameters, const Isotropic
   switch (parameters.row.topology) {
     case Topology::cells:
       return measure_block(parameters, material, cells);
-    case Topology::macro_cells:
-      return measure_block(parameters, material, 2 * cells);
     case Topology::hexagonal:
       return measure_sheet(parameters, material, cells);
     default:

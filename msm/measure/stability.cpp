@@ -59,9 +59,7 @@ std::string stable_range_of_energy(const ModelParameters& p, const IsotropicMate
 
 BlockStability block_stability(const ModelParameters& parameters, const IsotropicMaterial& material, double cell_edge) {
   const bool planar = parameters.row.topology == Topology::hexagonal;
-  const int n = planar || passes_patch_test(parameters.row)        ? 6
-                : parameters.row.topology == Topology::macro_cells ? 4
-                                                                   : 3;  // fitted springs need nodes off the surface
+  const int n = planar || passes_patch_test(parameters.row) ? 6 : 3;  // fitted springs need nodes off the surface
   const int layers = planar ? 1 : n;
   const Mesh mesh = block_mesh(cell_edge * Vec3(n, n, layers), {n, n, layers});
   const MassSpringModel model = build_model(parameters, mesh, material);
@@ -92,7 +90,7 @@ std::string stable_range(const ModelParameters& p, const IsotropicMaterial& mate
     return "-1 < nu < 1/2: every cell is positive (at A = 0: but for zero-energy modes)";
   if (p.has(Extension::angular_springs))
     return "-1 < nu_2D < 1 in its plane: a triangle strains affinely, K > 0 and G > 0 suffice";
-  if (p.has(Extension::averaging) || p.has(Extension::volume_modes)) return "-1 < nu < 1/2: every constant is positive";
+  if (p.has(Extension::averaging)) return "-1 < nu < 1/2: every constant is positive";
   if (!p.has(Extension::momentum_dispersion)) return "never negative: springs alone are a sum of squares";
   if (has_energy(p.dispersion)) return stable_range_of_energy(p, material);
   if (p.row.topology == Topology::random || p.row.topology == Topology::hexagonal)

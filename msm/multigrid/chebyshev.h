@@ -1,4 +1,4 @@
-// Chebyshev iteration; without Eigen, for sources that a GPU's compiler reads too.
+// Chebyshev iteration.
 #pragma once
 
 namespace springproof {

@@ -45,15 +45,10 @@ double largest_scaled_eigenvalue(const CellMatrix& cell) {
   return symmetric_eigenvalues(scaled)[23];
 }
 
-std::vector<char> fixed_by_point(const LatticeLevel& level) {
-  std::vector<char> fixed(3 * level.points(), 0);
-  for (int place : level.fixed) fixed[3 * (place % level.stride()) + place / level.stride()] = 1;
-  return fixed;
-}
-
 void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float, DirectSolver& coarsest) {
   const LatticeLevel& level = lattice.levels.back();
-  const std::vector<char> fixed = fixed_by_point(level);
+  std::vector<char> fixed(3 * level.points(), 0);
+  for (int place : level.fixed) fixed[3 * (place % level.stride()) + place / level.stride()] = 1;
   const bool held = holds_rigid_motions(level);
   if (!may_float && !holds_rigid_motions(lattice.levels[0])) throw std::runtime_error("the body is not held");
   // Without supports, pivots at the level of single precision are those of rigid motions.

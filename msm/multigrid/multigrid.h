@@ -13,9 +13,6 @@
 
 namespace springproof {
 
-/// Marks the fixed unknowns 3 * point + axis of a level.
-std::vector<char> fixed_by_point(const LatticeLevel& level);
-
 /// Factors the matrix of the coarsest level.  If it is singular because this level has lost the supports of the body (a
 /// patch smaller than its cells), or because the lattice `may_float`, a small multiple of the identity is added.
 /// @throws std::runtime_error if the body is not supported, or the model has zero-energy modes.

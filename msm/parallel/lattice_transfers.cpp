@@ -14,7 +14,7 @@ using Weights = std::vector<std::vector<std::pair<int, double>>>;
 
 /// Whether all nodes are corners of cubes, or anchored.
 bool is_lattice(const Network& network) {
-  if (network.cells.empty() || !network.image_of.empty() || !network.macro_cells.empty()) return false;
+  if (network.cells.empty() || !network.image_of.empty()) return false;
   std::vector<char> known(network.nodes(), 0);
   for (const Hexahedron& cell : network.cells)
     for (const int corner : cell) known[corner] = 1;

@@ -6,7 +6,6 @@
 
 #include "msm/distribution/pressure_form.h"
 #include "msm/parallel/partition.h"
-#include "msm/topology/macro_cells.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
@@ -57,7 +56,6 @@ PartedProblem::PartedProblem(const MassSpringModel& model, const BoundaryConditi
       mixed_(kappa_ > (has_nodal_pressures(model) ? 0 : parted_mixed_above_kappa)),
       all_prescribed_(conditions.prescribed),
       all_carried_(model.network.carried) {
-  require_no_macro_cells(model.network, "several processes");
   const std::vector<int> owner = owners_of_nodes(model.network, communicator);
   agree(communicator, [&] {
     const int rank = rank_of(communicator);

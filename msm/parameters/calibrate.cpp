@@ -57,7 +57,6 @@ double affine_shear_modulus(const Network& network) {
 }
 
 double affine_shear_modulus(const MassSpringModel& model) {
-  if (const MacroSprings* macro = macro_springs_of(model)) return macro->shear_modulus;
   const AveragedSprings* averaged = averaged_springs_of(model);
   return averaged ? averaged->shear_modulus : affine_shear_modulus(model.network);
 }

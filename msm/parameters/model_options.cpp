@@ -113,15 +113,14 @@ std::vector<Option> options_of(const ModelRow& row) {
   std::vector<Option> options = {flag("paper_e_form", [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
   if ((row.topology == Topology::cells || row.topology == Topology::centres) && row.extension != Extension::averaging)
     options.push_back({"face_to_cube", set_face_to_cube});
-  if (row.extension == Extension::averaging || row.extension == Extension::volume_modes)
+  if (row.extension == Extension::averaging)
     options = {choice<std::optional<StrainCurve>>("curve", &ModelParameters::curve,
                                                   {{"hencky", StrainCurve::hencky},
                                                    {"neo_hooke", StrainCurve::neo_hooke},
                                                    {"neo_hooke_isochoric", StrainCurve::neo_hooke_isochoric},
                                                    {"springs_hencky", StrainCurve::springs_hencky},
-                                                   {"springs_neo_hooke", StrainCurve::springs_neo_hooke}})};
-  if (row.extension == Extension::averaging)
-    options.push_back(choice<bool>("torsion", &ModelParameters::slender, {{"exact", false}, {"slender", true}}));
+                                                   {"springs_neo_hooke", StrainCurve::springs_neo_hooke}}),
+               choice<bool>("torsion", &ModelParameters::slender, {{"exact", false}, {"slender", true}})};
   if (row.topology == Topology::random) options = random_options();
   if (passes_patch_test(row))  // needs nodes on the surface, and chooses the springs' constants itself
     std::erase_if(options, [](const Option& o) {
@@ -131,11 +130,11 @@ std::vector<Option> options_of(const ModelRow& row) {
     options.push_back(
         number("turned_deg", -90, 90, [](double v, ModelParameters& p) { p.turned = v * std::numbers::pi / 180; }));
   options.push_back(hold_option());
-  const bool of_cells = row.topology == Topology::cells && row.extension != Extension::momentum_dispersion;
-  if (of_cells || row.topology == Topology::macro_cells)
+  if (row.topology == Topology::cells && row.extension != Extension::momentum_dispersion) {
     options.push_back(flag("cut", [](bool on, ModelParameters& p) { p.cut = on; }));
-  if (of_cells) options.push_back(number("shift", 0, 1, [](double v, ModelParameters& p) { p.shift = v; }));
-  if (row.topology != Topology::cells && row.topology != Topology::macro_cells) options.push_back(grip_option());
+    options.push_back(number("shift", 0, 1, [](double v, ModelParameters& p) { p.shift = v; }));
+  }
+  if (row.topology != Topology::cells) options.push_back(grip_option());
   if (row.extension == Extension::volume_correction)
     options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
                                            {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));

@@ -35,7 +35,6 @@ const std::vector<ModelRow> table = {
   {"hybmss_b",       "HybMSS + bending hourglass correction (linear kinematics)",              cells,     2,        true,  volume_correction,   true,  false, G},
   {"hybmss_bt",      "HybMSS + bending and torsion hourglass correction (linear kinematics)",  cells,     2,        true,  volume_correction,   true,  true,  G},
   {"hybmss_avg",     "recommended: springs averaged over each cell; any strain, any nu",        cells,     16.0 / 9, false, averaging,           true,  true,  G},
-  {"hybmss_macro",   "springs at 27 points of cells of 27 nodes; blocks, cut bodies, at rest",  macro_cells, 16.0 / 9, false, volume_modes,      false, false, G},
 };
 // clang-format on
 
@@ -54,7 +53,6 @@ struct TermOf {
   const char* operator()(const VolumeCorrection&) const { return per_cell; }
   const char* operator()(const HourglassCorrection&) const { return per_cell; }
   const char* operator()(const AveragedSprings&) const { return per_cell; }
-  const char* operator()(const MacroSprings&) const { return per_cell; }
 };
 
 }  // namespace
@@ -83,7 +81,6 @@ std::string made_of(const ModelRow& row) {
     case angular_springs:
       return joined(true, per_angle);
     case averaging:
-    case volume_modes:
       return joined(false, per_cell);
   }
   throw std::invalid_argument("no such extension");

@@ -17,12 +17,11 @@ struct SpringsFile;
 
 /// Positions of the nodes and which of them are connected.
 enum class Topology {
-  cells,        ///< cubic lattice by superposition of cells: nodes are the corners of the mesh's cubes
-  macro_cells,  ///< the same, eight cubes of which are one cell of 27 nodes
-  centres,      ///< cubic lattice with a node in the middle of each cube
-  random,       ///< random sequential addition, one node per cube of the mesh on average
-  hexagonal,    ///< triangles in the plane z = const, for plane strain
-  file,         ///< those of a springs file
+  cells,      ///< cubic lattice by superposition of cells: nodes are the corners of the mesh's cubes
+  centres,    ///< cubic lattice with a node in the middle of each cube
+  random,     ///< random sequential addition, one node per cube of the mesh on average
+  hexagonal,  ///< triangles in the plane z = const, for plane strain
+  file,       ///< those of a springs file
 };
 
 /// Extension that gives the springs, whose own Poisson's ratio is 1/4, another one.
@@ -31,8 +30,7 @@ enum class Extension {
   volume_correction,
   momentum_dispersion,
   angular_springs,
-  averaging,     ///< springs averaged over each cell, with a volume term of their own (msm/laws/averaged_springs.h)
-  volume_modes,  ///< springs at points of macro-cells, with four modes of their volume (msm/laws/macro_springs.h)
+  averaging,  ///< springs averaged over each cell, with a volume term of their own (msm/laws/averaged_springs.h)
 };
 
 /// Which modulus the springs reproduce when their own Poisson's ratio (1/4) is not the material's.

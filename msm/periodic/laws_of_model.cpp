@@ -31,10 +31,6 @@ MomentumDispersion dispersion_law(const ModelParameters& p, const Network& netwo
   return law;
 }
 
-MacroSprings macro_law(const ModelParameters& p, const IsotropicMaterial& material) {
-  return {shear_modulus(material), lame_lambda(material), p.curve.value_or(StrainCurve::hencky)};
-}
-
 AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material) {
   AveragedSprings law;
   law.shear_modulus = spring_shear_modulus(p, material);
@@ -54,7 +50,6 @@ std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& 
   using enum Extension;
   ModelParameters p = parameters;
   if (p.has(averaging)) return {averaged_law(p, material)};
-  if (p.has(volume_modes)) return {macro_law(p, material)};
   std::vector<ForceLaw> laws = {Springs{}};
   if (p.has(volume_correction)) laws.push_back(VolumeCorrection{kappa(material), p.volume_energy});
   if (p.has(momentum_dispersion)) {

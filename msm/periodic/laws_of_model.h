@@ -16,9 +16,6 @@ std::vector<ForceLaw> laws_of(const ModelParameters& p, const Network& network, 
 /// The springs of a model averaged over its cells, which for small strains have its moduli.
 AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material);
 
-/// Springs of macro-cells, likewise.
-MacroSprings macro_law(const ModelParameters& p, const IsotropicMaterial& material);
-
 /// Momentum dispersion of eMSM; symmetric dispersion with p.exact_volumes resolved (empty: k L).
 MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,
                                   const NodalVectors& volume_gradient, WeightStart start = WeightStart::stiffness);

@@ -44,9 +44,6 @@ MassSpringModel periodic_model(const ModelParameters& parameters, const Isotropi
   ModelParameters p = parameters;
   if (p.row.topology == Topology::hexagonal)
     throw InputError(fmt::format("{}: a planar model has no three-dimensional bulk to homogenise", p.row.name));
-  if (p.row.topology == Topology::macro_cells)
-    throw InputError(
-        fmt::format("{}: has the material's moduli exactly and no periodic form (allowed: hybmss_avg)", p.row.name));
   const BulkCalibration bulk = bulk_calibration(parameters, material);
   if (p.has(Extension::momentum_dispersion) && has_energy(p.dispersion)) p.exact_volumes = exact_volumes(p, material);
   if (p.row.topology == Topology::random) return periodic_random_model(p, bulk, spacing, nodes);

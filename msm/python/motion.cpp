@@ -123,8 +123,7 @@ Integrator integrator_of(const std::string& name) {
   if (name == "explicit") return Integrator::explicit_euler;
   if (name == "energy_momentum") return Integrator::energy_momentum;
   if (name == "implicit_euler") return Integrator::implicit_euler;
-  if (name == "bdf2") return Integrator::bdf2;
-  throw InputError(fmt::format("integrator: is '{}' (allowed: explicit, energy_momentum, implicit_euler, bdf2)", name));
+  throw InputError(fmt::format("integrator: is '{}' (allowed: explicit, energy_momentum, implicit_euler)", name));
 }
 
 std::shared_ptr<MovingModel> motion_of(const ModelPointer& model, const std::vector<BoundLoad>& loads,
@@ -188,8 +187,8 @@ copy what is to be kept.)")
             "integrator"_a = "explicit", "float32"_a = false, "threads"_a = 1,
             R"(The model in motion from rest, under loads and supports as of solve().
 
-time_step [s]: default 0.95 of safe_time_step (10 of it where the integrator is implicit: "energy_momentum", "implicit_euler",
-"bdf2"); damping: in proportion to the mass [1/s]; float32: kernels in single precision.
+time_step [s]: default 0.95 of safe_time_step (10 of it where the integrator is implicit: "energy_momentum",
+"implicit_euler"); damping: in proportion to the mass [1/s]; float32: kernels in single precision.
 Raises InputError for an explicit step above safe_time_step, which the message names.)");
 }
 

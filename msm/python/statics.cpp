@@ -51,7 +51,7 @@ std::shared_ptr<SolvedState> solve(const ModelPointer& model, const std::vector<
         to_field(state, model->body->mesh, model->embedding, model->network(), loads, conditions, kinematics);
     solved->on_body = field.displacement;
     solved->reactions = field.reactions;
-    const bool own_field = !model->network().filled.empty() || !model->network().macro_cells.empty();
+    const bool own_field = !model->network().filled.empty();
     solved->volume_change = own_field ? volume_change(model->network(), state.displacement).exact : field.volume_change;
     return 0;
   });
@@ -62,8 +62,7 @@ py::array displacement_at_points(const SolvedState& s, const Numbers& points) {
   const NodalVectors at = rows_of(points, "points");
   if (!s.model->body) throw InputError("points: the model has no body (allowed: displacement, of the nodes)");
   if (!s.model->network().filled.empty())
-    return moved(springproof::displacement_at(*s.model->body->cut, s.equilibrium.displacement, at,
-                                              !s.model->network().macro_cells.empty()));
+    return moved(springproof::displacement_at(*s.model->body->cut, s.equilibrium.displacement, at));
   const Mesh& mesh = *s.model->body->mesh;
   const Locator locate(mesh);
   NodalVectors out = NodalVectors::Zero(at.rows(), 3);

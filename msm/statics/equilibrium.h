@@ -37,9 +37,8 @@ struct Equilibrium {
   std::optional<SoftestMotion> softest = {};  ///< of the returned state, if it was asked for
 };
 
-/// Solvers of the linear equations; mixed_multigrid has pressures as unknowns, for nu near 1/2; gpu_multigrid is that
-/// of whole cells on a GPU (msm/gpu), which SPRINGPROOF_DEVICE makes the automatic choice away from nu = 1/2.
-enum class LinearSolver { automatic, cholesky, multigrid, mixed_multigrid, gpu_multigrid };
+/// Solvers of the linear equations; mixed_multigrid has pressures as unknowns, for nu near 1/2.
+enum class LinearSolver { automatic, cholesky, multigrid, mixed_multigrid };
 
 /// How to solve a linear problem.
 struct LinearOptions {
@@ -54,7 +53,6 @@ struct LinearOptions {
 /// @param conditions supports, which leave no rigid motion (require_supported()), and loads
 /// @param options solver and tolerance
 /// @return displacement, support forces and how they were found; check `ok`
-/// @throws std::invalid_argument if gpu_multigrid is asked for a model that is no lattice of whole cells
 Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions& conditions,
                          const LinearOptions& options = {});
 

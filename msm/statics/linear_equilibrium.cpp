@@ -5,7 +5,6 @@
 
 #include "meshes/volume.h"
 #include "msm/algebra/krylov.h"
-#include "msm/gpu/gpu_multigrid.h"
 #include "msm/multigrid/cell_stiffness.h"
 #include "msm/multigrid/cut_mixed_multigrid.h"
 #include "msm/multigrid/cut_multigrid.h"
@@ -72,18 +71,6 @@ void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
   finish(p, u, Ku, result);
 }
 
-void solve_on_gpu(const LinearProblem& p, const CellStiffness& cell, Equilibrium& result) {
-  GpuMultigrid K(lattice_levels(p.model.network, p.fixed, 300), cell.total);
-  Eigen::VectorXd Ku, du;
-  K.multiply(p.prescribed, Ku);
-  const std::string device = gpu::device_name();
-  report(K.solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du),
-         "CG + multigrid on " + (device.empty() ? "the processor, by a GPU's code" : device), result);
-  const Eigen::VectorXd u = p.prescribed + du;
-  K.multiply(u, Ku);
-  finish(p, u, Ku, result);
-}
-
 /// `unit`: that of stiffness; `volumes`: number of pressures.
 template <class Mixed>
 void solve_mixed(const LinearProblem& p, Mixed&& multigrid, double unit, std::size_t volumes, Equilibrium& result) {
@@ -132,29 +119,22 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   const bool has_cells = consists_of_cells(model);
   const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
-    if (result.unknowns <=
-        (has_cells || NodalVolumes::covers(model) || CutMultigrid::covers(model) || MacroSolver::covers(model)
-             ? lattice_cholesky_limit
-             : cholesky_limit))
+    if (result.unknowns <= (has_cells || NodalVolumes::covers(model) || CutMultigrid::covers(model)
+                                ? lattice_cholesky_limit
+                                : cholesky_limit))
       solver = LinearSolver::cholesky;
     else
       solver = volume_stiffness(model, cell, G) >
                        (CutMultigrid::covers(model) ? cut_cells_mixed_above_kappa : mixed_above_kappa) * G
                    ? LinearSolver::mixed_multigrid
-               : has_cells && gpu::wants_gpu() ? LinearSolver::gpu_multigrid
-                                               : LinearSolver::multigrid;
+                   : LinearSolver::multigrid;
   }
-  if (solver == LinearSolver::gpu_multigrid && !has_cells)
-    throw std::invalid_argument("a GPU's multigrid is for lattices of whole cells");
   try {
     if (solver == LinearSolver::mixed_multigrid)
       solve_mixed(problem, cell, G, result);
-    else if (solver == LinearSolver::gpu_multigrid)
-      solve_on_gpu(problem, cell, result);
     else
       solve_primal(problem, solver == LinearSolver::cholesky, result);
-    const bool iterated = (solver == LinearSolver::multigrid || solver == LinearSolver::gpu_multigrid) &&
-                          options.solver == LinearSolver::automatic;
+    const bool iterated = solver == LinearSolver::multigrid && options.solver == LinearSolver::automatic;
     if (!result.ok && iterated && result.unknowns <= judge_limit) solve_primal(problem, true, result);
   } catch (const std::runtime_error& e) {
     result.message = e.what();

@@ -10,34 +10,22 @@
 
 namespace springproof {
 
-/// A Newton method with pressures as unknowns.
-class PressureNewton {
- public:
-  virtual ~PressureNewton() = default;
-
-  /// Moves x, from the pressures of the step accepted last, to equilibrium under the conditions.
-  /// @return false if it is not reached in max_iterations.
-  virtual bool step(const BoundaryConditions& conditions, double tolerance, int max_iterations, NodalVectors& x) = 0;
-  virtual void accept() = 0;             ///< accepts the last step
-  virtual int iterations() const = 0;    ///< so far
-  virtual std::string name() const = 0;  ///< of the solver of a step, for reports
-};
-
 /// Finds x and p of   f_springs(x) + sum_c p_c dV_c/dx = external,   psi'(V_c/V) = p_c / kappa,  psi the volume term of
 /// the model (msm/laws/volume_correction.h, strain_energy.h) and V the volume of the filled part of a cell.  A guess
 /// with a wrong volume then causes no forces of kappa times the error, which impede the form without p.  Steps are
 /// solved by GMRES preconditioned by the mixed multigrid of the rest state.
-class MixedNewton : public PressureNewton {
+class MixedNewton {
  public:
   /// Whether the model is a lattice of springs with a volume term for which this form is worthwhile.
   static bool suits(const MassSpringModel& model);
 
   MixedNewton(const MassSpringModel& model, const std::vector<char>& fixed);
 
-  bool step(const BoundaryConditions& conditions, double tolerance, int max_iterations, NodalVectors& x) override;
-  void accept() override { accepted_p_ = p_; }
-  int iterations() const override { return iterations_; }
-  std::string name() const override { return "GMRES + mixed multigrid"; }
+  /// Moves x, from the pressures of the step accepted last, to equilibrium under the conditions.
+  /// @return false if it is not reached in max_iterations.
+  bool step(const BoundaryConditions& conditions, double tolerance, int max_iterations, NodalVectors& x);
+  void accept() { accepted_p_ = p_; }             ///< accepts the last step
+  int iterations() const { return iterations_; }  ///< so far
 
  private:
   struct Linearised;

@@ -5,7 +5,6 @@
 
 #include "meshes/volume.h"
 #include "msm/statics/equilibrium.h"
-#include "msm/statics/macro_newton.h"
 #include "msm/statics/mixed_newton.h"
 #include "msm/statics/softest_motion.h"
 #include "msm/statics/tangent_solver.h"
@@ -23,7 +22,7 @@ bool has_inverted_cell(const Network& network, NodalVectors x) {
   carry(network.carried, x);
   if (network.filled.empty()) return min_relative_jacobian({network.X, network.cells, {}, {}, {}, {}}, x) <= 0;
   for (std::size_t c = 0; c < network.cells.size(); ++c)
-    if (network.filled[c].fraction > 0 && cell_volume(network, c, x).value <= 0) return true;
+    if (cell_volume(network, c, x).value <= 0) return true;
   return false;
 }
 
@@ -32,9 +31,9 @@ struct Newton {
   const LoadPath& path;
   const NewtonOptions& options;
   const std::vector<char> fixed;
-  TangentSolver K;                        ///< tangent at the state of the last take()
-  std::unique_ptr<PressureNewton> mixed;  ///< near nu = 1/2; null: the form without pressures
-  double stiffness = 0;                   ///< largest diagonal entry at rest [N/m]
+  TangentSolver K;                     ///< tangent at the state of the last take()
+  std::unique_ptr<MixedNewton> mixed;  ///< near nu = 1/2; null: the form without pressures
+  double stiffness = 0;                ///< largest diagonal entry at rest [N/m]
   int iterations = 0;
 
   Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
@@ -45,8 +44,6 @@ struct Newton {
         K(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit) {
     if (K.unknowns() > cholesky_limit && MixedNewton::suits(m))
       mixed = std::make_unique<MixedNewton>(m, fixed_unknowns);
-    if (K.unknowns() > cholesky_limit && MacroNewton::suits(m))
-      mixed = std::make_unique<MacroNewton>(m, fixed_unknowns);
   }
 
   /// Unbalanced force on free unknowns, relative to the reactions and external forces (or, for motions that need almost
@@ -207,7 +204,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.displacement = x - model.network.X;
   carry(model.network.carried, result.displacement);
   result.support = support_forces(model, x, reached);
-  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? newton.mixed->name() : newton.K.name(),
+  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K.name(),
                               steps, steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
   result.unknowns = newton.K.unknowns();

@@ -31,8 +31,6 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
     lattice_ = std::make_unique<Multigrid>(lattice_levels(network, fixed), cell_stiffness(model).total);
   else if (CutMultigrid::covers(model))
     cut_ = std::make_unique<CutMultigrid>(model, fixed);
-  else if (MacroSolver::covers(model))
-    macro_ = std::make_unique<MacroSolver>(model, fixed);
   else {
     if (ListStiffness<double>::covers(model)) {
       list_ = std::make_unique<ListStiffness<double>>(model, std::make_shared<SpringBlocks>(network));
@@ -46,10 +44,6 @@ TangentSolver::TangentSolver(const MassSpringModel& model, const std::vector<cha
 bool TangentSolver::take(const NodalVectors& x) {
   at_rest_ = (lattice_ || cut_ || list_) && x == model_.network.X;  // the multigrid or the list provides the tangent
   if (at_rest_) return true;
-  if (macro_) {
-    macro_->take(x);
-    return true;
-  }
   if (K_.local.nodes() == 0) K_.local = BlockMatrix(model_.network);
   update_tangent(model_, x, K_);
   if (!companion_) return !direct_ || factors_.factor(K_, fixed_);
@@ -61,8 +55,6 @@ bool TangentSolver::take(const NodalVectors& x) {
 void TangentSolver::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
   if (direct_)
     factors_.solve(r, z);
-  else if (macro_)
-    macro_->precondition(r, z);
   else
     lattice_ ? lattice_->apply(r, z) : cut_ ? cut_->apply(r, z) : network_->apply(r, z);
 }
@@ -84,14 +76,11 @@ void TangentSolver::multiply(const Stiffness& K, const Eigen::VectorXd& x, Eigen
     lattice_->multiply(x, y);
   else if (at_rest_)
     cut_->multiply(x, y);
-  else if (macro_)
-    macro_->multiply(x, y);
   else
     K.assembled.multiply(x, y);
 }
 
 Eigen::VectorXd TangentSolver::diagonal() const {
-  if (macro_) return macro_->diagonal();
   if (!at_rest_) return K_.diagonal();
   if (cut_) return cut_->diagonal();
   const std::vector<Eigen::Matrix3d> blocks = list_->node_blocks();
@@ -129,7 +118,6 @@ KrylovResult TangentSolver::iterate(const Stiffness& K, bool symmetric, const Ei
 
 KrylovResult TangentSolver::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations,
                                   Eigen::VectorXd& u) const {
-  if (macro_ && macro_->mixed()) return macro_->solve(b, tolerance, max_iterations, u);
   return iterate(stiffness(), !companion_, b, tolerance, max_iterations, u);
 }
 
@@ -150,11 +138,7 @@ double TangentSolver::largest_diagonal() const {
 }
 
 std::string TangentSolver::name() const {
-  if (macro_ && macro_->mixed()) return "GMRES + multigrid of averaged springs, with pressures";
-  const std::string inner = direct_            ? "Cholesky"
-                            : lattice_ || cut_ ? "multigrid"
-                            : macro_           ? "multigrid of averaged springs"
-                                               : "network multigrid";
+  const std::string inner = direct_ ? "Cholesky" : lattice_ || cut_ ? "multigrid" : "network multigrid";
   if (companion_) return "GMRES + " + inner + " of the symmetric form";
   return direct_ ? inner : "CG + " + inner;
 }

@@ -7,7 +7,6 @@
 
 #include "msm/algebra/krylov.h"
 #include "msm/multigrid/cut_multigrid.h"
-#include "msm/multigrid/macro_solver.h"
 #include "msm/multigrid/multigrid.h"
 #include "msm/multigrid/network_multigrid.h"
 
@@ -63,7 +62,6 @@ class TangentSolver {
   DirectSolver factors_;
   std::unique_ptr<Multigrid> lattice_;
   std::unique_ptr<CutMultigrid> cut_;
-  std::unique_ptr<MacroSolver> macro_;  ///< provides the tangent, K_ is not updated
   std::unique_ptr<NetworkMultigrid> network_;
   std::unique_ptr<ListStiffness<double>> list_, companion_list_;  ///< of networks that it covers
 };

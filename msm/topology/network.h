@@ -29,39 +29,17 @@ struct Anchor {
   double stiffness;               ///< k [N/m]
 };
 
-/// The 27 nodes of a macro-cell, two cubes along each axis: node x + 3 y + 9 z at (x, y, z) cube edges.
-using MacroCell = std::array<int, 27>;
-
-/// Two macro-cells with a common face, of which the body fills at least one in part.
-struct MacroFace {
-  int lower, upper;  ///< macro-cells
-  int axis;          ///< from the lower to the upper
-};
-
-/// Anchor by the nodes of a macro-cell.
-struct MacroAnchor {
-  int cell;                        ///< macro-cell
-  int cube;                        ///< of its eight, that the part of the patch is in
-  std::array<double, 27> weights;  ///< of its nodes; they sum to 1
-  int node;                        ///< held by the support
-  double stiffness;                ///< k [N/m]
-};
-
 /// Nodes, springs and cells of a body; laws (msm/laws/laws.h) say what forces they have.
 struct Network {
-  NodalVectors X;                   ///< rest positions [m], n x 3
-  std::vector<Spring> springs;      ///< each pair once, sorted by (i, j)
-  std::vector<Hexahedron> cells;    ///< cubic cells, or boxes; empty for networks without
-  double cell_edge = 0;             ///< l [m] of the cells; of several sizes, of the smallest; of boxes of their cube
-  Vec3 proportions = Vec3::Ones();  ///< edges of boxes over those of the cube of their volume; cubes: 1
-  std::vector<double> cell_edges;   ///< [m] of cells of several sizes, one per cell; empty: all are equal
-  std::vector<FilledPart> filled;   ///< of cut cells, one per cell; empty: all cells are full
-  std::vector<MacroCell> macro_cells;  ///< of cubes; empty for networks without.  Of a cut body: `cells` 8 m to 8 m +
-                                       ///< 7, x fastest, are those of cell m; filled fraction 0: no body there
-  std::vector<MacroFace> macro_faces;  ///< of cut bodies
-  std::vector<MacroAnchor> macro_anchors;  ///< of the supports of cut bodies
-  std::vector<Anchor> anchors;             ///< of the supports of cut cells
-  std::vector<Spring> cell_springs;        ///< contribution of one cell: springs between its corners 0..7
+  NodalVectors X;                    ///< rest positions [m], n x 3
+  std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
+  std::vector<Hexahedron> cells;     ///< cubic cells, or boxes; empty for networks without
+  double cell_edge = 0;              ///< l [m] of the cells; of several sizes, of the smallest; of boxes of their cube
+  Vec3 proportions = Vec3::Ones();   ///< edges of boxes over those of the cube of their volume; cubes: 1
+  std::vector<double> cell_edges;    ///< [m] of cells of several sizes, one per cell; empty: all are equal
+  std::vector<FilledPart> filled;    ///< of cut cells, one per cell; empty: all cells are full
+  std::vector<Anchor> anchors;       ///< of the supports of cut cells
+  std::vector<Spring> cell_springs;  ///< contribution of one cell: springs between its corners 0..7
   /// Nodes on edges and faces of larger cells.  They are no unknowns: they follow the others, to which the forces on
   /// them, and their mass, are handed back.
   std::vector<CarriedPoint> carried;

@@ -56,7 +56,7 @@ struct ReferenceChoice {
 std::vector<std::string> element_names();
 
 /// Integrators of [dynamics]: "explicit", semi-implicit Euler, Golec et al. (2019), sec. 3 and 6.1; the implicit
-/// "energy_momentum", "implicit_euler", "bdf2"; "auto".
+/// "energy_momentum", "implicit_euler"; "auto".
 std::vector<std::string> integrator_names();
 
 /// Motion in time of the models ([dynamics]).

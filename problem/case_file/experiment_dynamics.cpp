@@ -104,9 +104,7 @@ void read_damping(const TomlTable& table, MotionChoice& motion) {
 
 }  // namespace
 
-std::vector<std::string> integrator_names() {
-  return {"explicit", "energy_momentum", "implicit_euler", "bdf2", "auto"};
-}
+std::vector<std::string> integrator_names() { return {"explicit", "energy_momentum", "implicit_euler", "auto"}; }
 
 void read_dynamics(const TomlTable& document, Experiment& experiment) {
   const auto value = document.find("dynamics");

@@ -75,17 +75,6 @@ std::vector<Case> cases() {
         all.push_back({name + "_boxes_curve" + std::to_string(curve), {boxes, {law}}, true});
       }
     }
-  const Network macro = test::macro_network(), cut_macro = test::cut_macro_network();
-  for (double nu : {-0.9, 0.0, 0.4, 0.499})
-    for (int curve = 0; curve < 5; ++curve) {
-      const IsotropicMaterial material{1e4, nu, 1000};
-      const MacroSprings law{shear_modulus(material), lame_lambda(material), static_cast<StrainCurve>(curve)};
-      all.push_back({"Macro_nu" + std::to_string(static_cast<int>(1000 * nu + 1000)) + "_curve" + std::to_string(curve),
-                     {macro, {law}},
-                     true});
-      all.push_back({all.back().name + "_cut", {cut_macro, {law}}, true});
-    }
-  all.push_back({"AnchorsMacro", {cut_macro, {Anchors{}}}, true});
   all.push_back({"Anchors", {cut, {Anchors{}}}, true});
   all.push_back({"AnchorsRefined", {refined, {Anchors{}}}, true});
   const Network sheet = test::bent_triangles();
@@ -97,7 +86,7 @@ std::vector<Case> cases() {
 
 TEST(LawSuiteCases, KeepTheirForcesInASpringsFile) {
   for (const Case& c : cases()) {
-    if (!c.model.network.filled.empty() || !c.model.network.macro_cells.empty()) continue;  // files hold whole cubes
+    if (!c.model.network.filled.empty()) continue;  // files hold whole cubes
     SpringsFile file;
     file.model = c.model;
     file.model.laws.emplace_back(Springs{});

@@ -53,11 +53,6 @@ inline NodalVectors noise(Eigen::Index nodes, double size, unsigned seed = 1) {
   return v;
 }
 
-/// Two macro-cells with a common face.
-inline Network macro_network(double edge = 0.5) {
-  return build_model(model("hybmss_macro"), block_mesh(edge * Vec3(4, 2, 2), {4, 2, 2}), {1, 0.25}).network;
-}
-
 /// Two by two by one cells that a body fills in part, with moments at random, one of them full, and two anchors.
 inline Network cut_network(double edge = 0.5) {
   const Mesh mesh = block_mesh(edge * Vec3(2, 2, 1), {2, 2, 1});
@@ -84,12 +79,6 @@ inline Network cut_network(double edge = 0.5) {
     network.anchors.push_back(anchor);
   }
   return network;
-}
-
-/// Macro-cells that a ball fills in part, with anchors.
-inline Network cut_macro_network(double edge = 0.5) {
-  const Mesh body = mapped(ball_of_tetrahedra(4), [&](const Vec3& x) -> Vec3 { return 2.2 * edge * x; });
-  return cut_macro_lattice(cut_body(grid_about(body, edge), body), {"surface"}, 100);
 }
 
 /// Eight cells beside one of twice their edge, cut at the top, with anchors at one end.

@@ -188,12 +188,11 @@ TEST(ImplicitMotion, EnergyMomentumKeepsSpinAndEnergyAtLargeSteps) {
     }
 }
 
-TEST(ImplicitMotion, ImplicitEulerAndBdf2LoseSpin) {
+TEST(ImplicitMotion, ImplicitEulerLosesSpin) {
   for (const char* name : {"hybmss_avg", "hybmss"}) {
     const Bar bar(name, 0.25);
     EXPECT_NEAR(bar.turn(Integrator::implicit_euler, 2).final_spin, -0.68, 0.02);
     EXPECT_NEAR(bar.turn(Integrator::implicit_euler, 5).final_spin, -0.79, 0.02);
-    EXPECT_NEAR(bar.turn(Integrator::bdf2, 5).final_spin, -0.31, 0.04);
   }
 }
 
@@ -307,20 +306,18 @@ TEST(ImplicitMotion, PeriodIsThatOfTheSmallestFrequencyAndOfTheMethod) {
         return period_of(beam.release(i, T / steps, 10.5 * T, 1e-5)) / steps - 1;
       };
       EXPECT_NEAR(longer(Integrator::energy_momentum), wdt * wdt / 12, 0.02 * wdt * wdt) << name;
-      EXPECT_NEAR(longer(Integrator::bdf2), wdt * wdt / 3, 0.07 * wdt * wdt) << name;
     }
   }
 }
 
-TEST(ImplicitMotion, OrdersAreTwoTwoAndOne) {
+TEST(ImplicitMotion, OrdersAreTwoAndOne) {
   const Cantilever beam("hybmss_avg");
   const double T = 2 * std::numbers::pi / beam.frequency;
   struct Row {
     Integrator integrator;
     int order, steps;  ///< of a period
   };
-  for (const Row& row : {Row{Integrator::energy_momentum, 2, 100}, Row{Integrator::bdf2, 2, 100},
-                         Row{Integrator::implicit_euler, 1, 800}}) {
+  for (const Row& row : {Row{Integrator::energy_momentum, 2, 100}, Row{Integrator::implicit_euler, 1, 800}}) {
     const auto end = [&](int steps) {
       return beam.release(row.integrator, T / steps, (0.7 - 1e-6) * T, 0.0005).back();
     };
@@ -340,7 +337,7 @@ TEST(ImplicitMotion, SlowRampEndsInTheStaticState) {
   const Equilibrium still = solve_finite(beam.model, path);
   ASSERT_TRUE(still.ok);
   ASSERT_GT(still.displacement.cwiseAbs().maxCoeff(), 0.05);  // an eighth of the length
-  for (Integrator i : {Integrator::energy_momentum, Integrator::bdf2, Integrator::implicit_euler}) {
+  for (Integrator i : {Integrator::energy_momentum, Integrator::implicit_euler}) {
     DynamicsOptions options;
     options.integrator = i;
     options.duration = 12;

@@ -48,7 +48,6 @@ double spectral_radius(const MassSpringModel& model, bool dispersion_alone = fal
 TEST(SafeTimeStep, IsSafeOnEveryNetworkAndNotWastefulOnAny) {
   for (const ModelRow& row : model_table())
     for (double nu : {-0.5, 0.25, 0.4, 0.49}) {
-      if (row.topology == Topology::macro_cells) continue;  // for bodies at rest
       if (row.extension == Extension::none && nu != 0.25) continue;
       if (row.topology == Topology::random && nu == 0.49) continue;
       const MassSpringModel model = small_model(row.name, nu);
@@ -61,7 +60,7 @@ TEST(SafeTimeStep, IsSafeOnEveryNetworkAndNotWastefulOnAny) {
 /// Slivers have little mass and stiffness, and share nodes with whole cells, of one size or two.
 TEST(SafeTimeStep, IsSafeOnCutBodiesAndNotWasteful) {
   for (const ModelRow& row : model_table()) {
-    if (!has_cut_cells(row) || row.topology == Topology::macro_cells) continue;
+    if (!has_cut_cells(row)) continue;
     for (double nu : {-0.5, 0.0, 0.25, 0.45, 0.49})
       for (unsigned seed : {1u, 2u}) {
         if (row.extension == Extension::none && nu != 0.25) continue;

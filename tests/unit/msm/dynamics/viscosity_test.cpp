@@ -140,7 +140,6 @@ TEST(Viscosity, AMotionDecaysAsItsModeShould) {
   const double nu = 0.45, ratio = 0.05;
   for (const auto& [model, integrator] : {std::pair("hybmss_avg", Integrator::explicit_euler),
                                           {"hybmss_avg", Integrator::energy_momentum},
-                                          {"hybmss_avg", Integrator::bdf2},
                                           {"emsm", Integrator::explicit_euler},
                                           {"emsm", Integrator::energy_momentum}}) {
     const EmbeddedModel body = bar(model, nu);

@@ -73,10 +73,10 @@ TEST(DynamicsTable, HasAPlaneWithFrictionForExplicitSteps) {
   EXPECT_EQ(found->normal, Vec3(0, 0, 1));
   EXPECT_EQ(found->distance({5, 5, 0}), 1);
   EXPECT_EQ(found->friction, 0.3);
-  EXPECT_NE(message_of(at_large_strain + moving + plane + "integrator = \"bdf2\"\n")
-                .find("plane.friction: does not suit the large steps of bdf2 (allowed: friction = 0, or"),
+  EXPECT_NE(message_of(at_large_strain + moving + plane + "integrator = \"implicit_euler\"\n")
+                .find("plane.friction: does not suit the large steps of implicit_euler (allowed: friction = 0, or"),
             std::string::npos);
-  EXPECT_TRUE(parse_experiment(at_large_strain + moving + "integrator = \"bdf2\"\n" +
+  EXPECT_TRUE(parse_experiment(at_large_strain + moving + "integrator = \"implicit_euler\"\n" +
                                    "plane = { point_m = [0, 0, -1], normal = [0, 0, 2] }\n",
                                "case.toml")
                   .dynamics->plane);
@@ -152,7 +152,7 @@ TEST(DynamicsTable, MistakesAreExplained) {
   says(message("duration_s = 1\nsamples = 1"), "dynamics.samples: is 1 (allowed: an integer from 2 to 100000)");
   says(message("duration_s = 1\nframes = -1"), "dynamics.frames: is -1");
   says(message("duration_s = 1\nintegrator = \"midpoint\""),
-       "dynamics.integrator: 'midpoint' is not known (allowed: explicit, energy_momentum, implicit_euler, bdf2, auto)");
+       "dynamics.integrator: 'midpoint' is not known (allowed: explicit, energy_momentum, implicit_euler, auto)");
   says(message("duration_s = 1\nstart = \"moving\""),
        "dynamics.start: 'moving' is not known (allowed: rest, equilibrium)");
   says(message("duration_s = 1\nstep_s = 1"), "dynamics.step_s: unknown key");
