@@ -26,8 +26,12 @@ std::string first_verdict(const PartRun& run, const NodalVectors& coarsest) {
   }
   if (errors.empty()) return {};
   std::sort(errors.begin(), errors.end());
+  constexpr std::size_t most_named = 4;
   std::vector<std::string> words;
-  for (const auto& [error, label] : errors) words.push_back(fmt::format("{} {:.2g} %", label, 100 * error));
+  for (std::size_t i = 0; i < std::min(most_named, errors.size()); ++i)
+    words.push_back(fmt::format("{} {:.2g} %", errors[i].second, 100 * errors[i].first));
+  if (errors.size() > most_named)
+    words.push_back(fmt::format("{} more up to {:.2g} %", errors.size() - most_named, 100 * errors.back().first));
   return fmt::format("beside the coarsest grid alone: {}", fmt::join(words, ", "));
 }
 

@@ -13,12 +13,13 @@
 namespace springproof {
 namespace {
 
-// Seconds of one core per unknown.  Assembled matrices: tetrahedra, and cubes without a multigrid hierarchy.
-constexpr double matrix_free = 5e-6, with_matrices = 6e-5, springs = 5e-6;
-constexpr double spring_step = 2e-8, fem_step = 6e-5;        // of a motion, per unknown and step
-constexpr double breaking = 1e-4;                            // of a sample that dries: hundreds of equilibria
-constexpr double with_pressures = 4, pressures_above = 0.4;  // factor above this Poisson's ratio
-constexpr double start_up = 0.03;                            // of a run of the program
+// Seconds of one core per unknown, as measured on idle cores.  Assembled matrices: tetrahedra, and cubes without a
+// multigrid hierarchy.
+constexpr double matrix_free = 1.5e-5, with_matrices = 3e-5, springs = 2.5e-6, springs_at_random = 3.5e-5;
+constexpr double spring_step = 2e-8, fem_step = 6e-5;          // of a motion, per unknown and step
+constexpr double breaking = 1e-4;                              // of a sample that dries: hundreds of equilibria
+constexpr double with_pressures = 1.6, pressures_above = 0.4;  // factor above this Poisson's ratio
+constexpr double start_up = 0.03;                              // of a run of the program
 constexpr double large_strain = 25;  // number of linear systems in all load steps and Newton steps
 constexpr int reference_grids = 3;
 
@@ -72,12 +73,14 @@ class Runs {
         grid(unknowns(divided(finest, divisor), degree_of(element)), element[0] == 'p');
   }
 
-  RunCost model(const ModelChoice& choice, int seeds, double unknowns, double edge) const {
+  RunCost model(const ModelChoice& choice, double unknowns, double edge) const {
     if (is_external(choice)) return {RunKind::springs, 0};
+    const ModelParameters p = resolve(choice);
     if (e_.fracture) return {RunKind::springs, breaking * e_.fracture->seeds * unknowns};
     if (choice.in_motion)
-      return {RunKind::springs_in_motion, spring_step * steps_of(*e_.dynamics, material_, edge) * seeds * unknowns};
-    return {RunKind::springs, springs * seeds * unknowns * factor_};
+      return {RunKind::springs_in_motion, spring_step * steps_of(*e_.dynamics, material_, edge) * p.seeds * unknowns};
+    const bool at_random = p.row.topology == Topology::random;
+    return {RunKind::springs, (at_random ? springs_at_random : springs) * p.seeds * unknowns * factor_};
   }
 
   std::vector<RunCost> all;
@@ -164,8 +167,7 @@ RunCost cost_of(const fem::Request& request) {
 RunCost cost_of_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                       const IsotropicMaterial& material) {
   const Experiment& e = prepared.experiment;
-  return Runs(e, material)
-      .model(e.models[number], prepared.models[number].seeds, unknowns(*lattice.mesh, 1), edge_of(*lattice.mesh));
+  return Runs(e, material).model(e.models[number], unknowns(*lattice.mesh, 1), edge_of(*lattice.mesh));
 }
 
 std::vector<RunCost> expected_runs(const PreparedCase& prepared, const IsotropicMaterial& material) {
@@ -205,8 +207,7 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
     }
     const double edge = std::cbrt((voxels ? share_of_the_box : 1) * e.body.size.prod() / cubes_of(e.body, i));
     if (allowed(nodal))
-      for (const ModelChoice& model : e.models)
-        runs.all.push_back(runs.model(model, is_external(model) ? 1 : resolve(model).seeds, nodal, edge));
+      for (const ModelChoice& model : e.models) runs.all.push_back(runs.model(model, nodal, edge));
   }
   return sum_of(runs.all);
 }
