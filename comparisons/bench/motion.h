@@ -13,7 +13,7 @@
 
 namespace springproof::bench {
 
-/// Minimum work of one step, counted as docs/performance.md describes.
+/// Minimum work of one step, counted as docs/measured/performance.md describes.
 struct Work {
   double flops = 0;     ///< additions, multiplications, roots and divisions, each one
   double roots = 0;     ///< of them inverse roots: pairs of a root and a division

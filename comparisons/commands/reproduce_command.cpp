@@ -46,7 +46,8 @@ void ReproduceCommand::add_options(CLI::App& command) {
   command.footer(
       "Runs the paper's cases as `springproof compare` does, and writes OUT/reproduce.html and, of each figure,\n"
       "OUT/figures/NAME.svg, .csv (a column per curve) and, where rsvg-convert is installed (librsvg2-bin), .pdf.\n"
-      "docs/reproducing.md lists them. On one core golec_2019 takes five minutes, kot_2014 three, kot_2015 thirteen.\n"
+      "docs/measured/reproducing.md lists them. On one core golec_2019 takes five minutes, kot_2014 three, kot_2015\n"
+      "thirteen.\n"
       "Exit status: that of `springproof compare`: 0 every expectation of the cases holds, 1 one does not, 2 the "
       "input\n"
       "is unusable, 130 interrupted (--resume goes on). A figure that differs from the paper is no error.");

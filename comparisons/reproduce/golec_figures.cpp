@@ -185,7 +185,7 @@ PaperFigure layer_distances() {
 const std::string close_words = "HybMSS is close to FEM (displacements)",
                   times_of_theirs =
                       "times of the paper's machine, in a figure without numbers; ours: springproof bench dynamics, "
-                      "docs/performance.md";
+                      "docs/measured/performance.md";
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Every file and heading that a page refers to is there: targets of links, and `paths` that begin with a folder of the source tree.
+# A decision has at most 120 words, and a line in the index.
 #   pages.sh SOURCE-FOLDER
 set -u
 cd "$1" || exit 1
@@ -38,6 +39,26 @@ for page in "${pages[@]}"; do
     is_there "$path" || fail "$page names $path"
   done < <(text_of "$page" | grep -oE '`(problem|meshes|msm|fem_reference|comparisons|tests|docs|examples)/[A-Za-z0-9_./*-]*`' | tr -d '`' | sort -u)
 done
+
+# "WORDS<tab>TITLE" for each heading of a page and the text up to the next; bars and rules of tables are no words.
+words_by_heading() {
+  awk -v OFS='\t' '
+    /^#+ / { if (title != "") print words, title; title = $0; sub(/^#+ /, "", title); words = 0; next }
+    { for (i = 1; i <= NF; ++i) words += $i !~ /^[-|:]+$/ }
+    END { print words, title }' "$1"
+}
+
+decisions=0
+for page in docs/decisions/*.md; do
+  while IFS=$'\t' read -r words title; do
+    [ "$words" -le 120 ] || fail "$page: \"$title\" has $words words, a decision has at most 120"
+  done < <(words_by_heading "$page")
+  while read -r anchor; do
+    decisions=$((decisions + 1))
+    grep -qF "](${page#docs/}#$anchor)" docs/decisions.md || fail "$page#$anchor is not in docs/decisions.md"
+  done < <(anchors <(grep '^##' "$page"))
+done
+[ $decisions -ge 50 ] || fail "only $decisions decisions found"
 [ $found -ge 50 ] || fail "only $found links and paths found"
-echo "$found links and paths"
+echo "$found links and paths, $decisions decisions"
 exit $((failures > 0))

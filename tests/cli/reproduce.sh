@@ -42,8 +42,8 @@ grep -qE '^Fig\. 13 .*runs of medium random networks scatter: at most [0-9.]+ % 
   "$work/said" || fail "it does not say whose the bounds are: $(cat "$work/said")"
 
 word=$(sed -nE 's/^Fig\. 13 +(agrees in part|agrees|differs|drawn) .*/\1/p' "$work/said")
-documented=$(awk -F'|' '/^## / { paper = $2 ? $2 : substr($0, 4) } paper == "kot_2014" && $2 == " Fig. 13 " { split($6, part, ":"); sub(/^ /, "", part[1]); print part[1] }' "$source/docs/reproducing.md")
-[ -n "$word" ] && [ "$word" = "$documented" ] || fail "the verdict on Fig. 13 is \"$word\", in docs/reproducing.md \"$documented\""
+documented=$(awk -F'|' '/^## / { paper = $2 ? $2 : substr($0, 4) } paper == "kot_2014" && $2 == " Fig. 13 " { split($6, part, ":"); sub(/^ /, "", part[1]); print part[1] }' "$source/docs/measured/reproducing.md")
+[ -n "$word" ] && [ "$word" = "$documented" ] || fail "the verdict on Fig. 13 is \"$word\", in docs/measured/reproducing.md \"$documented\""
 
 "$program" reproduce kot_2014 --from "$work/out" --out "$work/again" >"$work/said" 2>&1 || fail "--from: status $?"
 cmp "$work/out/figures/fig_13.svg" "$work/again/figures/fig_13.svg" || fail "--from draws another figure"

@@ -168,7 +168,7 @@ function rooflineSection(section) {
   section.append(el('p', {class: 'lead'}, 'The ceilings are measured in the same run. A slope is the bandwidth of one level of the memory, a flat line the arithmetic; ' +
     'springs need an inverse root each, which is their nearest flat ceiling.'), plot.node);
   const draw = () => plot.draw({name: 'bench-roofline', caption: `Roofline of one core of ${results.machine.processor}`, make: () => rooflineChart(results.roofline),
-    notes: ['Operations and bytes are counted by docs/performance.md: each array once per sweep, whatever level holds it. FP32 points have their own, higher ceilings, which are not drawn.']});
+    notes: ['Operations and bytes are counted by docs/measured/performance.md: each array once per sweep, whatever level holds it. FP32 points have their own, higher ceilings, which are not drawn.']});
   draw();
   charts.push(draw);
 }

@@ -1,4 +1,4 @@
-// The table of figures against the case files and docs/reproducing.md.
+// The table of figures against the case files and docs/measured/reproducing.md.
 #include "comparisons/reproduce/figures.h"
 
 #include <gtest/gtest.h>
@@ -148,7 +148,7 @@ TEST(PaperFigures, DispersionAsPublishedIsJudgedOnThePapersBlock) {
 
 /// Cells of the rows "| Fig. 8 | ... |" below the heading of a paper.
 std::map<std::string, std::vector<std::string>> documented(const std::string& paper) {
-  std::ifstream in(std::string(SPRINGPROOF_SOURCE_DIR) + "/docs/reproducing.md");
+  std::ifstream in(std::string(SPRINGPROOF_SOURCE_DIR) + "/docs/measured/reproducing.md");
   std::map<std::string, std::vector<std::string>> rows;
   std::string heading;
   for (std::string line; std::getline(in, line);) {
