@@ -2,7 +2,7 @@
 //
 //   node ENGINE.mjs TASK.json          SPRINGPROOF_ENGINES: the folder whose node_modules holds the packages
 //
-// TASK.json and the answer, printed as JSON, are described in docs/engines_measured.md.
+// TASK.json and the answer, printed as JSON, are described in docs/measured/engines_measured.md.
 import {readFileSync} from 'node:fs';
 import {pathToFileURL} from 'node:url';
 import process from 'node:process';
