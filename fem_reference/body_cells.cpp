@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fem_reference/sample.h"
+#include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::fem {

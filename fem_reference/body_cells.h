@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "fem_reference/boundary_conditions.h"
-#include "fem_reference/cell_equations.h"
-#include "fem_reference/multigrid.h"
-#include "fem_reference/petsc.h"
-#include "fem_reference/solve_grid.h"
-#include "fem_reference/triangulate.h"
+#include "fem_reference/elements/cell_equations.h"
+#include "fem_reference/grid/grid_problem.h"
+#include "fem_reference/grid/triangulate.h"
+#include "fem_reference/solvers/multigrid.h"
+#include "fem_reference/solvers/petsc.h"
+#include "fem_reference/system/boundary_conditions.h"
 
 namespace springproof::fem {
 

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/bench.h"
-#include "fem_reference/case_request.h"
-#include "fem_reference/element.h"
-#include "fem_reference/exchange.h"
-#include "fem_reference/grid_meshes.h"
-#include "fem_reference/plain_words.h"
-#include "fem_reference/processes.h"
+#include "fem_reference/elements/element.h"
+#include "fem_reference/exchange/case_request.h"
+#include "fem_reference/exchange/exchange.h"
+#include "fem_reference/exchange/grid_meshes.h"
+#include "fem_reference/exchange/plain_words.h"
+#include "fem_reference/grid/processes.h"
 #include "fem_reference/solve_grid.h"
 #include "problem/system/fork_server.h"
 #include "problem/system/progress.h"

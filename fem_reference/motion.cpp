@@ -9,9 +9,9 @@
 #include <map>
 
 #include "fem_reference/body_cells.h"
-#include "fem_reference/boundary_conditions.h"
-#include "fem_reference/processes.h"
-#include "fem_reference/sample.h"
+#include "fem_reference/grid/processes.h"
+#include "fem_reference/system/boundary_conditions.h"
+#include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
 

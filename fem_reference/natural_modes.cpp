@@ -10,12 +10,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem_reference/boundary_conditions.h"
-#include "fem_reference/cell_equations.h"
-#include "fem_reference/multigrid.h"
-#include "fem_reference/petsc.h"
-#include "fem_reference/processes.h"
-#include "fem_reference/sample.h"
+#include "fem_reference/elements/cell_equations.h"
+#include "fem_reference/grid/processes.h"
+#include "fem_reference/solvers/multigrid.h"
+#include "fem_reference/solvers/petsc.h"
+#include "fem_reference/system/boundary_conditions.h"
+#include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
 

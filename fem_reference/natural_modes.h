@@ -3,8 +3,8 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
-#include "fem_reference/solve_grid.h"
-#include "fem_reference/triangulate.h"
+#include "fem_reference/grid/grid_problem.h"
+#include "fem_reference/grid/triangulate.h"
 
 namespace springproof::fem {
 

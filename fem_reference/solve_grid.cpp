@@ -7,15 +7,15 @@
 
 #include <ctime>
 
-#include "fem_reference/boundary_conditions.h"
-#include "fem_reference/coarsest_level.h"
-#include "fem_reference/elastic_system.h"
+#include "fem_reference/grid/processes.h"
+#include "fem_reference/grid/triangulate.h"
 #include "fem_reference/motion.h"
 #include "fem_reference/natural_modes.h"
-#include "fem_reference/processes.h"
-#include "fem_reference/sample.h"
-#include "fem_reference/solution_file.h"
-#include "fem_reference/triangulate.h"
+#include "fem_reference/solvers/coarsest_level.h"
+#include "fem_reference/system/boundary_conditions.h"
+#include "fem_reference/system/elastic_system.h"
+#include "fem_reference/system/sample.h"
+#include "fem_reference/system/solution_file.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/time_step.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "comparisons/bench/interrupt.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
 #include "problem/case_file/experiment.h"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/bench/interrupt.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "problem/system/child.h"
 
 namespace springproof::bench {

@@ -13,7 +13,7 @@
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/solve_each.h"
 #include "comparisons/run/status.h"
-#include "fem_reference/case_request.h"
+#include "fem_reference/exchange/case_request.h"
 #include "meshes/mesher/mesher.h"
 #include "problem/system/child.h"
 #include "problem/system/interrupts.h"

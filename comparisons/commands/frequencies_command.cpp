@@ -15,7 +15,7 @@
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/status.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "meshes/field.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"

@@ -21,7 +21,7 @@
 #include "comparisons/reproduce/figures.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/suite.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "msm/gpu/gpu.h"
 #include "msm/parameters/made_of.h"
 #include "msm/parameters/model_table.h"

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "problem/system/child.h"
 
 namespace springproof {

@@ -10,7 +10,7 @@
 
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/solve_each.h"
-#include "fem_reference/case_request.h"
+#include "fem_reference/exchange/case_request.h"
 #include "meshes/volume.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/embedding/boundary.h"

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "comparisons/run/expected_runs.h"
 #include "comparisons/run/run_json.h"
-#include "comparisons/run/time_left.h"
 
 namespace springproof {
 

@@ -9,7 +9,7 @@
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/solve_each.h"
-#include "fem_reference/case_request.h"
+#include "fem_reference/exchange/case_request.h"
 #include "problem/system/child.h"
 
 namespace springproof {

@@ -9,7 +9,7 @@
 #include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 #include "comparisons/run/run_keeper.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 
 namespace springproof {
 

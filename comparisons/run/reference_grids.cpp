@@ -11,7 +11,7 @@
 #include "comparisons/run/convergence_cause.h"
 #include "comparisons/run/rims.h"
 #include "comparisons/run/solve_each.h"
-#include "fem_reference/case_request.h"
+#include "fem_reference/exchange/case_request.h"
 #include "msm/embedding/boundary.h"
 #include "problem/case_file/measures.h"
 #include "problem/exact_field.h"

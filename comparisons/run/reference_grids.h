@@ -12,7 +12,7 @@
 #include "comparisons/run/run_keeper.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/vtu_output.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 
 namespace springproof {
 

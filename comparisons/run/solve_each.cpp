@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "comparisons/run/time_left.h"
-#include "fem_reference/exchange.h"
+#include "comparisons/run/grid_cost.h"
+#include "fem_reference/exchange/exchange.h"
 #include "problem/system/checksum.h"
 #include "problem/system/child.h"
 

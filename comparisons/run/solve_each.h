@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "comparisons/run/run_keeper.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 
 namespace springproof {
 

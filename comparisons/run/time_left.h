@@ -1,4 +1,4 @@
-// Estimates how long a comparison takes, from its numbers of unknowns and the times of finished runs.
+// Estimates how long a comparison still takes, from what is expected of its runs and the times of finished ones.
 #pragma once
 
 #include <array>
@@ -6,31 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "comparisons/run/prepared_case.h"
 #include "comparisons/run/run_keeper.h"
-#include "fem_reference/reference.h"
 
 namespace springproof {
-
-/// Of the displacement, on a grid of the request: about three per node.
-double unknowns_of(const fem::Request& request, const fem::Discretisation& grid);
-
-/// What the first grid of the request is expected to take on one core.
-RunCost cost_of(const fem::Request& request);
-
-/// What a model of the case, all its networks, is expected to take on a lattice.
-RunCost cost_of_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
-                      const IsotropicMaterial& material);
-
-/// The same of all runs of a part, without what fails.
-std::vector<RunCost> expected_runs(const PreparedCase& prepared, const IsotropicMaterial& material);
-
-double sum_of(const std::vector<RunCost>& runs);  ///< [s]
-
-/// The same before the body is meshed, so that only the part's own machine has to mesh it; of a body of voxels rougher
-/// still.
-/// @throws InputError for models that there are not.
-double unmeshed_seconds(const Experiment& experiment, const IsotropicMaterial& material);
 
 /// Parts of a run, by number; times are seconds since it began.  Safe from several threads.
 class TimeLeft {

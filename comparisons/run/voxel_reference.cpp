@@ -6,7 +6,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/solve_each.h"
 #include "comparisons/run/voxel_body.h"
-#include "fem_reference/case_request.h"
+#include "fem_reference/exchange/case_request.h"
 
 namespace springproof {
 namespace {

@@ -11,7 +11,7 @@ declare -A below=(
 )
 declare -A header=(
   [problem]=problem/material.h [meshes]=meshes/mesh.h [msm]=msm/topology/network.h
-  [fem_reference]=fem_reference/reference.h [comparisons]=comparisons/results/records.h
+  [fem_reference]=fem_reference/exchange/reference.h [comparisons]=comparisons/results/records.h
 )
 for module in "${!below[@]}"; do
   paths=(-isystem "$eigen")

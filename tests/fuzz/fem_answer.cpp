@@ -2,7 +2,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "fem_reference/exchange.h"
+#include "fem_reference/exchange/exchange.h"
 #include "fuzz/reader.h"
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {

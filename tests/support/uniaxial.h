@@ -28,7 +28,7 @@ double lateral_root(const Function& f, double t) {
   return t;
 }
 
-/// Axial stretch l; W as in fem_reference/laws.h.
+/// Axial stretch l; W as in fem_reference/elements/laws.h.
 inline Uniaxial uniaxial(const std::string& law, const IsotropicMaterial& m, double l) {
   const double E = m.youngs_modulus, nu = m.poisson_ratio, guess = std::pow(l, -nu);
   const double mu = shear_modulus(m), lambda = lame_lambda(m), K = bulk_modulus(m);

@@ -10,7 +10,7 @@
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 
 namespace springproof::check_test {
 namespace {

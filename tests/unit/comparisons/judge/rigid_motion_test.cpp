@@ -10,7 +10,7 @@
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 
 namespace springproof::rigid_motion_test {
 namespace {

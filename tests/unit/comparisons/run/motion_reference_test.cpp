@@ -7,7 +7,7 @@
 
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 
 namespace springproof::motion_reference_test {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "problem/exact_field.h"
 #include "problem/system/child.h"
 

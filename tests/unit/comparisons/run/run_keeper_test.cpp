@@ -8,7 +8,7 @@
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/part_file.h"
 #include "comparisons/run/prepare.h"
-#include "fem_reference/reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "problem/case_file/experiment.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "comparisons/run/expected_runs.h"
 #include "comparisons/run/time_left.h"
 #include "meshes/mesh.h"
 

@@ -1,0 +1,174 @@
+#include "comparisons/run/expected_runs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "comparisons/run/grid_cost.h"
+#include "comparisons/run/motion_reference.h"
+#include "comparisons/run/prepare.h"
+#include "comparisons/run/reference_grids.h"
+#include "comparisons/run/voxel_reference.h"
+#include "meshes/volume.h"
+#include "problem/case_file/external.h"
+
+namespace springproof {
+namespace {
+
+// Seconds of one core per unknown, as measured on idle cores.
+constexpr double springs = 2.5e-6, springs_at_random = 3.5e-5;
+constexpr double spring_step = 2e-8;  // of a motion, per unknown and step
+constexpr double breaking = 1e-4;     // of a sample that dries: hundreds of equilibria
+constexpr int reference_grids = 3;
+
+// Bodies of voxels before they are meshed.
+constexpr double nodes_per_cube = 1.3, cubes_of_a_file = 2000, share_of_the_box = 0.5;
+constexpr double nodes_of_tetrahedra = 6000;  // of the three meshes that the program chooses
+
+/// Of one network in motion, from the time that a pressure wave takes through half a cell.
+double steps_of(const MotionChoice& motion, const IsotropicMaterial& m, double edge) {
+  if (motion.time_step) return motion.duration / *motion.time_step;
+  if (motion.integrator != "explicit") return motion.samples;
+  const double speed = std::sqrt((bulk_modulus(m) + 4 * shear_modulus(m) / 3) / m.density);
+  return 2 * motion.duration * speed / edge;
+}
+
+/// The runs of a part, from how many unknowns there are on what.
+class Runs {
+ public:
+  Runs(const Experiment& e, const IsotropicMaterial& material)
+      : e_(e), material_(material), factor_(factor_of(material, e.model_kinematics() == Kinematics::finite)) {}
+
+  void grid(double unknowns, bool assembled) { all.push_back(grid_cost(unknowns, assembled, factor_)); }
+
+  void grids_of_block(const Cells& finest) {
+    for (const std::string& element : e_.reference.elements)
+      for (const int divisor : {4, 2, 1})
+        grid(unknowns(divided(finest, divisor), degree_of(element)), element[0] == 'p');
+  }
+
+  RunCost model(const ModelChoice& choice, double unknowns, double edge) const {
+    if (is_external(choice)) return {RunKind::springs, 0};
+    const ModelParameters p = resolve(choice);
+    if (e_.fracture) return {RunKind::springs, breaking * e_.fracture->seeds * unknowns};
+    if (choice.in_motion)
+      return {RunKind::springs_in_motion, spring_step * steps_of(*e_.dynamics, material_, edge) * p.seeds * unknowns};
+    const bool at_random = p.row.topology == Topology::random;
+    return {RunKind::springs, (at_random ? springs_at_random : springs) * p.seeds * unknowns * factor_};
+  }
+
+  std::vector<RunCost> all;
+
+ private:
+  const Experiment& e_;
+  const IsotropicMaterial& material_;
+  const double factor_;
+};
+
+double edge_of(const Mesh& mesh) {
+  const double cells = static_cast<double>(mesh.hexahedra.size() + mesh.tetrahedra.size());
+  return std::cbrt(volume(mesh, mesh.nodes) / std::max(1.0, cells));
+}
+
+void add_block(const PreparedCase& prepared, Runs& runs) {
+  const Experiment& e = prepared.experiment;
+  runs.grids_of_block(prepared.reference_cells);
+  if (e.models.empty()) return;
+  for (const Lattice& lattice : prepared.lattices)
+    for (const std::string& element : e.elements)
+      if (small_enough(e, *lattice.mesh, degree_of(element)))
+        runs.grid(unknowns(*lattice.mesh, degree_of(element)), element[0] == 'p');
+}
+
+void add_voxels(const PreparedCase& prepared, Runs& runs) {
+  const Experiment& e = prepared.experiment;
+  for (const std::string& element : e.reference.elements)
+    for (const auto& mesh : prepared.tetrahedra) runs.grid(unknowns(*mesh, degree_of(element)), true);
+  if (e.reference.elements.empty() || e.models.empty()) return;
+  for (const Lattice& lattice : prepared.lattices) {
+    const Mesh& mesh = *lattice.mesh;
+    const auto add = [&](const Mesh& on, const std::string& element) {
+      if (small_enough(e, mesh, degree_of(element))) runs.grid(unknowns(on, degree_of(element)), true);
+    };
+    if (lattice.tetrahedra)
+      for (const std::string& element : elements_of(e, 'p')) add(*lattice.tetrahedra, element);
+    if (mesh.hexahedra.size() > most_cubes) continue;
+    for (const std::string& element : elements_of(e, 'q')) add(mesh, element);
+    if (!e.parts || mesh.hexahedra.size() > most_refined_cubes) continue;
+    for (const int times : {1, 8}) runs.grid(times * unknowns(mesh, 2), true);
+  }
+}
+
+void add_grids_in_time(const PreparedCase& prepared, const IsotropicMaterial& material, Runs& runs) {
+  const fem::Request request = motion_request(prepared, material);
+  for (std::size_t g = 0; g < request.grids.size(); ++g) {
+    fem::Request one = request;
+    one.grids = {request.grids[g]};
+    runs.all.push_back(cost_of(one));
+  }
+}
+
+/// Of a lattice that is not meshed yet: its cubes.
+double cubes_of(const Body& body, std::size_t lattice) {
+  if (!body.is_voxels()) return cell_count(body.cells[lattice]);
+  if (!body.voxel_counts.empty()) return body.voxel_counts[std::min(lattice, body.voxel_counts.size() - 1)];
+  if (!body.is_script()) return cubes_of_a_file;
+  return share_of_the_box * body.size.prod() /
+         std::pow(body.voxel_edges[std::min(lattice, body.voxel_edges.size() - 1)], 3);
+}
+
+double unmeshed_unknowns(const Body& body, std::size_t lattice, int degree) {
+  if (!body.is_voxels()) return unknowns(body.cells[lattice], degree);
+  return 3 * nodes_per_cube * cubes_of(body, lattice) * (degree == 1 ? 1 : 8);
+}
+
+}  // namespace
+
+RunCost cost_of_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
+                      const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  return Runs(e, material).model(e.models[number], unknowns(*lattice.mesh, 1), edge_of(*lattice.mesh));
+}
+
+std::vector<RunCost> expected_runs(const PreparedCase& prepared, const IsotropicMaterial& material) {
+  const Experiment& e = prepared.experiment;
+  Runs runs(e, material);
+  e.body.is_voxels() ? add_voxels(prepared, runs) : add_block(prepared, runs);
+  if (e.reference.in_time) add_grids_in_time(prepared, material, runs);
+  for (const Lattice& lattice : prepared.lattices)
+    if (small_enough(e, *lattice.mesh))
+      for (std::size_t m = 0; m < prepared.models.size(); ++m)
+        runs.all.push_back(cost_of_model(prepared, lattice, m, material));
+  return runs.all;
+}
+
+double sum_of(const std::vector<RunCost>& runs) {
+  double sum = 0;
+  for (const RunCost& run : runs) sum += run.seconds;
+  return sum;
+}
+
+double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) {
+  const bool voxels = e.body.is_voxels();
+  const auto allowed = [&](double unknowns) { return e.max_unknowns == 0 || unknowns <= e.max_unknowns; };
+  Runs runs(e, material);
+  if (!voxels) runs.grids_of_block(reference_cells(e));
+  for (const std::string& element : voxels ? e.reference.elements : std::vector<std::string>())
+    for (int grid = 0; grid < reference_grids; ++grid)
+      runs.grid(3 * nodes_of_tetrahedra / reference_grids * (degree_of(element) == 1 ? 1 : 7), true);
+  for (std::size_t i = 0; i < e.body.resolutions(); ++i) {
+    const double nodal = unmeshed_unknowns(e.body, i, 1);
+    if (!e.models.empty() && !(voxels && e.reference.elements.empty())) {
+      for (const std::string& element : e.elements)
+        if (const double n = unmeshed_unknowns(e.body, i, degree_of(element)); allowed(n))
+          runs.grid(n, voxels || element[0] == 'p');
+      if (voxels && e.parts && nodal <= 3 * nodes_per_cube * most_refined_cubes)
+        for (const int times : {1, 8}) runs.grid(times * unmeshed_unknowns(e.body, i, 2), true);
+    }
+    const double edge = std::cbrt((voxels ? share_of_the_box : 1) * e.body.size.prod() / cubes_of(e.body, i));
+    if (allowed(nodal))
+      for (const ModelChoice& model : e.models) runs.all.push_back(runs.model(model, nodal, edge));
+  }
+  return sum_of(runs.all);
+}
+
+}  // namespace springproof

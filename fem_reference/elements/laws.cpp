@@ -1,0 +1,189 @@
+#include "fem_reference/elements/laws.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace springproof::fem {
+namespace {
+
+const std::array<std::pair<const char*, Law>, 5> law_table = {{{"hencky", Law::hencky},
+                                                               {"log_cauchy", Law::log_cauchy},
+                                                               {"neo_hooke", Law::neo_hooke},
+                                                               {"neo_hooke_isochoric", Law::neo_hooke_isochoric},
+                                                               {"st_venant_kirchhoff", Law::st_venant_kirchhoff}}};
+
+Eigen::Matrix3d right_cauchy_green(const Matrix3& F) {
+  Eigen::Matrix3d C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) C(i, j) = F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j];
+  return C;
+}
+
+// Stress and its derivatives in the frame of the eigenvectors of C; c are the eigenvalues.
+struct Principal {
+  Eigen::Vector3d s, q, g;  // S, dS/dp, dg/dc
+  Eigen::Matrix3d d;        // ds_a / dc_b
+};
+
+// S = tau / c from principal Kirchhoff stresses tau, which depend on their own c_a (derivative `slope`) and on J
+// (through p J).
+Principal from_kirchhoff(const Eigen::Vector3d& tau, const Eigen::Vector3d& slope, double pJ, double J,
+                         const Eigen::Vector3d& c) {
+  const Eigen::Vector3d inverse = c.cwiseInverse();
+  Principal r;
+  r.s = tau.cwiseProduct(inverse);
+  r.q = J * inverse;
+  r.g = r.q / 2;
+  r.d = (slope - r.s).cwiseProduct(inverse).asDiagonal();
+  r.d += pJ / 2 * inverse * inverse.transpose();
+  return r;
+}
+
+// K = lambda + 2 mu/3: only lambda (J - 1) goes into the pressure, as in the other laws, so that at zero
+// pressure the tangent is that of a solid with nu = 0.
+Principal isochoric(double mu, double p, double J, const Eigen::Vector3d& c) {
+  const double third = c.mean(), scaled = mu / std::cbrt(J * J), rest = 2 * mu / 3;
+  const Eigen::Vector3d tau = (scaled * (c.array() - third) + (rest * (J - 1) + p) * J).matrix();
+  Principal r = from_kirchhoff(tau, Eigen::Vector3d::Constant(scaled), (rest * (2 * J - 1) + p) * J, J, c);
+  const Eigen::Vector3d inverse = c.cwiseInverse(), ones = Eigen::Vector3d::Ones();
+  r.d += scaled / 3 * (third * inverse * inverse.transpose() - inverse * ones.transpose() - ones * inverse.transpose());
+  return r;
+}
+
+Principal principal(Law law, double mu, double p, const Eigen::Vector3d& c) {
+  const double J = std::sqrt(c.prod());
+  const Eigen::Array3d log_c = c.array().log();
+  switch (law) {
+    case Law::hencky:
+      return from_kirchhoff(mu * log_c + p * J, mu * c.cwiseInverse(), p * J, J, c);
+    case Law::neo_hooke:
+      return from_kirchhoff(mu * (c.array() - 1) + p * J, Eigen::Vector3d::Constant(mu), p * J, J, c);
+    case Law::neo_hooke_isochoric:
+      return isochoric(mu, p, J, c);
+    case Law::log_cauchy: {
+      Principal r = from_kirchhoff(J * (mu * log_c + p), J * mu * c.cwiseInverse(), 0, J, c);
+      r.d += r.s * c.cwiseInverse().transpose() / 2;
+      return r;
+    }
+    case Law::st_venant_kirchhoff:
+      break;
+  }
+  return {(mu * (c.array() - 1) + p).matrix(), Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(0.5),
+          mu * Eigen::Matrix3d::Identity()};
+}
+
+// (s_a - s_b) / (c_a - c_b); for nearly equal c by the mean of its limits at both ends.
+double divided_difference(const Principal& r, const Eigen::Vector3d& c, int a, int b) {
+  const double difference = c[a] - c[b];
+  if (std::abs(difference) > 1e-4 * c[a]) return (r.s[a] - r.s[b]) / difference;
+  return (r.d(a, a) - r.d(a, b) + r.d(b, b) - r.d(b, a)) / 2;
+}
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+Vector6 symmetric_product(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  Vector6 v;
+  v << a[0] * b[0], a[1] * b[1], a[2] * b[2], (a[0] * b[1] + a[1] * b[0]) / 2, (a[1] * b[2] + a[2] * b[1]) / 2,
+      (a[0] * b[2] + a[2] * b[0]) / 2;
+  return v;
+}
+
+bool is_linear_in_dilatation(Law law) { return law == Law::st_venant_kirchhoff || law == Law::neo_hooke_isochoric; }
+
+Voigt to_voigt(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
+
+}  // namespace
+
+std::optional<Law> law_named(const std::string& name) {
+  for (const auto& [text, law] : law_table)
+    if (name == text) return law;
+  return {};
+}
+
+std::string law_names() {
+  std::string all;
+  for (const auto& [text, law] : law_table) all += (all.empty() ? "" : ", ") + std::string(text);
+  return all;
+}
+
+double determinant(const Matrix3& F) {
+  return F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
+         F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+}
+
+double dilatation(Law law, const Matrix3& F) {
+  if (law == Law::st_venant_kirchhoff) return (right_cauchy_green(F).trace() - 3) / 2;
+  return determinant(F) - 1;
+}
+
+ValueAndSlope pressure(Law law, double lambda, double g) {
+  if (is_linear_in_dilatation(law)) return {lambda * g, lambda};
+  const double J = 1 + g, log_J = std::log1p(g);
+  if (law == Law::log_cauchy) return {lambda * log_J, lambda / J};
+  return {lambda * log_J / J, lambda * (1 - log_J) / (J * J)};
+}
+
+ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p) {
+  const double ratio = p / lambda;
+  if (is_linear_in_dilatation(law)) return {ratio, 1 / lambda};
+  double log_J = ratio;
+  if (law != Law::log_cauchy) {
+    // x exp(-x) = ratio, x < 1, by Newton's method on x - ratio exp(x)
+    const double bounded = std::min(ratio, 0.999 * std::exp(-1));
+    for (int i = 0; i < 30; ++i) {
+      const double excess = log_J - bounded * std::exp(log_J), slope = 1 - bounded * std::exp(log_J);
+      log_J = std::min(log_J - excess / slope, 0.999);
+      if (std::abs(excess) < 1e-16) break;
+    }
+  }
+  const double g = std::expm1(log_J);
+  return {g, 1 / pressure(law, lambda, g).slope};
+}
+
+double shear_energy(Law law, double mu, const Matrix3& F) {
+  const Eigen::Matrix3d C = right_cauchy_green(F);
+  const double J = determinant(F);
+  switch (law) {
+    case Law::hencky:
+      return mu / 4 * Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(C).eigenvalues().array().log().square().sum();
+    case Law::neo_hooke:
+      return mu / 2 * (C.trace() - 3 - 2 * std::log(J));
+    case Law::neo_hooke_isochoric:
+      return mu / 2 * (C.trace() / std::cbrt(J * J) - 3) + mu / 3 * (J - 1) * (J - 1);
+    case Law::st_venant_kirchhoff:
+      return mu / 4 * (C - Eigen::Matrix3d::Identity()).squaredNorm();
+    case Law::log_cauchy:
+      break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double dilatation_energy(Law law, double lambda, double g) {
+  if (law == Law::log_cauchy) return std::numeric_limits<double>::quiet_NaN();
+  const double measure = is_linear_in_dilatation(law) ? g : std::log1p(g);
+  return lambda / 2 * measure * measure;
+}
+
+LawResponse respond(Law law, double mu, double p, const Matrix3& F) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(right_cauchy_green(F));
+  const Eigen::Vector3d c = eigen.eigenvalues();
+  const Eigen::Matrix3d& N = eigen.eigenvectors();
+  const Principal r = principal(law, mu, p, c);
+
+  Eigen::Matrix<double, 6, 3> M, pairs;  // N_a N_a, and N_a N_b of each pair
+  Eigen::Vector3d of_pairs;
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3;
+    M.col(a) = symmetric_product(N.col(a), N.col(a));
+    pairs.col(a) = symmetric_product(N.col(a), N.col(b));
+    of_pairs[a] = 2 * divided_difference(r, c, std::min(a, b), std::max(a, b));
+  }
+  LawResponse response{to_voigt(M * r.s), to_voigt(M * r.q), to_voigt(M * r.g), {}};
+  using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  Eigen::Map<Rows>(response.D[0].data()) = M * r.d * M.transpose() + pairs * of_pairs.asDiagonal() * pairs.transpose();
+  return response;
+}
+
+}  // namespace springproof::fem

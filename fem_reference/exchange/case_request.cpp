@@ -1,0 +1,20 @@
+#include "fem_reference/exchange/case_request.h"
+
+#include "meshes/mesher/mesher.h"
+
+namespace springproof::fem {
+
+Request request_of(const Experiment& experiment, const IsotropicMaterial& material) {
+  Request request;
+  request.name = experiment.file.string();
+  if (!experiment.body.is_voxels()) request.geo = find_geo(experiment.body, experiment.file);
+  request.size = experiment.body.size;
+  request.law = experiment.kinematics;
+  request.material = material;
+  request.loads = experiment.loads;
+  request.tolerance = 1e-8;
+  request.cost = experiment.cost;
+  return request;
+}
+
+}  // namespace springproof::fem

@@ -1,0 +1,87 @@
+#include "fem_reference/exchange/exchange.h"
+
+#include <nlohmann/json.hpp>
+
+#include "meshes/mesh_json.h"
+#include "problem/system/json.h"
+
+namespace springproof {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(IsotropicMaterial, youngs_modulus, poisson_ratio, density)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KelvinSolution, force, at, material)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Wrench, force, moment, about)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PrescribedDisplacement, on, displacement)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PrescribedAffine, on, gradient, offset)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PrescribedRotation, on, point, axis, angle)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PrescribedField, on, field, kelvin)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Traction, on, traction, wrench)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pressure, on, pressure, wrench)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PatchForce, on, force, wrench)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Gravity, acceleration, wrench)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PointForce, at, force)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldBodyForce, field)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PatchReaction, patch, force, torque)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunTimes, set_up, solve)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Course, ramp, pulse, frequency)
+
+namespace fem {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements, steps, vtu)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Motion, duration, damping, course, released, velocity, spin, viscosity,
+                                   energy_momentum)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions,
+                                   volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,
+                                   cells, cells_per_process, iterations, residual, seconds, times, memory_MiB,
+                                   frequencies, shapes, rigid_motions, time, path, kinetic_energy, elastic_energy,
+                                   angular_momentum)
+
+nlohmann::json to_json(const Request& r) {
+  nlohmann::json meshes = nlohmann::json::array();
+  for (const auto& mesh : r.meshes) meshes.push_back(to_json(*mesh));
+  return {{"name", r.name},
+          {"geo", r.geo.string()},
+          {"size", r.size},
+          {"law", r.law},
+          {"material", r.material},
+          {"loads", r.loads},
+          {"grids", r.grids},
+          {"points", r.points},
+          {"stress_points", r.stress_points},
+          {"tolerance", r.tolerance},
+          {"meshes", meshes},
+          {"cost", r.cost},
+          {"vtu_single", r.vtu_single},
+          {"modes", r.modes},
+          {"motion", r.motion}};
+}
+
+Request request_from_json(const nlohmann::json& j) {
+  Request r;
+  j.at("name").get_to(r.name);
+  r.geo = j.at("geo").get<std::string>();
+  j.at("size").get_to(r.size);
+  j.at("law").get_to(r.law);
+  j.at("material").get_to(r.material);
+  j.at("loads").get_to(r.loads);
+  j.at("grids").get_to(r.grids);
+  j.at("points").get_to(r.points);
+  j.at("stress_points").get_to(r.stress_points);
+  j.at("tolerance").get_to(r.tolerance);
+  for (const auto& mesh : j.at("meshes")) r.meshes.push_back(std::make_shared<Mesh>(mesh_from_json(mesh)));
+  j.at("cost").get_to(r.cost);
+  j.at("vtu_single").get_to(r.vtu_single);
+  j.at("modes").get_to(r.modes);
+  j.at("motion").get_to(r.motion);
+  return r;
+}
+
+nlohmann::json to_json(const std::vector<Solution>& solutions) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Solution& s : solutions) all.push_back(s);
+  return all;
+}
+
+std::vector<Solution> solutions_from_json(const nlohmann::json& j) { return j.get<std::vector<Solution>>(); }
+
+}  // namespace fem
+}  // namespace springproof

@@ -1,0 +1,44 @@
+// One discretisation as the solver takes it.  No deal.II in this header.
+#pragma once
+
+#include <functional>
+
+#include "fem_reference/exchange/request.h"
+#include "meshes/vtu.h"
+
+namespace springproof::fem {
+
+enum class Method {
+  automatic,      ///< matrix-free where the cells have a multigrid hierarchy, else assembled
+  assembled,      ///< assembled matrices; for quadratic elements a level of linear ones above algebraic multigrid
+  assembled_gamg  ///< assembled matrices, algebraic multigrid alone: the usual method, and the baseline of the
+                  ///< benchmarks
+};
+
+struct GridProblem {
+  Mesh coarse;                             ///< cells of one kind, with named patches (every_process_needs())
+  int refinements = 0;                     ///< each cell is cut into 8 this many times
+  std::function<Vec3(const Vec3&)> place;  ///< moves the vertices of the finest mesh; empty: not moved
+  int degree = 2;                          ///< 1 or 2
+  std::string law = "linear";
+  IsotropicMaterial material;
+  std::vector<Load> loads;
+  std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none
+  NodalVectors points;                          ///< rest positions at which the displacement is requested, n x 3 [m]
+  NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress
+  double tolerance = 1e-9;                          ///< relative residual
+  Method method = Method::automatic;
+  bool wide_vectors = true;      ///< use wide SIMD vectors, where the processor has them
+  int modes = 0;                 ///< natural modes to compute instead of a displacement (fem_reference/natural_modes.h)
+  std::optional<Motion> motion;  ///< integrated in `steps` steps instead of an equilibrium (fem_reference/motion.h)
+  int steps = 0;
+  std::string vtu;          ///< file for ParaView of a converged solution (solution_file.h); empty: none
+  VtuNotes vtu_notes;       ///< what it says of itself
+  bool own_memory = false;  ///< Solution::memory_MiB is the growth due to this grid
+};
+
+/// True of straight hexahedra, which are refined: each of several processes stores the whole mesh.  Of any other, which
+/// is divided, the first process has the mesh and the others one without cells.
+bool every_process_needs(const Mesh& mesh);
+
+}  // namespace springproof::fem

@@ -1,0 +1,60 @@
+// The elastic system with assembled matrices, for any cells and any law.  The counterpart of the matrix-free operators
+// for meshes without a multigrid hierarchy.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#ifndef SPRINGPROOF_SOLVER_NAMESPACE
+#define SPRINGPROOF_SOLVER_NAMESPACE assembled
+#endif
+#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/multigrid.h"
+#include "fem_reference/system/elastic_system.h"
+
+namespace springproof::fem::assembled {
+
+/// Implements the operator interface of solve_linear() and Newton (linear.h, newton.h).
+class AssembledOperator {
+ public:
+  /// Without a law: small strain.
+  AssembledOperator(const ElasticSystem& system, std::optional<Law> law);
+  ~AssembledOperator();
+
+  MixedVector vector() const;
+  void apply(MixedVector& f, const MixedVector& x) const;
+  void vmult(MixedVector& y, const MixedVector& x) const;
+  void couple(DofVector& f, const DofVector& p) const;
+  void precondition_displacement(DofVector& z, const DofVector& r) const;
+  void precondition_pressure(DofVector& y, const DofVector& x) const;
+  void clear_constrained(DofVector& f) const;
+  CellPressures pressures(const MixedVector& x) const;
+
+  double linearise(MixedVector& f, const MixedVector& x);
+  /// Rebuilds the multigrid for the deformed body, if the current one has become slow.
+  void prepare(const MixedVector& x);
+
+  const std::string& preconditioner() const { return multigrid_->name(); }  ///< of the displacements, for the report
+
+ private:
+  struct Spaces;
+  struct Matrices;
+  struct CoarseSpaces;
+  void assemble_stiffness(const DofVector* deformed_by);
+  void assemble_mass();
+
+  const ElasticSystem& system_;
+  std::optional<Law> law_;
+  std::unique_ptr<Spaces> spaces_;
+  std::unique_ptr<Matrices> matrices_;
+  MixedVector state_;                       ///< state of the last linearise()
+  std::unique_ptr<SparseMatrix> smoothed_;  ///< fine-level matrix of the multigrid
+  std::unique_ptr<CoarseSpaces> coarse_;    ///< for quadratic elements: the linear ones
+  std::unique_ptr<Multigrid> multigrid_;
+  std::unique_ptr<SparseMatrix> mass_;  ///< pressure mass matrix
+  DofVector inverse_mass_;              ///< its diagonal, inverted
+  mutable int cycles_ = 0;              ///< V-cycles since prepare()
+  int cycles_when_new_ = 0;             ///< V-cycles in the first solve after the set-up
+};
+
+}  // namespace springproof::fem::assembled

@@ -1,0 +1,95 @@
+// The discrete elastic problem on one grid, the input of the solvers.
+#pragma once
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fem_reference/elements/element.h"
+#include "fem_reference/elements/laws.h"
+#include "fem_reference/grid/triangulate.h"
+
+namespace springproof::fem {
+
+using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
+
+using LevelVector = dealii::LinearAlgebra::distributed::Vector<float>;  ///< on a level of the matrix-free multigrid
+
+/// A zero vector with ghost entries for the locally relevant degrees of freedom.
+inline DofVector zero_vector(const dealii::DoFHandler<3>& dof_handler) {
+  dealii::IndexSet relevant;
+  dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+  return DofVector(dof_handler.locally_owned_dofs(), relevant, dof_handler.get_communicator());
+}
+
+/// Sums an Eigen matrix over all processes, entry by entry; every process gets the result.
+template <typename Matrix>
+void sum_over_processes(Matrix& m, MPI_Comm comm) {
+  const dealii::ArrayView<double> values(m.data(), m.size());
+  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(values), comm, values);
+}
+
+/// The pressure in each active cell as a + b.xi, xi in the reference cell: (a, b_1, b_2, b_3) [Pa];
+/// zero in the cells of other processes.
+using CellPressures = std::vector<std::array<double, 4>>;
+
+/// For n unknowns in 3-D, Cholesky factors grow as n^(4/3) and their cost as n^2; at this many rows, on cubes, they
+/// cost as much as a few solves by GAMG.  Thin and ragged bodies, for which GAMG performs worst, have the smallest
+/// factors.
+constexpr int most_factored_rows = 40000;
+
+struct ElasticSystem {
+  const Body3& body;
+  const dealii::DoFHandler<3>& dof_handler;  ///< with level degrees of freedom, if solved matrix-free
+  std::vector<unsigned int> constrained;     ///< degrees of freedom with prescribed value, locally owned and ghost
+  std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level; empty: solved with assembled matrices
+  int degree;
+  Form form;
+  double mu, lambda;  ///< [Pa]
+  double tolerance;   ///< relative residual
+  bool wide_vectors;  ///< use wide SIMD vectors where the processor has them
+  bool plain_gamg;    ///< assembled matrices: no level of linear elements
+  int most_factored;  ///< assembled matrices: largest number of rows for which linear elements are factored
+  std::function<void(LevelVector& x, const LevelVector& r)> below =
+      {};                       ///< coarse-grid correction of the coarsest level; empty: none
+  std::string below_name = {};  ///< its method, for the report
+};
+
+struct ElasticAnswer {
+  DofVector internal_force;  ///< on every degree of freedom, including constrained ones [N]
+  int iterations = 0;
+  double residual = 0;  ///< |unconstrained part of load - internal force| / (initial residual, or reactions)
+  bool converged = false;
+  CellPressures pressure;   ///< of the mixed form, else empty
+  double load_reached = 1;  ///< fraction of the load that internal_force balances
+  std::string method;
+};
+
+/// Solves for the unconstrained entries of `displacement`; its constrained entries hold the prescribed values.
+ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
+
+/// Additional data for finite strain.
+struct FiniteProblem {
+  Law law;
+  /// Sets the prescribed entries to their values at a fraction of the load; all others to zero.
+  std::function<void(double factor, DofVector& displacement)> prescribe;
+  double first_step = 1;            ///< fraction of the load
+  double smallest_step = 1. / 512;  ///< steps that fail are halved down to this
+};
+
+struct FiniteAnswer : ElasticAnswer {
+  double min_jacobian = 1;
+  int newton_iterations = 0, load_steps = 0;
+};
+
+/// Newton's method, total Lagrangian, with dead loads.  If it fails, the result is that at the load reached.
+FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                          DofVector& displacement);
+
+}  // namespace springproof::fem

@@ -1,0 +1,247 @@
+#include "fem_reference/system/sample.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <algorithm>
+#include <map>
+
+#include "fem_reference/grid/processes.h"
+#include "problem/system/input_error.h"
+
+namespace springproof::fem {
+
+NodalVectors displacement_at(const std::vector<Location>& places, const dealii::DoFHandler<3>& dof_handler,
+                             const DofVector& displacement) {
+  const auto& scalar = dof_handler.get_fe().base_element(0);
+  NodalVectors u = NodalVectors::Zero(places.size(), 3);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (!places[k].answers) continue;
+    const auto dofs = dofs_at(places[k], dof_handler);
+    for (unsigned int a = 0; a < scalar.n_dofs_per_cell(); ++a) {
+      const double N = scalar.shape_value(a, places[k].unit);
+      for (int c = 0; c < 3; ++c)
+        u(k, c) += N * displacement[dofs[dof_handler.get_fe().component_to_system_index(c, a)]];
+    }
+  }
+  sum_over_processes(u, dof_handler.get_communicator());
+  return u;
+}
+
+namespace {
+
+// The pressure at one point: from the pressure unknowns if there are any, else from the dilatation.
+double pressure_at(const ElasticSystem& system, std::optional<Law> law, const CellPressures& pressures,
+                   const Location& place, double dilatation) {
+  if (!pressures.empty()) {
+    const auto& c = pressures[place.cell->active_cell_index()];
+    return c[0] + c[1] * place.unit[0] + c[2] * place.unit[1] + c[3] * place.unit[2];
+  }
+  return law ? pressure(*law, system.lambda, dilatation).value : system.lambda * dilatation;
+}
+
+Eigen::Matrix3d linear_stress(const dealii::Tensor<2, 3>& h, double mu, double p) {
+  Eigen::Matrix3d stress;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) stress(i, j) = mu * (h[i][j] + h[j][i]) + (i == j ? p : 0);
+  return stress;
+}
+
+// F S F^T / det F
+Eigen::Matrix3d cauchy_stress(Law law, const Matrix3& F, double mu, double p) {
+  const Voigt S = respond(law, mu, p, F).S;
+  Eigen::Matrix3d second, deformation;
+  second << S[0], S[3], S[5], S[3], S[1], S[4], S[5], S[4], S[2];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) deformation(i, j) = F[i][j];
+  return deformation * second * deformation.transpose() / determinant(F);
+}
+
+Matrix3 deformation_gradient(const dealii::Tensor<2, 3>& h) {
+  Matrix3 F;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) F[i][j] = h[i][j] + (i == j);
+  return F;
+}
+
+// Stresses at the superconvergent points of a cell (Barlow 1976), those of the Gauss rule with `degree` points per
+// direction, and their extrapolation.
+class CellStress {
+ public:
+  CellStress(const ElasticSystem& system, std::optional<Law> law, const ElasticAnswer& answer,
+             const DofVector& displacement)
+      : system_(system),
+        law_(law),
+        answer_(answer),
+        displacement_(displacement),
+        tetrahedra_(system.body.has_tetrahedra()),
+        interpolation_(dealii::QGauss<1>(system.degree)),
+        points_(tetrahedra_ ? tetrahedron_points(system.degree) : dealii::QGauss<3>(system.degree).get_points()),
+        values_(*system.body.mapping, system.dof_handler.get_fe(), dealii::Quadrature<3>(points_),
+                dealii::update_gradients),
+        gradients_(points_.size()),
+        stresses_(points_.size()) {}
+
+  // What extrapolates the stresses at the points to `unit`.
+  std::vector<double> weights(const dealii::Point<3>& unit) const {
+    std::vector<double> w(points_.size(), 1.0);
+    if (!tetrahedra_) {
+      for (unsigned int i = 0; i < w.size(); ++i) w[i] = interpolation_.shape_value(i, unit);
+    } else if (w.size() == 4) {
+      const std::array<double, 4> barycentric = {1 - unit[0] - unit[1] - unit[2], unit[0], unit[1], unit[2]};
+      for (int corner = 0; corner < 4; ++corner) w[corner] = (barycentric[corner] - far) / (near - far);
+    }
+    return w;
+  }
+
+  const std::vector<Eigen::Matrix3d>& at_points(const dealii::Triangulation<3>::active_cell_iterator& cell) {
+    values_.reinit(dealii::DoFHandler<3>::active_cell_iterator(&system_.body.triangulation, cell->level(),
+                                                               cell->index(), &system_.dof_handler));
+    values_[dealii::FEValuesExtractors::Vector(0)].get_function_gradients(displacement_, gradients_);
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const Location here{cell, points_[k]};
+      if (law_) {
+        const Matrix3 F = deformation_gradient(gradients_[k]);
+        const double p = pressure_at(system_, law_, answer_.pressure, here, dilatation(*law_, F));
+        stresses_[k] = cauchy_stress(*law_, F, system_.mu, p);
+      } else {
+        const double p = pressure_at(system_, law_, answer_.pressure, here, dealii::trace(gradients_[k]));
+        stresses_[k] = linear_stress(gradients_[k], system_.mu, p);
+      }
+    }
+    return stresses_;
+  }
+
+ private:
+  // Of four points, each nearer to one corner: their barycentric coordinates.
+  inline static const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
+
+  static std::vector<dealii::Point<3>> tetrahedron_points(int degree) {
+    if (degree == 1) return {{0.25, 0.25, 0.25}};
+    return {{far, far, far}, {near, far, far}, {far, near, far}, {far, far, near}};
+  }
+
+  const ElasticSystem& system_;
+  std::optional<Law> law_;
+  const ElasticAnswer& answer_;
+  const DofVector& displacement_;
+  bool tetrahedra_;
+  dealii::FE_DGQArbitraryNodes<3> interpolation_;
+  std::vector<dealii::Point<3>> points_;
+  dealii::FEValues<3> values_;
+  std::vector<dealii::Tensor<2, 3>> gradients_;
+  std::vector<Eigen::Matrix3d> stresses_;
+};
+
+Eigen::Matrix3d weighted(const std::vector<double>& weights, const std::vector<Eigen::Matrix3d>& stresses) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * stresses[k];
+  return sum;
+}
+
+Eigen::Matrix<double, 1, 6> components(const Eigen::Matrix3d& s) {
+  Eigen::Matrix<double, 1, 6> out;
+  out << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
+  return out;
+}
+
+}  // namespace
+
+Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std::optional<Law> law,
+                   const ElasticAnswer& answer, const DofVector& displacement) {
+  Stresses stresses = Stresses::Zero(points.rows(), 6);
+  const std::vector<Location> places = locate(system.body, points);
+  const dealii::GridTools::Cache<3> cache(system.body.triangulation, *system.body.mapping);
+  Eigen::VectorXd cells_at = Eigen::VectorXd::Zero(points.rows());
+  CellStress stress(system, law, answer, displacement);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (!places[k].is_here()) continue;
+    const std::vector<Location> cells = cells_around(cache, places[k], points.row(k));
+    cells_at[k] = double(cells.size());
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (const Location& place : cells) sum += weighted(stress.weights(place.unit), stress.at_points(place.cell));
+    stresses.row(k) = components(sum);
+  }
+  sum_over_processes(cells_at, system.dof_handler.get_communicator());
+  sum_over_processes(stresses, system.dof_handler.get_communicator());
+  stresses.array().colwise() /= cells_at.array();
+  return stresses;
+}
+
+NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, const ElasticAnswer& answer,
+                           const DofVector& displacement) {
+  if (process_count() > 1) throw InputError("a file of the finite elements' own mesh is written by one process");
+  const auto& fe = system.dof_handler.get_fe();
+  const std::vector<dealii::Point<3>> units = fe.base_element(0).get_unit_support_points();
+  CellStress stress(system, law, answer, displacement);
+  std::vector<std::vector<double>> weights;
+  for (const auto& unit : units) weights.push_back(stress.weights(unit));
+
+  std::map<dealii::types::global_dof_index, int> number;  // of a node, by its first degree of freedom
+  NodalSolution out;
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
+  const auto nodes = static_cast<Eigen::Index>(system.dof_handler.n_dofs() / 3);
+  out.X.resize(nodes, 3);
+  out.displacement.resize(nodes, 3);
+  out.stress = Stresses::Zero(nodes, 6);
+  Eigen::VectorXd cells_at = Eigen::VectorXd::Zero(nodes);
+  for (const auto& cell : system.dof_handler.active_cell_iterators()) {
+    cell->get_dof_indices(dofs);
+    const std::vector<Eigen::Matrix3d>& in_cell = stress.at_points(cell);
+    std::vector<int>& own = out.cells.emplace_back();
+    for (unsigned int a = 0; a < units.size(); ++a) {
+      const auto [at, is_new] =
+          number.try_emplace(dofs[fe.component_to_system_index(0, a)], static_cast<int>(number.size()));
+      const int n = at->second;
+      own.push_back(n);
+      out.stress.row(n) += components(weighted(weights[a], in_cell));
+      cells_at[n] += 1;
+      if (!is_new) continue;
+      const dealii::Point<3> X = system.body.mapping->transform_unit_to_real_cell(cell, units[a]);
+      for (int c = 0; c < 3; ++c) {
+        out.X(n, c) = X[c];
+        out.displacement(n, c) = displacement[dofs[fe.component_to_system_index(c, a)]];
+      }
+    }
+  }
+  out.stress.array().colwise() /= cells_at.array();
+  return out;
+}
+
+VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                             const DofVector& displacement) {
+  const auto& fe = dof_handler.get_fe();
+  dealii::FEValues<3> values(*body.mapping, fe, cell_quadrature(body, fe.degree + 1),
+                             dealii::update_gradients | dealii::update_JxW_values);
+  const dealii::FEValuesExtractors::Vector vector(0);
+  std::vector<dealii::Tensor<2, 3>> gradients(values.n_quadrature_points);
+  VolumeMeasure measure;
+  double volume = 0;
+  for (const auto& cell : dof_handler.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    values.reinit(cell);
+    values[vector].get_function_gradients(displacement, gradients);
+    for (const unsigned int q : values.quadrature_point_indices()) {
+      const dealii::Tensor<2, 3> h = gradients[q];
+      const double trace_h = dealii::trace(h);
+      // det(I + h) - 1 by its invariants, without cancellation
+      const double det_minus_1 = trace_h + (trace_h * trace_h - dealii::trace(h * h)) / 2 + dealii::determinant(h);
+      volume += values.JxW(q);
+      measure.change += values.JxW(q) * det_minus_1;
+      measure.change_first_order += values.JxW(q) * trace_h;
+      measure.min_jacobian = std::min(measure.min_jacobian, 1 + det_minus_1);
+    }
+  }
+  const MPI_Comm comm = dof_handler.get_communicator();
+  volume = dealii::Utilities::MPI::sum(volume, comm);
+  measure.change = dealii::Utilities::MPI::sum(measure.change, comm);
+  measure.change_first_order = dealii::Utilities::MPI::sum(measure.change_first_order, comm);
+  measure.min_jacobian = dealii::Utilities::MPI::min(measure.min_jacobian, comm);
+  measure.change /= volume;
+  measure.change_first_order /= volume;
+  return measure;
+}
+
+}  // namespace springproof::fem
