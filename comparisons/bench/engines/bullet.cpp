@@ -1,4 +1,4 @@
-// Bullet (zlib licence) as an engine of the bench: springproof-engine-bullet TASK.json (docs/measured/engines_measured.md).
+// Bullet (zlib licence) as an engine of the bench: springproof-engine-bullet TASK.json (docs/measured/).
 // A program of its own, built where Bullet's headers are; nothing of springproof is linked into it.  Set-ups: linear,
 // neo_hooke (Lame constants of E and nu as entered), neo_hooke_converted (those of the file), links (position-based).
 #include <BulletSoftBody/btDeformableBodySolver.h>

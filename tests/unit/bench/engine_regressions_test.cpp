@@ -1,4 +1,4 @@
-// What the engines of the locked versions were measured to do, docs/measured/engines_measured.md; skipped where one is missing.
+// What the engines of the locked versions were measured to do (docs/measured/); skipped where one is missing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
