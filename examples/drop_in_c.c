@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   if (strstr(text, "\n \"carried\"")) return fprintf(stderr, "cells of several sizes: forces_in_c.cpp shows how\n"), 2;
   if (!strstr(text, "\n  \"averaged_springs\"")) return fprintf(stderr, "no averaged springs: forces_in_c.cpp shows springs\n"), 2;
   const char *nodes = "\n \"nodes\"", *cells = "\n \"cells\"", *surface = "\n \"surface\"";
-  if (strstr(text, "\"proportions\"")) return fprintf(stderr, "boxes: docs/springs_file.md has a program\n"), 2;
+  if (strstr(text, "\"proportions\"")) return fprintf(stderr, "boxes: examples/springs.py has them\n"), 2;
   size_t n, n3, c8, vertices, one;
   const double *X = numbers(nodes, "\"position_m\"", &n3), *mass = numbers(nodes, "\"mass_kg\"", &n);
   const int* corners = whole(cells, "\"nodes\"", &c8);

@@ -12,7 +12,7 @@ def arrays(v):  # a tree with its lists as arrays
     return z[v[4:]] if isinstance(v, str) and v.startswith("npy:") else np.array(v) if isinstance(v, list) else v
 s = arrays(json.loads(bytes(z["springs.json"])) if z else json.load(open(sys.argv[1])))
 X, mass, cells, edge = s["nodes"]["position_m"], s["nodes"]["mass_kg"][:, None], s["cells"]["nodes"], s["cells"]["edge_m"]
-if np.ndim(edge) or {"proportions", "fraction"} & s["cells"].keys(): sys.exit("cut cells, cells of several sizes, or boxes: docs/springs_file.md has a program for them")
+if np.ndim(edge) or {"proportions", "fraction"} & s["cells"].keys(): sys.exit("cut cells, cells of several sizes, or boxes: examples/springs.py has them")
 law, g = s["laws"]["averaged_springs"], np.array([0, 0, -9.81])
 G, K = law["shear_modulus_Pa"], law["lame_lambda_Pa"] + 2 / 3 * law["shear_modulus_Pa"]
 SIGN = 2.0 * np.array([[0,0,0], [1,0,0], [1,1,0], [0,1,0], [0,0,1], [1,0,1], [1,1,1], [0,1,1]]) - 1  # corners of a cell

@@ -31,7 +31,7 @@ int main(int count, char** arguments) try {
   bool all = !of_cells.contains("proportions") && of_cells.contains("nodes");
   for (const auto& [name, law] : laws.items()) all = all && std::find(known.begin(), known.end(), name) != known.end();
   if (!all)
-    return std::fprintf(stderr, "boxes, no cells, or a law that is not here: docs/springs_file.md has a program\n"), 2;
+    return std::fprintf(stderr, "boxes, no cells, or a law that is not here: examples/springs.py has them\n"), 2;
   const auto X = flat<double>(file.at("nodes").at("position_m")), mass = flat<double>(file.at("nodes").at("mass_kg"));
   const auto ends = flat<int>(file.at("springs").at("nodes")), cells = flat<int>(file.at("cells").at("nodes"));
   const auto k = flat<double>(file.at("springs").at("stiffness_N_m")),

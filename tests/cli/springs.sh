@@ -33,7 +33,7 @@ END
 export_to() { "$program" export "$@" >log 2>&1 || fail "export $*: status $?: $(cat log)"; }
 
 # Every model of the table, in every form.
-awk '/^```python$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$source/docs/springs_file.md" >springs.py
+cp "$source/examples/springs.py" .
 for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { inside = 0 } inside { print $1 }'); do
   cells="4 2 2"
   [[ $model != *hexagonal && $model != kirkwood ]] || cells="4 2 1"
@@ -47,7 +47,7 @@ for model in $("$program" list | awk '/^Models/ { inside = 1; next } /^$/ { insi
     [ -n "$made" ] && grep -qF "nodes, $made (" log || fail "$model is '$made' in the list, and exported: $(cat log)"
     if [ -n "$numpy" ]; then
       off=$("$numpy" springs.py "$model.$form" | awk '{ print $3 }')
-      awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-9) }' || fail "forces of $model.$form by docs/springs_file.md: off by '$off'"
+      awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-9) }' || fail "forces of $model.$form by examples/springs.py: off by '$off'"
     fi
   done
 done
@@ -56,7 +56,7 @@ for options in '' ', weights = "kL"'; do  # momentum dispersion of finite strain
   export_to finite.toml --to springs --nu 0.4 --cells 4 2 2 --out finite.json
   if [ -n "$numpy" ]; then
     off=$("$numpy" springs.py finite.json | awk '{ print $3 }')
-    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-9) }' || fail "forces of finite strain$options by docs/springs_file.md: off by '$off'"
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-9) }' || fail "forces of finite strain$options by examples/springs.py: off by '$off'"
   fi
 done
 # A body that is no block: cut cells, of the models that take them; whole cubes on demand.
@@ -79,7 +79,7 @@ grep -q '"density_kg_m3": 900.0' cut.json || fail "the density is another"
 if [ -n "$numpy" ]; then
   for file in cut.json cut.npz cut_bt.json whole.json; do
     off=$("$numpy" springs.py $file | awk '{ print $3 }')
-    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of $file by docs/springs_file.md: off by '$off'"
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of $file by examples/springs.py: off by '$off'"
   done
 fi
 # Cells of several sizes, refined for the loads of a case.
@@ -91,7 +91,7 @@ grep -q '"version": 3' refined.json && grep -q '"carried": ' refined.json || fai
 if [ -n "$numpy" ]; then
   for form in json npz; do
     off=$("$numpy" springs.py "refined.$form" | awk '{ print $3 }')
-    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of refined.$form by docs/springs_file.md: off by '$off'"
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of refined.$form by examples/springs.py: off by '$off'"
   done
 fi
 # Boxes, of the model that has them.
@@ -99,7 +99,7 @@ for form in json npz; do
   export_to case.toml --to springs --model hybmss_avg --nu 0.4 --cells 4 3 1 --out "boxes.$form"
   if [ -n "$numpy" ]; then
     off=$("$numpy" springs.py "boxes.$form" | awk '{ print $3 }')
-    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of boxes.$form by docs/springs_file.md: off by '$off'"
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of boxes.$form by examples/springs.py: off by '$off'"
   fi
 done
 grep -q '"version": 4' boxes.json && grep -q '"proportions": ' boxes.json || fail "no boxes"

@@ -1,0 +1,200 @@
+# The forces of every law of a springs file, and explicit steps, with NumPy alone: docs/springs_file.md says what the fields are.
+#   python3 springs.py FILE     prints how far these forces are from those that the file gives
+# As a module: s = load("body.json"); f = forces(s, x) [N]; step(...) moves the body by one step.
+import json, sys
+import numpy as np
+
+def load(name):
+    """The tree of the file, its lists as arrays."""
+    z = np.load(name) if name.endswith(".npz") else None
+    def arrays(v):
+        if isinstance(v, dict): return {key: arrays(w) for key, w in v.items()}
+        if isinstance(v, str) and v.startswith("npy:"): return z[v[4:]]
+        return np.array(v) if isinstance(v, list) else v
+    return arrays(json.loads(z["springs.json"]) if z else json.load(open(name)))
+
+SIGN = 2 * np.array([[0,0,0], [1,0,0], [1,1,0], [0,1,0], [0,0,1], [1,0,1], [1,1,1], [0,1,1]]) - 1  # xi of the corners
+
+def dispersion(law, ends, k, L, stretch, n):  # tensions that momentum dispersion adds
+    sink = law.get("group", np.arange(n))[ends]  # s x 2: the node whose J an end adds to
+    q, kL, L2, one = law["q"], np.outer(k * L, [1, 1]), np.outer(L, [1, 1]), np.ones((len(k), 2))
+    if law["form"] in ("symmetric", "finite_strain"):
+        w = law.get("weight", kL)
+        a, c, norm = w, q * w, w * L2
+    elif law["form"] == "share_weighted":
+        share = one * law["weight"][:, None] if "weight" in law else one
+        a, c, norm = q * kL, share / L2, share
+    elif law["form"] == "published": a, c, norm = q * kL, 1 / L2, one
+    else: a, c, norm = q * kL / L2**2, L2, one  # published_transposed
+    total, J = np.zeros(n), np.zeros(n)
+    np.add.at(total, sink, norm)
+    np.add.at(J, sink, a * stretch[:, None])
+    return (c / total[sink] * J[sink]).sum(axis=1)
+
+def volume(law, cells, V, x, f):
+    a, b, c = np.einsum("nd,cne->dce", SIGN, x[cells]) / 4  # mean edge vectors
+    bc, ca, ab = np.cross(b, c), np.cross(c, a), np.cross(a, b)
+    J = (a * bc).sum(axis=1) / V
+    slope = J - 1 if law["form"] == "paper" else 3 * (np.cbrt(J) - 1) / np.cbrt(J)**2
+    gradient = np.einsum("nd,dce->cne", SIGN, np.array([bc, ca, ab])) / 4
+    np.add.at(f, cells, -(law["kappa_Pa"] * slope)[:, None, None] * gradient)
+
+def hourglass(law, k, cells, u, f):  # u: displacements from rest
+    force, u = np.zeros((len(cells), 8, 3)), u[cells]
+    mode = lambda p, q: SIGN[:, p] * SIGN[:, q] / np.sqrt(8)
+    for y in range(3):
+        p, q = (y + 1) % 3, (y + 2) % 3
+        up, uq = u[:, :, p] @ mode(p, y), u[:, :, q] @ mode(q, y)
+        force[:, :, p] += np.outer(k["hourglass_bending_N_m"] * up + k["hourglass_coupling_N_m"] * uq, mode(p, y))
+        force[:, :, q] += np.outer(k["hourglass_bending_N_m"] * uq + k["hourglass_coupling_N_m"] * up, mode(q, y))
+    twist = np.array([u[:, :, m] @ mode((m + 1) % 3, (m + 2) % 3) for m in range(3)])
+    for m in range(3):
+        t = k["hourglass_torsion_N_m"] * twist[m] + k["hourglass_torsion_coupling_N_m"] * twist.sum(axis=0)
+        force[:, :, m] += np.outer(t, mode((m + 1) % 3, (m + 2) % 3))
+    np.add.at(f, cells, -force)
+
+def angles(law, triangles, x, X, f):
+    def at_corner(x, a, b, c):
+        d1, d2 = x[b] - x[a], x[c] - x[a]
+        n = np.cross(d1, d2)
+        return np.arctan2(np.linalg.norm(n, axis=1), (d1 * d2).sum(axis=1)), d1, d2, n / np.linalg.norm(n, axis=1)[:, None]
+    for corner in range(3):
+        a, b, c = (triangles[:, (corner + m) % 3] for m in range(3))
+        phi, d1, d2, n = at_corner(x, a, b, c)
+        moment = (law["beta_Nm"] * (phi - at_corner(X, a, b, c)[0]))[:, None]
+        on_b = moment * np.cross(n, d1) / (d1**2).sum(axis=1)[:, None]
+        on_c = moment * np.cross(d2, n) / (d2**2).sum(axis=1)[:, None]
+        for node, force in ((a, -on_b - on_c), (b, on_b), (c, on_c)): np.add.at(f, node, force)
+
+def moments(cells):  # of the parts of the cells that the body fills; of whole cells where the file has none
+    full = {"fraction": 1, "mean": np.zeros(3), "mixed": np.zeros(3), "variance": np.full(3, 1 / 12)}
+    ones = np.ones(len(cells["nodes"]))
+    return [cells.get(key, np.multiply.outer(ones, value)) for key, value in full.items()]
+
+def stress(law, F):  # P = dW/dF of a cell
+    G, K, J, H = law["shear_modulus_Pa"], law["lame_lambda_Pa"] + 2 / 3 * law["shear_modulus_Pa"], np.linalg.det(F), np.linalg.inv(F).transpose(0, 2, 1)
+    C = np.einsum("cki,ckj->cij", F, F)
+    I1, J, curve, column = np.trace(C, axis1=1, axis2=2)[:, None, None], J[:, None, None], law["curve"], lambda v: v[:, None, None]
+    volume = K * (J - 1) * J * H if curve in ("neo_hooke_isochoric", "springs_neo_hooke") else K * np.log(J) * H
+    if curve == "neo_hooke": return G * (F - H) + law["lame_lambda_Pa"] * np.log(J) * H
+    if curve == "neo_hooke_isochoric": return G * J**(-2 / 3) * (F - I1 / 3 * H) + volume
+    if curve == "hencky":
+        I2, m, n = (I1**2 - column((C**2).sum(axis=(1, 2)))) / 2, J**(-2 / 3), J**(-4 / 3)
+        y = (m * I1 + n * I2 - 6) / 4
+        return G / 2 * (1 - y / 3 + 2 / 15 * y**2) * (m * (F - I1 / 3 * H) + n * (I1 * F - F @ C - 2 / 3 * I2 * H)) + volume
+    p, r = (-4.17, -2.91) if curve == "springs_hencky" else (-0.83, -5.38)
+    for at in np.ndindex(3, 3, 3):  # thirteen springs
+        e = np.array(at) - 1
+        if e @ (9, 3, 1) <= 0: continue
+        N = e / np.linalg.norm(e)
+        d, k = F @ N, 15 * G * {1: 2 / 21, 2: 8 / 105, 3: 9 / 140}[int(e @ e)]
+        q = column((d**2).sum(axis=1))
+        t = np.log(q) / 2 - np.log(J) / 3
+        volume = volume + k * t * (1 + t * (p / 2 + t * r / 6)) * (np.einsum("ci,j->cij", d, N) / q - H / 3)
+    return volume
+
+PATTERN = np.column_stack([SIGN[:, 1] * SIGN[:, 2] / 2, SIGN[:, 2] * SIGN[:, 0] / 2, SIGN[:, 0] * SIGN[:, 1] / 2, SIGN.prod(axis=1)])
+
+def averaged(law, cells, x, f):
+    if law["shift"]: sys.exit("averaged springs with a shift are linear: not here")
+    (alpha, c, p, S), l, at = moments(cells), cells["edge_m"], x[cells["nodes"]]
+    box = np.array(cells.get("proportions", [1, 1, 1]))
+    g = np.empty(at.shape)  # mean gradients of the weights of the corners
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        sj, sk = SIGN[:, j], SIGN[:, k]
+        g[:, :, i] = SIGN[:, i] / (box[i] * np.reshape(l, (-1, 1))) * (1 / 4 + (np.outer(c[:, j], sj) + np.outer(c[:, k], sk)) / 2 + np.outer(p[:, i], sj * sk))
+    F, q = np.einsum("cai,caj->cij", at, g), np.einsum("cai,am->cmi", at, PATTERN)
+    v = np.einsum("cij,cmi->cmj", F, q)
+    rho, V, w = np.maximum(12 * S, 0.1) * box**2, box[:, None] * (v[:, :3] + c[:, :, None] * v[:, 3:]), np.empty(v.shape)
+    for j in range(3):
+        k, m = (j + 1) % 3, (j + 2) % 3
+        for a, b in ((k, m), (m, k)): w[:, a, b] = rho[:, j] * (law["bending"] * V[:, a, b] + law["coupling"] * V[:, b, a])
+        w[:, j, j] = law["torsion"] * (rho[:, k] * (V[:, j, j] + V[:, m, m]) + rho[:, m] * (V[:, j, j] + V[:, k, k]))
+        w[:, j, j] += law["twist"] * (rho[:, k] + rho[:, m]) / 2 * V[:, j, j]
+        w[:, 3, j] = law["warping"] / 4 * (0.3 * rho[:, k] * rho[:, m] + rho[:, j] * (rho[:, k] + rho[:, m])) / 2.3 * v[:, 3, j]
+    w[:, :3] *= box[:, None]
+    w[:, 3] += np.einsum("cm,cmj->cj", c, w[:, :3])
+    w *= (alpha * law["shear_modulus_Pa"] * l / 2)[:, None, None]
+    total = (alpha * l**3)[:, None, None] * stress(law, F) + np.einsum("cmi,cmj->cij", q, w)
+    np.add.at(f, cells["nodes"], -np.einsum("cij,caj->cai", total, g) - np.einsum("cij,cmj,am->cai", F, w, PATTERN))
+
+def directions(s, N, share):  # of the springs of a lattice of cells; of other networks all alike
+    if "cells" in s:
+        e, of = np.unique(np.round(N, 6), axis=0, return_inverse=True)
+        return e / np.linalg.norm(e, axis=1)[:, None], np.bincount(of.ravel(), share) / share.sum()
+    e = np.array([np.array(at) - 1 for at in np.ndindex(3, 3, 3) if (np.array(at) - 1) @ (9, 3, 1) > 0])
+    squared = (e**2).sum(axis=1)
+    return e / np.sqrt(squared)[:, None], np.choose(squared - 1, [2 / 21, 8 / 105, 9 / 140])
+
+def at_nodes(law, s, ends, k, L, x, X, f):  # momentum dispersion of finite strain
+    D, d = X[ends[:, 1]] - X[ends[:, 0]], x[ends[:, 1]] - x[ends[:, 0]]
+    N, w = D / np.linalg.norm(D, axis=1)[:, None], law.get("weight", np.outer(k * L, [1, 1]))
+    sink, B, F = law.get("group", np.arange(len(x)))[ends], np.zeros((len(x), 3, 3)), np.zeros((len(x), 3, 3))
+    np.add.at(B, sink, w[:, :, None, None] * np.einsum("si,sj->sij", D, N)[:, None])
+    GV = np.trace(B, axis1=1, axis2=2) / 30
+    B[GV == 0] = F[GV == 0] = np.eye(3)  # nodes that receive nothing
+    g = w[:, :, None] * np.einsum("seij,sj->sei", np.linalg.inv(B)[sink], N)
+    np.add.at(F, sink, np.einsum("si,sej->seij", d, g))
+    ratio = 10 / 3 * law["q"]  # (lambda - G) / G
+    P = stress({"shear_modulus_Pa": 1, "lame_lambda_Pa": 1 + ratio, "curve": law["curve"]}, F)
+    e, share = directions(s, N, k * L**2)
+    Fe = np.einsum("nij,dj->ndi", F, e)
+    l = np.linalg.norm(Fe, axis=2)
+    tension = 15 * (l - 1) + (0 if "weight" in law else 9 * ratio) * ((l - 1) @ share)[:, None]  # the springs' own
+    P -= np.einsum("d,nd,ndi,dj->nij", share, tension / l, Fe, e)
+    force = np.einsum("s,seij,sej->si", np.ones(len(k)), (GV[:, None, None] * P)[sink], g)
+    np.add.at(f, ends[:, 0], force)
+    np.add.at(f, ends[:, 1], -force)
+
+def anchor(s, name, x, displacement=0):
+    """Forces by which a support holds the patch of a body of cut cells [N], n x 3."""
+    a, f = s["anchors"][name], np.zeros(x.shape)
+    d = np.einsum("ca,cai->ci", a["weights"], carry(s, x.copy())[a["nodes"]]) - a["position_m"] - displacement
+    np.add.at(f, a["nodes"], -(a["stiffness_N_m"][:, None] * a["weights"])[:, :, None] * d[:, None, :])
+    return hand_back(s, f)
+
+def carry(s, x):  # carried nodes into their places
+    if "carried" in s:
+        for node, by in zip(s["carried"]["nodes"], s["carried"]["by"]): x[node] = x[by].mean(axis=0)
+    return x
+
+def hand_back(s, f):  # the forces on them, to those that carry them
+    if "carried" in s:
+        for node, by in zip(s["carried"]["nodes"][::-1], s["carried"]["by"][::-1]):
+            np.add.at(f, by, f[node] / 4)
+            f[node] = 0
+    return f
+
+def forces(s, x):
+    """Internal forces at positions x [N], n x 3."""
+    x = carry(s, x.copy())
+    laws, X, ends = s["laws"], s["nodes"]["position_m"], s["springs"]["nodes"].astype(int).reshape(-1, 2)
+    k, L, f = s["springs"]["stiffness_N_m"], s["springs"]["rest_length_m"], np.zeros(x.shape)
+    d = x[ends[:, 1]] - x[ends[:, 0]]
+    length = np.linalg.norm(d, axis=1)
+    tension = k * (length - L) if "springs" in laws else 0 * k
+    if law := laws.get("momentum_dispersion"):
+        finite = law["form"] == "finite_strain"
+        if finite: at_nodes(law, s, ends, k, L, x, X, f)
+        if not (finite and "weight" in law): tension = tension + dispersion(law, ends, k, L, length - L, len(x))
+    pull = (tension / length)[:, None] * d
+    np.add.at(f, ends[:, 0], pull)
+    np.add.at(f, ends[:, 1], -pull)
+    if law := laws.get("volume_correction"): volume(law, s["cells"]["nodes"], s["cells"]["edge_m"]**3, x, f)
+    if law := laws.get("hourglass_correction"): hourglass(law, s["derived"], s["cells"]["nodes"], x - X, f)
+    if law := laws.get("averaged_springs"): averaged(law, s["cells"], x, f)
+    if law := laws.get("angular_springs"): angles(law, s["triangles"], x, X, f)
+    return hand_back(s, f)
+
+def step(s, x, v, external):  # semi-implicit Euler; external: gravity, contact [N]
+    dt = 0.95 * s["derived"]["safe_time_step_s"]
+    m = s["nodes"]["mass_kg"][:, None]
+    v += dt * np.divide(forces(s, x) + hand_back(s, external.copy()), m, out=np.zeros(x.shape), where=m > 0)
+    x += dt * v
+    carry(s, x)
+
+if __name__ == "__main__":
+    s = load(sys.argv[1])
+    ours = s["check"]["force_N"]
+    print(f'largest difference {abs(forces(s, s["check"]["position_m"]) - ours).max() / abs(ours).max():.1e} of the largest force')
