@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fem_reference/grid/grid_problem.h"
+#include "problem/system/input_error.h"
 
 namespace springproof::fem {
 
