@@ -14,6 +14,7 @@
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
+#include "fem_reference/exchange/reference.h"
 #include "meshes/locate/locate.h"
 #include "meshes/volume.h"
 #include "msm/embedding/rigid_motions.h"

@@ -10,6 +10,7 @@
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/run/find_cases.h"
 #include "fem_reference/exchange/case_request.h"
+#include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
 #include "problem/system/streams.h"
 

@@ -14,6 +14,7 @@
 #include "comparisons/run/solve_each.h"
 #include "comparisons/run/status.h"
 #include "fem_reference/exchange/case_request.h"
+#include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
 #include "problem/system/child.h"
 #include "problem/system/interrupts.h"

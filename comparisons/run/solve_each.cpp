@@ -10,6 +10,7 @@
 
 #include "comparisons/run/grid_cost.h"
 #include "fem_reference/exchange/exchange.h"
+#include "fem_reference/exchange/reference.h"
 #include "problem/system/checksum.h"
 #include "problem/system/child.h"
 

@@ -8,6 +8,7 @@
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/voxel_reference.h"
+#include "fem_reference/exchange/reference.h"
 #include "meshes/patches/rule_region.h"
 #include "msm/embedding/boundary.h"
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem_reference/exchange/reference.h"
 #include "meshes/volume.h"
 #include "problem/system/run_cost.h"
 #include "support/voxel_case.h"
