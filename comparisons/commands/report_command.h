@@ -1,9 +1,6 @@
 // The subcommand that puts the parts of a sweep together.
 #pragma once
 
-#include <filesystem>
-#include <functional>
-
 #include "comparisons/run/sweep_report.h"
 
 namespace CLI {
@@ -15,8 +12,7 @@ namespace springproof {
 /// `springproof report FOLDER`.
 class ReportCommand {
  public:
-  /// `live_page`: the file that --live copies.
-  void add_options(CLI::App& command, std::function<std::filesystem::path()> live_page);
+  void add_options(CLI::App& command);
   /// @return as report_sweep.
   int run() const;
 

@@ -1,0 +1,28 @@
+#include "comparisons/commands/bench_command.h"
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+
+#include "problem/system/child.h"
+
+namespace springproof {
+
+void BenchCommand::add_options(CLI::App& command) {
+  command.set_help_flag();
+  command.prefix_command();
+  command_ = &command;
+}
+
+int BenchCommand::run() const {
+  const std::filesystem::path program = find_program("springproof-bench", "SPRINGPROOF_BENCH_PROGRAM");
+  if (program.empty())
+    throw std::runtime_error(
+        "the program springproof-bench is neither beside this one nor named by SPRINGPROOF_BENCH_PROGRAM");
+  std::signal(SIGINT, [](int) { interrupt_children(); });
+  std::signal(SIGTERM, [](int) { interrupt_children(); });
+  const ChildEnd end = run_child({program, command_->remaining(), {}, {}, {}});
+  if (end.kind == ChildEnd::killed) throw std::runtime_error("springproof-bench " + words_for(end));
+  return end.status;
+}
+
+}  // namespace springproof

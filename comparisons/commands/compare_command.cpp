@@ -1,0 +1,45 @@
+#include "comparisons/commands/compare_command.h"
+
+#include <CLI/CLI.hpp>
+
+#include "comparisons/commands/live_page.h"
+#include "comparisons/run/find_cases.h"
+
+namespace springproof {
+
+void CompareCommand::add_options(CLI::App& command) {
+  command.add_option("CASE", names_, "case files (*.toml), folders of them, or built-in names (springproof list)")
+      ->required();
+  CLI::Option* out = command.add_option("--out", options_.out, "folder for the results")->capture_default_str();
+  command.add_option("--jobs", options_.jobs, "parts to run at once (0: one per core)");
+  command
+      .add_option("--poisson-ratio", options_.poisson_ratios, "only these of the cases' Poisson's ratios (0.25,0.49)")
+      ->delimiter(',')
+      ->take_all();
+  command
+      .add_option("--finer", options_.finer,
+                  "reference grids with so many times the cells along each direction (known values for a calibration)")
+      ->check(CLI::Range(1, 16));
+  command.add_flag("--resume", options_.resume, "keep what an interrupted run finished");
+  command.add_flag("--quiet", options_.quiet, "say nothing of what is under way");
+  command.add_flag("--verbose", options_.verbose,
+                   "also print a sentence on every model, and how far each case deforms");
+  CLI::Option* live = command.add_flag_callback(
+      "--live", [this] { options_.live_page = live_page(); },
+      "also copy the page in which the bodies can be pulled (live.html) beside the report, with a link");
+  command
+      .add_option_function<std::string>(
+          "--shard", [this](const std::string& text) { options_.shard = parse_shard(text); },
+          "only the K-th of N shares of the parts, K/N, into a folder that all shards share; then: springproof report")
+      ->needs(out)
+      ->excludes(live);
+  command.add_flag("--vtu,!--no-vtu", options_.vtu, "also write a VTU file of every run, for ParaView");
+  command.add_flag("--vtu-single", options_.vtu_single, "VTU files in single precision, half the size")->needs("--vtu");
+  command.footer(
+      "Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, "
+      "or nothing was compared, 2 the input is unusable, 130 interrupted; with --shard 0 its parts are there.");
+}
+
+int CompareCommand::run() const { return compare(find_cases(names_), options_); }
+
+}  // namespace springproof

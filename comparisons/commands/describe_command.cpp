@@ -1,0 +1,29 @@
+#include "comparisons/commands/describe_command.h"
+
+#include "comparisons/commands/describe.h"
+#include "comparisons/reproduce/figures.h"
+#include "comparisons/run/find_cases.h"
+#include "msm/parameters/model_table.h"
+#include "problem/system/streams.h"
+
+namespace springproof {
+
+void DescribeCommand::add_options(CLI::App& command) {
+  command.group("");
+  command.add_option("FORM", form_)->required()->check(CLI::IsMember({"man", "bash"}));
+  command_ = &command;
+}
+
+int DescribeCommand::run() const {
+  const CLI::App& app = *command_->get_parent();
+  std::vector<std::string> cases, models, paper_names;
+  for (const Paper& paper : papers()) paper_names.push_back(paper.name);
+  for (const auto& file : built_in_cases()) cases.push_back(case_name(file));
+  for (const ModelRow& row : model_table()) models.push_back(row.name);
+  to_stdout("{}", form_ == "man"
+                      ? man_page(app, SPRINGPROOF_VERSION)
+                      : bash_completion(app, {{"CASE", cases}, {"--model", models}, {"PAPER", paper_names}}));
+  return 0;
+}
+
+}  // namespace springproof
