@@ -1,14 +1,13 @@
 #include "fem_reference/bench.h"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/solve_grid.h"
+#include "problem/system/in_child.h"
 #include "problem/system/named_files.h"
 #include "problem/system/streams.h"
 
@@ -51,45 +50,31 @@ GridProblem compressed_cube(const BenchRow& row) {
 // Each run in a child process, so that the peak memory is that of this run.
 void measure(BenchRow& row) {
   to_stderr("{}, {}^3 cells, nu = {} ...\n", row.name, row.cells, row.poisson_ratio);
-  int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
-  const pid_t child = fork();
-  if (child == 0) {
-    nlohmann::json answer;
-    try {
-      const Solution s = solve_grid(compressed_cube(row));
-      answer = {{"ok", s.ok},
-                {"unknowns", s.degrees_of_freedom},
-                {"iterations", s.iterations},
-                {"seconds", s.seconds},
-                {"memory_MiB", s.memory_MiB},
-                {"form", s.form},
-                {"force", s.reactions.empty() ? 0.0 : s.reactions[0].force[2]}};
-    } catch (const std::exception& e) {
-      answer = {{"ok", false}, {"form", e.what()}};
-    }
-    const std::string text = answer.dump();
-    const auto written = write(ends[1], text.data(), text.size());
-    _exit(written == ssize_t(text.size()) ? 0 : 1);
-  }
-  close(ends[1]);
-  std::string text;
-  char buffer[4096];
-  for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, n);
-  close(ends[0]);
-  waitpid(child, nullptr, 0);
-  const nlohmann::json answer = nlohmann::json::parse(text, nullptr, false);
-  if (answer.is_discarded()) {
-    row.form = "ended early (out of memory?)";
+  const auto work = [&] {
+    const Solution s = solve_grid(compressed_cube(row));
+    const nlohmann::json answer = {{"ok", s.ok},
+                                   {"unknowns", s.degrees_of_freedom},
+                                   {"iterations", s.iterations},
+                                   {"seconds", s.seconds},
+                                   {"memory_MiB", s.memory_MiB},
+                                   {"form", s.form},
+                                   {"force", s.reactions.empty() ? 0.0 : s.reactions[0].force[2]}};
+    return answer.dump();
+  };
+  nlohmann::json answer;
+  try {
+    answer = nlohmann::json::parse(in_child(work));
+  } catch (const std::runtime_error& e) {
+    row.form = e.what();
     return;
   }
   row.ok = answer.at("ok");
   row.form = answer.at("form");
-  row.unknowns = answer.value("unknowns", 0L);
-  row.iterations = answer.value("iterations", 0);
-  row.seconds = answer.value("seconds", 0.0);
-  row.memory_MiB = answer.value("memory_MiB", 0.0);
-  row.force = answer.value("force", 0.0);
+  row.unknowns = answer.at("unknowns");
+  row.iterations = answer.at("iterations");
+  row.seconds = answer.at("seconds");
+  row.memory_MiB = answer.at("memory_MiB");
+  row.force = answer.at("force");
 }
 
 std::string seconds_per(const BenchRow& row, double per) {

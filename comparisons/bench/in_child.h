@@ -6,12 +6,8 @@
 
 namespace springproof::bench {
 
-/// Runs `work` in a fork of this process and returns what it returned.
-/// @throws std::runtime_error with the message of the exception thrown by the work, or with how the process ended
-/// (memory, signal); Interrupted.
+/// springproof::in_child() for JSON.
+/// @throws Interrupted
 nlohmann::json in_child(const std::function<nlohmann::json()>& work);
-
-/// Kills the running child; may be called in a signal handler.
-void interrupt_forked_child();
 
 }  // namespace springproof::bench

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <csignal>
 
-#include "comparisons/bench/in_child.h"
 #include "problem/system/child.h"
 
 namespace springproof::bench {
@@ -14,7 +13,6 @@ std::atomic<bool> is_interrupted = false;
 void on_interrupt(int) {
   is_interrupted = true;
   interrupt_children();
-  interrupt_forked_child();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/lobpcg.h"
+#include "msm/algebra/noise.h"
 #include "msm/embedding/boundary.h"
 #include "msm/embedding/rigid_motions.h"
 #include "msm/statics/tangent_solver.h"
@@ -38,9 +39,7 @@ Eigen::MatrixXd left_motions(const std::vector<char>& fixed, const std::vector<c
 /// Repeatable, different in every entry.
 Eigen::MatrixXd scattered(Eigen::Index rows, Eigen::Index columns) {
   Eigen::MatrixXd X(rows, columns);
-  unsigned state = 1;
-  for (double& value : X.reshaped())
-    value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+  fill_with_noise(X.reshaped());
   return X;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/dense.h"
+#include "msm/algebra/noise.h"
 
 namespace springproof {
 namespace {
@@ -123,8 +124,7 @@ void SmoothingLevel::bound_eigenvalues(double at_most) {
   const long stride = K.stride();
   const Eigen::ArrayXf D = (inverse_diagonal.array() > 0).select(inverse_diagonal.array().inverse(), 0);
   Eigen::VectorXf &v = z, &w = r, &before = x;
-  unsigned state = 1;
-  for (float& value : v) value = static_cast<float>(state = 1664525u * state + 1013904223u) / 4294967296.0f - 0.5f;
+  fill_with_noise(v);
   v.array() *= (D > 0).cast<float>();
   v /= std::sqrt((v.array().square() * D).sum());
   before.setZero();

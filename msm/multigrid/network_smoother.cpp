@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "msm/algebra/noise.h"
+
 namespace springproof {
 namespace {
 
@@ -30,8 +32,7 @@ Eigen::Matrix3d inverse_block(Eigen::Matrix3d block, const char* fixed) {
 /// Pseudo-random start vector of power iterations.
 Eigen::VectorXd rough(Eigen::Index size) {
   Eigen::VectorXd v(size);
-  unsigned state = 1;
-  for (double& value : v) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+  fill_with_noise(v);
   return v;
 }
 

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "msm/algebra/noise.h"
+
 namespace springproof {
 namespace {
 
@@ -31,8 +33,7 @@ Vec3 alternation_of(const Network& network, const NodalVectors& u) {
 SoftestMotion softest_motion(const MassSpringModel& model, const TangentSolver& K, const std::vector<char>& fixed) {
   const Tangent rest = tangent(model, model.network.X);
   Eigen::VectorXd u(static_cast<Eigen::Index>(fixed.size())), Ku, Ru;
-  unsigned state = 1;
-  for (double& value : u) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+  fill_with_noise(u);
   for (std::size_t i = 0; i < fixed.size(); ++i)
     if (fixed[i]) u[static_cast<Eigen::Index>(i)] = 0;
   double stiffness = std::numeric_limits<double>::infinity();

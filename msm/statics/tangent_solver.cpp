@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "msm/algebra/noise.h"
+
 namespace springproof {
 namespace {
 
@@ -128,8 +130,7 @@ bool TangentSolver::stable() const {
   // Conjugate gradients on an arbitrary right-hand side meet a direction of negative curvature if there is one
   // (Lanczos).
   Eigen::VectorXd b(static_cast<Eigen::Index>(fixed_.size())), u;
-  unsigned state = 1;
-  for (double& value : b) value = static_cast<double>(state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+  fill_with_noise(b);
   return !iterate(symmetric_stiffness(), true, b, 1e-6, 4000, u).negative_curvature;
 }
 

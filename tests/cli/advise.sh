@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # Advice for a block, for a body in cut cells, as JSON, and what is refused.   advise.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 # check NAME PYTHON-EXPRESSION: of the advice `a`
 check() {

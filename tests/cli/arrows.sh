@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # problem <- meshes <- {msm, fem_reference} <- comparisons: each module finds the headers of what lies below it and none of
 # what lies beside or above.   arrows.sh COMPILER BUILD_DIRECTORY EIGEN_INCLUDE
-set -u
+. "$(dirname "$0")/lib.sh"
 compiler=$1 views=$(readlink -f "$2")/arrows eigen=$3
-failures=0
 cd /  # a quoted include is looked for in the working directory too
 declare -A below=(
   [problem]="problem" [meshes]="problem meshes" [msm]="problem meshes msm"
@@ -21,15 +20,10 @@ for module in "${!below[@]}"; do
     [[ " ${below[$module]} " == *" $other "* ]] && allowed=yes
     compiles=no
     echo "#include \"${header[$other]}\"" | "$compiler" -std=c++20 -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 "${paths[@]}" -M -x c++ - >/dev/null 2>&1 && compiles=yes
-    if [ $allowed != $compiles ]; then
-      echo "FAILED: in $module, ${header[$other]} is found: $compiles, allowed: $allowed"
-      failures=$((failures + 1))
-    fi
+    [ $allowed = $compiles ] || fail "in $module, ${header[$other]} is found: $compiles, allowed: $allowed"
   done
 done
-if grep -rnE '#include +"\.\./' --include=*.h --include=*.cpp "$(readlink -f "$views/problem/problem/..")"/{problem,meshes,msm,fem_reference,comparisons}; then
-  echo "FAILED: includes that go around the arrows"
-  failures=$((failures + 1))
-fi
+grep -rnE '#include +"\.\./' --include=*.h --include=*.cpp "$(readlink -f "$views/problem/problem/..")"/{problem,meshes,msm,fem_reference,comparisons} &&
+  fail "includes that go around the arrows"
 [ $failures -eq 0 ] && echo "arrows hold"
 exit $((failures > 0))

@@ -1,29 +1,10 @@
 #!/usr/bin/env bash
 # Unusable input: exit status 2, one clear line on stderr, nothing written.   bad_input.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
-failures=0
 
-good=$(cat <<'TOML'
-[body]
-geo = "block.geo"
-size_m = [1, 1, 1]
-cells = [2, 2, 2]
-[material]
-youngs_modulus_Pa = 1e4
-poisson_ratio = 0.25
-[[load]]
-on = "z_min"
-displacement_m = [0, 0, 0]
-[[load]]
-on = "z_max"
-displacement_m = [0, 0, 0.01]
-[compare]
-models = ["hybmss"]
-TOML
-)
+good=$(block_case 0.25; printf '[compare]\nmodels = ["hybmss"]\n')
 
 # expect NAME PATTERN ARGUMENTS...: status 2, one line that matches, no output folder
 expect() {
@@ -33,9 +14,7 @@ expect() {
   "$program" "$@" >"$work/stdout" 2>"$work/stderr"
   local status=$?
   if [ $status -ne 2 ] || [ "$(wc -l <"$work/stderr")" -ne 1 ] || ! grep -qE "$pattern" "$work/stderr" || [ -e "$work/out" ]; then
-    echo "FAILED: $name: status $status, stderr:"
-    cat "$work/stderr"
-    failures=$((failures + 1))
+    fail "$name: status $status, stderr:" "$work/stderr"
   fi
 }
 
@@ -105,7 +84,7 @@ expect "mistake in a Latin-1 folder" "case.toml:4:1: " compare "$work/$latin/cas
 expect "50,000 dotted keys" "case.toml:1:1: more than 16 parts of a key" compare "$work/case.toml" --out "$work/out"
 expect "fewer jobs than none" "jobs: is -1 .allowed: 0 to 1024" compare "$work/good.toml" --jobs -1 --out "$work/out"
 "$program" material -E 1 --nu 0.3 --cell-size -1 2>&1 | grep -qxF -e "--cell-size: is -1 (allowed: a finite number > 0)" ||
-  { echo "FAILED: cells of no size"; failures=$((failures + 1)); }
+  fail "cells of no size"
 expect "100,000 jobs" "jobs.*1024" compare "$work/good.toml" --jobs 100000 --out "$work/out"
 mkdir "$work/thing.stl"
 expect "export of a folder" "thing.stl is a folder" export "$work/thing.stl" --to springs -E 1 --nu 0.3
@@ -136,7 +115,7 @@ for name in own.msh own.step own.brep own.stl; do
   sed -e "s/block.geo/$name/" -e 's/^size_m.*/voxels = 100/' -e '/^cells/d' "$work/good.toml" >"$work/script.toml"
   expect "a script called $name" "$name: " compare "$work/script.toml" --out "$work/out"
 done
-[ -e "$work/trace" ] && { echo "FAILED: a command was run"; failures=$((failures + 1)); }
+[ -e "$work/trace" ] && fail "a command was run"
 
 moving=$(printf 'kinematics = "hencky"\n%s\n[dynamics]' "$good")
 printf '%s\nduration_s = 0\n' "$moving" >"$work/no_time.toml"

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # The bench runs, and its figures are finite and positive; how large they are is no test's business.   bench.sh SPRINGPROOF
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failed=0
-fail() { echo "FAILED: $*"; failed=1; }
 
 benches="dynamics statics"
 command -v mpirun >/dev/null && [ -x "$(dirname "$program")/springproof-lattice" ] && benches+=" parallel"
@@ -39,5 +35,5 @@ kill -INT $pid
 wait $pid
 [ $? -eq 130 ] || fail "an interrupted bench ended with $?"
 grep -q '"judged"' "$work/half.json" || fail "an interrupted bench keeps nothing"
-[ $failed -eq 0 ] && echo "the bench runs"
-exit $failed
+[ $failures -eq 0 ] && echo "the bench runs"
+exit $((failures > 0))

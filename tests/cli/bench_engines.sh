@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # bench engines: what is missing is said with how to install it, what answers nonsense is reported, and the run goes on.
 #   bench_engines.sh SPRINGPROOF SOURCES
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 sources=$2/comparisons/bench/engines
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failed=0
-fail() { echo "FAILED: $*"; failed=1; }
 
 # An engine that says what it likes, and no packages for the others.
 printf '#!/bin/sh\necho "{\\"engine\\": \\"Liar 1.0\\", \\"steps\\": 1, \\"seconds\\": 0, \\"positions_m\\": [], \\"samples\\": [], \\"forces_N\\": [[]]}"\n' >"$work/liar"
@@ -45,5 +41,5 @@ SPRINGPROOF_ENGINES=$work/project "$program" bench engines --install >"$work/out
 grep -qE '"(\^|~|>|\*|latest)' "$sources/package.json" && fail "versions that move in package.json"
 grep -qE 'resolved|https?:' "$sources/package-lock.json" && fail "a host in package-lock.json"
 [ "$(grep -c integrity "$sources/package-lock.json")" -eq 2 ] || fail "package-lock.json does not lock two packages"
-[ $failed -eq 0 ] && echo "engines are measured, or it is said why not"
-exit $failed
+[ $failures -eq 0 ] && echo "engines are measured, or it is said why not"
+exit $((failures > 0))

@@ -1,21 +1,18 @@
 #!/usr/bin/env bash
 # The reference's stated uncertainties, held against values that are known: how many lie inside, and how wide the bars are.
 # usage: calibration.sh SPRINGPROOF OUT LEAST COMMAND...   COMMAND: arguments of springproof in one word; LEAST: known values wanted
-set -u
+. "$(dirname "$0")/lib.sh"
 springproof=$1
 out=$2
 least=$3
 shift 3
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
-failures=0
+log=$work/log
 for command in "$@"; do
   # shellcheck disable=SC2086
-  "$springproof" $command --out "$out/${command// /_}" >"$log.one" 2>&1 || { echo "FAILED: $command: exit status $?"; failures=1; }
+  "$springproof" $command --out "$out/${command// /_}" >"$log.one" 2>&1 || fail "$command: exit status $?"
   cat "$log.one"
   cat "$log.one" >>"$log"
 done
-rm -f "$log.one"
 # Of several commands each prints a table; the shares are those of all.
 awk -v least="$least" '
   /^(hexahedra|tetrahedra|bodies in files|near-incompressible|finite strain|in motion|frequencies|all) .*%/ {
@@ -36,4 +33,4 @@ awk -v least="$least" '
     if (median < 0.05 * quantities["all"]) { print "FAILED: the median |error| is below 0.05 of the uncertainty: bars 20 times too wide"; failed = 1 }
     exit failed
   }' "$log" || failures=1
-exit $failures
+exit $((failures > 0))

@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # What docs/contributing.md says to add is all that it takes.   contributing.sh BINARY-FOLDER SOURCE-FOLDER COMPILER INCLUDE-FOLDERS
-set -u
+. "$(dirname "$0")/lib.sh"
 binary=$1 source=$2 compiler=$3
 IFS=';' read -ra includes <<<"$4"
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 page=$source/docs/contributing.md
 

@@ -2,12 +2,8 @@
 # A force law added as docs/contributing.md says passes the law suite and is a model of springproof.
 #   contributing_law.sh BINARY-FOLDER SOURCE-FOLDER JOBS
 # In a copy of msm/, tests/ and comparisons/; of the build, what depends on the list of laws is compiled again.
-set -u
+. "$(dirname "$0")/lib.sh"
 binary=$(readlink -f "$1") source=$(readlink -f "$2") jobs=$3
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 page=$source/docs/contributing.md
 cp -r "$source/msm" "$source/tests" "$source/comparisons" .

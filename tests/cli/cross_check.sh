@@ -1,16 +1,8 @@
 #!/usr/bin/env bash
 # CalculiX and our reference on the same cases; exported decks run by themselves.   cross_check.sh PROGRAM [FEM-PROGRAM]
 # Exit status 77, skipped, without ccx or springproof-fem.
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-fail() {
-  echo "FAILED: $1"
-  [ $# -gt 1 ] && cat "$2"
-  failures=$((failures + 1))
-}
 
 # Without ccx: status 3 and the command that installs it.
 mkdir "$work/empty"

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # The man page and the completion know every command and option of --help, and work.   describe.sh PROGRAM SOURCE-FOLDER
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 source=$2
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 
 "$program" describe man >"$work/springproof.1" || { fail "describe man: status $?"; exit 1; }
 "$program" describe bash >"$work/springproof" || { fail "describe bash: status $?"; exit 1; }

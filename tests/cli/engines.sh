@@ -1,15 +1,8 @@
 #!/usr/bin/env bash
 # Bodies for real-time engines: what is written, and what an engine cannot have.   engines.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-failures=0
-fail() {
-  echo "FAILED: $1"
-  failures=$((failures + 1))
-}
 cat >bar.toml <<'TOML'
 [body]
 geo = "block.geo"

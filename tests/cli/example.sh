@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # The program that a page prints is the one in examples/, and prints what the page says.   example.sh PROGRAM SOURCE PAGE
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 source=$2 page=$3
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 printed=$(awk '/^```cpp$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$page")
 if [ "$printed" != "$(cat "$source")" ]; then

@@ -1,16 +1,9 @@
 #!/usr/bin/env bash
 # Displacements of another program beside the models ([[external]]): those of a model of ours give its row again; what is refused.
 #   external.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-failures=0
-fail() {
-  echo "FAILED: $1"
-  failures=$((failures + 1))
-}
 
 # make NAME MODELS: a cantilever under its weight, with more appended from standard input
 make() {

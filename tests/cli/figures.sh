@@ -2,15 +2,13 @@
 # The README's figure is of today's code: its points are those of the experiments that have just run, at the Poisson's
 # ratios that all of them have.
 #   figures.sh SOURCE-FOLDER FOLDER-OF-EXPERIMENTS
-set -u
+. "$(dirname "$0")/lib.sh"
 source=$1 experiments=$2
 results=()
 for case in bending compression shear tension torsion; do
   results+=("$experiments/golec_2019/$case/results.csv")
   [ -f "${results[-1]}" ] || { echo "no ${results[-1]}: the experiments have not run"; exit 77; }
 done
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 drawn=$work/drawn today=$work/today
 awk -F, 'FNR == 1 { ++files; next }
          !seen[FILENAME, $4]++ { ++cases[$4] }

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # Natural frequencies of a free and of a held cube, beside the reference's, and what is refused.   frequencies.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 cat >"$work/cube.toml" <<'TOML'
 [body]

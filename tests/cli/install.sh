@@ -1,11 +1,8 @@
 #!/usr/bin/env bash
 # What cmake --install puts into a folder works there: programs with their data, man page, completion.   install.sh CMAKE BINARY-FOLDER SOURCE-FOLDER
-set -u
+. "$(dirname "$0")/lib.sh"
 cmake=$1 binary=$2 source=$3
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-prefix=$(mktemp -d)
-trap 'rm -rf "$prefix"' EXIT
+prefix=$work
 cd "$prefix" || exit 1
 
 "$cmake" --install "$binary" --prefix "$prefix" >log 2>&1 || { cat log; fail "cmake --install"; exit 1; }

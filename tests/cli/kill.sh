@@ -1,31 +1,12 @@
 #!/usr/bin/env bash
 # kill -9 at random moments: --resume goes on from there, to the numbers of an undisturbed run; no child survives, and the next
 # start leaves nothing in the temporary folder.                                 kill.sh PROGRAM [KILLS [SEED]]
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 kills=${2:-50} seed=${3:-$(date +%s)}
 RANDOM=$((seed % 32768))
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 mkdir "$work/tmp"
 export TMPDIR=$work/tmp SPRINGPROOF_KILL_TEST=$work
-cat >"$work/case.toml" <<'TOML'
-[body]
-geo = "block.geo"
-size_m = [1, 1, 1]
-cells = [2, 2, 2]
-[material]
-youngs_modulus_Pa = 1e4
-poisson_ratio = [-0.5, 0.0, 0.25, 0.4]
-[[load]]
-on = "z_min"
-displacement_m = [0, 0, 0]
-[[load]]
-on = "z_max"
-displacement_m = [0, 0, 0.01]
-[compare]
-models = ["hybmss"]
-[reference]
-cells = [4, 4, 4]
+{ small_case '[-0.5, 0.0, 0.25, 0.4]'; cat <<'TOML'; } >"$work/case.toml"
 [[expect]]
 model = "hybmss"
 measure = "displacement_error"

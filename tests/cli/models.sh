@@ -2,12 +2,8 @@
 # docs/models.md has a section for each model of the table and for nothing else, and says in each what the reader came for;
 # `springproof material` knows each of them, and `homogenise` tells bias from scatter.
 #   models.sh PROGRAM SOURCE-FOLDER
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 page=$2/docs/models.md
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 rows=$("$program" list | awk '/^Models/ { inside = 1; next } inside && NF == 0 { exit } inside { print $1 }')
 [ "$(wc -w <<<"$rows")" -ge 10 ] || fail "springproof list: only these models: $rows"

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Two processes, and three of a body-fitted mesh, find what one finds, to 1e-9; they share that mesh out.
 #   mpi.sh SPRINGPROOF-FEM SPRINGPROOF
-set -u
 program=$1 springproof=$2
 . "$(dirname "$0")/mpi_common"
 
@@ -80,16 +79,16 @@ check() {
     shift
   fi
   shift
-  "$program" "$work/$name.toml" --tolerance 1e-12 --digits 14 "$@" >"$work/one" 2>&1 || { echo "FAILED: one process, $name $*"; cat "$work/one"; failed=1; return; }
-  mpirun -np $processes "$program" "$work/$name.toml" --tolerance 1e-12 --digits 14 "$@" >"$work/more" 2>&1 || { echo "FAILED: $processes processes, $name $*"; cat "$work/more"; failed=1; return; }
-  compare "$work/one" "$work/more" || { echo "FAILED: $processes processes, $name $*"; failed=1; return; }
+  "$program" "$work/$name.toml" --tolerance 1e-12 --digits 14 "$@" >"$work/one" 2>&1 || { fail "one process, $name $*" "$work/one"; return; }
+  mpirun -np $processes "$program" "$work/$name.toml" --tolerance 1e-12 --digits 14 "$@" >"$work/more" 2>&1 || { fail "$processes processes, $name $*" "$work/more"; return; }
+  compare "$work/one" "$work/more" || { fail "$processes processes, $name $*"; return; }
   echo "same: $processes processes, $name $*"
 }
 
 # No process of the last check stores more than this share of the cells.   shared_out SHARE
 shared_out() {
   awk -v share="$1" '/^ *processes / { most = $7; all = $9 } END { exit !(all > 0 && most <= share * all) }' "$work/more" ||
-    { echo "FAILED: not shared out"; grep processes "$work/more"; failed=1; }
+    fail "not shared out: $(grep processes "$work/more")"
 }
 
 make_case block linear
@@ -170,12 +169,12 @@ SH
 chmod +x "$work/fem"
 for processes in 1 2; do
   PROCESSES=$processes SPRINGPROOF_FEM_PROGRAM=$work/fem "$springproof" compare "$work/ball.toml" --jobs 1 --out "$work/ball$processes" >"$work/out" 2>&1 ||
-    grep -q "No expectations" "$work/out" || { echo "FAILED: ball, $processes processes"; cat "$work/out"; failed=1; }
+    grep -q "No expectations" "$work/out" || fail "ball, $processes processes" "$work/out"
   # The components of one measure on all meshes in one line.
   awk -F, 'NR > 1 { name = $6; sub(/[.](x|y|z|magnitude)$/, "", name); name = $3 " nu=" $4 " " name; at[name] = at[name] " " $7 }
            END { for (name in at) print name at[name] }' "$work/ball$processes/results.csv" | sort >"$work/numbers$processes"
 done
-same_numbers "$work/numbers1" "$work/numbers2" . 1e-9 12 && echo "same: 2 processes, ball" || { echo "FAILED: ball"; failed=1; }
+same_numbers "$work/numbers1" "$work/numbers2" . 1e-9 12 && echo "same: 2 processes, ball" || fail "ball"
 
 # gmsh runs as often as for one process.
 cat >"$work/mesh" <<SH
@@ -190,7 +189,7 @@ for case in block cylinder; do
     SPRINGPROOF_MESH_CACHE= SPRINGPROOF_MESH_PROGRAM=$work/mesh mpirun -q -np $processes "$program" "$work/$case.toml" --element q1 >"$work/out" 2>&1 || cat "$work/out"
     mv "$work/meshed" "$work/meshed$processes"
   done
-  [ -s "$work/meshed1" ] && cmp -s "$work/meshed1" "$work/meshed3" || { echo "FAILED: $case is meshed by more than one process"; failed=1; }
+  [ -s "$work/meshed1" ] && cmp -s "$work/meshed1" "$work/meshed3" || fail "$case is meshed by more than one process"
 done
 
 # What one process alone can see is told to all: one message, exit status 2.   refuse CASE MESSAGE ARGUMENTS
@@ -198,9 +197,7 @@ refuse() {
   mpirun -q -np 2 "$program" "$work/$1.toml" "${@:3}" >"$work/out" 2>"$work/err"
   local status=$?
   [ $status -eq 2 ] && [ "$(grep -c "$2" "$work/err")" -eq 1 ] && { echo "refused: $1"; return; }
-  echo "FAILED: $1 ended with $status"
-  cat "$work/err"
-  failed=1
+  fail "$1 ended with $status" "$work/err"
 }
 make_case outside linear
 sed -i 's/at_m = \[0.31, .*/at_m = [0.31, 0.77, 3]/' "$work/outside.toml"
@@ -215,4 +212,4 @@ refuse cylinder "2 processes for a mesh of 1 cells" --cells 1 1 1
 sed 's/geo = .*/geo = "broken.geo"/' "$work/cylinder.toml" >"$work/broken.toml"
 echo "Point(1) = {0, 0, 0};" >"$work/broken.geo"
 refuse broken "broken.geo"
-exit $failed
+exit $((failures > 0))

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
 # A lattice in slabs: two and three processes find what one finds, to 1e-10.   mpi_lattice.sh SPRINGPROOF-LATTICE
-set -u
 program=$1
 . "$(dirname "$0")/mpi_common"
 
@@ -43,10 +42,10 @@ compare() {
 check() {
   local name=$1
   shift
-  run 1 "$program" "$work/$name.toml" "$@" >"$work/one" || { echo "FAILED: one process, $*"; cat "$work/err"; failed=1; return; }
+  run 1 "$program" "$work/$name.toml" "$@" >"$work/one" || { fail "one process, $*" "$work/err"; return; }
   for processes in 2 3; do
-    run $processes "$program" "$work/$name.toml" "$@" >"$work/more" || { echo "FAILED: $processes processes, $*"; cat "$work/err"; failed=1; return; }
-    compare "$work/one" "$work/more" || { echo "FAILED: $processes processes, $*"; failed=1; return; }
+    run $processes "$program" "$work/$name.toml" "$@" >"$work/more" || { fail "$processes processes, $*" "$work/err"; return; }
+    compare "$work/one" "$work/more" || { fail "$processes processes, $*"; return; }
   done
   echo "same: $name $*"
 }
@@ -65,9 +64,7 @@ refuse() {
   mpirun -q -np 2 "$program" "$@" >"$work/out" 2>"$work/err"
   local status=$?
   [ $status -eq 2 ] && [ "$(grep -c -- "$message" "$work/err")" -eq 1 ] && { echo "refused: $what"; return; }
-  echo "FAILED: $what ended with $status"
-  cat "$work/out" "$work/err"
-  failed=1
+  fail "$what ended with $status" "$work/out" "$work/err"
 }
 refuse "cells that are no cubes" "needs cubes" "$work/block.toml" --cells 4 4 9
 refuse "steps of a model without cells" "no lattice of cells" "$work/block.toml" --model emsm --steps 1
@@ -85,4 +82,4 @@ for damping in -1 nan; do
   refuse "a damping of $damping" "^--damping: is $damping (allowed: a finite number >= 0)" "$work/block.toml" --damping $damping
 done
 check force --poisson-ratio 0.3   # in equilibrium: in parts instead of slabs
-exit $failed
+exit $((failures > 0))

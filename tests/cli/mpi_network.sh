@@ -2,7 +2,6 @@
 # Bodies of voxels, of cut cells and of random springs in parts: two processes, and for one model also one and three, find what
 # `compare` finds, to 1e-9; lattices with levels below them in few iterations.
 #   mpi_network.sh SPRINGPROOF-LATTICE SPRINGPROOF
-set -u
 program=$1 springproof=$2
 . "$(dirname "$0")/mpi_common"
 
@@ -57,12 +56,12 @@ check_case() {
   vectors "$work/expected" "^(force|displacement)[.]" >"$work/expected_vectors"
   for processes in "${numbers[@]}"; do
     mpirun -q -np $processes "$program" "$work/$case.toml" --model "$model" --poisson-ratio "$nu" --tolerance 1e-12 >"$work/out" 2>"$work/err" ||
-      { echo "FAILED: $model, nu = $nu, $processes processes"; cat "$work/out" "$work/err"; failed=1; return; }
+      { fail "$model, nu = $nu, $processes processes" "$work/out" "$work/err"; return; }
     sort "$work/out" >"$work/sorted"
     vectors "$work/sorted" "^(force|displacement)[.]" >"$work/found_vectors"
     same_numbers "$work/expected_vectors" "$work/found_vectors" . "$fraction" 3 ||
-      { echo "FAILED: $model, nu = $nu, $processes processes against compare"; failed=1; return; }
-    bounded "$most" || { echo "FAILED: $model, nu = $nu, $processes processes: more than $most iterations"; cat "$work/out"; failed=1; return; }
+      { fail "$model, nu = $nu, $processes processes against compare"; return; }
+    bounded "$most" || { fail "$model, nu = $nu, $processes processes: more than $most iterations" "$work/out"; return; }
   done
   echo "same: $case, $model, nu = $nu"
 }
@@ -113,9 +112,7 @@ refuse() {
   timeout 60 mpirun -q -np 2 "$program" "$@" >"$work/out" 2>"$work/err"
   local status=$?
   [ $status -eq 2 ] && [ "$(grep -c -- "$message" "$work/err")" -eq 1 ] && { echo "refused: $what"; return; }
-  echo "FAILED: $what ended with $status"
-  cat "$work/out" "$work/err"
-  failed=1
+  fail "$what ended with $status" "$work/out" "$work/err"
 }
 sed 's/"hybmss_avg", {/{ model = "emsm", dispersion = "published" }, {/' "$work/bar.toml" >"$work/published.toml"
 refuse "forces without an energy" "have no energy" "$work/published.toml" --model "emsm dispersion=published"
@@ -128,5 +125,5 @@ refuse "an unknown model" "emsm_rand" "$work/bar.toml" --model emsm_rand
 timeout 60 mpirun -q -np 1 "$program" "$work/bar.toml" : -np 1 "$program" "$work/missing.toml" >"$work/out" 2>"$work/err"
 status=$?
 [ $status -eq 2 ] && [ "$(grep -c missing.toml "$work/err")" -eq 1 ] && echo "ended: an error of one process" ||
-  { echo "FAILED: an error of one process ended with $status"; cat "$work/out" "$work/err"; failed=1; }
-exit $failed
+  fail "an error of one process ended with $status" "$work/out" "$work/err"
+exit $((failures > 0))

@@ -1,18 +1,10 @@
 #!/usr/bin/env bash
 # Bodies of a user's own through the command line: good files run, broken ones are refused.
 #   own_bodies.sh PROGRAM WRITE_BODIES
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 write_bodies=$2
 fem=${SPRINGPROOF_FEM_PROGRAM:-$(dirname "$program")/springproof-fem}
 [ -x "$fem" ] || fem=
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-fail() {
-  echo "FAILED: $1"
-  [ $# -gt 1 ] && tail -n 20 "$2"
-  failures=$((failures + 1))
-}
 
 # case_file FILE SCALE LOW HIGH VOXELS REFERENCE: held below z = LOW, pulled above z = HIGH
 case_file() {

@@ -2,10 +2,9 @@
 # Every file and heading that a page refers to is there: targets of links, and `paths` that begin with a folder of the source tree.
 # A decision has at most 120 words, and a line in the index.
 #   pages.sh SOURCE-FOLDER
-set -u
+. "$(dirname "$0")/lib.sh"
 cd "$1" || exit 1
-failures=0 found=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+found=0
 
 # The anchors of a page's headings, as web pages of it have them: lower case, no punctuation, blanks as dashes.
 anchors() { sed -nE 's/^#+ //p' "$1" | tr '[:upper:]' '[:lower:]' | sed -E "s/[^[:alnum:] _-]//g; s/ /-/g"; }

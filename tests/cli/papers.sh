@@ -1,12 +1,10 @@
 #!/usr/bin/env bash
 # What docs/papers.md says of the code is there: tests, cases, names, and that a function is in the file beside it.   papers.sh SOURCE-FOLDER
-set -u
+. "$(dirname "$0")/lib.sh"
 cd "$1" || exit 1
 page=docs/papers.md
-failures=0 found=0
+found=0
 fail() { echo "FAILED: $page: $*"; failures=$((failures + 1)); }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 
 # All tests as SUITE.NAME (a test of a suite with parameters too), all words of the sources.
 grep -rhoE '^(TEST|TEST_F|TEST_P|TYPED_TEST)\([A-Za-z0-9_]+, [A-Za-z0-9_]+' --include='*.cpp' tests | sed -E 's/^[A-Z_]+\(//; s/, /./' >"$work/tests"

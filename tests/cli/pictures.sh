@@ -1,20 +1,13 @@
 #!/usr/bin/env bash
 # The figures of a report as PNG files.   pictures.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-fail() {
-  echo "FAILED: $1"
-  cat "$work/log"
-  exit 1
-}
 expect() {   # expect STATUS TEXT COMMAND...: the command ends with it and says it
   local status=$1 text=$2
   shift 2
   "$@" >"$work/log" 2>&1
-  [ $? -eq "$status" ] || fail "status is not $status: $*"
-  grep -q "$text" "$work/log" || fail "does not say '$text': $*"
+  [ $? -eq "$status" ] || stop "status is not $status: $*"
+  grep -q "$text" "$work/log" || stop "does not say '$text': $*"
 }
 expect 2 "no report.html here" "$program" pictures "$work"
 
@@ -40,7 +33,7 @@ measures = ["displacement_error", "volume_change"]
 TOML
 out="$work/out & out"   # a folder whose name needs care
 "$program" compare "$work/case one.toml" --out "$out" >"$work/log" 2>&1
-[ -s "$out/report.html" ] || fail "no report"
+[ -s "$out/report.html" ] || stop "no report"
 expect 2 "apt-get install chromium" env PATH=/nowhere "$program" pictures "$out"
 command -v chromium >/dev/null || { echo "chromium is not installed"; exit 77; }
 expect 1 "no picture has 'nothing like it'" "$program" pictures "$out" --only "nothing like it"
@@ -48,8 +41,8 @@ expect 1 "not finished after 0.01 s" "$program" pictures "$out" --time-limit 0.0
 expect 0 "4 pictures in" "$program" pictures "$out" --only shapes
 for name in displacement-nu0.25 displacement-nu0.4 volume_change-nu0.25 volume_change-nu0.4; do
   file=$(echo "$out"/png/*-case_one-shapes-$name.png)   # after the folder of the case
-  [ -s "$file" ] || fail "$file is not there"
-  [ "$(head -c 4 "$file" | tail -c 3)" = PNG ] || fail "$file is no PNG"
+  [ -s "$file" ] || stop "$file is not there"
+  [ "$(head -c 4 "$file" | tail -c 3)" = PNG ] || stop "$file is no PNG"
 done
 
 # Of several cases that have a reference also the figure of them all.
@@ -58,5 +51,5 @@ sed -e 's/-0.1\]/0.1]/' "$work/one.toml" >"$work/two.toml"
 "$program" compare "$work/one.toml" "$work/two.toml" --out "$work/both" >"$work/log" 2>&1
 grep -q 'no reference' "$work/log" && { echo "4 pictures; springproof-fem is not built"; exit 0; }
 expect 0 "1 pictures in" "$program" pictures "$work/both" --only error-against-poisson-ratio
-[ -s "$work/both/png/error-against-poisson-ratio.png" ] || fail "the figure of both cases is not there"
+[ -s "$work/both/png/error-against-poisson-ratio.png" ] || stop "the figure of both cases is not there"
 echo "5 pictures"

@@ -1,19 +1,15 @@
 #!/usr/bin/env bash
 # pip installs the package into a folder, without a package index, and the first lines of docs/python.md print there what the page says.
 #   pip.sh PYTHON SOURCE-FOLDER [BUILD-FOLDER]     (a build tree whose library is taken instead of compiling one)
-set -u
+. "$(dirname "$0")/lib.sh"
 python=$1 source=$2
 [ -n "$python" ] && "$python" -c "import setuptools, numpy" 2>/dev/null && "$python" -m pip --version >/dev/null 2>&1 || { echo "no pip, setuptools or numpy for '$python'"; exit 77; }
 [ -z "${3:-}" ] || export SPRINGPROOF_BUILD=$3
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 # pip writes beside what it installs: from a copy.
 mkdir "$work/copy" && cd "$source" && cp -r CMakeLists.txt pyproject.toml setup.py README.md problem meshes msm fem_reference comparisons examples tests "$work/copy" || exit 1
 cd "$work" || exit 1
 "$python" -m pip install --no-build-isolation --no-index --no-deps --break-system-packages --target installed ./copy >log 2>&1 || { tail -50 log; exit 1; }
 
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 block() { awk -v wanted="$1" '/^```/ { if (!inside) ++number; inside = !inside; next } inside && number == wanted' "$source/docs/python.md"; }
 block 1 >lines.py
 block 2 >wanted

@@ -2,7 +2,7 @@
 # Every command that a page prints does what the page says.   printed_commands.sh SOURCE-FOLDER BINARY-FOLDER PAGE...
 # Commands stand in blocks marked sh, or behind "$ " in blocks without a mark, where what they print follows.  They run in a
 # folder that looks like the source tree; case files are those that the page prints.
-set -u
+. "$(dirname "$0")/lib.sh"
 source=$1 binary=$2
 shift 2
 
@@ -138,10 +138,6 @@ check() {
   return 0
 }
 
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 mkdir build && ln -s "$binary" build/release && ln -s "$source/examples" examples
 output=$work/output

@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # Long runs speak: a live line on a terminal, a line per long phase elsewhere, an estimate before long runs.   progress.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 fail() {
   echo "FAILED: $1"
   [ -z "$(jobs -p)" ] || kill $(jobs -p)
@@ -11,23 +9,7 @@ fail() {
   exit 1
 }
 write_case() {  # NAME REFERENCE_CELLS
-  cat >"$work/$1.toml" <<TOML
-[body]
-geo = "block.geo"
-size_m = [1, 1, 1]
-cells = [4, 4, 4]
-[material]
-youngs_modulus_Pa = 1e4
-poisson_ratio = [0.3, 0.48]
-[[load]]
-on = "z_min"
-displacement_m = [0, 0, 0]
-[[load]]
-on = "z_max"
-displacement_m = [0, 0, 0.01]
-[reference]
-cells = [$2, $2, $2]
-TOML
+  { block_case '[0.3, 0.48]' '[4, 4, 4]'; printf '[reference]\ncells = [%s, %s, %s]\n' "$2" "$2" "$2"; } >"$work/$1.toml"
 }
 write_case short 8
 write_case seconds 8

@@ -1,13 +1,9 @@
 #!/usr/bin/env bash
 # Public headers say what each of their names is.   reference.sh SOURCE-FOLDER
 # Doxygen warns of nothing in them; of headers that programs begin with, every parameter and return value is described.
-set -u
+. "$(dirname "$0")/lib.sh"
 cd "$1" || exit 1
 command -v doxygen >/dev/null || { echo "doxygen is not installed"; exit 77; }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 # Headers that a program begins with: all functions of a task on the first page of the reference.
 begin="msm/models.h msm/parameters/model_table.h msm/laws/laws.h msm/topology/network.h msm/embedding/boundary.h

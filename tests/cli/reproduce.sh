@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # springproof reproduce: a figure from its case to its files, again from the results alone, and what is refused.
 #   reproduce.sh PROGRAM SOURCE-FOLDER
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 source=$2
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 
 # refused STATUS TEXT ARGUMENT...: ends with that status and says so.
 refused() {

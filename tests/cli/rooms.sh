@@ -1,11 +1,9 @@
 #!/usr/bin/env bash
 # The rooms (folders) of each module include each other in one direction, and no circle of includes has more units (X.h
 # and X.cpp) than a class and its parts.   rooms.sh MODULE...
-set -u
-failures=0
+. "$(dirname "$0")/lib.sh"
 largest_circle=3
 known=msm/kernels/lattice_kernel  # one class in headers, a part of it in each, compiled once per instruction set
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 for module in "$@"; do
   units=$(grep -rE "^#include \"$module/" --include=*.h --include=*.cpp "$module" |
           sed -E 's/^([^:]*)\.(h|cpp):#include "([^"]*)\.[a-z]+".*/\1 \3/' | awk '$1 != $2' | sort -u)

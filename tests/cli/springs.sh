@@ -2,12 +2,8 @@
 # Springs files: written in every form, by the schema, with our forces in another program; read back as a model of a case.
 #   springs.sh PROGRAM SOURCE-FOLDER
 # Without numpy, jsonschema or lmp what needs them is left out, and said.
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 source=$2
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 python_with() { for p in python3 /usr/bin/python3; do "$p" -W ignore -c "import $1" 2>/dev/null && { echo "$p"; return; }; done; }
 numpy=$(python_with numpy) jsonschema=$(python_with jsonschema) lmp=${SPRINGPROOF_LAMMPS:-$(command -v lmp)}

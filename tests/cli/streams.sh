@@ -1,60 +1,35 @@
 #!/usr/bin/env bash
 # A closed or full log ends no run, and an answer that is lost is never status 0.   streams.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-fail() {
-  echo "FAILED: $1"
-  cat "$work/log"
-  exit 1
-}
 [ -e /dev/full ] || { echo "there is no /dev/full"; exit 77; }
-cat >"$work/case.toml" <<'TOML'
-[body]
-geo = "block.geo"
-size_m = [1, 1, 1]
-cells = [2, 2, 2]
-[material]
-youngs_modulus_Pa = 1e4
-poisson_ratio = [0.25, 0.4]
-[[load]]
-on = "z_min"
-displacement_m = [0, 0, 0]
-[[load]]
-on = "z_max"
-displacement_m = [0, 0, 0.01]
-[compare]
-models = ["hybmss"]
-[reference]
-cells = [4, 4, 4]
-TOML
+small_case '[0.25, 0.4]' >"$work/case.toml"
 compare=(compare "$work/case.toml" --jobs 1 --out)
 
 # What is said of the run is lost, not the run: full, closed, a reader that has ended.
 mkfifo "$work/pipe"
 exec 3<>"$work/pipe" 4>"$work/pipe" 3>&-
-"$program" "${compare[@]}" "$work/out" >"$work/answer" 2>"$work/log" || fail "a run with all its streams failed"
-[ -s "$work/log" ] || fail "this run says nothing: it proves nothing"
+"$program" "${compare[@]}" "$work/out" >"$work/answer" 2>"$work/log" || stop "a run with all its streams failed"
+[ -s "$work/log" ] || stop "this run says nothing: it proves nothing"
 : >"$work/log"
-same() { cmp -s "$work/out/results.csv" "$1/results.csv" && [ -s "$1/report.html" ] || fail "$2: other results"; }
-"$program" "${compare[@]}" "$work/full" >"$work/answer" 2>/dev/full || fail "a full log ends the run ($?)"
+same() { cmp -s "$work/out/results.csv" "$1/results.csv" && [ -s "$1/report.html" ] || stop "$2: other results"; }
+"$program" "${compare[@]}" "$work/full" >"$work/answer" 2>/dev/full || stop "a full log ends the run ($?)"
 same "$work/full" "a full log"
-"$program" "${compare[@]}" "$work/closed" >"$work/answer" 2>&- || fail "a closed log ends the run ($?)"
+"$program" "${compare[@]}" "$work/closed" >"$work/answer" 2>&- || stop "a closed log ends the run ($?)"
 same "$work/closed" "a closed log"
-"$program" "${compare[@]}" "$work/unread" >"$work/answer" 2>&4 || fail "a log that nobody reads ends the run ($?)"
+"$program" "${compare[@]}" "$work/unread" >"$work/answer" 2>&4 || stop "a log that nobody reads ends the run ($?)"
 same "$work/unread" "a log that nobody reads"
 
 # The answer is lost: the files are there, and the status tells.
 lost() {  # STATUS WHAT
-  [ "$1" -ne 0 ] && [ "$1" -lt 128 ] || fail "$2: status $1"
-  grep -q '^error: standard output cannot be written: ' "$work/log" || fail "$2: it is not said"
+  [ "$1" -ne 0 ] && [ "$1" -lt 128 ] || stop "$2: status $1"
+  grep -q '^error: standard output cannot be written: ' "$work/log" || stop "$2: it is not said"
 }
 "$program" "${compare[@]}" "$work/mute" >&- 2>"$work/log"
 lost $? "compare, closed"
 same "$work/mute" "standard output closed"
 "$program" "${compare[@]}" "$work/mute" >&- 2>&-
-[ $? -eq 1 ] || fail "compare, all closed: a lost answer is status 0"
+[ $? -eq 1 ] || stop "compare, all closed: a lost answer is status 0"
 same "$work/mute" "all closed"
 own() {  # of the commands of the program
   "$program" "$@" >/dev/full 2>"$work/log"
@@ -87,5 +62,5 @@ done
 
 # Who reads the first lines only ends the program as every other, without a word.
 "$program" list 2>"$work/log" >&4
-[ $? -eq 141 ] && [ ! -s "$work/log" ] || fail "an answer that is read no further"
+[ $? -eq 141 ] && [ ! -s "$work/log" ] || stop "an answer that is read no further"
 echo "no run is lost with its log, no answer unsaid"

@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
 # What the verdict says, and when a comparison is no success.   verdict.sh PROGRAM
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
 fail() {
   echo "FAILED: $1"
   cat "$work/stdout" "$work/stderr"

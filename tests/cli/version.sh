@@ -1,10 +1,8 @@
 #!/usr/bin/env bash
 # --version names the program's version, and that of every library that the build files look for; CITATION.cff and CHANGELOG.md
 # are of that version.   version.sh PROGRAM SOURCE-FOLDER
-set -u
+. "$(dirname "$0")/lib.sh"
 program=$1 source=$2
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 answer=$("$program" --version) || fail "status $?"
 echo "$answer"
