@@ -19,10 +19,10 @@ std::string first_verdict(const PartRun& run, const NodalVectors& coarsest) {
   std::vector<std::pair<double, std::string>> errors;
   for (std::size_t m = 0; m < run.prepared.models.size(); ++m) {
     if (e.models[m].in_motion) continue;
-    const ModelSample sample = samples_of(run, lattice, m).front();
-    if (sample.state.ok)
-      errors.emplace_back(weighted_norm(sample.field.displacement - u, nodal_volumes(run.mesh(lattice))) / scale,
-                          e.models[m].label);
+    const std::vector<ModelSample> samples = samples_of(run, lattice, m);  // none of a file of other cells or ratios
+    if (samples.empty() || !samples.front().state.ok) continue;
+    const NodalVectors difference = samples.front().field.displacement - u;
+    errors.emplace_back(weighted_norm(difference, nodal_volumes(run.mesh(lattice))) / scale, e.models[m].label);
   }
   if (errors.empty()) return {};
   std::sort(errors.begin(), errors.end());
