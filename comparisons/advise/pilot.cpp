@@ -320,7 +320,7 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   const Experiment e = pilot_case(experiment, material, models, at, out.base);
   const PreparedCase prepared = prepare_lattices(e);
   check_loads(prepared);
-  PilotRun run{prepared, material, {}, {}, {}, {}, 1};
+  PilotRun run{prepared, material, {}, {}, {}, {}};
   const auto lattice_at = [&](int n) {
     const auto& counts = e.body.voxel_counts;
     const std::size_t i = e.body.is_voxels()

@@ -46,7 +46,7 @@ void run_fem(PartRun& run) {
   const auto solve = run.experiment().body.is_voxels() ? solve_body_grids : solve_grids;
   // Of runs that nobody keeps the models are not solved yet.
   const auto say_first_verdict = [&run](const NodalVectors& u) {
-    if (run.keeper.keeps()) run.keeper.say(first_verdict(run, u));
+    if (run.keeper.keeps()) run.keeper.say([&] { return first_verdict(run, u); });
   };
   run.grids = solve(run.prepared, run.material, run.vtu, run.keeper, say_first_verdict);
   if (run.grids.elements.empty())

@@ -14,7 +14,7 @@
 namespace springproof {
 namespace {
 
-// Seconds of one core per unknown, as measured on idle cores.
+// CPU seconds per unknown; of springs at rest as measured in the default run.
 constexpr double springs = 2.5e-6, springs_at_random = 3.5e-5;
 constexpr double spring_step = 2e-8;  // of a motion, per unknown and step
 constexpr double breaking = 1e-4;     // of a sample that dries: hundreds of equilibria

@@ -15,6 +15,7 @@ std::string first_verdict(const PartRun& run, const NodalVectors& coarsest) {
   const Experiment& e = run.experiment();
   if (e.fracture || !small_enough(e, run.mesh(lattice))) return {};
   const NodalVectors u = at_nodes(run.prepared.lattices[lattice], coarsest);
+  const Eigen::VectorXd volumes = nodal_volumes(run.mesh(lattice));
   const double scale = scale_of_errors(run.prepared, run.prepared.lattices[lattice], u).mean;
   std::vector<std::pair<double, std::string>> errors;
   for (std::size_t m = 0; m < run.prepared.models.size(); ++m) {
@@ -22,7 +23,7 @@ std::string first_verdict(const PartRun& run, const NodalVectors& coarsest) {
     const std::vector<ModelSample> samples = samples_of(run, lattice, m);  // none of a file of other cells or ratios
     if (samples.empty() || !samples.front().state.ok) continue;
     const NodalVectors difference = samples.front().field.displacement - u;
-    errors.emplace_back(weighted_norm(difference, nodal_volumes(run.mesh(lattice))) / scale, e.models[m].label);
+    errors.emplace_back(weighted_norm(difference, volumes) / scale, e.models[m].label);
   }
   if (errors.empty()) return {};
   std::sort(errors.begin(), errors.end());

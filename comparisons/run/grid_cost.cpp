@@ -5,7 +5,7 @@
 namespace springproof {
 namespace {
 
-// Seconds of one core per unknown, as measured on idle cores.  Assembled matrices: tetrahedra, and cubes without a
+// CPU seconds per unknown, as measured in the default run.  Assembled matrices: tetrahedra, and cubes without a
 // multigrid hierarchy.
 constexpr double matrix_free = 1.5e-5, with_matrices = 3e-5;
 constexpr double fem_step = 6e-5;                              // of a motion, per unknown and step

@@ -9,6 +9,7 @@
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/convergence_cause.h"
+#include "comparisons/run/grid_cost.h"
 #include "comparisons/run/rims.h"
 #include "comparisons/run/solve_each.h"
 #include "fem_reference/exchange/case_request.h"
@@ -83,10 +84,10 @@ std::string probe_of(const std::string& measure) {
 /// The patch at whose rim each probe lies that lies at one, by the probe's name.
 std::map<std::string, std::string> rims_at_probes(const PreparedCase& prepared) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
-  const std::vector<std::optional<NearRim>> near = rims_near(prepared, probes);
+  const std::vector<std::optional<NearRim>> nearest = rims_near(prepared, probes);
   std::map<std::string, std::string> rims;
   for (std::size_t i = 0; i < probes.size(); ++i)
-    if (near[i]) rims[probes[i].name] = near[i]->patch;
+    if (nearest[i]) rims[probes[i].name] = nearest[i]->patch;
   return rims;
 }
 
@@ -199,7 +200,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   if (!experiment.models.empty())
     for (std::size_t i = 0; i < prepared.lattices.size(); ++i)
       for (const std::string& element : experiment.elements)
-        if (small_enough(experiment, *prepared.lattices[i].mesh, element[1] - '0')) {
+        if (small_enough(experiment, *prepared.lattices[i].mesh, degree_of(element))) {
           request.grids.push_back({prepared.lattices[i].cells, element, 1.0});
           lattices.push_back(i);
         }

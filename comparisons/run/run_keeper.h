@@ -33,8 +33,10 @@ class RunKeeper {
 
   RunKeeper() = default;  ///< keeps nothing and tells nobody
 
-  /// What is known before the part is finished, in words.
-  using Sayer = std::function<void(const std::string& words)>;
+  using Words = std::function<std::string()>;
+
+  /// Told what is known before the part is finished, in words that are found only if they are asked for.
+  using Sayer = std::function<void(const Words& words)>;
 
   /// @param folder for the files, made when it is needed
   /// @param stamp identifies the inputs: runs of others are not taken
@@ -57,7 +59,7 @@ class RunKeeper {
     return result;
   }
 
-  void say(const std::string& words) const {
+  void say(const Words& words) const {
     if (sayer_) sayer_(words);
   }
 

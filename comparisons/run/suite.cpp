@@ -155,9 +155,10 @@ class Progress {
     if (took && expected.kind != RunKind::springs) say_how_long();
   }
 
-  void known_so_far(std::size_t task, const std::string& words) {
-    if (quiet_ || words.empty() || time_left_.at(now()).value_or(0) < shortest_with_estimate) return;
-    status_.print(fmt::format("[{}/{}] {}: {}", task + 1, tasks_.size(), tasks_[task].title, words));
+  void known_so_far(std::size_t task, const RunKeeper::Words& words) {
+    if (quiet_ || time_left_.at(now()).value_or(0) < shortest_with_estimate) return;
+    if (const std::string known = words(); !known.empty())
+      status_.print(fmt::format("[{}/{}] {}: {}", task + 1, tasks_.size(), tasks_[task].title, known));
   }
 
   void finished(std::size_t task, double seconds, bool taken_back) {
@@ -228,7 +229,7 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
         const RunKeeper keeper(
             fs::path(task.file).replace_extension(".runs"), task.stamp,
             [&, i](const RunCost& expected, std::optional<double> took) { progress.ran(i, expected, took); },
-            [&, i](const std::string& words) { progress.known_so_far(i, words); });
+            [&, i](const RunKeeper::Words& words) { progress.known_so_far(i, words); });
         const bool goes_on = options.resume || options.shard;
         if (goes_on) kept = kept_part(task);
         if (!goes_on) keeper.forget();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/run/grid_cost.h"
 #include "comparisons/run/solve_each.h"
 #include "comparisons/run/voxel_body.h"
 #include "fem_reference/exchange/case_request.h"
@@ -135,7 +136,7 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
   }
   if (e.models.empty()) return out;
   const auto too_fine = [&](const Mesh& mesh, const std::string& element) {
-    return !small_enough(e, mesh, element[1] - '0');
+    return !small_enough(e, mesh, degree_of(element));
   };
   Meshes fitted;
   for (const Lattice& lattice : prepared.lattices) {
