@@ -174,6 +174,14 @@ std::vector<Eigen::Matrix3d> ListStiffness<Real>::node_blocks() const {
   return blocks;
 }
 
+template <class Real>
+Eigen::VectorXd ListStiffness<Real>::diagonal() const {
+  const std::vector<Eigen::Matrix3d> blocks = node_blocks();
+  Eigen::VectorXd d(static_cast<Eigen::Index>(3 * blocks.size()));
+  for (std::size_t p = 0; p < blocks.size(); ++p) d.segment<3>(3 * blocks_->order[p]) = blocks[p].diagonal();
+  return d;
+}
+
 template class ListStiffness<double>;
 template class ListStiffness<float>;
 template ListStiffness<float>::ListStiffness(const ListStiffness<double>&, double);

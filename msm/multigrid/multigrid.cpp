@@ -93,8 +93,7 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
   const CellMatrix finest = of_level(lattice_.levels[0]);
   const double unit = finest.diagonal().mean();
   unit_ = 1 / unit;
-  const CellMatrix of_network = cell_of_network + CellMatrix(mass * CellMatrix::Identity());
-  largest_diagonal_ = diagonal(lattice_.levels[0], reorder(of_network, lattice_.axes)).maxCoeff();
+  cell_ = reorder(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_.axes);
   for (const LatticeLevel& level : lattice_.levels) {
     const CellMatrix here = of_level(level) / unit;
     SmoothingLevel& l = levels_.emplace_back(level, here);
@@ -239,6 +238,16 @@ void Multigrid::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
   lattice_.to_rows(Nodal::displacements, x, x_rows);
   multiply_rows(x_rows, y_rows);
   lattice_.from_rows(Nodal::forces, y_rows, y);
+}
+
+Eigen::VectorXd Multigrid::diagonal() const {
+  const LatticeLevel& finest = lattice_.levels[0];
+  const Eigen::VectorXd rows = springproof::diagonal(finest, cell_);
+  Eigen::VectorXd d(static_cast<Eigen::Index>(3 * lattice_.point_of_node.size()));
+  for (std::size_t n = 0; n < lattice_.point_of_node.size(); ++n)
+    for (int a = 0; a < 3; ++a)
+      d[static_cast<Eigen::Index>(3 * n) + lattice_.axes[a]] = rows[a * finest.stride() + lattice_.point_of_node[n]];
+  return d;
 }
 
 void Multigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) {

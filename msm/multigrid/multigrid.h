@@ -72,7 +72,7 @@ class Multigrid {
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y);
   /// z = M^-1 r, symmetric positive definite.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
-  double largest_diagonal() const { return largest_diagonal_; }
+  Eigen::VectorXd diagonal() const;  ///< of K
 
   /// The finest level and the cycle on it, x from r, in units of the mean diagonal entry of the cell: for outer cycles
   /// with finer levels.
@@ -85,7 +85,7 @@ class Multigrid {
   void cycle(std::size_t l);
 
   LatticeLevels lattice_;
-  double largest_diagonal_ = 0;
+  CellMatrix cell_;  ///< of the finest level, in the network's displacements
   double unit_ = 1;  ///< 1 / unit of stiffness: the cycle works with entries of order one
   int degree_;
   std::vector<SmoothingLevel> levels_;

@@ -144,9 +144,8 @@ void Passage::restrict_to(const Eigen::VectorXd& r, const std::vector<char>& nod
     if (fixed[i]) r_lattice[i] = 0;
 }
 
-NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed,
-                                   const ListStiffness<double>* list)
-    : fixed_(fixed), smoother_(network_smoother(model, fixed, list)) {
+NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
+    : fixed_(fixed), smoother_(network_smoother(model, fixed)) {
   const Network& network = model.network;
   const double edge = network.cells.empty() ? auxiliary_spacings * std::cbrt(network.volume.sum() / network.nodes())
                                             : 2 * network.cell_edge;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "msm/algebra/noise.h"
+#include "msm/kernels/list_stiffness.h"
 
 namespace springproof {
 namespace {
@@ -38,13 +39,14 @@ Eigen::VectorXd rough(Eigen::Index size) {
 
 class ListSmoother : public NetworkSmoother {
  public:
-  ListSmoother(const MassSpringModel& model, const std::vector<char>& fixed, const ListStiffness<double>& K)
+  ListSmoother(const MassSpringModel& model, const std::vector<char>& fixed)
       : unit_(mean_stiffness(model.network)),
-        blocks_(K.blocks()),
-        K_(K, unit_),
+        blocks_(std::make_shared<SpringBlocks>(model.network)),
+        exact_(model, blocks_),
+        K_(exact_, unit_),
         z_(blocks_->order.size(), Padded<float>{}) {
     x_ = r_ = y_ = z_;
-    std::vector<Eigen::Matrix3d> block = K.node_blocks();
+    std::vector<Eigen::Matrix3d> block = exact_.node_blocks();
     inverse_.resize(3 * z_.size());
     for (std::size_t p = 0; p < z_.size(); ++p) {
       const Eigen::Matrix3d inverse = unit_ * inverse_block(block[p], &fixed[3 * blocks_->order[p]]);
@@ -54,6 +56,9 @@ class ListSmoother : public NetworkSmoother {
     // For springs alone k (n . du)^2 <= 2 k ((n . u_i)^2 + (n . u_j)^2).
     largest_eigenvalue_ = dispersion_of(model) ? power_margin * power_estimate() : 2;
   }
+
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const override { exact_.multiply(x, y); }
+  Eigen::VectorXd diagonal() const override { return exact_.diagonal(); }
 
   void before(const Eigen::VectorXd& b, Eigen::VectorXd& r) override {
     const double largest = b.lpNorm<Eigen::Infinity>();
@@ -126,6 +131,7 @@ class ListSmoother : public NetworkSmoother {
 
   double unit_;
   std::shared_ptr<const SpringBlocks> blocks_;
+  ListStiffness<double> exact_;
   ListStiffness<float> K_;  ///< in units of the mean spring, against overflow in single precision
   std::vector<Padded<float>> inverse_, z_, x_, r_, y_;
   double largest_eigenvalue_ = 0, scale_ = 1;
@@ -145,6 +151,9 @@ class AssembledSmoother : public NetworkSmoother {
     block_jacobi(Kv, v);
     largest_eigenvalue_ = power_margin * v.norm();
   }
+
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const override { K_.multiply(x, y); }
+  Eigen::VectorXd diagonal() const override { return K_.diagonal(); }
 
   void before(const Eigen::VectorXd& b, Eigen::VectorXd& r) override {
     x_.setZero(b.size());
@@ -187,9 +196,8 @@ class AssembledSmoother : public NetworkSmoother {
 
 }  // namespace
 
-std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed,
-                                                  const ListStiffness<double>* list) {
-  if (list) return std::make_unique<ListSmoother>(model, fixed, *list);
+std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed) {
+  if (ListStiffness<double>::covers(model)) return std::make_unique<ListSmoother>(model, fixed);
   return std::make_unique<AssembledSmoother>(model, fixed);
 }
 

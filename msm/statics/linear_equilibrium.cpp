@@ -11,7 +11,7 @@
 #include "msm/multigrid/dispersion_multigrid.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/equilibrium.h"
-#include "msm/statics/tangent_solver.h"
+#include "msm/statics/stiffness_solver.h"
 #include "problem/system/progress.h"
 #include "problem/system/run_cost.h"
 
@@ -56,18 +56,18 @@ void report(const KrylovResult& k, const std::string& name, Equilibrium& result)
 }
 
 void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
-  TangentSolver K(p.model, p.fixed, direct ? std::numeric_limits<long>::max() : 0);
-  if (!K.take(p.model.network.X)) {
+  const auto K = solver_for(p.model, p.fixed, direct ? std::numeric_limits<long>::max() : 0);
+  if (!K->take(p.model.network.X)) {
     result.message = "the stiffness is not positive definite: the model has zero-energy or unstable modes here";
-    result.solver = K.name();
+    result.solver = K->name();
     return;
   }
   Eigen::VectorXd Ku, du;
-  K.multiply(p.prescribed, Ku);
+  K->multiply(p.prescribed, Ku);
   // A factorisation is a preconditioner too: one or two steps remove its round-off.
-  report(K.solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du), K.name(), result);
+  report(K->solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du), K->name(), result);
   const Eigen::VectorXd u = p.prescribed + du;
-  K.multiply(u, Ku);
+  K->multiply(u, Ku);
   finish(p, u, Ku, result);
 }
 
