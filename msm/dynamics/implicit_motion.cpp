@@ -116,7 +116,7 @@ void ImplicitMotion::prepare(const Formula& step) {
   const long unknowns = std::count(conditions_.fixed.begin(), conditions_.fixed.end(), 0);
   if (unknowns > cholesky_limit && consists_of_cells(model_) && network.filled.empty())
     cycle_ = std::make_unique<Multigrid>(lattice_levels(network, conditions_.fixed),
-                                         step.of_stiffness * cell_stiffness(model_).total, 3, true,
+                                         step.of_stiffness * cell_stiffness(model_).total, true,
                                          a * density_ * network.cell_volume() / 8);
 }
 

@@ -10,6 +10,7 @@
 namespace springproof {
 namespace {
 
+constexpr int smoothing_degree = 3;
 constexpr int lanczos_steps = 10;
 
 void solve_coarsest(const DirectSolver& factors, SmoothingLevel& level) {
@@ -80,10 +81,8 @@ void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kern
     }
 }
 
-Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, int smoothing_degree, bool may_float,
-                     double mass)
+Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, bool may_float, double mass)
     : lattice_(std::move(levels)),
-      degree_(smoothing_degree),
       K_(lattice_.levels[0], cell_of_levels(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_)) {
   // The stiffness of a cell grows with its edge, its mass with the cube.
   const auto of_level = [&](const LatticeLevel& level) {
@@ -96,7 +95,7 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
   cell_ = reorder(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_.axes);
   for (const LatticeLevel& level : lattice_.levels) {
     const CellMatrix here = of_level(level) / unit;
-    SmoothingLevel& l = levels_.emplace_back(level, here);
+    SmoothingLevel& l = *levels_.emplace_back(std::make_unique<SmoothingLevel>(level, here));
     if (levels_.size() == lattice_.levels.size()) break;
     l.bound_eigenvalues(largest_scaled_eigenvalue(here));
     l.find_thin_parts(here);
@@ -155,7 +154,7 @@ void SmoothingLevel::bound_eigenvalues(double at_most) {
 }
 
 /// Chebyshev steps `first` ... `last`, each after the residual update of the step before.
-void SmoothingLevel::smooth(int first, int last) {
+void SmoothingLevel::chebyshev(int first, int last) {
   const long stride = K.stride();
   for (int k = first; k <= last; ++k) {
     const ChebyshevStep step(k, largest_eigenvalue);
@@ -169,7 +168,7 @@ void SmoothingLevel::smooth(int first, int last) {
 }
 
 /// r -= K z.
-void SmoothingLevel::take_residual() {
+void SmoothingLevel::residual() {
   if (complete) complete(z);
   K.pass(z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
     r.segment(a * K.stride() + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
@@ -178,39 +177,36 @@ void SmoothingLevel::take_residual() {
   K.level().clear_fixed(r);
 }
 
-void SmoothingLevel::before_coarse(int degree) {
+void SmoothingLevel::smooth(Smoothing when) {
+  if (when == Smoothing::after_coarse) {
+    if (thin) thin->correct(r.data(), z.data());
+    x += z;
+    chebyshev(1, smoothing_degree);
+    return;
+  }
   z = static_cast<float>(ChebyshevStep(1, largest_eigenvalue).step) * inverse_diagonal.cwiseProduct(r);
   x = z;
   if (complete) complete(z);
-  smooth(2, degree);
-  take_residual();
+  chebyshev(2, smoothing_degree);
   if (!thin) return;
+  residual();
   z.setZero();
   thin->correct(r.data(), z.data());
   x += z;
-  take_residual();
 }
 
-void SmoothingLevel::after_coarse(int degree) {
-  K.level().clear_fixed(z);
-  if (thin) thin->correct(r.data(), z.data());
-  x += z;
-  smooth(1, degree);
-}
-
-void Multigrid::cycle(std::size_t l) {
-  SmoothingLevel& level = levels_[l];
-  if (l + 1 == levels_.size()) {
-    solve_coarsest(coarsest_, level);
-    return;
-  }
-  SmoothingLevel& below = levels_[l + 1];
-  level.before_coarse(degree_);
+void SmoothingLevel::restrict_to(SmoothingLevel& below) {
   below.r.setZero();
-  restrict_field(below.K.level(), level.K.kernels(), level.K.stride(), level.r.data(), below.r.data());
-  cycle(l + 1);
-  prolongate_field(below.K.level(), level.K.kernels(), below.x.data(), level.K.stride(), level.z.data());
-  level.after_coarse(degree_);
+  restrict_field(below.K.level(), K.kernels(), K.stride(), r.data(), below.r.data());
+}
+
+void SmoothingLevel::prolongate(const SmoothingLevel& below) {
+  prolongate_field(below.K.level(), K.kernels(), below.x.data(), K.stride(), z.data());
+  K.level().clear_fixed(z);
+}
+
+void Multigrid::cycle() {
+  v_cycle(levels_, [&](SmoothingLevel& level) { solve_coarsest(coarsest_, level); });
 }
 
 void Multigrid::apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
@@ -219,9 +215,9 @@ void Multigrid::apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z.setZero(r.size());
     return;
   }
-  levels_[0].r = (r / scale).cast<float>();
-  cycle(0);
-  z = (scale * unit_) * levels_[0].x.cast<double>();
+  finest().r = (r / scale).cast<float>();
+  cycle();
+  z = (scale * unit_) * finest().x.cast<double>();
 }
 
 void Multigrid::multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y) {

@@ -153,7 +153,7 @@ NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vect
   passage_ = passage(network, aux);
   hold(fixed, passage_);
   lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, passage_.fixed, 900, aux.fill),
-                                         auxiliary_cell(model, edge), 3, true);
+                                         auxiliary_cell(model, edge), true);
 }
 
 void NetworkMultigrid::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {

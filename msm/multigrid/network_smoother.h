@@ -9,8 +9,8 @@
 
 namespace springproof {
 
-/// The stiffness K at rest of a model and the smoothing of a symmetric cycle for K x = b on the network; vectors of 3 n,
-/// fixed unknowns of x stay 0.
+/// The stiffness K at rest of a model and the smoothing of a symmetric cycle for K x = b on the network; vectors of 3
+/// n, fixed unknowns of x stay 0.
 class NetworkSmoother {
  public:
   virtual ~NetworkSmoother() = default;

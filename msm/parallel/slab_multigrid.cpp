@@ -7,7 +7,6 @@
 namespace springproof {
 namespace {
 
-constexpr int smoothing_degree = 3;
 constexpr long shared_unknowns = 60000;  // a lattice of so many is replicated on every process
 
 template <class Real>
@@ -108,7 +107,7 @@ SlabMultigrid::SlabMultigrid(const SlabPartition& partition, const std::vector<c
                                      (partition.cells[2] + (1 << partition.levels) - 1) >> partition.levels));
   gather_fixed(whole.levels[0]);
   add_coarser_levels(whole);
-  below_ = std::make_unique<Multigrid>(std::move(whole), cell, smoothing_degree);
+  below_ = std::make_unique<Multigrid>(std::move(whole), cell);
   counts_.resize(size_of(communicator));
   begins_.resize(size_of(communicator));
   const int own = static_cast<int>(slabs_.back().own_points()),
@@ -175,13 +174,15 @@ void SlabMultigrid::cycle(int l) {
   const bool last = l + 1 == static_cast<int>(levels_.size());
   Eigen::VectorXf &coarse_r = last ? below_r_ : levels_[l + 1].r, &coarse_x = last ? below_x_ : levels_[l + 1].x;
   const LatticeLevel& coarse = slabs_[l + 1].lattice;
-  level.before_coarse(smoothing_degree);
+  level.smooth(Smoothing::before_coarse);
+  level.residual();
   coarse_r.setZero();
   restrict_field(coarse, level.K.kernels(), level.K.stride(), level.r.data(), coarse_r.data());
   cycle(l + 1);
   if (!last) exchanges_[l + 1].complete(coarse_x.data());
   prolongate_field(coarse, level.K.kernels(), coarse_x.data(), level.K.stride(), level.z.data());
-  level.after_coarse(smoothing_degree);
+  level.K.level().clear_fixed(level.z);
+  level.smooth(Smoothing::after_coarse);
 }
 
 void SlabMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
