@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "msm/distribution/pressure_form.h"
+#include "msm/parameters/calibrate.h"
 #include "msm/parallel/partition.h"
 #include "problem/system/run_cost.h"
 

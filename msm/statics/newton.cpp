@@ -5,6 +5,7 @@
 
 #include "meshes/volume.h"
 #include "msm/statics/equilibrium.h"
+#include "msm/statics/mixed_form.h"
 #include "msm/statics/mixed_newton.h"
 #include "msm/statics/softest_motion.h"
 #include "msm/statics/stiffness_solver.h"
@@ -42,7 +43,7 @@ struct Newton {
         options(o),
         fixed(fixed_unknowns),
         K(solver_for(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit)) {
-    if (K->unknowns() > cholesky_limit && MixedNewton::suits(m))
+    if (K->unknowns() > cholesky_limit && !dispersion_of(m) && mixed_form_pays(m))
       mixed = std::make_unique<MixedNewton>(m, fixed_unknowns);
   }
 
@@ -204,8 +205,9 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.displacement = x - model.network.X;
   carry(model.network.carried, result.displacement);
   result.support = support_forces(model, x, reached);
-  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K->name(),
-                              steps, steps == 1 ? "" : "s");
+  result.solver =
+      fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K->name(), steps,
+                  steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
   result.unknowns = newton.K->unknowns();
   result.seconds = cpu_seconds() - start;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "msm/algebra/direct_solver.h"
+#include "msm/algebra/fixed.h"
 #include "msm/algebra/noise.h"
 #include "msm/kernels/list_stiffness.h"
 #include "msm/multigrid/cut_multigrid.h"
@@ -52,10 +53,7 @@ class MultigridSolver : public StiffnessSolver {
   template <class... Arguments>
   MultigridSolver(const MassSpringModel& model, const std::vector<char>& fixed, std::string name,
                   Arguments&&... of_cycle)
-      : StiffnessSolver(fixed),
-        model_(model),
-        name_(std::move(name)),
-        cycle_(std::forward<Arguments>(of_cycle)...) {}
+      : StiffnessSolver(fixed), model_(model), name_(std::move(name)), cycle_(std::forward<Arguments>(of_cycle)...) {}
 
   bool take(const NodalVectors& x) override {
     at_rest_ = x == model_.network.X;
@@ -120,7 +118,7 @@ class UnsymmetricSolver : public StiffnessSolver {
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations,
                      Eigen::VectorXd& u) const override {
     Eigen::VectorXd free = b;
-    clear_fixed(free);
+    clear_fixed(fixed(), free);
     u.setZero(b.size());
     return gmres(on_free_unknowns(), preconditioner(), free, tolerance, max_iterations, 60, u);
   }
@@ -147,15 +145,10 @@ MassSpringModel symmetric_companion(const MassSpringModel& model) {
 StiffnessSolver::StiffnessSolver(std::vector<char> fixed)
     : fixed_(std::move(fixed)), unknowns_(std::count(fixed_.begin(), fixed_.end(), 0)) {}
 
-void StiffnessSolver::clear_fixed(Eigen::VectorXd& v) const {
-  for (std::size_t i = 0; i < fixed_.size(); ++i)
-    if (fixed_[i]) v[i] = 0;
-}
-
 Operator StiffnessSolver::on_free_unknowns() const {
   return [this](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
     multiply(x, y);
-    clear_fixed(y);
+    clear_fixed(fixed_, y);
   };
 }
 
@@ -166,13 +159,13 @@ Operator StiffnessSolver::preconditioner() const {
 KrylovResult StiffnessSolver::solve(const Eigen::VectorXd& b, double tolerance, int max_iterations,
                                     Eigen::VectorXd& u) const {
   Eigen::VectorXd free = b;
-  clear_fixed(free);
+  clear_fixed(fixed_, free);
   u.setZero(b.size());
-  KrylovResult result =
-      conjugate_gradients(on_free_unknowns(), preconditioner(), free, tolerance, max_iterations, u);
+  KrylovResult result = conjugate_gradients(on_free_unknowns(), preconditioner(), free, tolerance, max_iterations, u);
   if (result.converged || result.negative_curvature) return result;
   // Near nu = 1/2 forces cancel in the product, and no solution in double precision leaves a smaller residual.
-  const double round_off = 64 * std::numeric_limits<double>::epsilon() * diagonal().cwiseProduct(u).norm() / free.norm();
+  const double round_off =
+      64 * std::numeric_limits<double>::epsilon() * diagonal().cwiseProduct(u).norm() / free.norm();
   result.converged = result.residual <= std::min(round_off, worst_residual);
   return result;
 }

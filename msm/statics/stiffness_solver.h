@@ -37,7 +37,6 @@ class StiffnessSolver {
 
  protected:
   const std::vector<char>& fixed() const { return fixed_; }
-  void clear_fixed(Eigen::VectorXd& v) const;
   Operator on_free_unknowns() const;  ///< K, with zeros on the fixed
   Operator preconditioner() const;
 

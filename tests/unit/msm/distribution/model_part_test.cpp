@@ -5,6 +5,7 @@
 
 #include "msm/distribution/model_part.h"
 #include "msm/distribution/pressure_form.h"
+#include "msm/parameters/calibrate.h"
 #include "support/zoo.h"
 
 namespace springproof::model_part_test {
