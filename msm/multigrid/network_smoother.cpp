@@ -5,6 +5,7 @@
 
 #include "msm/algebra/noise.h"
 #include "msm/kernels/list_stiffness.h"
+#include "msm/multigrid/chebyshev.h"
 
 namespace springproof {
 namespace {
@@ -12,9 +13,6 @@ namespace {
 constexpr int degree = 3;
 constexpr int power_steps = 15;
 constexpr double power_margin = 1.1;  // safety factor for unconverged power iterations
-
-double old_part(int k) { return k == 1 ? 0 : (2.0 * k - 3) / (2.0 * k + 1); }
-double new_part(int k, double largest_eigenvalue) { return (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue); }
 
 /// Inverse of a node's block, without the rows and columns of its fixed unknowns.
 Eigen::Matrix3d inverse_block(Eigen::Matrix3d block, const char* fixed) {
@@ -67,7 +65,7 @@ class ListSmoother : public NetworkSmoother {
     clear(x_);
     clear(y_);
     for (int k = 1; k <= degree; ++k) {
-      smooth(k);
+      smooth(ChebyshevStep(k, largest_eigenvalue_));
       K_.add(z_.data(), y_.data());
     }
     for (std::size_t p = 0; p < r_.size(); ++p)
@@ -82,7 +80,7 @@ class ListSmoother : public NetworkSmoother {
       for (int d = 0; d < 3; ++d) x_[p].v[d] += z_[p].v[d];
     K_.add(z_.data(), y_.data());  // in addition to K z from before()
     for (int k = 1; k <= degree; ++k) {
-      smooth(k);
+      smooth(ChebyshevStep(k, largest_eigenvalue_));
       if (k < degree) K_.add(z_.data(), y_.data());
     }
     x.resize(correction.size());
@@ -98,18 +96,16 @@ class ListSmoother : public NetworkSmoother {
 
   static void clear(std::vector<Padded<float>>& v) { std::fill(v.begin(), v.end(), Padded<float>{}); }
 
-  void smooth(int k) { smooth(old_part(k), new_part(k, largest_eigenvalue_)); }
-
-  /// r -= y, z = old z + new D^-1 r, x += z, y = 0.
-  void smooth(double old_z, double new_z) {
-    K_.kernels().smooth({static_cast<long>(z_.size()), static_cast<float>(old_z), static_cast<float>(new_z),
+  /// r -= y, z = previous z + step D^-1 r, x += z, y = 0.
+  void smooth(const ChebyshevStep& by) {
+    K_.kernels().smooth({static_cast<long>(z_.size()), static_cast<float>(by.previous), static_cast<float>(by.step),
                          inverse_.data(), y_.data(), r_.data(), z_.data(), x_.data()});
   }
 
   double power_estimate() {
     by_place(*blocks_, rough(static_cast<Eigen::Index>(3 * z_.size())).data(), 1, r_);
     clear(y_);
-    smooth(0, 1);
+    smooth(ChebyshevStep(0.0, 1.0));
     double estimate = 1;
     for (int i = 0; i < power_steps; ++i) {
       double square = 0;
@@ -120,7 +116,7 @@ class ListSmoother : public NetworkSmoother {
         for (float& value : z.v) value *= factor;
       clear(r_);
       K_.add(z_.data(), y_.data());
-      smooth(0, -1);  // z = D^-1 y
+      smooth(ChebyshevStep(0.0, -1.0));  // z = D^-1 y
       square = 0;
       for (const Padded<float>& z : z_)
         for (float value : z.v) square += value * value;
@@ -175,7 +171,8 @@ class AssembledSmoother : public NetworkSmoother {
     z_.setZero(r_.size());
     for (int k = 1; k <= degree; ++k) {
       block_jacobi(r_, Dr_);
-      z_ = old_part(k) * z_ + new_part(k, largest_eigenvalue_) * Dr_;
+      const ChebyshevStep by(k, largest_eigenvalue_);
+      z_ = by.previous * z_ + by.step * Dr_;
       x_ += z_;
       if (k == degree && !update_residual) return;
       K_.multiply(z_, Kz_);
