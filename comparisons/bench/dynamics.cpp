@@ -30,9 +30,9 @@ struct Context {
 
 void progress(const std::string& what, const std::string& size) { to_stderr("dynamics: {}, {} ...\n", what, size); }
 
-double ns_per_spring(const Motion& motion, double seconds) { return 1e9 * seconds / double(motion.springs); }
+double ns_per_spring(const TimedStep& motion, double seconds) { return 1e9 * seconds / double(motion.springs); }
 
-BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const Motion& motion,
+BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const TimedStep& motion,
                    double seconds, const std::string& baseline, double baseline_seconds, Target target) {
   const double to_ns = 1e9 / double(motion.springs);
   return {"dynamics",
@@ -58,7 +58,7 @@ void against_peers(const Context& c, const std::string& name, const std::string&
                    Target lammps_target, Target plain_target) {
   progress(name, size);
   const auto ours = fastest_motion(model);
-  const Motion plain = plain_motion(model.network);
+  const TimedStep plain = plain_motion(model.network);
   std::optional<Lammps> lammps;
   double lammps_seconds = 0;
   const double length = c.options.quick ? 0.1 : 0.5;
@@ -170,10 +170,10 @@ void cut_cells(const Context& c) {
     const std::string size = fmt::format("{} cells", model.network.cells.size());
     progress("averaged springs in cut cells", size);
     const auto ours = fastest_motion(model), fp32 = fastest_motion(model, {.precision = Precision::float32});
-    const Motion loops = motion_by_forces(model);
+    const TimedStep loops = motion_by_forces(model);
     const std::vector<double> seconds = least_seconds({ours->advance, loops.advance, fp32->advance}, c.timer);
     const double to_ns = 1e9 / double(model.network.cells.size());
-    const auto row = [&](const char* what, const Motion& motion, double own, const char* baseline, double other,
+    const auto row = [&](const char* what, const TimedStep& motion, double own, const char* baseline, double other,
                          Target target) {
       c.findings.rows.push_back({"dynamics", what, size, "ns per cell and step", to_ns * own, baseline, to_ns * other,
                                  target, usage_of(motion, own, c.machine), motion.how});
@@ -256,7 +256,7 @@ void growth(const Context& c, int small, int large) {
 void memory(const Context& c, int n) {
   const MassSpringModel model = lattice("hybmss_cf", {n, n, n}, 0.25);
   const auto ours = fastest_motion(model);
-  const Motion plain = plain_motion(model.network);
+  const TimedStep plain = plain_motion(model.network);
   c.findings.rows.push_back(
       {"dynamics",
        "memory of HybMSS-CF",

@@ -160,18 +160,18 @@ nlohmann::json move_in_slabs(const ParallelCase& c, long steps, double damping, 
     throw InputError(fmt::format("model \"{}\" has no lattice kernel", c.model.row.name));
   const Sum sum{communicator};
   const double dt = -sum.largest(-0.95 * safe_time_step(model, c.material.density));
-  LatticeMotion motion(model, c.material.density);
-  motion.set_conditions(own.conditions);
-  motion.move_supports();
+  const auto motion = lattice_motion(model, c.material.density, {.time_step = dt, .damping = damping});
+  motion->set_conditions(own.conditions);
+  motion->move_supports();
   PlaneExchange neighbours(slab, communicator);
   const double set_up = wall_seconds() - start;
   const double loop_start = wall_seconds();
   for (long n = 0; n < steps; ++n) {
-    motion.advance(1, dt, damping);
-    neighbours.complete(motion);
+    motion->advance(1);
+    neighbours.complete(*motion);
   }
   const double loop = wall_seconds() - loop_start;
-  const NodalVectors u = motion.positions() - model.network.X, v = motion.velocities();
+  const NodalVectors u = motion->positions() - model.network.X, v = motion->velocities();
   double square = 0, energy = 0;
   const Eigen::VectorXd m = masses(model.network, c.material.density);
   for (long n = slab.own_first(); n < slab.own_first() + slab.own_points(); ++n) {

@@ -58,8 +58,8 @@ fem::Request motion_request(const PreparedCase& prepared, const IsotropicMateria
   request.loads = prepared.loads;
   request.points = probe_points(e);
   request.cost = false;
-  request.motion = fem::Motion{motion.duration, motion.damping, motion.course,    motion.released,
-                               motion.velocity, motion.spin,    motion.viscosity, e.reference.energy_momentum};
+  request.motion = fem::MotionRequest{motion.duration, motion.damping, motion.course,    motion.released,
+                                      motion.velocity, motion.spin,    motion.viscosity, e.reference.energy_momentum};
   const Cells fine =
       e.reference.cells[0] > 0 ? e.reference.cells : divisible_cells(e.body.size, motion_elements, fewest_across(e));
   for (int g = 0; g < 3; ++g) {

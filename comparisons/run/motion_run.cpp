@@ -9,6 +9,9 @@
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/voxel_body.h"
 #include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/energy_momentum.h"
+#include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/mass_average.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/laws/filled_volume.h"
 #include "problem/system/progress.h"
@@ -43,7 +46,8 @@ Integrator integrator_of(const MotionChoice& motion, const MassSpringModel& mode
   const std::string why = EnergyMomentum::lacks(model);
   if (motion.integrator == "auto") {
     const double wanted = motion.time_step.value_or(motion.duration / std::max(motion.frames, 1));
-    const double ratio = LatticeMotion::suits(model, viscosity) ? worthwhile_ratio_beside_kernels : worthwhile_ratio;
+    const double ratio =
+        LatticeMotion::suits(model, {.viscosity = viscosity}) ? worthwhile_ratio_beside_kernels : worthwhile_ratio;
     return why.empty() && wanted > ratio * bound ? Integrator::energy_momentum : Integrator::explicit_euler;
   }
   if (!why.empty())

@@ -1,28 +1,29 @@
-// The arrays of LatticeMotion on a GPU.
-#pragma once
-
+// LatticeMotion on a GPU.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "msm/dynamics/lattice_arrays.h"
+#include "msm/dynamics/lattice_motion.h"
 #include "msm/gpu/gpu.h"
+#include "msm/kernels/lattice_layout.h"
+#include "msm/kernels/lattice_set_up.h"
 
 namespace springproof {
+namespace {
 
 template <class Real>
-class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
+class LatticeOnGpu : public LatticeMotion {
  public:
-  ArraysOnGpu(const MassSpringModel& model, double density)
-      : network_(model.network), edge_(network_.cell_edge), density_(density), steps_(lattice_of(model)) {
+  LatticeOnGpu(const MassSpringModel& model, double density, const MotionOptions& options)
+      : LatticeMotion(model, density, options), steps_(lattice_of(model)) {
     u_.assign(3 * std::size_t(box_.size), 0);
     v_ = u_;
     BoundaryConditions none;
     none.fixed.assign(3 * network_.nodes(), 0);
     none.prescribed = none.external = NodalVectors::Zero(network_.nodes(), 3);
-    ArraysOnGpu::set_conditions(none);
+    LatticeOnGpu::set_conditions(none);
   }
 
   void set_conditions(const BoundaryConditions& conditions) override {
@@ -81,8 +82,8 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
     steps_.write(u_, v_);
   }
 
-  ForceNorms advance(long steps, double time_step, double damping) override {
-    const Real dt = static_cast<Real>(time_step), decay = static_cast<Real>(1 / (1 + damping * time_step));
+  ForceNorms advance(long steps) override {
+    const Real dt = static_cast<Real>(time_step_), decay = static_cast<Real>(1 / (1 + damping_ * time_step_));
     LatticeSums sums = {0, 0};
     if (supports_wait_ && steps > 0) {
       sums = steps_.advance(1, dt, decay);
@@ -113,6 +114,9 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
  private:
   /// Finds the nodes' places and tells the GPU the model.
   gpu::LatticeForGpu<Real> lattice_of(const MassSpringModel& model);
+  void find_places();
+  void add_springs(std::vector<double>& kinds, int& reach) const;
+  void add_cells(const VolumeCorrection* volume, std::vector<double>& kinds) const;
 
   NodalVectors in_network_order(const std::vector<Real>& values) const {
     NodalVectors result(network_.nodes(), 3);
@@ -121,10 +125,9 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
     return result;
   }
 
-  const Network& network_;
-  double edge_, density_;
   std::array<int, 3> axis_ = {0, 1, 2};  ///< of space along x, y and z of the box: the longest first
   gpu::Box box_;
+  std::vector<int> along_;  ///< x, y and z in the box of each node
   std::vector<int> place_;  ///< of each node
   gpu::LatticeSteps<Real> steps_;
   std::vector<int> support_places_;
@@ -134,34 +137,53 @@ class LatticeMotion::ArraysOnGpu : public LatticeMotion::Arrays {
 };
 
 template <class Real>
-gpu::LatticeForGpu<Real> LatticeMotion::ArraysOnGpu<Real>::lattice_of(const MassSpringModel& model) {
-  constexpr int values = gpu::values_of_kind;
+void LatticeOnGpu<Real>::find_places() {
   const NodalVectors& X = network_.X;
   const Eigen::RowVector3d low = X.colwise().minCoeff(), extent = (X.colwise().maxCoeff() - low) / edge_;
   std::stable_sort(axis_.begin(), axis_.end(), [&](int a, int b) { return extent[a] > extent[b] + 0.5; });
-  const auto along = [&](int n, int d) {
-    return 1 + static_cast<int>(std::lround((X(n, axis_[d]) - low[axis_[d]]) / edge_));
-  };
   const auto nodes_along = [&](int d) { return 1 + static_cast<int>(std::lround(extent[axis_[d]])); };
-  gpu::LatticeForGpu<Real> l;
-  l.box = box_ = gpu::Box(nodes_along(0), nodes_along(1), nodes_along(2));
-  for (int n = 0; n < network_.nodes(); ++n) place_.push_back(box_.at(along(n, 0), along(n, 1), along(n, 2)));
+  box_ = gpu::Box(nodes_along(0), nodes_along(1), nodes_along(2));
+  for (int n = 0; n < network_.nodes(); ++n) {
+    for (int d = 0; d < 3; ++d)
+      along_.push_back(1 + static_cast<int>(std::lround((X(n, axis_[d]) - low[axis_[d]]) / edge_)));
+    place_.push_back(box_.at(along_[3 * n], along_[3 * n + 1], along_[3 * n + 2]));
+  }
+}
 
-  std::vector<double> all(std::size_t(network_.nodes()) * values, 0.0);
-  bool cells = false;
+template <class Real>
+void LatticeOnGpu<Real>::add_springs(std::vector<double>& kinds, int& reach) const {
+  for (const Spring& s : network_.springs) {
+    int c = 13, power = 1, square = 0;
+    for (int d = 0; d < 3; ++d, power *= 3) {
+      const int step = along_[3 * s.j + d] - along_[3 * s.i + d];
+      c += power * step;
+      square += step * step;
+    }
+    kinds[std::size_t(s.i) * gpu::values_of_kind + c] += s.stiffness * edge_;
+    kinds[std::size_t(s.j) * gpu::values_of_kind + (gpu::neighbours - 1 - c)] += s.stiffness * edge_;
+    reach = std::max(reach, square);
+  }
+}
+
+template <class Real>
+void LatticeOnGpu<Real>::add_cells(const VolumeCorrection* volume, std::vector<double>& kinds) const {
+  for (const Hexahedron& corners : network_.cells) {
+    const int lowest =
+        *std::min_element(corners.begin(), corners.end(), [&](int a, int b) { return place_[a] < place_[b]; });
+    double* entry = &kinds[std::size_t(lowest) * gpu::values_of_kind];
+    if (volume) entry[gpu::kappa_of_kind] = volume->kappa * edge_ * edge_;
+    entry[gpu::cell_of_kind] = 1;
+  }
+}
+
+template <class Real>
+gpu::LatticeForGpu<Real> LatticeOnGpu<Real>::lattice_of(const MassSpringModel& model) {
+  find_places();
+  gpu::LatticeForGpu<Real> l;
+  l.box = box_;
+  std::vector<double> all(std::size_t(network_.nodes()) * gpu::values_of_kind, 0.0);
   for (const ForceLaw& law : model.laws) {
-    if (std::get_if<Springs>(&law))
-      for (const Spring& s : network_.springs) {
-        int c = 13, power = 1, square = 0;
-        for (int d = 0; d < 3; ++d, power *= 3) {
-          const int step = along(s.j, d) - along(s.i, d);
-          c += power * step;
-          square += step * step;
-        }
-        all[std::size_t(s.i) * values + c] += s.stiffness * edge_;
-        all[std::size_t(s.j) * values + (gpu::neighbours - 1 - c)] += s.stiffness * edge_;
-        l.reach = std::max(l.reach, square);
-      }
+    if (std::get_if<Springs>(&law)) add_springs(all, l.reach);
     const auto* volume = std::get_if<VolumeCorrection>(&law);
     const auto* hourglass = std::get_if<HourglassCorrection>(&law);
     const auto* averaged = std::get_if<AveragedSprings>(&law);
@@ -170,22 +192,23 @@ gpu::LatticeForGpu<Real> LatticeMotion::ArraysOnGpu<Real>::lattice_of(const Mass
     if (averaged) l.averaged = lattice_constants<Real>(*averaged, edge_);
     l.volume = l.volume || volume;
     l.corrected = l.corrected || hourglass;
-    cells = cells || volume || hourglass || averaged;
-    if (!volume && !hourglass && !averaged) continue;
-    for (const Hexahedron& corners : network_.cells) {
-      const int lowest =
-          *std::min_element(corners.begin(), corners.end(), [&](int a, int b) { return place_[a] < place_[b]; });
-      double* entry = &all[std::size_t(lowest) * values];
-      if (volume) entry[gpu::kappa_of_kind] = volume->kappa * edge_ * edge_;
-      entry[gpu::cell_of_kind] = 1;
-    }
+    if (volume || hourglass || averaged) add_cells(volume, all);
   }
-  CoefficientTable table(values);
-  const std::vector<double> empty(values, 0.0);
+  CoefficientTable table(gpu::values_of_kind);
+  const std::vector<double> empty(gpu::values_of_kind, 0.0);
   l.kind.assign(box_.size, table.entry(empty.data()));
-  for (int n = 0; n < network_.nodes(); ++n) l.kind[place_[n]] = table.entry(&all[std::size_t(n) * values]);
+  for (int n = 0; n < network_.nodes(); ++n)
+    l.kind[place_[n]] = table.entry(&all[std::size_t(n) * gpu::values_of_kind]);
   l.kinds.assign(table.values().begin(), table.values().end());
   return l;
+}
+
+}  // namespace
+
+std::unique_ptr<LatticeMotion> lattice_on_gpu(const MassSpringModel& model, double density,
+                                              const MotionOptions& options) {
+  if (options.precision == Precision::float32) return std::make_unique<LatticeOnGpu<float>>(model, density, options);
+  return std::make_unique<LatticeOnGpu<double>>(model, density, options);
 }
 
 }  // namespace springproof

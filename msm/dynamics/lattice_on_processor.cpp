@@ -1,6 +1,4 @@
-// The arrays of LatticeMotion, in one of two precisions, and what moves them.
-#pragma once
-
+// LatticeMotion by the kernels of an instruction set, in one of two precisions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,30 +12,13 @@
 #include "msm/kernels/workers.h"
 
 namespace springproof {
-
-class LatticeMotion::Arrays {
- public:
-  virtual ~Arrays() = default;
-  virtual void set_conditions(const BoundaryConditions& conditions) = 0;
-  virtual void move_supports() = 0;
-  virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;
-  virtual void read(int begin, int end, double* values) const = 0;
-  virtual void write(int begin, int end, const double* values) = 0;
-  virtual ForceNorms advance(long steps, double time_step, double damping) = 0;
-  virtual NodalVectors positions() const = 0;
-  virtual NodalVectors velocities() const = 0;
-  virtual NodalVectors forces() = 0;
-  virtual double bytes_per_node() const = 0;
-  virtual std::string description() const = 0;
-};
+namespace {
 
 template <class Real>
-class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
+class LatticeOnProcessor : public LatticeMotion {
  public:
-  ArraysOf(const MassSpringModel& model, double density, const LatticeMotionOptions& options)
-      : network_(model.network),
-        edge_(model.network.cell_edge),
-        density_(density),
+  LatticeOnProcessor(const MassSpringModel& model, double density, const MotionOptions& options)
+      : LatticeMotion(model, density, options),
         theta_(options.mass_consistency),
         instructions_(options.instructions),
         kernels_(lattice_kernels<Real>(options.instructions)),
@@ -62,7 +43,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     BoundaryConditions none;
     none.fixed.assign(3 * network_.nodes(), 0);
     none.prescribed = none.external = NodalVectors::Zero(network_.nodes(), 3);
-    ArraysOf::set_conditions(none);
+    LatticeOnProcessor::set_conditions(none);
   }
 
   void set_conditions(const BoundaryConditions& conditions) override {
@@ -116,19 +97,19 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
       }
   }
 
-  ForceNorms advance(long steps, double time_step, double damping) override {
+  ForceNorms advance(long steps) override {
     ForceNorms norms;
     for (; steps > 0 && (supports_wait_ || !speeds_.empty() || theta_ > 0); --steps) {
-      norms = step_with_speeds(time_step, damping);
+      norms = step_with_speeds();
       if (supports_wait_)
         for (const Support& s : supports_)
-          if (const Real speed = (s.value - u_[s.component][s.slot]) / static_cast<Real>(time_step);
+          if (const Real speed = (s.value - u_[s.component][s.slot]) / static_cast<Real>(time_step_);
               (viscous_ || theta_ > 0) && speed != 0)
             speeds_.push_back({s.component, s.slot, speed});
-      if (theta_ > 0) average(time_step);
+      if (theta_ > 0) average();
       if (supports_wait_) move_supports();
     }
-    return steps > 0 ? run(steps, time_step, damping) : norms;
+    return steps > 0 ? run(steps) : norms;
   }
 
   NodalVectors positions() const override { return network_.X + edge_ * in_network_order(u_); }
@@ -170,7 +151,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   };
 
   /// A step in which dashpots see the speeds of supports that have just moved; these stay where they are.
-  ForceNorms step_with_speeds(double time_step, double damping) {
+  ForceNorms step_with_speeds() {
     struct Kept {
       Real *u, *v, place, speed;
     };
@@ -179,7 +160,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
       Real *u = u_[s.component] + s.slot, *v = v_[s.component] + s.slot;
       kept.push_back({u, v, *u, std::exchange(*v, s.value)});
     }
-    const ForceNorms norms = run(1, time_step, damping);
+    const ForceNorms norms = run(1);
     for (const Kept& k : kept) *k.u = k.place, *k.v = k.speed;
     return norms;
   }
@@ -191,7 +172,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   }
 
   /// Moves the nodes by what averaged momenta add to a step; supports, whose velocities have part in it, stay.
-  void average(double time_step) {
+  void average() {
     std::vector<Real> places, speeds;
     for (const Support& s : supports_) {
       places.push_back(u_[s.component][s.slot]);
@@ -202,7 +183,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     workers_.run([&](int worker) {
       const LatticeSlab<Real>& slab = slabs_[0][worker];
       kernels_.average(
-          all, {layout_.nodes[0], static_cast<Real>(theta_ * time_step), work_.data() + worker * work_of_slab()},
+          all, {layout_.nodes[0], static_cast<Real>(theta_ * time_step_), work_.data() + worker * work_of_slab()},
           slab.begin, slab.end);
     });
     for (std::size_t i = 0; i < supports_.size(); ++i) {
@@ -279,9 +260,9 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
             {begin[s], begin[s + 1], slabs == 1 ? p : p + parity * ring, s == 0 ? nullptr : p + 2 * ring});
   }
 
-  ForceNorms run(long steps, double time_step, double damping) {
+  ForceNorms run(long steps) {
     const LatticeStep<Real> step = {
-        LatticeFinish::move, static_cast<Real>(time_step), static_cast<Real>(1 / (1 + damping * time_step)), {}};
+        LatticeFinish::move, static_cast<Real>(time_step_), static_cast<Real>(1 / (1 + damping_ * time_step_)), {}};
     LatticeStep<Real> last = step;
     last.finish = LatticeFinish::move_and_measure;
     return run(steps, step, last);
@@ -290,33 +271,33 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   /// `viscous`: with dashpots, if there are any.
   LatticeView<Real> view(bool viscous) const {
     const bool own_outflow = !layout_.outflow_entry.empty();
-    return {{u_[0], u_[1], u_[2]},
-            {v_[0], v_[1], v_[2]},
-            layout_.row,
-            layout_.plane,
-            layout_.nodes[1],
-            layout_.nodes[2],
-            layout_.row_blocks,
-            layout_.first_run.data(),
-            layout_.runs.data(),
-            layout_.spring_entry.data(),
-            springs_.data(),
-            node_entry_.data(),
-            nodes_.data(),
-            bounded_,
-            hourglass_,
-            corrected_,
-            averaged_,
-            viscous,
-            dashpots_,
-            J_.data(),
-            layout_.inflow_entry.data(),
-            inflow_.data(),
-            (own_outflow ? layout_.outflow_entry : layout_.inflow_entry).data(),
-            (own_outflow ? outflow_ : inflow_).data(),
-            static_cast<Real>(layout_.outflow_sign),
-            inverse_lengths_.data(),
-            inflow_ahead_ + 1};
+    return {.u = {u_[0], u_[1], u_[2]},
+            .v = {v_[0], v_[1], v_[2]},
+            .row = layout_.row,
+            .plane = layout_.plane,
+            .rows = layout_.nodes[1],
+            .planes = layout_.nodes[2],
+            .row_blocks = layout_.row_blocks,
+            .first_run = layout_.first_run.data(),
+            .runs = layout_.runs.data(),
+            .spring_entry = layout_.spring_entry.data(),
+            .springs = springs_.data(),
+            .node_entry = node_entry_.data(),
+            .nodes = nodes_.data(),
+            .bounded = bounded_,
+            .hourglass = hourglass_,
+            .corrected = corrected_,
+            .averaged = averaged_,
+            .viscous = viscous,
+            .dashpots = dashpots_,
+            .J = J_.data(),
+            .inflow_entry = layout_.inflow_entry.data(),
+            .inflow = inflow_.data(),
+            .outflow_entry = (own_outflow ? layout_.outflow_entry : layout_.inflow_entry).data(),
+            .outflow = (own_outflow ? outflow_ : inflow_).data(),
+            .outflow_sign = static_cast<Real>(layout_.outflow_sign),
+            .inverse_lengths = inverse_lengths_.data(),
+            .kept_planes = inflow_ahead_ + 1};
   }
 
   ForceNorms run(long steps, const LatticeStep<Real>& step, const LatticeStep<Real>& last) {
@@ -373,8 +354,7 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
     return result;
   }
 
-  const Network& network_;
-  double edge_, density_, theta_;
+  double theta_;
   InstructionSet instructions_;
   LatticeKernels<Real> kernels_;
   LatticeLayout layout_;
@@ -394,5 +374,14 @@ class LatticeMotion::ArraysOf : public LatticeMotion::Arrays {
   std::vector<Progress> progress_;
   long steps_done_ = 0;
 };
+
+}  // namespace
+
+std::unique_ptr<LatticeMotion> lattice_on_processor(const MassSpringModel& model, double density,
+                                                    const MotionOptions& options) {
+  if (options.precision == Precision::float32)
+    return std::make_unique<LatticeOnProcessor<float>>(model, density, options);
+  return std::make_unique<LatticeOnProcessor<double>>(model, density, options);
+}
 
 }  // namespace springproof
