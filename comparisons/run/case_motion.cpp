@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "comparisons/results/picture.h"
+#include "comparisons/run/motion_measured.h"
 #include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 

@@ -57,7 +57,7 @@ SolvedModel solve_network(const PreparedCase& prepared, const Lattice& lattice, 
   const double ready = cpu_seconds();
   LinearOptions options;
   if (e.cost) options.tolerance = compared_residual;
-  s.state = in_motion                          ? run_motion(prepared, lattice, s.built, material, path, s.motion)
+  s.state = in_motion                          ? run_motion({prepared, lattice, s.built, material}, path, s.motion)
             : kinematics == Kinematics::linear ? solve_linear(s.built.model, s.conditions, options)
                                                : solve_finite(s.built.model, path, {.softest_motion = !e.cost});
   s.times = {ready - start, cpu_seconds() - ready};

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "comparisons/run/motion_run.h"
+#include "comparisons/run/motion_measured.h"
 #include "comparisons/run/reference_grids.h"
 #include "comparisons/run/sampling.h"
 #include "comparisons/run/solve_each.h"

@@ -9,65 +9,11 @@
 #include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
+#include "msm/dynamics/mass_average.h"
 #include "msm/dynamics/plain_motion.h"
-#include "msm/dynamics/time_step.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
-namespace {
-
-constexpr double implicit_ratio = 10;  // default step of implicit methods to the explicit bound
-
-void check_mass(const MassSpringModel& model, const MotionOptions& options) {
-  const double theta = options.mass_consistency;
-  if (!(theta >= 0 && theta <= 1))
-    throw InputError(fmt::format("mass_consistency: {:g} is no share of consistent mass (allowed: 0 to 1)", theta));
-  if (theta == 0) return;
-  if (options.integrator != Integrator::explicit_euler)
-    throw InputError("mass_consistency: large steps have lumped mass (allowed beside it: integrator = \"explicit\")");
-  if (options.contact)
-    throw InputError("mass_consistency: impulses of a plane need lumped mass (allowed beside it: no plane)");
-  if (options.lagged) throw InputError("mass_consistency: lagged dispersion needs lumped mass");
-  if (const std::string why = MassAverage::lacks(model.network); !why.empty())
-    throw InputError("mass_consistency: a share of consistent mass does not suit this model: " + why);
-}
-
-}  // namespace
-
-double checked_time_step(const MassSpringModel& model, double density, const MotionOptions& options) {
-  check_mass(model, options);
-  const double safe = safe_time_step(model, density, options.lagged, options.mass_consistency),
-               bound = viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
-  const bool implicit = options.integrator != Integrator::explicit_euler;
-  const double dt = options.time_step.value_or(implicit ? implicit_ratio * safe : 0.95 * bound);
-  if (!(dt > 0) || (dt > bound && !implicit))
-    throw InputError(
-        fmt::format("time_step_s: {:.6g} s is not safe for this model (allowed: 0 < time_step_s <= {:.6g} s, the bound "
-                    "of its springs and cells)",
-                    dt, bound));
-  if (options.integrator == Integrator::energy_momentum)
-    if (const std::string why = EnergyMomentum::lacks(model); !why.empty())
-      throw InputError("integrator: energy_momentum does not suit this model: " + why);
-  if (const MomentumDispersion* dispersion = dispersion_of(model);
-      options.lagged && dispersion && dispersion->form == Dispersion::finite_strain)
-    throw InputError("lagged dispersion is not of finite strain (allowed: dispersion = \"symmetric\")");
-  if (implicit && options.lagged) throw InputError("integrator: lagged dispersion needs the explicit one");
-  if (implicit && options.contact && options.contact->plane().friction > 0)
-    throw InputError("integrator: large steps have a plane without friction (allowed: friction = 0, or explicit)");
-  if (implicit && options.contact && (!options.contact->of_nodes() || !model.network.carried.empty()))
-    throw InputError(
-        "integrator: large steps have contact of nodes, not of the surface of cut cells (allowed: cut = false, or "
-        "explicit)");
-  if (const std::string why = options.viscosity.acts() ? Viscosity::lacks(model) : ""; !why.empty())
-    throw InputError("viscosity does not suit this model: " + why);
-  if (!(options.damping >= 0)) throw InputError("damping_1_s: must be >= 0");
-  const double least = options.lagged ? lagged_damping(model, density, dt) : 0;
-  if (least > 0 && !(options.damping > least))
-    throw InputError(
-        fmt::format("damping_1_s: {:.6g} 1/s lets lagged dispersion grow (allowed: > {:.6g} 1/s at a step of {:.6g} s)",
-                    options.damping, least, dt));
-  return dt;
-}
 
 std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density, const MotionOptions& options) {
   if (options.integrator != Integrator::explicit_euler)
@@ -75,10 +21,6 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
   if (LatticeMotion::suits(model, options)) return lattice_motion(model, density, on_chosen_device(model, options));
   if (std::unique_ptr<Motion> by_lists = list_motion(model, density, options)) return by_lists;
   return std::make_unique<PlainMotion>(model, density, options);
-}
-
-double lagged_damping(const MassSpringModel& model, double density, double time_step) {
-  return time_step * dispersion_frequency_squared(model, density);
 }
 
 NodalVectors velocity_before(const MassSpringModel& model, double density, const NodalVectors& x,

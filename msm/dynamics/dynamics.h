@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "msm/dynamics/checked_step.h"
 #include "msm/dynamics/motion.h"
 #include "msm/dynamics/plane_contact.h"
 #include "msm/statics/equilibrium.h"
@@ -13,10 +14,10 @@ namespace springproof {
 
 /// How to move a model in time.
 struct DynamicsOptions : MotionOptions {
-  NodalVectors start;         ///< positions at t = 0 [m]; empty: X
-  NodalVectors velocity;      ///< at t = 0 [m/s], for which the first explicit step is of second order too; empty: that
-                              ///< step starts from rest, as published
-  Course course;              ///< of the loads and supports
+  NodalVectors start = {};     ///< positions at t = 0 [m]; empty: X
+  NodalVectors velocity = {};  ///< at t = 0 [m/s], for which the first explicit step is of second order too; empty:
+                               ///< that step starts from rest, as published
+  Course course = {};         ///< of the loads and supports
   double duration = 10;       ///< [s]
   double rest_tolerance = 0;  ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
   /// Called after every `stride` steps and after the last, with the time, the positions [m], the velocity of the step
@@ -34,15 +35,6 @@ struct DynamicsResult {
   long steps = 0;             ///< made
   double kinetic_energy = 0;  ///< [J]
 };
-
-/// The time step of a motion: MotionOptions::time_step, or 0.95 of viscous_time_step(), of large steps 10 of
-/// safe_time_step().
-/// @param model a model
-/// @param density [kg/m^3]
-/// @param options integrator and step
-/// @return the step [s]
-/// @throws InputError as run_dynamics().
-double checked_time_step(const MassSpringModel& model, double density, const MotionOptions& options);
 
 /// In the fastest way that there is for the model: large steps, kernels (LatticeMotion, ListMotion), else plain loops.
 /// @param model a model, to which a reference is kept
@@ -62,17 +54,6 @@ std::unique_ptr<Motion> make_motion(const MassSpringModel& model, double density
 NodalVectors velocity_before(const MassSpringModel& model, double density, const NodalVectors& x,
                              const BoundaryConditions& bc, const DynamicsOptions& options);
 
-/// Smallest damping [1/s] with which lagged dispersion is stable: step * omega*^2, omega* a bound on what dispersion
-/// adds (dispersion_frequency_squared()).  For a mode of frequencies omega_s (springs) and omega* the step has the
-/// characteristic equation (1 + c dt) z^2 - (2 + c dt - dt^2 omega_s^2) z + (1 + dt^2 omega*^2) = 0, and the product of
-/// its roots is below 1 only if c > dt omega*^2; for matrices the same holds with Rayleigh quotients, hence for every
-/// motion.  0 for a negative dispersed fraction, which the lag itself damps.  Non-conservative forms may need more.
-/// @param model a model
-/// @param density [kg/m^3]
-/// @param time_step [s]
-/// @return damping [1/s]; 0 without momentum dispersion
-double lagged_damping(const MassSpringModel& model, double density, double time_step);
-
 /// Integrates v += dt (f/m - damping v), x += dt v (the damping implicit) with prescribed unknowns on their path, or by
 /// an implicit method (ImplicitMotion).
 /// Models that have a kernel (make_motion()) use it.  Rest is checked every few steps.
@@ -81,9 +62,7 @@ double lagged_damping(const MassSpringModel& model, double density, double time_
 /// @param load_path conditions at a fraction of the loads, which DynamicsOptions::course gives in time
 /// @param options integrator, step, duration, what is called after steps
 /// @return the last state
-/// @throws InputError if the explicit time step exceeds safe_time_step() or viscous_time_step(), if the integrator or
-///   viscosity or a share of consistent mass does not suit the model or other options, if the damping is negative, or,
-///   lagged, not above lagged_damping(); the bound is in the message.
+/// @throws MotionOptionError as checked_time_step().
 DynamicsResult run_dynamics(const MassSpringModel& model, double density, const LoadPath& load_path,
                             const DynamicsOptions& options);
 
