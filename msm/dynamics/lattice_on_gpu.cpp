@@ -7,8 +7,8 @@
 
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/gpu/gpu.h"
+#include "msm/kernels/lattice_constants.h"
 #include "msm/kernels/lattice_layout.h"
-#include "msm/kernels/lattice_set_up.h"
 
 namespace springproof {
 namespace {

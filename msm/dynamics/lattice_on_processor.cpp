@@ -7,8 +7,9 @@
 
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/kernels/aligned_array.h"
+#include "msm/kernels/kernels.h"
+#include "msm/kernels/lattice_constants.h"
 #include "msm/kernels/lattice_layout.h"
-#include "msm/kernels/lattice_set_up.h"
 #include "msm/kernels/workers.h"
 
 namespace springproof {
@@ -21,7 +22,7 @@ class LatticeOnProcessor : public LatticeMotion {
       : LatticeMotion(model, density, options),
         theta_(options.mass_consistency),
         instructions_(options.instructions),
-        kernels_(lattice_kernels<Real>(options.instructions)),
+        kernels_(kernels_of<Real>(options.instructions).lattice),
         layout_(lattice_layout(model, kernels_.lanes, sizeof(Real), options.viscosity.acts())),
         workers_(dispersion_of(model) ? 1 : std::clamp(options.threads, 1, layout_.nodes[2])),
         progress_(workers_.count()) {

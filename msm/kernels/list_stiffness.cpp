@@ -44,7 +44,7 @@ template <class Real>
 ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
                                    InstructionSet set)
     : set_(set),
-      kernels_(&list_kernels<Real>(set)),
+      kernels_(&kernels_of<Real>(set).list),
       blocks_(std::move(blocks)),
       m_(blocks_->entries(), Padded<Real>{}) {
   if (!covers(model)) throw std::invalid_argument("list stiffness is of springs and momentum dispersion only");
@@ -69,7 +69,7 @@ template <class Real>
 template <class Other>
 ListStiffness<Real>::ListStiffness(const ListStiffness<Other>& other, double unit)
     : set_(other.set_),
-      kernels_(&list_kernels<Real>(set_)),
+      kernels_(&kernels_of<Real>(set_).list),
       blocks_(other.blocks_),
       m_(other.m_.size()),
       kept_(other.kept_.size()) {

@@ -18,7 +18,7 @@ enum class Reach {
 struct LawTraits {
   const char* name;              ///< "momentum dispersion"
   Reach reach;                   ///< which nodes the force at a node depends on
-  bool lattice_kernels = false;  ///< implemented in msm/kernels/lattice_kernel.h; otherwise the plain loops are used
+  bool lattice_kernels = false;  ///< implemented in msm/kernels/lattice_kernels.h; otherwise the plain loops are used
   bool list_kernels = false;     ///< implemented in msm/kernels/list_kernels.h; otherwise the plain loops are used
 };
 

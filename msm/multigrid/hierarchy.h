@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "msm/kernels/cell_kernels.h"
+#include "msm/kernels/kernels.h"
 #include "msm/topology/network.h"
 
 namespace springproof {

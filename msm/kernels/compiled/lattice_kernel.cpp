@@ -1,9 +1,9 @@
 // One time step of a lattice: forces row by row, each row moved as soon as its forces are complete.
-#include "msm/kernels/compiled_with.h"
-#include "msm/kernels/lattice_averaged.h"
-#include "msm/kernels/lattice_hourglass.h"
-#include "msm/kernels/lattice_rows.h"
-#include "msm/kernels/lattice_volume.h"
+#include "msm/kernels/compiled/all_kernels.h"
+#include "msm/kernels/compiled/lattice_averaged.h"
+#include "msm/kernels/compiled/lattice_hourglass.h"
+#include "msm/kernels/compiled/lattice_rows.h"
+#include "msm/kernels/compiled/lattice_volume.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
@@ -286,26 +286,18 @@ void finish_first(const LatticeView<Real>& l, const LatticeSlab<Real>& slab, con
   }
 }
 
-template <class Real>
-void get(LatticeKernels<Real>& k) {
-  k.lanes = lanes<Real>;
-  k.inflow = inflow<Real>;
-  k.sweep = sweep<Real>;
-  k.finish_first = finish_first<Real>;
-  k.average = average<Real>;
-}
-
 }  // namespace
 
-#if defined(__AVX512F__)
-extern const CompiledWith compiled_with = {true, true};
-#elif defined(__AVX2__)
-extern const CompiledWith compiled_with = {true, false};
-#else
-extern const CompiledWith compiled_with = {false, false};
-#endif
+template <class Real>
+LatticeKernels<Real> lattice_kernels() {
+  return {.lanes = lanes<Real>,
+          .inflow = inflow<Real>,
+          .sweep = sweep<Real>,
+          .finish_first = finish_first<Real>,
+          .average = average<Real>};
+}
 
-void get_lattice_kernels(LatticeKernels<float>& k) { get(k); }
-void get_lattice_kernels(LatticeKernels<double>& k) { get(k); }
+template LatticeKernels<double> lattice_kernels();
+template LatticeKernels<float> lattice_kernels();
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

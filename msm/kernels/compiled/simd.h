@@ -25,7 +25,7 @@ struct Builtin {
 
 #ifdef SPRINGPROOF_VECTOR_BYTES
 namespace stdx {
-#include "msm/kernels/simd_of_vectors.h"
+#include "msm/kernels/compiled/simd_of_vectors.h"
 }
 #else
 namespace stdx = std::experimental;

@@ -1,32 +1,9 @@
-// Kernels of an instruction set, and the constants of laws in their units.
+// The constants of laws in the units of the lattice kernels.
 #pragma once
 
-#include <algorithm>
-#include <stdexcept>
-
-#include "msm/kernels/instruction_set.h"
 #include "msm/kernels/lattice_layout.h"
 
 namespace springproof {
-
-/// Those of one instruction set.
-/// @throws std::invalid_argument for a set that is not usable here.
-template <class Real>
-LatticeKernels<Real> lattice_kernels(InstructionSet set) {
-  const auto& usable = usable_instruction_sets();
-  if (std::find(usable.begin(), usable.end(), set) == usable.end())
-    throw std::invalid_argument("instruction set " + name_of(set) + " cannot be used here");
-  LatticeKernels<Real> kernels;
-#ifdef SPRINGPROOF_X86_KERNELS
-  if (set == InstructionSet::avx512)
-    avx512::get_lattice_kernels(kernels);
-  else if (set == InstructionSet::avx2)
-    avx2::get_lattice_kernels(kernels);
-  else
-#endif
-    portable::get_lattice_kernels(kernels);
-  return kernels;
-}
 
 /// Of a hourglass correction in cells of this edge [m].
 template <class Real>

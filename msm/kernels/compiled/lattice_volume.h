@@ -1,8 +1,8 @@
 // Volume correction of a row of cells.  For the lattice kernels only.
 #pragma once
 
-#include "msm/kernels/cell_pressure.h"
-#include "msm/kernels/lattice_rows.h"
+#include "msm/kernels/compiled/cell_pressure.h"
+#include "msm/kernels/compiled/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 

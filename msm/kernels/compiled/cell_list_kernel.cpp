@@ -1,9 +1,9 @@
 // Averaged springs of a list of cells.  The signed sums of the corners' displacements give F, whatever part of a cell
 // is filled, by four products per entry: mean_gradients() has the same signs.
-#include "msm/kernels/cell_list_kernels.h"
+#include "msm/kernels/compiled/all_kernels.h"
 
-#include "msm/kernels/averaged_cells.h"
-#include "msm/kernels/padded_nodes.h"
+#include "msm/kernels/compiled/averaged_cells.h"
+#include "msm/kernels/compiled/padded_nodes.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
@@ -193,12 +193,14 @@ void forces(const CellList<Real>& list, const Padded<Real>* u, Padded<Real>* f) 
   forces_of_curve<false>(list, u, static_cast<const Padded<Real>*>(nullptr), f);
 }
 
-template <class Real>
-constexpr CellListKernels<Real> kernels = {cells<Real>, forces<Real>, forces_of_curve<true, Real>};
-
 }  // namespace
 
-extern const CellListKernels<double> cell_list_double = kernels<double>;
-extern const CellListKernels<float> cell_list_float = kernels<float>;
+template <class Real>
+CellListKernels<Real> cell_list_kernels() {
+  return {.cells = cells<Real>, .forces = forces<Real>, .viscous_forces = forces_of_curve<true, Real>};
+}
+
+template CellListKernels<double> cell_list_kernels();
+template CellListKernels<float> cell_list_kernels();
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

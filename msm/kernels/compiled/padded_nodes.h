@@ -1,8 +1,8 @@
 // Vectors of nodes, four numbers each, and of groups of them.  For the list kernels only.
 #pragma once
 
+#include "msm/kernels/compiled/simd_math.h"
 #include "msm/kernels/list_kernels.h"
-#include "msm/kernels/simd_math.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 

@@ -1,8 +1,8 @@
 // Averaged springs of a row of cells.  For the lattice kernels only.
 #pragma once
 
-#include "msm/kernels/averaged_cells.h"
-#include "msm/kernels/lattice_rows.h"
+#include "msm/kernels/compiled/averaged_cells.h"
+#include "msm/kernels/compiled/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 

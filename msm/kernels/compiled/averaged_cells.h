@@ -2,8 +2,8 @@
 // and those of lists of cells share.
 #pragma once
 
-#include "msm/kernels/lattice_kernel.h"
-#include "msm/kernels/simd_math.h"
+#include "msm/kernels/compiled/simd_math.h"
+#include "msm/kernels/lattice_kernels.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 

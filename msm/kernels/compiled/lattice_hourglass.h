@@ -1,7 +1,7 @@
 // Hourglass correction of a row of cells.  For the lattice kernels only.
 #pragma once
 
-#include "msm/kernels/lattice_rows.h"
+#include "msm/kernels/compiled/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #ifdef SPRINGPROOF_ONE_LANE
-#include "msm/kernels/one_lane.h"
+#include "msm/kernels/compiled/one_lane.h"
 #else
 
-#include "msm/kernels/simd.h"
+#include "msm/kernels/compiled/simd.h"
 
 /// Forces inlining: the compiler considers the larger of a kernel's small functions too large for it.
 #define SPRINGPROOF_INLINE inline __attribute__((always_inline))

@@ -1,6 +1,6 @@
 // The average over the cells that a share of consistent mass takes (msm/dynamics/mass_average.h), on a box of full
 // cells.
-#include "msm/kernels/lattice_rows.h"
+#include "msm/kernels/compiled/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {

@@ -1,8 +1,8 @@
 // Rows and blocks of a lattice and the accumulation of forces on them.  For the lattice kernels only.
 #pragma once
 
-#include "msm/kernels/lattice_kernel.h"
-#include "msm/kernels/simd_math.h"
+#include "msm/kernels/compiled/simd_math.h"
+#include "msm/kernels/lattice_kernels.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 

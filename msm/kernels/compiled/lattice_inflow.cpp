@@ -1,5 +1,5 @@
 // First half of momentum dispersion on a lattice: the inflow J of each node.
-#include "msm/kernels/lattice_rows.h"
+#include "msm/kernels/compiled/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {

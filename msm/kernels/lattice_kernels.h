@@ -127,17 +127,4 @@ struct LatticeKernels {
   void (*average)(const LatticeView<Real>&, const LatticeAverage<Real>&, int begin, int end);
 };
 
-namespace portable {
-void get_lattice_kernels(LatticeKernels<float>&);
-void get_lattice_kernels(LatticeKernels<double>&);
-}  // namespace portable
-namespace avx2 {
-void get_lattice_kernels(LatticeKernels<float>&);
-void get_lattice_kernels(LatticeKernels<double>&);
-}  // namespace avx2
-namespace avx512 {
-void get_lattice_kernels(LatticeKernels<float>&);
-void get_lattice_kernels(LatticeKernels<double>&);
-}  // namespace avx512
-
 }  // namespace springproof

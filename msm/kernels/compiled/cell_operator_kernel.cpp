@@ -1,5 +1,5 @@
-#include "msm/kernels/cell_kernels.h"
-#include "msm/kernels/simd.h"
+#include "msm/kernels/compiled/all_kernels.h"
+#include "msm/kernels/compiled/simd.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
@@ -340,14 +340,22 @@ void prolongate_row(int fine_points, bool odd, Real weight, const Real* const* c
   if (f + 2 * pairs < fine_points) fine[f + 2 * pairs] = at[pairs];
 }
 
-template <class Real>
-constexpr CellKernels<Real> all = {cells<Real>,      divergence_of<Real>, gradient_of<Real>,
-                                   inflow<Real>,     outflow<Real>,       chebyshev<Real>,
-                                   schur_step<Real>, restrict_row<Real>,  prolongate_row<Real>};
-
 }  // namespace
 
-extern const CellKernels<float> cell_kernels_float = all<float>;
-extern const CellKernels<double> cell_kernels_double = all<double>;
+template <class Real>
+CellKernels<Real> cell_kernels() {
+  return {.cells = cells<Real>,
+          .divergence = divergence_of<Real>,
+          .gradient = gradient_of<Real>,
+          .inflow = inflow<Real>,
+          .outflow = outflow<Real>,
+          .chebyshev = chebyshev<Real>,
+          .schur_step = schur_step<Real>,
+          .restrict_row = restrict_row<Real>,
+          .prolongate_row = prolongate_row<Real>};
+}
+
+template CellKernels<double> cell_kernels();
+template CellKernels<float> cell_kernels();
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

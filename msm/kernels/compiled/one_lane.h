@@ -1,4 +1,4 @@
-// Vectors of one number, in place of msm/kernels/simd.h and simd_math.h: for GPUs, where a thread is a lane.
+// Vectors of one number, in place of msm/kernels/compiled/simd.h and simd_math.h: for GPUs, where a thread is a lane.
 #pragma once
 
 #include <cmath>

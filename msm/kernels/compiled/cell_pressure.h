@@ -1,7 +1,7 @@
 // Pressure of the volume correction of a vector of cells.
 #pragma once
 
-#include "msm/kernels/simd_math.h"
+#include "msm/kernels/compiled/simd_math.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 

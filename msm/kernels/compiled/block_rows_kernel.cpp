@@ -1,7 +1,7 @@
 // Products and Gauss-Seidel sweeps of sparse matrices of 3x3 blocks: a block's rows, and the vector of its column, are
 // read as vectors of four values, of which the last does not count.
-#include "msm/kernels/block_rows.h"
-#include "msm/kernels/simd.h"
+#include "msm/kernels/compiled/all_kernels.h"
+#include "msm/kernels/compiled/simd.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
@@ -94,7 +94,12 @@ void relax(const BlockRows<Real>& A, const Real* D, bool ascending, const Real* 
 
 }  // namespace
 
-extern const BlockRowKernels<float> block_row_kernels_float = {multiply<float>, residual<float>, relax<float>};
-extern const BlockRowKernels<double> block_row_kernels_double = {multiply<double>, residual<double>, relax<double>};
+template <class Real>
+BlockRowKernels<Real> block_row_kernels() {
+  return {.multiply = multiply<Real>, .residual = residual<Real>, .relax = relax<Real>};
+}
+
+template BlockRowKernels<double> block_row_kernels();
+template BlockRowKernels<float> block_row_kernels();
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

@@ -1,8 +1,8 @@
 // Springs in blocks of four from one node.  Four differences of padded vectors give four squared lengths by shuffles,
 // their roots are computed in full registers, and each tension multiplies its own difference again: no transposes, and
 // whole nodes are loaded and stored, so that two lanes may share a node.
-#include "msm/kernels/list_kernels.h"
-#include "msm/kernels/padded_nodes.h"
+#include "msm/kernels/compiled/all_kernels.h"
+#include "msm/kernels/compiled/padded_nodes.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {
@@ -211,14 +211,22 @@ void smooth(const ListSmoothing<Real>& s) {
   }
 }
 
-template <class Real>
-constexpr ListKernels<Real> kernels = {spring_forces<Real>, inflow<Real>,        dispersed_forces<Real>,
-                                       step<Real>,          average<Real>,       stiffness<Real>,
-                                       linear_inflow<Real>, linear_forces<Real>, smooth<Real>};
-
 }  // namespace
 
-extern const ListKernels<double> list_double = kernels<double>;
-extern const ListKernels<float> list_float = kernels<float>;
+template <class Real>
+ListKernels<Real> list_kernels() {
+  return {.spring_forces = spring_forces<Real>,
+          .inflow = inflow<Real>,
+          .dispersed_forces = dispersed_forces<Real>,
+          .step = step<Real>,
+          .average = average<Real>,
+          .stiffness = stiffness<Real>,
+          .linear_inflow = linear_inflow<Real>,
+          .linear_forces = linear_forces<Real>,
+          .smooth = smooth<Real>};
+}
+
+template ListKernels<double> list_kernels();
+template ListKernels<float> list_kernels();
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE
