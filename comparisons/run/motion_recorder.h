@@ -8,7 +8,7 @@
 #include "comparisons/results/records.h"
 #include "comparisons/run/prepared_case.h"
 #include "msm/dynamics/dynamics.h"
-#include "msm/dynamics/mass_average.h"
+#include "msm/dynamics/terms/mass_average.h"
 #include "msm/models.h"
 
 namespace springproof {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "msm/dynamics/checked_step.h"
-#include "msm/dynamics/energy_momentum.h"
+#include "msm/dynamics/terms/energy_momentum.h"
 #include "msm/dynamics/lattice_motion.h"
 
 namespace springproof {

@@ -9,8 +9,8 @@
 #include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
-#include "msm/dynamics/mass_average.h"
 #include "msm/dynamics/plain_motion.h"
+#include "msm/dynamics/terms/mass_average.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {

@@ -6,7 +6,7 @@
 
 #include "msm/dynamics/checked_step.h"
 #include "msm/dynamics/motion.h"
-#include "msm/dynamics/plane_contact.h"
+#include "msm/dynamics/terms/plane_contact.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/course.h"
 
@@ -17,9 +17,9 @@ struct DynamicsOptions : MotionOptions {
   NodalVectors start = {};     ///< positions at t = 0 [m]; empty: X
   NodalVectors velocity = {};  ///< at t = 0 [m/s], for which the first explicit step is of second order too; empty:
                                ///< that step starts from rest, as published
-  Course course = {};         ///< of the loads and supports
-  double duration = 10;       ///< [s]
-  double rest_tolerance = 0;  ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
+  Course course = {};          ///< of the loads and supports
+  double duration = 10;        ///< [s]
+  double rest_tolerance = 0;   ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
   /// Called after every `stride` steps and after the last, with the time, the positions [m], the velocity of the step
   /// [m/s] and the boundary conditions then.
   std::function<void(double time, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& conditions)>

@@ -7,10 +7,10 @@
 
 #include "msm/algebra/direct_solver.h"
 #include "msm/algebra/krylov.h"
-#include "msm/dynamics/energy_momentum.h"
 #include "msm/dynamics/motion.h"
-#include "msm/dynamics/plane_constraint.h"
-#include "msm/dynamics/plane_contact.h"
+#include "msm/dynamics/terms/energy_momentum.h"
+#include "msm/dynamics/terms/plane_constraint.h"
+#include "msm/dynamics/terms/plane_contact.h"
 #include "msm/multigrid/multigrid.h"
 
 namespace springproof {

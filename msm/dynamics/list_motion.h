@@ -1,8 +1,8 @@
 // Explicit dynamics by the list kernels: networks without a lattice, and cells that the body may fill in part.
 #pragma once
 
-#include "msm/dynamics/mass_average.h"
 #include "msm/dynamics/motion.h"
+#include "msm/dynamics/terms/mass_average.h"
 #include "msm/dynamics/wavefront.h"
 #include "msm/kernels/block_forces.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "msm/dynamics/viscosity.h"
+#include "msm/dynamics/terms/viscosity.h"
 #include "msm/embedding/boundary.h"
 #include "msm/kernels/instruction_set.h"
 

@@ -9,6 +9,7 @@
 
 #include "msm/algebra/lobpcg.h"
 #include "msm/algebra/noise.h"
+#include "msm/dynamics/terms/mass_average.h"
 #include "msm/embedding/boundary.h"
 #include "msm/embedding/rigid_motions.h"
 #include "msm/statics/tangent_solver.h"
@@ -103,22 +104,6 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
 }
 
 }  // namespace
-
-Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
-  Eigen::Matrix<double, 8, 8> C = Eigen::Matrix<double, 8, 8>::Zero();
-  for (int q = 0; q < 8; ++q) {
-    Eigen::Matrix<double, 8, 1> N;
-    for (int a = 0; a < 8; ++a) {
-      N[a] = 1;
-      for (int d = 0; d < 3; ++d) {
-        const double xi = part.mean[d] + (hexahedron_corners[q][d] == 0 ? -1 : 1) * std::sqrt(part.variance[d]);
-        N[a] *= hexahedron_corners[a][d] == 0 ? 0.5 - xi : 0.5 + xi;
-      }
-    }
-    C += full * part.fraction / 8 * N * N.transpose();
-  }
-  return C;
-}
 
 Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, double theta) {
   if (!(theta >= 0 && theta <= 1))

@@ -1,8 +1,8 @@
 // Time integration of any model by the plain force loops.
 #pragma once
 
-#include "msm/dynamics/mass_average.h"
 #include "msm/dynamics/motion.h"
+#include "msm/dynamics/terms/mass_average.h"
 
 namespace springproof {
 

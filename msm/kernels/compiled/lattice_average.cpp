@@ -1,4 +1,4 @@
-// The average over the cells that a share of consistent mass takes (msm/dynamics/mass_average.h), on a box of full
+// The average over the cells that a share of consistent mass takes (msm/dynamics/terms/mass_average.h), on a box of full
 // cells.
 #include "msm/kernels/compiled/lattice_rows.h"
 

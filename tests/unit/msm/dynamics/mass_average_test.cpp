@@ -1,5 +1,5 @@
 // A share of consistent mass in explicit motion: what moves, what is kept, which frequencies, which step.
-#include "msm/dynamics/mass_average.h"
+#include "msm/dynamics/terms/mass_average.h"
 
 #include <gtest/gtest.h>
 

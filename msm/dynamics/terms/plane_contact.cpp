@@ -1,4 +1,4 @@
-#include "msm/dynamics/plane_contact.h"
+#include "msm/dynamics/terms/plane_contact.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "msm/dynamics/plane_constraint.h"
+#include "msm/dynamics/terms/plane_constraint.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,12 +1,27 @@
-#include "msm/dynamics/mass_average.h"
+#include "msm/dynamics/terms/mass_average.h"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
-#include "msm/dynamics/natural_modes.h"
-
 namespace springproof {
+
+Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
+  Eigen::Matrix<double, 8, 8> C = Eigen::Matrix<double, 8, 8>::Zero();
+  for (int q = 0; q < 8; ++q) {
+    Eigen::Matrix<double, 8, 1> N;
+    for (int a = 0; a < 8; ++a) {
+      N[a] = 1;
+      for (int d = 0; d < 3; ++d) {
+        const double xi = part.mean[d] + (hexahedron_corners[q][d] == 0 ? -1 : 1) * std::sqrt(part.variance[d]);
+        N[a] *= hexahedron_corners[a][d] == 0 ? 0.5 - xi : 0.5 + xi;
+      }
+    }
+    C += full * part.fraction / 8 * N * N.transpose();
+  }
+  return C;
+}
 
 MassAverage::MassAverage(const Network& network, double theta) : theta_(theta), network_(&network) {
   if (!(theta >= 0 && theta <= 1))

@@ -41,14 +41,4 @@ class Viscosity {
   AveragedSprings cells_;
 };
 
-/// Largest safe step [s] of explicit integration whose viscous forces are those of the velocity half a step before:
-/// (sqrt(c^2 + 4 w^2) - c) / w^2, with bounds w^2 on the squared frequencies and c on what viscosity adds.
-/// @param model a model
-/// @param density [kg/m^3]
-/// @param viscosity of the model
-/// @param elastic the step without viscosity, safe_time_step() [s]
-/// @param theta share of consistent mass, 0 to 1
-double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
-                         double theta = 0);
-
 }  // namespace springproof

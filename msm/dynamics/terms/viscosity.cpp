@@ -1,8 +1,5 @@
-#include "msm/dynamics/viscosity.h"
+#include "msm/dynamics/terms/viscosity.h"
 
-#include <cmath>
-
-#include "msm/dynamics/time_step.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {
@@ -43,15 +40,6 @@ void Viscosity::add_forces(const Network& network, const NodalVectors& x, const 
     f.row(s.i) += pull;
     f.row(s.j) -= pull;
   }
-}
-
-double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
-                         double theta) {
-  if (!viscosity.acts()) return elastic;
-  const MassSpringModel dashpots{model.network, {viscosity.cells()}};
-  const double of_dashpots = viscosity.along_springs() ? elastic : safe_time_step(dashpots, density, false, theta);
-  const double frequency = 2 / elastic, rate = viscosity.time() * 4 / (of_dashpots * of_dashpots);
-  return 4 / (std::sqrt(rate * rate + 4 * frequency * frequency) + rate);
 }
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-#include "msm/dynamics/energy_momentum.h"
+#include "msm/dynamics/terms/energy_momentum.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

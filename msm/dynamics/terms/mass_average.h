@@ -9,6 +9,10 @@
 
 namespace springproof {
 
+/// Integral of rho N_a N_b over the filled part of a cell of mass rho l^3 = `full`, N the corners' trilinear weights:
+/// at the two Gauss points per axis of the part's own mean and variance; of a full cell exact.
+Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full);
+
 /// Momenta p = L s of the nodes, L their lumped masses, move them with
 ///   v = W p,  W = L^-1 (2 L - M) L^-1,  M = theta C + (1 - theta) L,
 /// the first two terms of Neumann's series of M^-1: v = s + theta (s - L^-1 C s), no equations to solve.  W is
