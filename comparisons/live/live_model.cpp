@@ -94,7 +94,7 @@ void LiveModel::build(const IsotropicMaterial& material) {
   model_ = model_of(body_.mesh, name_, material);
   mass_ = masses(model_.network, material.density);
   safe_step_ = safe_time_step(model_, material.density);
-  motion_ = lattice_motion(model_, material.density, {.time_step = safe_step_, .precision = precision_});
+  motion_ = lattice_on_processor(model_, material.density, {.time_step = safe_step_, .precision = precision_});
   const double edge = model_.network.cell_edge;
   grip_stiffness_ = 4 * material.youngs_modulus * edge;
   grip_limit_ = 6 * material.youngs_modulus * edge * edge;

@@ -37,18 +37,6 @@ MotionOptions on_chosen_device(const MassSpringModel& model, MotionOptions optio
   return options;
 }
 
-LatticeMotion::LatticeMotion(const MassSpringModel& model, double density, const MotionOptions& options)
-    : network_(model.network),
-      edge_(model.network.cell_edge),
-      density_(density),
-      time_step_(options.time_step.value()),
-      damping_(options.damping) {}
-
-void LatticeMotion::set_step(double time_step, double damping) {
-  time_step_ = time_step;
-  damping_ = damping;
-}
-
 std::unique_ptr<LatticeMotion> lattice_motion(const MassSpringModel& model, double density,
                                               const MotionOptions& options) {
   if (!LatticeMotion::suits(model, options))

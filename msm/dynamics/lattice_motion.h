@@ -22,7 +22,10 @@ class LatticeMotion : public Motion {
   /// Of the following steps.
   /// @param time_step [s]
   /// @param damping [1/s]
-  void set_step(double time_step, double damping);
+  void set_step(double time_step, double damping) {
+    time_step_ = time_step;
+    damping_ = damping;
+  }
 
   /// Displacement [m], then velocity [m/s] of nodes begin <= n < end, six values per node.
   virtual void read(int begin, int end, double* values) const = 0;
@@ -33,7 +36,12 @@ class LatticeMotion : public Motion {
 
  protected:
   /// Nodes of this density [kg/m^3], with the step and the damping of the options.
-  LatticeMotion(const MassSpringModel& model, double density, const MotionOptions& options);
+  LatticeMotion(const MassSpringModel& model, double density, const MotionOptions& options)
+      : network_(model.network),
+        edge_(model.network.cell_edge),
+        density_(density),
+        time_step_(options.time_step.value()),
+        damping_(options.damping) {}
 
   const Network& network_;
   double edge_, density_, time_step_, damping_;
