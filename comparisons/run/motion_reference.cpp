@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "comparisons/run/motion_measured.h"
 #include "comparisons/run/reference_grids.h"
@@ -90,10 +91,64 @@ double at_time(const std::vector<double>& t, const std::vector<double>& u, doubl
 
 NodalVectors step_correction(const NodalVectors& fine, const NodalVectors& coarse) { return (fine - coarse) / 3; }
 
+namespace {
+
+/// The displacements of the probes in time on three grids.
+struct ProbesOnGrids {
+  ElementGrids grids;
+  std::vector<double> times;
+  NodalVectors of_steps;             ///< step_correction(), which the fields have
+  std::vector<NodalVectors> fields;  ///< at_times() of each grid
+};
+
+/// @param solutions on the three grids, and on the middle one in steps twice as long
+ProbesOnGrids probes_on_grids(const std::string& element, std::vector<fem::Solution> solutions) {
+  ProbesOnGrids p;
+  p.times = solutions[2].time;
+  p.of_steps = step_correction(at_times(solutions[1], p.times), at_times(solutions[3], p.times));
+  solutions.pop_back();
+  p.grids = {element, std::move(solutions)};
+  for (const fem::Solution& s : p.grids.grids) p.fields.push_back(at_times(s, p.times) + p.of_steps);
+  return p;
+}
+
+/// The limits of measured_in_time().
+void measure_limits(const PreparedCase& prepared, const ProbesOnGrids& probes, MotionReference& out) {
+  const auto measured = [&](const NodalVectors& field) {
+    HistoryRecord h = history_of(prepared.experiment, probes.times, field);
+    h.probe = out.history.probe;
+    return measured_in_time(*prepared.experiment.dynamics, h);
+  };
+  std::map<std::string, std::vector<double>> values;
+  for (const NodalVectors& field : probes.fields)
+    for (const auto& [name, value] : measured(field)) values[name].push_back(value);
+  for (const auto& [name, uncorrected] : measured(probes.fields[1] - probes.of_steps)) {
+    const std::vector<double>& v = values[name];
+    if (v.size() < 3) continue;
+    ReferenceValue value = extrapolate(v, solver_noise * v[2], clamped_order, ratios_of(probes.grids));
+    value.uncertainty +=
+        coarse_safety_factor * std::abs(v[1] - uncorrected) + prepared.load_spread * std::abs(value.value);
+    out.history.measured[name] = value.value;
+    out.measured[name] = value;
+  }
+}
+
+/// What a solution says of itself.
+void describe(const fem::Solution& finest, Run& run) {
+  run.kinematics = finest.law;
+  run.ok = true;
+  run.solver = finest.form;
+  run.iterations = finest.iterations;
+  run.seconds = finest.seconds;
+  run.unknowns = finest.unknowns;
+  run.memory_MiB = finest.memory_MiB;
+}
+
+}  // namespace
+
 MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material,
                              const RunKeeper& keeper) try {
   const Experiment& e = prepared.experiment;
-  const MotionChoice& motion = *e.dynamics;
   MotionReference out;
   const fem::Request request = motion_request(prepared, material);
   out.run.cells = request.grids[2].cells;
@@ -103,54 +158,27 @@ MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMateri
       out.run.message = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);
       return out;
     }
-  const std::vector<double> times = solutions[2].time;
-  const NodalVectors of_steps = step_correction(at_times(solutions[1], times), at_times(solutions[3], times));
-  solutions.pop_back();
-  const ElementGrids grids{e.body.is_voxels() ? "p2" : "q2", solutions};
-  std::vector<NodalVectors> fields;
-  for (const fem::Solution& s : grids.grids) fields.push_back(at_times(s, times) + of_steps);
-  const ReferenceField limit = extrapolate(fields, Eigen::VectorXd::Ones(of_steps.rows()), ratios_of(grids));
-  const double norm = fields.back().norm();
+  const ProbesOnGrids probes = probes_on_grids(e.body.is_voxels() ? "p2" : "q2", std::move(solutions));
+  const ReferenceField limit =
+      extrapolate(probes.fields, Eigen::VectorXd::Ones(probes.of_steps.rows()), ratios_of(probes.grids));
+  const double norm = probes.fields.back().norm();
   if (!(norm > 0)) {
     out.run.message = "the probes do not move";
     return out;
   }
-  out.uncertainty = limit.uncertainty + coarse_safety_factor * of_steps.norm() / norm + prepared.load_spread;
-  const fem::Solution& finest = grids.grids.back();
-  out.history = history_of(e, times, limit.displacement);
+  out.uncertainty = limit.uncertainty + coarse_safety_factor * probes.of_steps.norm() / norm + prepared.load_spread;
+  const fem::Solution& finest = probes.grids.grids.back();
+  out.history = history_of(e, probes.times, limit.displacement);
   out.history.integrator = "midpoint rule, limit of three grids and two steps";
-  out.history.time_step = motion.duration / finest.grid.steps;
+  out.history.time_step = e.dynamics->duration / finest.grid.steps;
   out.history.probe = liveliest(out.history, e.probes.front().name);
-  const auto measured = [&](const NodalVectors& field) {
-    HistoryRecord h = history_of(e, times, field);
-    h.probe = out.history.probe;
-    return measured_in_time(motion, h);
-  };
-  std::map<std::string, std::vector<double>> values;
-  for (const NodalVectors& field : fields)
-    for (const auto& [name, value] : measured(field)) values[name].push_back(value);
-  for (const auto& [name, uncorrected] : measured(fields[1] - of_steps)) {
-    const std::vector<double>& v = values[name];
-    if (v.size() < 3) continue;
-    ReferenceValue value = extrapolate(v, solver_noise * v[2], clamped_order, ratios_of(grids));
-    value.uncertainty +=
-        coarse_safety_factor * std::abs(v[1] - uncorrected) + prepared.load_spread * std::abs(value.value);
-    out.history.measured[name] = value.value;
-    out.measured[name] = value;
-  }
+  measure_limits(prepared, probes, out);
   out.history.measured["uncertainty"] = out.uncertainty;
   out.history.names.emplace_back("kinetic_energy");
   out.history.units.emplace_back("J");
-  std::vector<double>& energies = out.history.values.emplace_back();
-  energies = finest.kinetic_energy;
-  out.run.kinematics = finest.law;
-  out.run.ok = true;
+  out.history.values.push_back(finest.kinetic_energy);
+  describe(finest, out.run);
   out.run.message = limit.note;
-  out.run.solver = finest.form;
-  out.run.iterations = finest.iterations;
-  out.run.seconds = finest.seconds;
-  out.run.unknowns = finest.unknowns;
-  out.run.memory_MiB = finest.memory_MiB;
   return out;
 } catch (const NoRoom&) {  // no fault of the case
   throw;

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "msm/dynamics/checked_step.h"
-#include "msm/dynamics/terms/energy_momentum.h"
 #include "msm/dynamics/lattice_motion.h"
+#include "msm/dynamics/terms/energy_momentum.h"
 
 namespace springproof {
 namespace {

@@ -1,5 +1,5 @@
-// The average over the cells that a share of consistent mass takes (msm/dynamics/terms/mass_average.h), on a box of full
-// cells.
+// The average over the cells that a share of consistent mass takes (msm/dynamics/terms/mass_average.h), on a box of
+// full cells.
 #include "msm/kernels/compiled/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
