@@ -4,17 +4,22 @@
 #include "comparisons/reproduce/figures.h"
 #include "comparisons/run/find_cases.h"
 #include "msm/parameters/model_table.h"
+#include "problem/case_file/keys.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
 
 void DescribeCommand::add_options(CLI::App& command) {
   command.group("");
-  command.add_option("FORM", form_)->required()->check(CLI::IsMember({"man", "bash"}));
+  command.add_option("FORM", form_)->required()->check(CLI::IsMember({"man", "bash", "keys"}));
   command_ = &command;
 }
 
 int DescribeCommand::run() const {
+  if (form_ == "keys") {
+    to_stdout("{}", keys_page());
+    return 0;
+  }
   const CLI::App& app = *command_->get_parent();
   std::vector<std::string> cases, models, paper_names;
   for (const Paper& paper : papers()) paper_names.push_back(paper.name);

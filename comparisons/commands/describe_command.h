@@ -1,4 +1,4 @@
-// The subcommand that packages and shells ask for the command line.
+// The subcommand that packages, shells and docs ask for the command line and the keys of case files.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ class App;
 
 namespace springproof {
 
-/// `springproof describe man|bash`; not in --help.
+/// `springproof describe man|bash|keys`; not in --help.
 class DescribeCommand {
  public:
   void add_options(CLI::App& command);
