@@ -14,9 +14,9 @@
 #include "comparisons/commands/diff_command.h"
 #include "comparisons/commands/export_command.h"
 #include "comparisons/commands/frequencies_command.h"
-#include "comparisons/commands/homogenise_command.h"
+#include "comparisons/commands/material/homogenise_command.h"
 #include "comparisons/commands/list_command.h"
-#include "comparisons/commands/material_command.h"
+#include "comparisons/commands/material/material_command.h"
 #include "comparisons/commands/pictures_command.h"
 #include "comparisons/commands/report_command.h"
 #include "comparisons/commands/reproduce_command.h"
@@ -72,7 +72,8 @@ constexpr Subcommand subcommands[] = {
     {"bench", "Measure what things cost, each beside its baseline (springproof bench --help)", made<BenchCommand>},
     {"advise", "Which models and resolutions reach an error within a budget, predicted from coarse solves of the case",
      made<AdviseCommand>, Reads::bodies},
-    {"describe", "The command line as a man page, or as completion for bash", made<DescribeCommand>, Reads::nothing},
+    {"describe", "The command line as a man page, or as completion for bash; the keys of a case file",
+     made<DescribeCommand>, Reads::nothing},
 };
 
 int parse_and_run(int argc, char** argv) {

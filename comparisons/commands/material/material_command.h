@@ -24,8 +24,6 @@ class MaterialCommand {
   double density_ = 1000;
   double cell_size_ = 0.1, frequency_ = 1;
   ModelChoice choice_{"hybmss", {}, "hybmss", {}};
-  std::optional<double> face_to_cube_, springs_per_node_;
-  std::optional<std::string> dispersion_, weights_;
   bool json_ = false;
 };
 

@@ -1,4 +1,4 @@
-#include "comparisons/commands/homogenise_command.h"
+#include "comparisons/commands/material/homogenise_command.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "comparisons/commands/material/material_options.h"
 #include "comparisons/commands/number_checks.h"
 #include "comparisons/run/status.h"
 #include "msm/algebra/dense.h"
@@ -179,12 +180,8 @@ void print(const std::vector<Sample>& samples, const ModelParameters& p, const I
 }  // namespace
 
 void HomogeniseCommand::add_options(CLI::App& command) {
-  command.add_option("--youngs-modulus,-E", moduli_.youngs_modulus, "Young's modulus [Pa]");
-  command.add_option("--poisson-ratio,--nu", moduli_.poisson_ratio, "Poisson's ratio, -1 < nu < 0.5");
-  command.add_option("--shear-modulus,-G", moduli_.shear_modulus, "shear modulus [Pa]");
-  command.add_option("--bulk-modulus,-K", moduli_.bulk_modulus, "bulk modulus [Pa]");
-  command.add_option("--lame-lambda", moduli_.lame_lambda, "Lame's first parameter [Pa]");
-  command.add_option("--model", choice_.name, "row of the model table (springproof list)")->capture_default_str();
+  add_moduli(command, moduli_);
+  add_model(command, choice_);
   command.add_option("--spacing", spacing_, "cell edge, or mean distance (V/N)^(1/3) of random nodes [m]")
       ->check(positive())
       ->capture_default_str();
@@ -193,36 +190,11 @@ void HomogeniseCommand::add_options(CLI::App& command) {
           "--nodes", nodes_,
           fmt::format("nodes of the periodic cell (default {} random, {} on a lattice)", random_nodes, lattice_nodes))
       ->check(CLI::Range(1, 1000000));
-  const auto number = [&](const std::string& option, const std::string& key, const std::string& what) {
-    command.add_option_function<double>(
-        option, [this, key](double v) { choice_.options[key] = v; }, what);
-  };
-  const auto word = [&](const std::string& option, const std::string& key, const std::string& what) {
-    command.add_option_function<std::string>(
-        option, [this, key](const std::string& v) { choice_.options[key] = v; }, what);
-  };
-  number("--springs-per-node", "springs_per_node", "random: mean number of springs at a node (default 15)");
-  number("--min-length", "min_length", "random: least distance of two nodes over the spacing (default 0.8)");
-  number("--max-length", "max_length", "random: longest spring over the spacing, instead of --springs-per-node");
-  number("--stiffness-exponent", "stiffness_exponent", "random: p in k ~ L^-p (default 0)");
-  number("--seed", "seed", "random: first seed (default 1)");
-  number("--seeds", "seeds", "random: number of networks (default 1)");
-  number("--face-to-cube", "face_to_cube", "lattices: A = k_f / k_c");
-  word("--dispersion", "dispersion",
-       "eMSM: symmetric, share_weighted, published, published_transposed or finite_strain");
-  word("--weights", "weights", "eMSM, symmetric or finite_strain: volume or kL (default: by the sign of q)");
-  word("--calibration", "calibration", "random: homogenised (default, as compare) or affine (the papers' formulas)");
-  word("--surface", "surface", "random: nodes (default) or cut, whose springs are left as they are made");
   command.add_flag("--json", json_, "print JSON");
 }
 
 int HomogeniseCommand::run() const {
-  IsotropicMaterial m;
-  try {
-    m = material_from(moduli_);
-  } catch (const std::invalid_argument& e) {
-    throw InputError(e.what());
-  }
+  const IsotropicMaterial m = material_of(moduli_);
   const ModelParameters p = resolve(choice_);
   const int nodes = nodes_.value_or(p.row.topology == Topology::random ? random_nodes : lattice_nodes);
   const std::vector<Sample> samples = measure_seeds(p, m, spacing_, nodes);
