@@ -353,7 +353,7 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   const DeformationSize deformation = deformation_size(mesh, u, e.model_kinematics());
   out.strain = deformation.principal_strain;
   out.rotation_deg = deformation.rotation * 180 / std::numbers::pi;
-  out.size = prepared.size;
+  out.size = prepared.body.size;
   out.volume = volume(mesh, mesh.nodes);
   for (std::size_t m = 0; m < prepared.models.size(); ++m) out.models.push_back(pilot_model(run, m));
   out.elements = pilot_elements(run);

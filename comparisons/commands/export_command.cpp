@@ -78,7 +78,7 @@ int export_calculix(const ExportRequest& request) {
   const Cells cells = request.cells.empty() && !experiment.body.is_voxels() ? experiment.body.cells.front()
                                                                             : cells_of_option(request.cells);
   const Mesh mesh =
-      experiment.body.is_voxels() ? *prepared.tetrahedra.back() : mesh_geo(prepared.geo, experiment.body.size, cells);
+      experiment.body.is_voxels() ? *prepared.body.tetrahedra.back() : mesh_geo(prepared.body.geo, experiment.body.size, cells);
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
   std::ostringstream out;
   calculix::write(deck, out);

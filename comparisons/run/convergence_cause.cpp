@@ -64,7 +64,7 @@ Clause probe_at_a_rim(const Question& q) {
 }
 
 Clause differing_surfaces(const Question& q) {
-  const auto& meshes = q.prepared.tetrahedra;
+  const auto& meshes = q.prepared.body.tetrahedra;
   if (meshes.size() < 2) return {};
   const auto volume_of = [&](std::size_t from_last) {
     const Mesh& m = *meshes[meshes.size() - from_last];

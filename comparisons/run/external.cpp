@@ -119,8 +119,8 @@ WantedPoints wanted_points(const External& e) {
   const NodalVectors& nodes = e.mesh().nodes;
   bool all = true;
   for (Eigen::Index n = 0; n < nodes.rows() && all; ++n) all = e.field.is_at(nodes.row(n).transpose());
-  if (all || e.prepared.body_samples.empty()) return {nodes, true};
-  return {e.prepared.body_points, false};
+  if (all || e.prepared.samples.of_nodes.empty()) return {nodes, true};
+  return {e.prepared.samples.points, false};
 }
 
 /// Typical distance of the points from each other, also of such that lie in pairs [m].
@@ -145,7 +145,7 @@ void check_one_state(const External& e) {
 void check_ends(const External& e) {
   const double allowed = 0.5 * spacing_of(e);
   std::vector<const NodalVectors*> bodies = {&e.mesh().nodes};
-  if (!e.prepared.tetrahedra.empty()) bodies.push_back(&e.prepared.tetrahedra.back()->nodes);
+  if (!e.prepared.body.tetrahedra.empty()) bodies.push_back(&e.prepared.body.tetrahedra.back()->nodes);
   const auto ends = [](const NodalVectors& X, int axis) {
     return Eigen::Vector2d(X.col(axis).minCoeff(), X.col(axis).maxCoeff());
   };

@@ -37,14 +37,12 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   request.loads = supports_of(e);
   request.modes = modes;
   if (e.body.is_voxels()) {
-    request.points = prepared.body_points;
-    request.meshes = prepared.tetrahedra;
-    for (int m = 0; m < 3; ++m) request.grids.push_back({{prepared.uncut[m], 0, 0}, element, 1.0, m, 0});
+    request.points = prepared.samples.points;
+    request.meshes = prepared.body.tetrahedra;
+    for (int m = 0; m < 3; ++m) request.grids.push_back({{prepared.body.uncut[m], 0, 0}, element, 1.0, m, 0});
     return request;
   }
-  request.points.resize(prepared.nodes(), 3);
-  for (const Lattice& lattice : prepared.lattices)
-    request.points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
+  request.points = lattice_points(prepared);
   double elements = 1;  // as the case says, if it does
   for (const int n : e.reference.cells) elements *= n;
   const Cells fine =

@@ -50,7 +50,7 @@ ImposedStrain imposed_strain(const PreparedCase& prepared) {
       for (int axis = 0; axis < 3; ++axis) {
         const auto from = a.moved->displacement[axis], to = b.moved->displacement[axis];
         const double apart = b.at[axis] - a.at[axis];
-        if (!from || !to || apart < near * prepared.size.norm()) continue;
+        if (!from || !to || apart < near * prepared.body.size.norm()) continue;
         imposed.compression = std::min(imposed.compression, (*to - *from) / apart);
         imposed.tension = std::max(imposed.tension, (*to - *from) / apart);
       }

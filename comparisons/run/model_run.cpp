@@ -32,9 +32,9 @@ bool asked(const Experiment& e, const std::string& measure) {
 /// The papers' moduli of a block stretched along x; lengths of the local fields follow from the network's spacing.
 void add_moduli(const PreparedCase& prepared, const MassSpringModel& model, const NodalVectors& u,
                 std::map<std::string, double>& out) {
-  const StretchedBlock block{Vec3::Zero(), prepared.size, *elongation_along_x(prepared.experiment)};
+  const StretchedBlock block{Vec3::Zero(), prepared.body.size, *elongation_along_x(prepared.experiment)};
   const double spacing = std::cbrt(model.network.volume.sum() / model.network.nodes());
-  const double width = std::min(prepared.size[1], prepared.size[2]);
+  const double width = std::min(prepared.body.size[1], prepared.body.size[2]);
   const BlockModuli m = measure_block(model, u, block, std::min(2.5 * spacing, 0.45 * width));
   out["moduli.youngs_modulus"] = m.youngs_modulus_nominal;
   out["moduli.youngs_modulus_local"] = m.youngs_modulus_local;
@@ -173,11 +173,13 @@ void add_network(const Network& network, std::map<std::string, double>& out) {
   out["network.length_deviation"] = s.length_deviation;
 }
 
-std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, ChosenModel model,
                                      const IsotropicMaterial& material) {
+  const auto [number, whole_cubes] = model;
   if (is_external(prepared.experiment.models[number])) return external_samples(prepared, lattice, number, material);
   std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
+  if (whole_cubes) parameters.cut = false;
   const bool in_motion = prepared.experiment.models[number].in_motion;
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
     progress::phase(

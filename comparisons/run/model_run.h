@@ -46,9 +46,14 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
 /// Rows of the measure `network`.
 void add_network(const Network& network, std::map<std::string, double>& out);
 
-/// Solves model `number` of the case on a lattice; one sample per seed.  Of displacements of another program:
-/// external_samples().
-std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
+/// A model of the case.
+struct ChosenModel {
+  std::size_t number;
+  bool whole_cubes = false;  ///< also where the case chose cut cells
+};
+
+/// Solves a model on a lattice; one sample per seed.  Of displacements of another program: external_samples().
+std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice& lattice, ChosenModel model,
                                      const IsotropicMaterial& material);
 
 }  // namespace springproof

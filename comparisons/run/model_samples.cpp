@@ -9,17 +9,12 @@
 
 namespace springproof {
 
-std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, std::size_t number, bool whole) {
+std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, ChosenModel model) {
   const Lattice& on = run.prepared.lattices[lattice];
   return run.keeper.run(
-      fmt::format("model-{}-{}{}", number, lattice, whole ? "-whole" : ""),
-      cost_of_model(run.prepared, on, number, run.material),
-      [&] {
-        if (!whole) return run_samples(run.prepared, on, number, run.material);
-        PreparedCase changed = run.prepared;
-        changed.models[number].cut = false;
-        return run_samples(changed, on, number, run.material);
-      },
+      fmt::format("model-{}-{}{}", model.number, lattice, model.whole_cubes ? "-whole" : ""),
+      cost_of_model(run.prepared, on, model.number, run.material),
+      [&] { return run_samples(run.prepared, on, model, run.material); },
       [](const std::vector<ModelSample>& samples) { return json_of(samples); },
       [&](const nlohmann::json& kept) { return samples_from(kept, on); });
 }

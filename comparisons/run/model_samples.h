@@ -9,8 +9,8 @@
 
 namespace springproof {
 
-/// Model `number` of the case on a lattice.  `whole`: on whole cubes instead of the cut cells.
-std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, std::size_t number, bool whole = false);
+/// A model on a lattice.
+std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, ChosenModel model);
 
 /// The same of a body that dries.
 FractureSamples fracture_samples_of(const PartRun& run, std::size_t lattice, std::size_t number);

@@ -64,13 +64,13 @@ fem::Request motion_request(const PreparedCase& prepared, const IsotropicMateria
       e.reference.cells[0] > 0 ? e.reference.cells : divisible_cells(e.body.size, motion_elements, fewest_across(e));
   for (int g = 0; g < 3; ++g) {
     fem::Discretisation grid{divided(fine, 4 >> g), "q2", e.reference.grading};
-    if (e.body.is_voxels()) grid = {{prepared.uncut[g], 0, 0}, "p2", 1.0, g};
+    if (e.body.is_voxels()) grid = {{prepared.body.uncut[g], 0, 0}, "p2", 1.0, g};
     grid.steps = steps_per_sample * motion.samples;
     request.grids.push_back(grid);
   }
   request.grids.push_back(request.grids[1]);
   request.grids.back().steps /= 2;
-  if (e.body.is_voxels()) request.meshes = prepared.tetrahedra;
+  if (e.body.is_voxels()) request.meshes = prepared.body.tetrahedra;
   return request;
 }
 
@@ -115,7 +115,7 @@ MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMateri
     out.run.message = "the probes do not move";
     return out;
   }
-  out.uncertainty = limit.uncertainty + coarse_safety_factor * of_steps.norm() / norm + prepared.load_spread;
+  out.uncertainty = limit.uncertainty + coarse_safety_factor * of_steps.norm() / norm + prepared.body.load_spread;
   const fem::Solution& finest = grids.grids.back();
   out.history = history_of(e, times, limit.displacement);
   out.history.integrator = "midpoint rule, limit of three grids and two steps";
@@ -134,7 +134,7 @@ MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMateri
     if (v.size() < 3) continue;
     ReferenceValue value = extrapolate(v, solver_noise * v[2], clamped_order, ratios_of(grids));
     value.uncertainty +=
-        coarse_safety_factor * std::abs(v[1] - uncorrected) + prepared.load_spread * std::abs(value.value);
+        coarse_safety_factor * std::abs(v[1] - uncorrected) + prepared.body.load_spread * std::abs(value.value);
     out.history.measured[name] = value.value;
     out.measured[name] = value;
   }

@@ -372,7 +372,8 @@ Equilibrium run_motion(const PreparedCase& prepared, const Lattice& lattice, con
   }
   Equilibrium state = run_dynamics(built.model, material.density, in_time, options).state;
   record.history.integrator = name_of(steps.integrator);
-  measure(prepared.experiment, motion, built.model.network, mass, prepared.size.norm(), in_time(1.0), record.history);
+  measure(prepared.experiment, motion, built.model.network, mass, prepared.body.size.norm(), in_time(1.0),
+          record.history);
   if (const auto bounce = contact ? contact->bounce() : std::nullopt) {
     record.history.measured["contact_time"] = bounce->end - bounce->begin;
     record.history.measured["restitution"] = -bounce->velocity_after / bounce->velocity_before;

@@ -49,33 +49,42 @@ struct Lattice {
   double error_scale() const { return promised > 0 ? promised : voxel_edge; }
 };
 
-/// How the displacement at a lattice node of a body of voxels follows from the finite elements' at
-/// PreparedCase::body_points: u(at), or outside the body 2 u(at) - u(within), linear extrapolation from the nearest
-/// point of the surface.
-struct BodySample {
-  int at;
-  int within = -1;  ///< mirror image of the node, or `at` if that is not in the body; -1: the node is in the body
-};
-
-/// An experiment made ready.
-struct PreparedCase {
-  Experiment experiment;          ///< as read
-  std::vector<Load> loads;        ///< its loads; for a body of voxels with their resultants on the true body
-  Vec3 size = Vec3::Zero();       ///< of the body [m]; for a body of voxels that of its bounding box
-  std::vector<Lattice> lattices;  ///< one per resolution
+/// The body, and the meshes that finite elements take of it.
+struct BodyOfCase {
+  std::filesystem::path geo;  ///< its file
+  Vec3 size = Vec3::Zero();   ///< [m]; for a body of voxels that of its bounding box
   std::vector<std::shared_ptr<const Mesh>>
       tetrahedra;  ///< for a body of voxels: three meshes, coarse to fine (the last is the true body)
   std::vector<int>
       uncut;  ///< numbers of their tetrahedra before borders of patches were cut, which determine the refinement ratios
-  double load_spread = 0;                         ///< relative difference of loads by area or volume between the meshes
-  NodalVectors body_points = NodalVectors(0, 3);  ///< points at which the finite element displacement is requested,
-  std::vector<BodySample> body_samples;           ///< from which those of the lattice nodes follow
-  std::vector<std::string> notes;                 ///< what was repaired or left out of the body
-  std::vector<PatchSamples> patch_samples;        ///< of the body's patches, where mean_displacement is measured
+  double load_spread = 0;          ///< relative difference of loads by area or volume between the meshes
+  std::vector<std::string> notes;  ///< what was repaired or left out of the body
+};
+
+/// How the displacement at a lattice node of a body of voxels follows from the finite elements' at Samples::points:
+/// u(at), or outside the body 2 u(at) - u(within), linear extrapolation from the nearest point of the surface.
+struct NodeSample {
+  int at;
+  int within = -1;  ///< mirror image of the node, or `at` if that is not in the body; -1: the node is in the body
+};
+
+/// Where displacements are wanted besides at the nodes of a block's lattices.
+struct Samples {
+  NodalVectors points = NodalVectors(0, 3);  ///< of a body of voxels, instead of those nodes
+  std::vector<NodeSample> of_nodes;          ///< how those of the nodes of all lattices follow
+  std::vector<PatchSamples> of_patches;      ///< where mean_displacement is measured
+};
+
+/// An experiment made ready.
+struct PreparedCase {
+  Experiment experiment;    ///< as read
+  std::vector<Load> loads;  ///< its loads; for a body of voxels with their resultants on the true body
+  BodyOfCase body;
+  std::vector<Lattice> lattices;  ///< one per resolution
+  Samples samples;
   std::vector<ModelParameters> models;
   Cells reference_cells = {0, 0, 0};  ///< finest of the three reference grids
   std::set<std::string> sharing;      ///< patches whose separate forces are a convention
-  std::filesystem::path geo;          ///< the body's file
   std::vector<LatticeLimit> limits;   ///< models that the imposed strain may be too much for
 
   /// Nodes of all lattices: the first row of the measured points in fem::Solution::displacement.

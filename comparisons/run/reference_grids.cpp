@@ -21,16 +21,6 @@
 namespace springproof {
 namespace {
 
-/// All points at which the displacement is requested: the nodes of every lattice, then the measured points.
-NodalVectors sample_points(const PreparedCase& prepared) {
-  const NodalVectors measured = measured_points(prepared);
-  NodalVectors points(prepared.nodes() + measured.rows(), 3);
-  for (const Lattice& lattice : prepared.lattices)
-    points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
-  points.bottomRows(measured.rows()) = measured;
-  return points;
-}
-
 /// An element's three grids, coarse to fine; the finest with a file for ParaView.
 void add_reference_grids(const PreparedCase& prepared, const std::string& element, double grading, const VtuOutput& vtu,
                          fem::Request& request) {
@@ -125,17 +115,24 @@ std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double 
     errors.push_back(displacement_error(at_nodes(lattice, s.displacement), truth, weights));
   const double coarse = std::log2(errors[0] / errors[1]), fine = std::log2(errors[1] / errors[2]);
   const std::string note = "against the exact field '" + prepared.experiment.exact + "', finest grid";
-  return {{nu, "displacement_error", "1", {}, errors, fine, errors[2], 0, note, e.element},
-          {nu,
-           "displacement_error_order",
-           "1",
-           {},
-           {std::numeric_limits<double>::quiet_NaN(), coarse, fine},
-           {},
-           fine,
-           0,
-           "of the two finest grids",
-           e.element}};
+  return {{.poisson_ratio = nu,
+           .measure = "displacement_error",
+           .unit = "1",
+           .cells = {},
+           .values = errors,
+           .observed_order = fine,
+           .value = errors[2],
+           .note = note,
+           .element = e.element},
+          {.poisson_ratio = nu,
+           .measure = "displacement_error_order",
+           .unit = "1",
+           .cells = {},
+           .values = {std::numeric_limits<double>::quiet_NaN(), coarse, fine},
+           .observed_order = {},
+           .value = fine,
+           .note = "of the two finest grids",
+           .element = e.element}};
 }
 
 /// The value that the case file expects of a measure of an element, or nothing.
@@ -174,7 +171,7 @@ std::map<std::string, double> field_measures(const PreparedCase& prepared, const
   const std::vector<Probe>& probes = prepared.experiment.probes;
   const auto count = static_cast<Eigen::Index>(probes.size());
   auto values = scalar_measures(field, probes, u.topRows(count));
-  values.merge(mean_displacements(prepared.patch_samples, u.bottomRows(u.rows() - count)));
+  values.merge(mean_displacements(prepared.samples.of_patches, u.bottomRows(u.rows() - count)));
   return values;
 }
 
@@ -190,7 +187,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
                            const RunKeeper& keeper, const CoarsestField& coarsest) {
   const Experiment& experiment = prepared.experiment;
   fem::Request request = fem::request_of(experiment, material);
-  request.points = sample_points(prepared);
+  request.points = stacked(lattice_points(prepared), measured_points(prepared));
   request.stress_points = stress_points(prepared);
   request.vtu_single = vtu.single;
   for (const std::string& element : experiment.reference.elements)
@@ -231,8 +228,8 @@ Field sampled_field(const Lattice& lattice, const fem::Solution& s) {
 
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
-  auto values = field_measures(prepared, sampled_field(prepared.lattices.front(), s),
-                               s.displacement.bottomRows(s.displacement.rows() - prepared.nodes()));
+  auto values =
+      field_measures(prepared, sampled_field(prepared.lattices.front(), s), at_measured(prepared, s.displacement));
   if (const Eigen::Index measured = first_pictured_stress(prepared); measured > 0 && s.stress.rows() >= measured)
     values.merge(stress_measures(probes, s.stress.topRows(measured)));
   return values;
@@ -248,7 +245,7 @@ std::optional<ReactionDifference> reaction_error(const PreparedCase& prepared,
                                                  const std::map<std::string, double>& values,
                                                  const std::map<std::string, ReferenceValue>& truth) {
   return reaction_difference(values, values_of(truth), truth, comparable_moved_patches(prepared),
-                             prepared.size.maxCoeff());
+                             prepared.body.size.maxCoeff());
 }
 
 Vec3 sum_of_loads(const PreparedCase& prepared) { return nodal_loads(prepared).colwise().sum().transpose(); }
@@ -302,7 +299,7 @@ std::vector<std::map<std::string, double>> measures_on_grids(const PreparedCase&
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   const std::vector<std::map<std::string, double>> values = measures_on_grids(prepared, e);
   const Experiment& experiment = prepared.experiment;
-  const BodyScale body{prepared.size.norm(), e.grids[2].displacement.rowwise().norm().maxCoeff(),
+  const BodyScale body{prepared.body.size.norm(), e.grids[2].displacement.rowwise().norm().maxCoeff(),
                        force_of_loads(prepared), experiment.materials.front().youngs_modulus};
   const std::map<std::string, std::string> rims = rims_at_probes(prepared);
   std::map<std::string, ReferenceValue> limits;
@@ -320,7 +317,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
     limit.matters = std::abs(limit.value) >= 0.1 * scale;
   }
   raise_to_usual(limits);
-  for (auto& [measure, limit] : limits) limit.uncertainty += prepared.load_spread * std::abs(limit.value);
+  for (auto& [measure, limit] : limits) limit.uncertainty += prepared.body.load_spread * std::abs(limit.value);
   return limits;
 }
 
@@ -334,17 +331,17 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
     if (!wanted(measure, experiment.measures) || !comparable(prepared, measure)) continue;
     std::vector<double> sequence;
     for (const auto& on_grid : values) sequence.push_back(on_grid.at(measure));
-    records.push_back({nu,
-                       measure,
-                       unit_of(measure),
-                       {},
-                       sequence,
-                       limit.observed_order,
-                       limit.value,
-                       limit.uncertainty,
-                       limit.note,
-                       e.element,
-                       limit.sequence != Sequence::not_converging});
+    records.push_back({.poisson_ratio = nu,
+                       .measure = measure,
+                       .unit = unit_of(measure),
+                       .cells = {},
+                       .values = sequence,
+                       .observed_order = limit.observed_order,
+                       .value = limit.value,
+                       .uncertainty = limit.uncertainty,
+                       .note = limit.note,
+                       .element = e.element,
+                       .converging = limit.sequence != Sequence::not_converging});
     if (!records.back().converging && limit.matters)
       records.back().note += "; " + cause_and_remedy(prepared, material, e, measure);
   }
@@ -364,17 +361,13 @@ std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<Referen
   for (const ReferenceRecord& r : records)
     for (std::size_t i = 0; i < r.values.size(); ++i) {
       if (!std::isfinite(r.values[i])) continue;
-      Row row{{"fem_" + r.element, r.poisson_ratio, r.cells[i]},
-              experiment.name,
-              experiment.kinematics,
-              r.measure,
-              r.values[i],
-              r.unit,
-              target(experiment, r),
-              {},
-              {},
-              1,
-              {}};
+      Row row = of_run<Row>({"fem_" + r.element, r.poisson_ratio, r.cells[i]});
+      row.case_name = experiment.name;
+      row.kinematics = experiment.kinematics;
+      row.measure = r.measure;
+      row.value = r.values[i];
+      row.unit = r.unit;
+      row.reference = target(experiment, r);
       if (row.reference) row.error = row.value - *row.reference;
       rows.push_back(row);
     }

@@ -22,7 +22,7 @@ std::set<std::string> patches_of_loads(const Experiment& e) {
 
 /// The rim of a patch on the finest mesh.
 std::vector<RimEdge> rim_of(const PreparedCase& prepared, const std::string& name) {
-  const Mesh& body = *prepared.tetrahedra.back();
+  const Mesh& body = *prepared.body.tetrahedra.back();
   return rim_of(body, patch(body, name));
 }
 
@@ -35,13 +35,13 @@ double distance(const Vec3& p, const RimEdge& e) {
 }  // namespace
 
 double element_size(const PreparedCase& prepared) {
-  const Mesh& body = *prepared.tetrahedra.back();
-  return std::cbrt(6 * std::sqrt(2.0) * volume(body, body.nodes) / prepared.uncut.back());
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  return std::cbrt(6 * std::sqrt(2.0) * volume(body, body.nodes) / prepared.body.uncut.back());
 }
 
 std::vector<std::optional<NearRim>> rims_near(const PreparedCase& prepared, const std::vector<Probe>& probes) {
   std::vector<std::optional<NearRim>> nearest(probes.size());
-  if (prepared.tetrahedra.empty() || probes.empty()) return nearest;
+  if (prepared.body.tetrahedra.empty() || probes.empty()) return nearest;
   const double element = element_size(prepared);
   for (const std::string& name : patches_of_loads(prepared.experiment)) {
     const std::vector<RimEdge> rim = rim_of(prepared, name);

@@ -15,21 +15,45 @@ NodalVectors probe_points(const Experiment& e) {
 
 NodalVectors measured_points(const PreparedCase& prepared) {
   NodalVectors points = probe_points(prepared.experiment);
-  for (const PatchSamples& p : prepared.patch_samples) {
+  for (const PatchSamples& p : prepared.samples.of_patches) {
     points.conservativeResize(points.rows() + p.points.rows(), 3);
     points.bottomRows(p.points.rows()) = p.points;
   }
   return points;
 }
 
+NodalVectors lattice_points(const PreparedCase& prepared) {
+  NodalVectors points(prepared.nodes(), 3);
+  for (const Lattice& lattice : prepared.lattices)
+    points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
+  return points;
+}
+
+NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
+  NodalVectors both(a.rows() + b.rows(), 3);
+  both << a, b;
+  return both;
+}
+
 NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples) {
   return samples.middleRows(lattice.first_node, lattice.mesh->nodes.rows());
 }
 
+NodalVectors at_measured(const PreparedCase& prepared, const NodalVectors& samples) {
+  return samples.bottomRows(samples.rows() - prepared.nodes());
+}
+
+NodalVectors known_at(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& at_nodes,
+                      const NodalVectors& at_measured) {
+  NodalVectors of_lattices = NodalVectors::Zero(prepared.nodes(), 3);
+  of_lattices.middleRows(lattice.first_node, at_nodes.rows()) = at_nodes;
+  return stacked(of_lattices, at_measured);
+}
+
 NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {
-  NodalVectors out(static_cast<Eigen::Index>(prepared.body_samples.size()), 3);
-  for (std::size_t n = 0; n < prepared.body_samples.size(); ++n) {
-    const BodySample& s = prepared.body_samples[n];
+  NodalVectors out(static_cast<Eigen::Index>(prepared.samples.of_nodes.size()), 3);
+  for (std::size_t n = 0; n < prepared.samples.of_nodes.size(); ++n) {
+    const NodeSample& s = prepared.samples.of_nodes[n];
     const auto row = static_cast<Eigen::Index>(n);
     out.row(row) = s.within < 0 ? Eigen::RowVector3d(u.row(s.at)) : 2 * u.row(s.at) - u.row(s.within);
   }
@@ -60,7 +84,7 @@ NodalVectors stress_points(const PreparedCase& prepared) {
   const Eigen::Index probes = first_pictured_stress(prepared);
   const bool pictured = !prepared.lattices.empty() && !prepared.experiment.models.empty();
   const NodalVectors surface =
-      pictured ? pictured_points(prepared.experiment.body.is_voxels() ? *prepared.tetrahedra.back()
+      pictured ? pictured_points(prepared.experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
                                                                       : *prepared.lattices.front().mesh)
                : NodalVectors(0, 3);
   NodalVectors all(probes + surface.rows(), 3);

@@ -11,11 +11,24 @@ NodalVectors probe_points(const Experiment& experiment);
 /// The probes, then the points of the patches whose mean displacement is measured.
 NodalVectors measured_points(const PreparedCase& prepared);
 
+/// Rest positions of the nodes of every lattice, one after the other.
+NodalVectors lattice_points(const PreparedCase& prepared);
+
+/// One after the other.
+NodalVectors stacked(const NodalVectors& a, const NodalVectors& b);
+
 /// The part of Solution::displacement that belongs to the nodes of one lattice.
 NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples);
 
-/// Displacement at the nodes of every lattice, one after the other, from that at body_points.
-NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& at_body_points);
+/// The part of it that belongs to the measured points.
+NodalVectors at_measured(const PreparedCase& prepared, const NodalVectors& samples);
+
+/// A Solution::displacement that is known at one lattice and at the measured points, and 0 elsewhere.
+NodalVectors known_at(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& at_nodes,
+                      const NodalVectors& at_measured);
+
+/// Displacement at the nodes of every lattice, one after the other, from that at Samples::points.
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& at_points);
 
 /// Displacement at the measured points from that of a lattice's nodes.  A point of a patch, and in a body of voxels a
 /// probe, may lie outside the cells: the nearest one is extrapolated.

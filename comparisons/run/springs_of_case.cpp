@@ -10,12 +10,12 @@ namespace {
 
 EmbeddedSurface carried_surface(const PreparedCase& prepared, const EmbeddedModel& built) {
   const Mesh& cells = *prepared.lattices.front().mesh;
-  return carried_surface(prepared.tetrahedra.empty() ? cells : *prepared.tetrahedra.back(), cells, built.model.network,
-                         built.embedding);
+  return carried_surface(prepared.body.tetrahedra.empty() ? cells : *prepared.body.tetrahedra.back(), cells,
+                         built.model.network, built.embedding);
 }
 
 EmbeddedSurface carried_surface(const PreparedCase& prepared, const CutBody& body) {
-  EmbeddedSurface surface = surface_of_mesh(*prepared.tetrahedra.back());
+  EmbeddedSurface surface = surface_of_mesh(*prepared.body.tetrahedra.back());
   const Carriers carriers = carriers_of(static_cast<int>(body.points.rows()), body.carried);
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < surface.vertices.rows(); ++v) {
@@ -86,7 +86,7 @@ SpringsFile springs_of(const PreparedCase& prepared) {
   file.density = file.material->density;
   parameters.cut.value_or(false) ? add_cut_network(prepared, file) : add_network(prepared, file);
   file.origin = {"springproof " SPRINGPROOF_VERSION, choice.name, choice.options,
-                 prepared.experiment.text.empty() ? prepared.geo.filename().string()
+                 prepared.experiment.text.empty() ? prepared.body.geo.filename().string()
                                                   : prepared.experiment.file.filename().string(),
                  input_checksum(prepared.experiment)};
   if (parameters.cut.value_or(false)) file.origin.options["cut"] = true;  // not what the name says: averaged springs

@@ -98,9 +98,9 @@ std::string key_of(const fs::path& file) {
 CaseResult case_of(const PreparedCase& p) {
   CaseResult result;
   result.experiment = p.experiment;
-  result.size = p.size;
+  result.size = p.body.size;
   for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
-  result.notes = p.notes;
+  result.notes = p.body.notes;
   for (std::size_t m = 0; m < p.models.size(); ++m) {
     const std::string& label = p.experiment.models[m].label;
     result.made_of[label] = made_of(p, m);

@@ -30,7 +30,7 @@ constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the ne
 
 MeshRequest body_request(const PreparedCase& prepared) {
   MeshRequest request;
-  request.file = prepared.geo;
+  request.file = prepared.body.geo;
   request.size = prepared.experiment.body.size;
   request.scale = prepared.experiment.body.scale;
   return request;
@@ -46,7 +46,7 @@ std::string scale_hint(const Mesh& mesh, const Body& body) {
 
 /// Edges of a mesh over those of the finest one.
 double coarseness(const Mesh& mesh, const PreparedCase& prepared) {
-  return std::cbrt(prepared.uncut.back() / static_cast<double>(mesh.tetrahedra.size()));
+  return std::cbrt(prepared.body.uncut.back() / static_cast<double>(mesh.tetrahedra.size()));
 }
 
 void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
@@ -55,15 +55,15 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   request.tetrahedra = finest_tetrahedra;
   if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
   MeshedBody body = mesh_body(request);
-  prepared.notes = body.notes;
+  prepared.body.notes = body.notes;
   hint = scale_hint(body.mesh, e.body);
-  if (!hint.empty()) prepared.notes.push_back(hint);
+  if (!hint.empty()) prepared.body.notes.push_back(hint);
   body.coarser.push_back(std::move(body.mesh));
-  for (const Mesh& mesh : body.coarser) prepared.uncut.push_back(static_cast<int>(mesh.tetrahedra.size()));
+  for (const Mesh& mesh : body.coarser) prepared.body.uncut.push_back(static_cast<int>(mesh.tetrahedra.size()));
   for (Mesh& mesh : body.coarser) {
     const std::vector<std::string> cuts = select_patches(e.patches, mesh, coarseness(mesh, prepared));
-    if (&mesh == &body.coarser.back()) prepared.notes.insert(prepared.notes.end(), cuts.begin(), cuts.end());
-    prepared.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
+    if (&mesh == &body.coarser.back()) prepared.body.notes.insert(prepared.body.notes.end(), cuts.begin(), cuts.end());
+    prepared.body.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
   }
 }
 
@@ -134,15 +134,15 @@ std::string refinement_note(const RefinedBody& refined, double accuracy) {
 }
 
 void cut_lattices(PreparedCase& prepared) {
-  const Mesh& true_body = *prepared.tetrahedra.back();
+  const Mesh& true_body = *prepared.body.tetrahedra.back();
   const auto region = std::make_shared<Region>(region_of(true_body));
-  prepared.size = region->upper - region->lower;
+  prepared.body.size = region->upper - region->lower;
   const std::vector<double> edges = voxel_edges(prepared.experiment.body, region->volume);
   check_counts(edges, region->volume);
   const auto add_cubes = [&](const VoxelGrid& grid) {
     Voxels voxels = voxelise(grid, true_body);
-    for (const std::string& note : voxels.notes) prepared.notes.push_back(note);
-    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), grid.edge, region->volume, prepared.notes);
+    for (const std::string& note : voxels.notes) prepared.body.notes.push_back(note);
+    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), grid.edge, region->volume, prepared.body.notes);
     add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), grid.edge, region}, prepared);
   };
   for (const double accuracy : prepared.experiment.body.accuracies) {
@@ -151,9 +151,9 @@ void cut_lattices(PreparedCase& prepared) {
     const VoxelGrid cubes = voxel_grid(true_body, std::cbrt(region->volume / cells));  // for results, and whole cubes
     if (!prepared.lattices.empty() && prepared.lattices.back().cells == cubes.cells) prepared.lattices.pop_back();
     add_cubes(cubes);
-    prepared.notes.push_back(refinement_note(refined, accuracy));
-    prepared.notes.push_back(cut_cells_note(prepared, refined.cut));
-    prepared.notes.insert(prepared.notes.end(), refined.cut.notes.begin(), refined.cut.notes.end());
+    prepared.body.notes.push_back(refinement_note(refined, accuracy));
+    prepared.body.notes.push_back(cut_cells_note(prepared, refined.cut));
+    prepared.body.notes.insert(prepared.body.notes.end(), refined.cut.notes.begin(), refined.cut.notes.end());
     prepared.lattices.back().promised = refined.promised;
     prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(refined.cut));
   }
@@ -165,8 +165,8 @@ void cut_lattices(PreparedCase& prepared) {
     const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
     if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
     CutBody cut = cut_body(grid, true_body);
-    prepared.notes.push_back(cut_cells_note(prepared, cut));
-    prepared.notes.insert(prepared.notes.end(), cut.notes.begin(), cut.notes.end());
+    prepared.body.notes.push_back(cut_cells_note(prepared, cut));
+    prepared.body.notes.insert(prepared.body.notes.end(), cut.notes.begin(), cut.notes.end());
     prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
   }
 }
@@ -212,7 +212,7 @@ Vec3 centroid(const Mesh& mesh) {
 }
 
 void set_wrenches(PreparedCase& prepared) {
-  const Mesh& body = *prepared.tetrahedra.back();
+  const Mesh& body = *prepared.body.tetrahedra.back();
   const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
   const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
   for (Load& load : prepared.loads) {
@@ -231,7 +231,7 @@ void set_wrenches(PreparedCase& prepared) {
 
 /// Relative difference of a quantity between the two finest meshes; 0: there is one.
 double spread(const PreparedCase& prepared, const std::function<double(const Mesh&)>& quantity) {
-  const auto& meshes = prepared.tetrahedra;
+  const auto& meshes = prepared.body.tetrahedra;
   return meshes.size() < 2 ? 0 : std::abs(quantity(*meshes[meshes.size() - 2]) / quantity(*meshes.back()) - 1);
 }
 
@@ -246,17 +246,17 @@ void set_load_spread(PreparedCase& prepared) {
     const double off =
         spread(prepared, [&](const Mesh& m) { return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes); });
     if (off <= least_spread) continue;
-    prepared.load_spread = std::max(prepared.load_spread, off);
-    prepared.notes.push_back(fmt::format("the meshes differ by {:.2g} % in {}: so much is added to the uncertainties",
-                                         100 * off,
-                                         on ? "the area of patch '" + *on + "'" : "their volume, and so the weight"));
+    prepared.body.load_spread = std::max(prepared.body.load_spread, off);
+    prepared.body.notes.push_back(
+        fmt::format("the meshes differ by {:.2g} % in {}: so much is added to the uncertainties", 100 * off,
+                    on ? "the area of patch '" + *on + "'" : "their volume, and so the weight"));
   }
 }
 
 /// Requests displacements at lattice nodes in the body; for those outside at the nearest surface point and at the
 /// mirror image.
 void place_samples(PreparedCase& prepared) {
-  const Mesh& body = *prepared.tetrahedra.back();
+  const Mesh& body = *prepared.body.tetrahedra.back();
   const std::vector<OuterFacet> facets = outer_facets(body);
   const FacetTree tree(body, facets);
   const Region& region = *prepared.lattices.front().region;
@@ -269,16 +269,16 @@ void place_samples(PreparedCase& prepared) {
     for (const auto& row : lattice.mesh->nodes.rowwise()) {
       const Vec3 X = row.transpose();
       if (region.inside(X)) {
-        prepared.body_samples.push_back({ask(X)});
+        prepared.samples.of_nodes.push_back({ask(X)});
         continue;
       }
       const Vec3 nearest = tree.nearest(X).point, mirrored = 2 * nearest - X;
       const int at = ask(nearest);
-      prepared.body_samples.push_back({at, region.inside(mirrored) ? ask(mirrored) : at});
+      prepared.samples.of_nodes.push_back({at, region.inside(mirrored) ? ask(mirrored) : at});
     }
-  prepared.body_points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  prepared.samples.points.resize(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t i = 0; i < points.size(); ++i)
-    prepared.body_points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+    prepared.samples.points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
 }
 
 /// How far a curved surface may lie above a facet of it [m]: half of how far the corners of the facets beside it lie
@@ -306,7 +306,7 @@ double bulge(const Mesh& body, const std::vector<OuterFacet>& facets, std::size_
 /// Notes probes outside the body: beyond its facets by more than round-off and than its surface may bulge over them.
 /// @throws InputError naming a probe that is further outside than half a cube.
 void check_probes(PreparedCase& prepared) {
-  const Mesh& body = *prepared.tetrahedra.back();
+  const Mesh& body = *prepared.body.tetrahedra.back();
   const std::vector<OuterFacet> facets = outer_facets(body);
   const FacetTree tree(body, facets);
   const auto finer = [](const Lattice& a, const Lattice& b) { return a.voxel_edge < b.voxel_edge; };
@@ -314,8 +314,8 @@ void check_probes(PreparedCase& prepared) {
   for (const Probe& p : prepared.experiment.probes) {
     if (prepared.lattices.front().region->inside(p.at)) continue;
     const auto [facet, point, distance] = tree.nearest(p.at);
-    if (distance > 1e-6 * prepared.size.norm() + bulge(body, facets, facet))
-      prepared.notes.push_back(
+    if (distance > 1e-6 * prepared.body.size.norm() + bulge(body, facets, facet))
+      prepared.body.notes.push_back(
           fmt::format("probe '{}' lies {:.3g} m outside the body: its displacement is extrapolated", p.name, distance));
     if (distance > slack)
       throw InputError(fmt::format(
@@ -329,7 +329,7 @@ void prepare_body(PreparedCase& prepared, std::string& hint) {
   const MeshRequest request = body_request(prepared);
   mesh_the_body(request, prepared, hint);
   std::vector<std::string> patches;
-  for (const Patch& p : prepared.tetrahedra.back()->patches) patches.push_back(p.name);
+  for (const Patch& p : prepared.body.tetrahedra.back()->patches) patches.push_back(p.name);
   check_patches(e, patches);
   cut_lattices(prepared);
   mesh_like_lattices(request, prepared);
@@ -363,7 +363,7 @@ void prepare_voxel_body(PreparedCase& prepared) {
 
 std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
                                               std::vector<PatchReaction> reactions) {
-  const Mesh& body = *prepared.tetrahedra.back();
+  const Mesh& body = *prepared.body.tetrahedra.back();
   for (PatchReaction& r : reactions)
     r.torque += (centroid(own, patch(own, r.patch)) - centroid(body, patch(body, r.patch))).cross(r.force);
   return reactions;

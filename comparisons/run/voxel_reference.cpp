@@ -12,12 +12,6 @@
 namespace springproof {
 namespace {
 
-NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
-  NodalVectors both(a.rows() + b.rows(), 3);
-  both << a, b;
-  return both;
-}
-
 using Meshes = std::vector<std::shared_ptr<const Mesh>>;
 
 /// Each element on each mesh, the meshes of one element one after the other.
@@ -39,12 +33,12 @@ std::vector<fem::Solution> solve_tetrahedra(const PreparedCase& prepared, const 
   fem::Request request = fem::request_of(e, material);
   request.loads = prepared.loads;
   request.grids = grids;
-  request.points = stacked(prepared.body_points, measured);
+  request.points = stacked(prepared.samples.points, measured);
   request.stress_points = stress_points(prepared);
   request.meshes = meshes;
   request.vtu_single = vtu_single;
   const auto to_lattices = [&](const fem::Solution& s) {
-    return at_lattice_nodes(prepared, s.displacement.topRows(prepared.body_points.rows()));
+    return at_lattice_nodes(prepared, s.displacement.topRows(prepared.samples.points.rows()));
   };
   std::vector<fem::Solution> solutions = solve_each(request, keeper, [&](std::size_t g, const fem::Solution& s) {
     if (coarsest && g == 0) coarsest(to_lattices(s));
@@ -82,10 +76,7 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Latti
     if (!s.ok) continue;
     s.reactions = about_true_patches(prepared, *mesh, s.reactions);
     const NodalVectors measured = at_measured_points(prepared, lattice, s.displacement);
-    NodalVectors all = NodalVectors::Zero(prepared.nodes() + measured.rows(), 3);
-    all.middleRows(lattice.first_node, mesh->nodes.rows()) = s.displacement;
-    all.bottomRows(measured.rows()) = measured;
-    s.displacement = std::move(all);
+    s.displacement = known_at(prepared, lattice, s.displacement, measured);
   }
   return solutions;
 }
@@ -97,7 +88,7 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
                                              ErrorSplit split) {
   const std::map<std::string, double> truth = values_of(body.scalars), limit = values_of(voxels.limits);
   const std::vector<std::string> patches = comparable_moved_patches(prepared);
-  const double length = prepared.size.maxCoeff();
+  const double length = prepared.body.size.maxCoeff();
   const auto distance = [&](const auto& a, const auto& b) {
     const auto difference = reaction_difference(a, b, body.scalars, patches, length);
     return difference ? difference->error : 0;
@@ -122,13 +113,13 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
                                 const RunKeeper& keeper, const CoarsestField& coarsest) try {
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
-  std::vector<fem::Discretisation> grids = grids_on(prepared.tetrahedra, e.reference.elements);
+  std::vector<fem::Discretisation> grids = grids_on(prepared.body.tetrahedra, e.reference.elements);
   for (fem::Discretisation& grid : grids)
-    if (grid.mesh + 1 == static_cast<int>(prepared.tetrahedra.size()))
+    if (grid.mesh + 1 == static_cast<int>(prepared.body.tetrahedra.size()))
       grid.vtu = reference_file(vtu, grid.element, material.poisson_ratio);
   std::vector<fem::Solution> solutions =
-      solve_tetrahedra(prepared, material, grids, prepared.tetrahedra, keeper, vtu.single, coarsest);
-  for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.uncut[s.grid.mesh];
+      solve_tetrahedra(prepared, material, grids, prepared.body.tetrahedra, keeper, vtu.single, coarsest);
+  for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.body.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {
     out.elements.push_back({element, {at, at + 3}});

@@ -26,7 +26,7 @@ PreparedCase prepared_block(const std::string& exact) {
   e.exact = exact;
   e.measures = {"displacement_error", "displacement_error_order", "probe", "stress"};
   e.probes = {{"D", {1, 1, 1}}};
-  prepared.size = Vec3::Ones();
+  prepared.body.size = Vec3::Ones();
   add_lattice({{3, 3, 3}, std::make_shared<Mesh>(block_mesh({1, 1, 1}, {3, 3, 3}))}, prepared);
   prepared.reference_cells = {16, 16, 16};
   return prepared;

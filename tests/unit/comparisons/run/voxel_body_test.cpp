@@ -83,7 +83,7 @@ class LoadsOfTheBall : public testing::TestWithParam<std::size_t> {
   const Load& load = ball.loads[1 + GetParam()];
   const Mesh& voxels = *ball.lattices.front().mesh;
   const Vec3 about{0.3, -0.1, 0.05};
-  const Wrench expected = wrench_on_the_body(load, *ball.tetrahedra.back(), about);
+  const Wrench expected = wrench_on_the_body(load, *ball.body.tetrahedra.back(), about);
 };
 
 TEST_P(LoadsOfTheBall, AreThoseOfTheBodyOnVoxels) {
@@ -125,11 +125,11 @@ TEST(VoxelBody, LinearFieldsComeBackAtEveryLatticeNode) {
     return (X * G.transpose()).rowwise() + Eigen::RowVector3d(0.3, -2, 1);
   };
   NodalVectors nodes = ball.lattices[0].mesh->nodes;
-  const NodalVectors u = at_lattice_nodes(ball, field(ball.body_points));
+  const NodalVectors u = at_lattice_nodes(ball, field(ball.samples.points));
   ASSERT_EQ(u.rows(), nodes.rows());
   EXPECT_LE((u - field(nodes)).cwiseAbs().maxCoeff(), 1e-12);
-  const auto outside = std::count_if(ball.body_samples.begin(), ball.body_samples.end(),
-                                     [](const BodySample& s) { return s.within >= 0; });
+  const auto outside = std::count_if(ball.samples.of_nodes.begin(), ball.samples.of_nodes.end(),
+                                     [](const NodeSample& s) { return s.within >= 0; });
   EXPECT_GT(outside, nodes.rows() / 10);
 }
 
@@ -223,11 +223,11 @@ TEST(VoxelBody, RefinedLatticesKeepTheirPromiseAndHaveALimit) {
   EXPECT_NEAR(value("hybmss_avg extrapolated", fine, "displacement.top.z"),
               u + step * fine.promised / (coarse.promised - fine.promised), 1e-12 * std::abs(u));
   EXPECT_NE(value("emsm", fine, "displacement.top.z"), 0);
-  const std::string notes = fmt::format("{}", fmt::join(prepared.notes, "\n"));
+  const std::string notes = fmt::format("{}", fmt::join(prepared.body.notes, "\n"));
   EXPECT_NE(notes.find("promise a displacement error of"), std::string::npos) << notes;
   EXPECT_THROW(case_of_modes(experiment, {.free = true}), InputError);
   expect_cells_fill_the_body(vtu / (vtu_stem({"hybmss_avg", 0.3, fine.cells}) + "_cells.vtu"), *fine.cut,
-                             volume(*prepared.tetrahedra.back(), prepared.tetrahedra.back()->nodes));
+                             volume(*prepared.body.tetrahedra.back(), prepared.body.tetrahedra.back()->nodes));
   std::filesystem::remove_all(vtu);
 }
 
@@ -235,7 +235,7 @@ TEST(VoxelBody, TorquesMoveToTheTruePatch) {
   const PreparedCase& ball = loaded_ball();
   const Mesh& voxels = *ball.lattices[0].mesh;
   const Vec3 from = centroid(voxels, patch(voxels, "low")),
-             to = centroid(*ball.tetrahedra.back(), patch(*ball.tetrahedra.back(), "low"));
+             to = centroid(*ball.body.tetrahedra.back(), patch(*ball.body.tetrahedra.back(), "low"));
   ASSERT_GT((from - to).norm(), 1e-4);
   const Vec3 force(1, 2, 3), at(0.05, 0.1, 0.02);
   const auto moved = about_true_patches(ball, voxels, {{"low", force, (at - from).cross(force)}});
