@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "comparisons/bench/interrupt.h"
-#include "comparisons/run/find_cases.h"
+#include "comparisons/sweep/find_cases.h"
 #include "problem/system/child.h"
 #include "problem/system/files.h"
 #include "problem/system/streams.h"

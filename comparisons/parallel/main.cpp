@@ -5,13 +5,13 @@
 #include <chrono>
 #include <thread>
 
-#include "comparisons/commands/number_checks.h"
 #include "comparisons/parallel/parted_run.h"
 #include "comparisons/parallel/slab_run.h"
 #include "msm/parallel/parted_equations.h"
 #include "problem/system/input_error.h"
 #include "problem/system/mpi_start.h"
 #include "problem/system/named_files.h"
+#include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "comparisons/run/model_run.h"
+#include "comparisons/models/model_run.h"
 #include "comparisons/run/prepare.h"
 #include "msm/parallel/parted_problem.h"
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/reference/reference_grids.h"
 #include "comparisons/run/case_motion.h"
-#include "comparisons/run/reference_grids.h"
 #include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 

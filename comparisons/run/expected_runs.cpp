@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "comparisons/run/grid_cost.h"
-#include "comparisons/run/motion_reference.h"
+#include "comparisons/models/motion_reference.h"
+#include "comparisons/reference/grid_cost.h"
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/voxel_reference.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/voxel_reference.h"
 #include "meshes/volume.h"
 #include "problem/case_file/external.h"
 

@@ -1,10 +1,10 @@
-// The samples of a model in a part that is being run: each a run that is kept (comparisons/run/run_keeper.h).
+// The samples of a model in a part that is being run: each a run that is kept (comparisons/reference/run_keeper.h).
 #pragma once
 
 #include <vector>
 
-#include "comparisons/run/fracture_run.h"
-#include "comparisons/run/model_run.h"
+#include "comparisons/models/fracture_run.h"
+#include "comparisons/models/model_run.h"
 #include "comparisons/run/part_run.h"
 
 namespace springproof {

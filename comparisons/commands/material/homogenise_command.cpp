@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "comparisons/commands/material/material_options.h"
-#include "comparisons/commands/number_checks.h"
-#include "comparisons/run/status.h"
+#include "comparisons/sweep/status.h"
 #include "msm/algebra/dense.h"
 #include "msm/measure/statistics.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/periodic_model.h"
+#include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/commands/material/material_options.h"
-#include "comparisons/commands/number_checks.h"
 #include "comparisons/engines/engine_facts.h"
 #include "comparisons/results/facts.h"
 #include "msm/dynamics/time_step.h"
@@ -21,6 +20,7 @@
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/bulk_calibration.h"
 #include "msm/topology/cubic_lattice.h"
+#include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

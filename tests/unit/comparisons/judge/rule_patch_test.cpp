@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/voxel_reference.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/voxel_reference.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/patches/rule_region.h"
 #include "msm/embedding/boundary.h"
