@@ -31,19 +31,6 @@ struct Moduli {
   std::optional<double> lame_lambda;     ///< lambda [Pa]
 };
 
-/// A modulus as case files and the command line name it.
-struct ModulusName {
-  const char* key;     ///< with its unit: "youngs_modulus_Pa"
-  const char* symbol;  ///< "E"; null: none in ASCII
-  std::optional<double> Moduli::*member;
-};
-
-inline constexpr ModulusName modulus_names[] = {{"youngs_modulus_Pa", "E", &Moduli::youngs_modulus},
-                                                {"poisson_ratio", "nu", &Moduli::poisson_ratio},
-                                                {"shear_modulus_Pa", "G", &Moduli::shear_modulus},
-                                                {"bulk_modulus_Pa", "K", &Moduli::bulk_modulus},
-                                                {"lame_lambda_Pa", nullptr, &Moduli::lame_lambda}};
-
 /// The material with exactly two given moduli.
 /// @throws std::invalid_argument naming the modulus, its value and the allowed range, if not exactly two are
 ///   given, if one is out of range, or if they admit no solid with E > 0 and -1 < nu < 1/2.

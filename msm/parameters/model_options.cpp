@@ -1,4 +1,6 @@
 // Model options of a case file: one row per option.
+#include "msm/parameters/model_options.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

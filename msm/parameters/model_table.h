@@ -115,21 +115,6 @@ struct ModelParameters {
   bool has(Extension extension) const { return row.extension == extension; }
 };
 
-/// An option of models, as in `{ model = "hybmss", face_to_cube = 1 }`.
-struct ModelOption {
-  enum class Type { flag, number, name };
-
-  std::string name;     ///< "face_to_cube"
-  std::string what;     ///< of which models, its meaning, its default
-  std::string allowed;  ///< "a number >= 0"
-  Type type;            ///< of its value
-  bool of_body;         ///< how the springs fill a body; their moduli do not depend on it
-};
-
-/// The options of all models.
-/// @return each once
-std::vector<ModelOption> model_options();
-
 /// Looks up a model and sets its options.
 /// @param choice name of a row, or springs file, and options: `resolve({"hybmss_avg", {}, "", {}})`
 /// @return the row with all options set, those not given to their defaults

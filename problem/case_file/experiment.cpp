@@ -8,6 +8,7 @@
 
 #include "problem/body_size.h"
 #include "problem/case_file/experiment_parts.h"
+#include "problem/moduli.h"
 #include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "msm/parameters/model_table.h"
+#include "msm/parameters/model_options.h"
 #include "problem/case_file/keys.h"
+#include "problem/moduli.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {
