@@ -16,13 +16,13 @@
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/periodic_model.h"
-#include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
 namespace {
 
 constexpr int random_nodes = 1331, lattice_nodes = 27;
+constexpr double spacing = 0.1;             // [m] of nodes; moduli do not depend on it
 constexpr std::size_t telling_samples = 5;  // tell a bias from scatter
 
 struct Sample {
@@ -61,21 +61,20 @@ MeanAndSpread over(const std::vector<Sample>& samples, const Quantity& quantity)
   return m;
 }
 
-Sample measure(ModelParameters p, const IsotropicMaterial& material, double spacing, int nodes, std::uint64_t seed) {
+Sample measure(ModelParameters p, const IsotropicMaterial& material, int nodes, std::uint64_t seed) {
   p.random.seed = seed;
   const MassSpringModel model = periodic_model(p, material, spacing, nodes);
   const NetworkStatistics s = statistics(model.network);
   return {seed, s.nodes, s.springs_per_node, homogenise(model)};
 }
 
-std::vector<Sample> measure_seeds(const ModelParameters& p, const IsotropicMaterial& material, double spacing,
-                                  int nodes) {
+std::vector<Sample> measure_seeds(const ModelParameters& p, const IsotropicMaterial& material, int nodes) {
   std::vector<Sample> samples;
   Status status;
   const Status::Working working(status, fmt::format("homogenise {}", p.row.name));
   for (int i = 0; i < p.seeds; ++i) {
     progress::phase(fmt::format("network {} of {}, about {} nodes", i + 1, p.seeds, nodes));
-    samples.push_back(measure(p, material, spacing, nodes, p.random.seed + static_cast<std::uint64_t>(i)));
+    samples.push_back(measure(p, material, nodes, p.random.seed + static_cast<std::uint64_t>(i)));
   }
   return samples;
 }
@@ -100,8 +99,7 @@ nlohmann::json matrix_json(const Eigen::Matrix<double, 6, 6>& C) {
   return rows;
 }
 
-nlohmann::json to_json(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m,
-                       double spacing) {
+nlohmann::json to_json(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m) {
   nlohmann::json out = {{"model", {{"name", p.row.name}, {"spacing_m", spacing}}},
                         {"notation", "Voigt: xx yy zz yz zx xy, engineering shear strains"}};
   for (const Quantity& q : quantities) {
@@ -151,7 +149,7 @@ std::string ratio_words(const std::vector<Sample>& samples, const ModelParameter
                             : fmt::format("beyond scatter, ratio is a bias of the model: {}.", off));
 }
 
-void print(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m, double spacing) {
+void print(const std::vector<Sample>& samples, const ModelParameters& p, const IsotropicMaterial& m) {
   const Sample& first = samples.front();
   to_stdout("model      {}: {}\n", p.row.name, p.row.what);
   to_stdout("cell       {} nodes, {:.3g} springs per node, spacing {:.6g} m, {} sample{}\n\n", first.nodes,
@@ -182,9 +180,6 @@ void print(const std::vector<Sample>& samples, const ModelParameters& p, const I
 void HomogeniseCommand::add_options(CLI::App& command) {
   add_moduli(command, moduli_);
   add_model(command, choice_);
-  command.add_option("--spacing", spacing_, "cell edge, or mean distance (V/N)^(1/3) of random nodes [m]")
-      ->check(positive())
-      ->capture_default_str();
   command
       .add_option(
           "--nodes", nodes_,
@@ -197,11 +192,11 @@ int HomogeniseCommand::run() const {
   const IsotropicMaterial m = material_of(moduli_);
   const ModelParameters p = resolve(choice_);
   const int nodes = nodes_.value_or(p.row.topology == Topology::random ? random_nodes : lattice_nodes);
-  const std::vector<Sample> samples = measure_seeds(p, m, spacing_, nodes);
+  const std::vector<Sample> samples = measure_seeds(p, m, nodes);
   if (json_)
-    to_stdout("{}\n", to_json(samples, p, m, spacing_).dump(2));
+    to_stdout("{}\n", to_json(samples, p, m).dump(2));
   else
-    print(samples, p, m, spacing_);
+    print(samples, p, m);
   return 0;
 }
 

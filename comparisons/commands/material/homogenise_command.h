@@ -22,7 +22,6 @@ class HomogeniseCommand {
 
  private:
   Moduli moduli_;
-  double spacing_ = 0.1;
   std::optional<int> nodes_;
   ModelChoice choice_{"msm_random", {}, "msm_random", {}};
   bool json_ = false;
