@@ -149,7 +149,7 @@ TEST(VoxelBody, ThinPartsAreSaidToBeLost) {
     std::string text = ball_case(100, "", "\"hybmss\"", "elements = []\nedge_m = 0.03");
     text.replace(text.find("voxels = 100"), 12, voxels);
     std::string all;
-    for (const std::string& note : prepare(parse_experiment(text, "ball.toml")).notes) all += note + "\n";
+    for (const std::string& note : prepare(parse_experiment(text, "ball.toml")).body.notes) all += note + "\n";
     return all;
   };
   // 8 cubes of 0.1 m fill the box around the ball: 6 / pi = 1.91 times its volume (1 % more, as its facets lie inside).
@@ -277,7 +277,7 @@ std::vector<std::string> notes_on_a_probe(const Vec3& at) {
   std::string text = ball_case(300, every_load, "\"hybmss\"", "elements = []\nedge_m = 0.03");
   const std::string there = "at_m = [0.1, 0.1, 0.19]";
   text.replace(text.find(there), there.size(), fmt::format("at_m = [{}, {}, {}]", at[0], at[1], at[2]));
-  std::vector<std::string> notes = prepare(parse_experiment(text, "ball.toml")).notes;
+  std::vector<std::string> notes = prepare(parse_experiment(text, "ball.toml")).body.notes;
   std::erase_if(notes, [](const std::string& n) { return n.find("probe") == std::string::npos; });
   return notes;
 }

@@ -33,7 +33,7 @@ const PreparedCase& ball() {
 
 /// Of all loads about the true patch that is held.
 Wrench total_load() {
-  const Mesh& body = *ball().tetrahedra.back();
+  const Mesh& body = *ball().body.tetrahedra.back();
   Wrench total{Vec3::Zero(), Vec3::Zero(), centroid(body, patch(body, "low"))};
   for (const Load& load : ball().loads) {
     Wrench w;
