@@ -13,7 +13,6 @@
 #include "comparisons/bench/gpu.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/page.h"
-#include "comparisons/bench/parallel.h"
 #include "comparisons/bench/statics.h"
 #include "comparisons/bench/table.h"
 #include "comparisons/results/records.h"
@@ -35,11 +34,10 @@ void add_options(CLI::App& app, BenchOptions& options) {
          "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
          "damped dynamics), "
          "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
-         "cases), parallel (springproof-lattice on several processes against one), gpu (steps of lattices on the GPU "
-         "against this processor), all of these; "
+         "cases), gpu (steps of lattices on the GPU against this processor), all of these; "
          "engines (real-time engines and our springs by the same measures; some 15 minutes)")
       ->required()
-      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "parallel", "gpu", "engines", "all"}));
+      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "gpu", "engines", "all"}));
   app.add_option("--json", options.json, "write the figures to this file too");
   app.add_option("--out", options.out, "folder for bench.html, with the roofline, and bench.json");
   app.add_flag("--quick", options.quick, "small sizes: a look at the table in half a minute, no measurement");
@@ -88,7 +86,6 @@ void measure(const BenchOptions& options, Measured& m) {
     fem = bench_fem(options, findings);
     if (!fem.is_null()) bench_calculix(options, findings);
   }
-  if (wants(options, "parallel")) bench_parallel(options, findings);
   if (wants(options, "gpu")) bench_gpu(options, findings);
   if (options.what == "engines") {
     if (options.install) install_packages();

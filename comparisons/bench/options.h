@@ -8,7 +8,7 @@
 namespace springproof::bench {
 
 struct BenchOptions {
-  std::string what;  ///< "dynamics", "statics", "fem", "experiments", "parallel", "gpu", "engines", "all" (but engines)
+  std::string what;  ///< "dynamics", "statics", "fem", "experiments", "gpu", "engines", "all" (but engines)
   std::filesystem::path json, out;         ///< file for the figures; folder for bench.html and bench.json; empty: none
   bool quick = false;                      ///< small sizes, few samples: some 30 s for everything
   std::string engine;                      ///< engines: only set-ups with this in their name

@@ -82,8 +82,6 @@ struct Variable {
 
 constexpr std::array environment = {
     Variable{"SPRINGPROOF_FEM_PROGRAM", "the finite element program, instead of springproof-fem beside springproof"},
-    Variable{"SPRINGPROOF_LATTICE_PROGRAM",
-             "the program of springproof bench parallel, instead of springproof-lattice beside it"},
     Variable{"SPRINGPROOF_MESH_PROGRAM", "the mesher, instead of springproof-mesh beside springproof"},
     Variable{"SPRINGPROOF_BENCH_PROGRAM", "the bench, instead of springproof-bench beside springproof"},
     Variable{"SPRINGPROOF_PROGRAM", "the springproof that the bench measures, instead of the one beside it"},
@@ -98,8 +96,8 @@ constexpr std::array environment = {
     Variable{
         "SPRINGPROOF_DEVICE",
         "processor or gpu: where steps of lattices of whole cells are made (default: processor; gpu: in a build with "
-        "SPRINGPROOF_CUDA, explicit steps without viscosity; equilibria are the processor's; not by the live page "
-        "and springproof-lattice)"},
+        "SPRINGPROOF_CUDA, explicit steps without viscosity; equilibria are the processor's; not by the live "
+        "page)"},
     Variable{"SPRINGPROOF_LAMMPS", "the lmp of LAMMPS that the bench measures beside ours, instead of the one on PATH"},
     Variable{"SPRINGPROOF_ENGINES",
              "folder whose node_modules has the engines of bench engines (default: "

@@ -34,7 +34,7 @@ std::string versions() {
   text += fmt::format("springproof-mesh: {}",
                       or_absent(version_of(find_program("springproof-mesh", "SPRINGPROOF_MESH_PROGRAM"))));
   const std::string petsc = SPRINGPROOF_PETSC_VERSION;
-  if (!petsc.empty()) text += fmt::format("\nspringproof-bench, springproof-lattice: PETSc {}", petsc);
+  if (!petsc.empty()) text += fmt::format("\nspringproof-bench, springproof-mpi: PETSc {}", petsc);
   return text;
 }
 

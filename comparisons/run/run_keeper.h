@@ -63,12 +63,14 @@ class RunKeeper {
     if (sayer_) sayer_(words);
   }
 
+  /// Keeps a run that was made elsewhere, in place of one of this name.
+  void keep(const std::string& name, const nlohmann::json& content) const;
+
   /// Removes what is kept.
   void forget() const;
 
  private:
   std::unique_ptr<nlohmann::json> find(const std::string& name) const;
-  void keep(const std::string& name, const nlohmann::json& content) const;
   void tell(const std::string& name, const RunCost& expected, std::optional<double> took) const;
 
   std::filesystem::path folder_;

@@ -68,7 +68,8 @@ std::vector<Experiment> read_all(const std::vector<fs::path>& cases, const Suite
   return all;
 }
 
-/// The parts of the cases, shared out if that is wanted.
+}  // namespace
+
 Sweep planned(const std::vector<Experiment>& cases, const SuiteOptions& options) {
   Sweep sweep{SPRINGPROOF_VERSION, fem::version(), options.shard.value_or(Shard{}).count,
               options.finer,       options.vtu,    {}};
@@ -91,6 +92,8 @@ Sweep planned(const std::vector<Experiment>& cases, const SuiteOptions& options)
     for (PlannedPart& p : c.parts) p.shard = *shard++;
   return sweep;
 }
+
+namespace {
 
 /// The cases prepared before an interrupt, which also ends the mesher and is said.
 std::vector<PreparedCase> prepare_all(const std::vector<Experiment>& cases, bool quiet) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "comparisons/run/shard.h"
+#include "comparisons/run/sweep.h"
 
 namespace springproof {
 
@@ -22,6 +23,9 @@ struct SuiteOptions {
   int finer = 1;                       ///< reference grids with so many times the cells along each direction
   std::optional<Shard> shard;          ///< only this share of the parts, without results; finished parts are kept
 };
+
+/// The parts of the cases, as compare() runs and keeps them: shared out if that is wanted.
+Sweep planned(const std::vector<Experiment>& cases, const SuiteOptions& options);
 
 /// Runs the cases and writes results.csv, results.json, report.html and vtu/ into options.out; of a shard only its
 /// parts, for report_sweep (comparisons/run/sweep_report.h).

@@ -150,7 +150,7 @@ class Selection {
 
 ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own) {
   if (!whole.network.image_of.empty()) throw std::invalid_argument("a periodic network is not parted");
-  if (!conservative(whole)) throw std::invalid_argument("forces without an energy are not parted");
+  if (!conservative(whole)) throw std::invalid_argument("its forces have no energy, so its stiffness is not symmetric");
   if (const MomentumDispersion* dispersion = dispersion_of(whole);
       dispersion && dispersion->form == Dispersion::finite_strain)
     throw std::invalid_argument("momentum dispersion of finite strain is not parted");

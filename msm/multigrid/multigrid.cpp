@@ -38,13 +38,14 @@ bool holds_rigid_motions(const LatticeLevel& level) {
   return found[0] > 1e-12 * found[5];
 }
 
-}  // namespace
-
+/// Largest eigenvalue of diag(K)^-1 K of one cell: a bound for every lattice of such cells.
 double largest_scaled_eigenvalue(const CellMatrix& cell) {
   const CellVector root = cell.diagonal().cwiseSqrt().cwiseInverse();
   const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
   return symmetric_eigenvalues(scaled)[23];
 }
+
+}  // namespace
 
 void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float, DirectSolver& coarsest) {
   const LatticeLevel& level = lattice.levels.back();
@@ -165,24 +166,20 @@ void SmoothingLevel::smooth(int first, int last) {
       K.kernels().chebyshev(n, y, inverse_diagonal.data() + at, static_cast<float>(step.previous),
                             static_cast<float>(step.step), r.data() + at, z.data() + at, x.data() + at);
     });
-    if (complete && k < last) complete(z);
   }
 }
 
 /// r -= K z.
 void SmoothingLevel::take_residual() {
-  if (complete) complete(z);
   K.pass(z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
     r.segment(a * K.stride() + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
   });
-  if (complete) complete(r);
   K.level().clear_fixed(r);
 }
 
 void SmoothingLevel::before_coarse(int degree) {
   z = static_cast<float>(ChebyshevStep(1, largest_eigenvalue).step) * inverse_diagonal.cwiseProduct(r);
   x = z;
-  if (complete) complete(z);
   smooth(2, degree);
   take_residual();
   if (!thin) return;

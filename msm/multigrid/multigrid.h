@@ -1,7 +1,6 @@
 // Geometric multigrid on lattices: the displacement form, for Poisson's ratios away from 1/2.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -42,16 +41,11 @@ struct SmoothingLevel {
   Eigen::VectorXf r, z, x;           ///< nodal fields
   double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
   std::unique_ptr<ThinParts> thin;   ///< null: none
-  std::function<void(Eigen::VectorXf&)>
-      complete;  ///< sets a field's ghost values from other processes; empty: there are none
 
  private:
   void smooth(int first, int last);
   void take_residual();
 };
-
-/// Largest eigenvalue of diag(K)^-1 K of one cell: a bound for every lattice of such cells.
-double largest_scaled_eigenvalue(const CellMatrix& cell);
 
 /// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; matrix-free above the
 /// coarsest level.  The cycle works in single precision, the Krylov method that it preconditions in double.
@@ -73,11 +67,6 @@ class Multigrid {
   /// z = M^-1 r, symmetric positive definite.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
   double largest_diagonal() const { return largest_diagonal_; }
-
-  /// The finest level and the cycle on it, x from r, in units of the mean diagonal entry of the cell: for outer cycles
-  /// with finer levels.
-  SmoothingLevel& finest() { return levels_[0]; }
-  void cycle() { cycle(0); }
 
  private:
   void multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y);

@@ -159,7 +159,8 @@ Equilibrium PartedProblem::solve(double tolerance, int max_iterations) {
   const Solution s = mixed_ ? solve_mixed(tolerance, max_iterations) : solve_displacements(tolerance, max_iterations);
   Equilibrium result;
   result.unknowns = unknowns_;
-  result.solver = s.solver;
+  const int processes = size_of(communicator_);
+  result.solver = fmt::format("{}, {} process{}", s.solver, processes, processes == 1 ? "" : "es");
   result.iterations = s.outcome.iterations;
   result.residual = s.outcome.residual;
   result.ok = s.outcome.converged;

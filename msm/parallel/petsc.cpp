@@ -11,11 +11,6 @@ double Sum::operator()(double own) const {
   return own;
 }
 
-double Sum::largest(double own) const {
-  MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_DOUBLE, MPI_MAX, communicator);
-  return own;
-}
-
 void Sum::all(double* values, long count) const {
   constexpr long most = 1 << 24;
   for (long first = 0; first < count; first += most)

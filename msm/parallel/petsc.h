@@ -59,11 +59,10 @@ using PetscSolver = Owned<KSP, KSPDestroy>;
 using PetscIndices = Owned<IS, ISDestroy>;
 using PetscKernel = Owned<MatNullSpace, MatNullSpaceDestroy>;
 
-/// Sums and largest values over all processes.
+/// Sums over all processes.
 struct Sum {
   MPI_Comm communicator;
   double operator()(double own) const;
-  double largest(double own) const;
   /// Adds up values of all processes, entry by entry; any number of them.
   void all(double* values, long count) const;
 };

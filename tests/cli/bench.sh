@@ -3,9 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 program=$1
 
-benches="dynamics statics"
-command -v mpirun >/dev/null && [ -x "$(dirname "$program")/springproof-lattice" ] && benches+=" parallel"
-for what in $benches; do
+for what in dynamics statics; do
   "$program" bench $what --quick --json "$work/$what.json" --out "$work/$what" >"$work/$what.txt" 2>"$work/$what.err"
   status=$?
   [ $status -eq 0 ] || { fail "$what ended with $status"; cat "$work/$what.txt" "$work/$what.err"; }
