@@ -59,12 +59,6 @@ std::vector<int> owners_above(const Weights& weights, const std::vector<int>& ow
   return above;
 }
 
-EquationNumbers number_all(const std::vector<int>& owner, MPI_Comm communicator) {
-  std::vector<int> all(owner.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  return number_equations(owner, all, communicator);
-}
-
 /// `block` unknowns per point; rows of `fixed` unknowns (empty: none) are zero.
 PetscMatrix transfer_matrix(const Weights& weights, const EquationNumbers& fine, const EquationNumbers& coarse,
                             int block, const std::vector<char>& fixed, MPI_Comm communicator) {
@@ -99,10 +93,10 @@ PetscMatrix transfer_matrix(const Weights& weights, const EquationNumbers& fine,
 /// The equations on each level: those of the finest by `owner`, and as the weights lead to coarser ones.
 std::vector<EquationNumbers> equations_of(const std::vector<Weights>& weights, std::vector<int> owner,
                                           const std::vector<std::size_t>& sizes, MPI_Comm communicator) {
-  std::vector<EquationNumbers> equations = {number_all(owner, communicator)};
+  std::vector<EquationNumbers> equations = {number_equations(owner, communicator)};
   for (std::size_t l = 0; l < weights.size(); ++l) {
     owner = owners_above(weights[l], owner, sizes[l + 1]);
-    equations.push_back(number_all(owner, communicator));
+    equations.push_back(number_equations(owner, communicator));
   }
   return equations;
 }

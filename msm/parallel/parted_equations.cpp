@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <numeric>
 
 #include "msm/parallel/lattice_multigrid.h"
 
@@ -91,6 +92,12 @@ bool is_own(const EquationNumbers& equations, int number) {
 }
 
 }  // namespace
+
+EquationNumbers number_equations(const std::vector<int>& owner, MPI_Comm communicator) {
+  std::vector<int> all(owner.size());
+  std::iota(all.begin(), all.end(), 0);
+  return number_equations(owner, all, communicator);
+}
 
 EquationNumbers number_equations(const std::vector<int>& owner, const std::vector<int>& of_part,
                                  MPI_Comm communicator) {

@@ -7,16 +7,18 @@
 
 namespace springproof {
 
-/// The places of a part that have equations: nodes, or places of pressures.
+/// The places that have equations: nodes, or places of pressures.
 struct EquationNumbers {
-  std::vector<int> number;  ///< per place of the part in the whole, -1: it has none
-  std::vector<int> own;     ///< places of the part whose equations are this process', in their order
+  std::vector<int> number;  ///< per place, -1: it has none
+  std::vector<int> own;     ///< places whose equations are this process', in their order
   int first = 0;            ///< number of the first of them
 };
 
-/// Numbers `places` of the whole that have an equation, process by process.
+/// Numbers the places that have an equation, process by process.
 /// @param owner process of each, -1: it has no equation
-/// @param of_part numbers of the part's places in the whole
+EquationNumbers number_equations(const std::vector<int>& owner, MPI_Comm communicator);
+
+/// The same for the places `of_part` of them, ascending.
 EquationNumbers number_equations(const std::vector<int>& owner, const std::vector<int>& of_part, MPI_Comm communicator);
 
 /// Matrix of a tangent between free unknowns; fixed unknowns of nodes that are not fixed as a whole keep their diagonal
