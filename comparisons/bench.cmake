@@ -32,19 +32,13 @@ if(TARGET msm_avx2)
   target_compile_definitions(bench PUBLIC SPRINGPROOF_X86_BENCH_KERNELS)
 endif()
 
-# Not the imported targets: their compiler options (Debian's _FORTIFY_SOURCE) are those of another program's build.
-find_package(PkgConfig QUIET)
-if(PkgConfig_FOUND)
-  pkg_check_modules(PETSC QUIET PETSc)
-  pkg_check_modules(MPI_C QUIET mpi-c)
-endif()
-if(PETSC_FOUND AND MPI_C_FOUND)
+if(TARGET msm_parallel)
   target_compile_definitions(bench PRIVATE SPRINGPROOF_PETSC)
-  target_include_directories(bench SYSTEM PRIVATE ${PETSC_INCLUDE_DIRS} ${MPI_C_INCLUDE_DIRS})
-  target_link_libraries(bench PRIVATE ${PETSC_LINK_LIBRARIES} ${MPI_C_LINK_LIBRARIES})
+  target_link_libraries(bench PRIVATE msm_parallel)
 endif()
 
 # Bullet as an engine for `springproof bench engines`: a program of its own, with its own licence; nothing of ours is linked into it.
+find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(BULLET QUIET bullet)
 endif()

@@ -22,7 +22,7 @@ bool has_gamg();
 /// Solves the linearised model for the nodes that are not clamped: MATAIJ, block size 3, rigid-body modes as near null
 /// space, |r| / |f| <= tolerance; PETSc's options apply (PETSC_OPTIONS).  Nodes are clamped in all components or in
 /// none, prescribed displacements are zero.  `other`: what to compare with, n x 3.  Starts PETSc, so once per process.
-/// @throws std::runtime_error if PETSc fails or is not there.
+/// @throws PetscFailure, or std::runtime_error if PETSc is not there.
 GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
                       const NodalVectors& other);
 

@@ -29,13 +29,12 @@ using namespace springproof::bench;
 using Json = nlohmann::json;
 
 void add_options(CLI::App& app, BenchOptions& options) {
-  app.add_option(
-         "WHAT", options.what,
-         "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
-         "damped dynamics), "
-         "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
-         "cases), gpu (steps of lattices on the GPU against this processor), all of these; "
-         "engines (real-time engines and our springs by the same measures; some 15 minutes)")
+  app.add_option("WHAT", options.what,
+                 "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
+                 "damped dynamics), "
+                 "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
+                 "cases), gpu (steps of lattices on the GPU against this processor), all of these; "
+                 "engines (real-time engines and our springs by the same measures; some 15 minutes)")
       ->required()
       ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "gpu", "engines", "all"}));
   app.add_option("--json", options.json, "write the figures to this file too");

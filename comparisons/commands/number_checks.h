@@ -7,14 +7,14 @@
 
 namespace springproof {
 
-/// For CLI::Option::check: a finite number > 0, or where `zero` is allowed >= 0.
-inline CLI::Validator positive(bool zero = false) {
-  const auto refusal = [zero](const std::string& text) -> std::string {
+/// For CLI::Option::check: a finite number > 0.
+inline CLI::Validator positive() {
+  const auto refusal = [](const std::string& text) -> std::string {
     double x = 0;
-    if (CLI::detail::lexical_cast(text, x) && std::isfinite(x) && (x > 0 || (zero && x == 0))) return "";
-    return "is " + text + " (allowed: a finite number " + (zero ? ">= 0)" : "> 0)");
+    if (CLI::detail::lexical_cast(text, x) && std::isfinite(x) && x > 0) return "";
+    return "is " + text + " (allowed: a finite number > 0)";
   };
-  return CLI::Validator(zero ? "NONNEGATIVE" : "POSITIVE").operation(refusal);
+  return CLI::Validator("POSITIVE").operation(refusal);
 }
 
 }  // namespace springproof

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "comparisons/run/chosen_cases.h"
@@ -89,19 +90,18 @@ struct ReadyCase {
   PreparedCase prepared;
   std::vector<std::size_t> numbers;  ///< of the models that are solved
   Sweep plan;
-  std::optional<FolderLock> folder;
+  std::unique_ptr<FolderLock> folder;
 };
 
 ReadyCase make_ready(const std::filesystem::path& file, const MpiOptions& options) {
   ReadyCase ready;
   agree(PETSC_COMM_WORLD, [&] {
     const Experiment e = only(options.suite.poisson_ratios, read_experiment(file));
-    check_kind(e);
     ready.numbers = models_at_rest(e, options.models);
     ready.prepared = prepare(e);
     if (!is_first()) return;
     std::filesystem::create_directories(options.suite.out);
-    ready.folder.emplace(options.suite.out);
+    ready.folder = std::make_unique<FolderLock>(options.suite.out);
     ready.plan = planned({e}, options.suite);
   });
   return ready;
@@ -148,8 +148,7 @@ int solve_case(const std::filesystem::path& file, const MpiOptions& options) {
     for (std::size_t l = 0; l < ready.prepared.lattices.size(); ++l)
       for (const std::size_t number : ready.numbers)
         if (small_enough(e, *ready.prepared.lattices[l].mesh))
-          status = std::max(status,
-                            solve_model(ready.prepared, l, number, e.materials[m], options.tolerance, keeper));
+          status = std::max(status, solve_model(ready.prepared, l, number, e.materials[m], options.tolerance, keeper));
   }
   return status;
 }
@@ -200,6 +199,7 @@ int run_with_mpi(int argc, char** argv) {
   start_mpi_without_network();
   PetscInitialize(&none, nullptr, nullptr, nullptr);
   PetscPopSignalHandler();
+  for (const char* several : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) unsetenv(several);  // what is started here is alone
   try {
     set_solver_options();
     status = parse_and_run(argc, argv);

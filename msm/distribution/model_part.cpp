@@ -40,7 +40,8 @@ std::vector<int> acting(const std::vector<Element>& elements, const Marks& marke
   std::vector<int> numbers;
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const auto nodes = nodes_of(elements[e]);
-    if (std::any_of(nodes.begin(), nodes.end(), [&](int n) { return marked[n]; })) numbers.push_back(static_cast<int>(e));
+    if (std::any_of(nodes.begin(), nodes.end(), [&](int n) { return marked[n]; }))
+      numbers.push_back(static_cast<int>(e));
   }
   return numbers;
 }
@@ -91,7 +92,8 @@ ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nod
   for (ForceLaw& law : part.model.laws)
     if (auto* dispersion = std::get_if<MomentumDispersion>(&law); dispersion && !dispersion->weight.empty()) {
       std::vector<double> weight;
-      for (const int s : springs) weight.insert(weight.end(), {dispersion->weight[2 * s], dispersion->weight[2 * s + 1]});
+      for (const int s : springs)
+        weight.insert(weight.end(), {dispersion->weight[2 * s], dispersion->weight[2 * s + 1]});
       dispersion->weight = std::move(weight);
     }
   return part;

@@ -23,9 +23,9 @@ EquationNumbers number_equations(const std::vector<int>& owner, const std::vecto
 
 /// Matrix of a tangent between free unknowns; fixed unknowns of nodes that are not fixed as a whole keep their diagonal
 /// alone.
-/// @param K of the part
-/// @param network of the part
-/// @param fixed per unknown of the part
+/// @param K with complete rows of the own nodes
+/// @param network that it is of
+/// @param fixed per unknown
 PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNumbers& nodes,
                       const std::vector<char>& fixed, MPI_Comm communicator);
 
@@ -33,8 +33,8 @@ PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNu
 PetscMatrix matrix_of(const NodalForms& B, double unit, const EquationNumbers& pressures, const EquationNumbers& nodes,
                       const std::vector<char>& fixed, MPI_Comm communicator);
 
-/// Diagonal matrix of `values` of own pressures.
-PetscMatrix diagonal_matrix(const Eigen::VectorXd& values, MPI_Comm communicator);
+/// Diagonal matrix of `values` of own equations.
+PetscMatrix diagonal_matrix(const Eigen::VectorXd& values, const EquationNumbers& equations, MPI_Comm communicator);
 
 /// Tells a solver of A, by the nodes' positions, what rigid motions are.
 void set_rigid_motions(Mat A, const NodalVectors& own_positions, MPI_Comm communicator);

@@ -111,7 +111,7 @@ PartedProblem::Solution PartedProblem::solve_mixed(double tolerance, int max_ite
     const Tangent K = tangent(form.springs, form.springs.network.X);
     Eigen::VectorXd internal;
     K.multiply(flat(conditions_.prescribed), internal);
-    A = matrix_of(K, form.springs.network, nodes_, conditions_.fixed, communicator_);
+    A = matrix_of(K, part_.model.network, nodes_, conditions_.fixed, communicator_);
     const Eigen::VectorXd diagonal = K.diagonal();
     const double stiffness = mean(diagonal, 3, nodes_.own, communicator_);
     unit = stiffness / std::sqrt(mean(row_squares(form.B), 1, pressures_.own, communicator_));
@@ -121,8 +121,8 @@ PartedProblem::Solution PartedProblem::solve_mixed(double tolerance, int max_ite
       const double own = form.C[pressures_.own[i]];
       C[i] = own > 0 ? unit * unit * own : stiffness;  // a place without a volume: p = 0
     }
-    minus_C = diagonal_matrix(-C, communicator_);
-    schur = diagonal_matrix(-(1 + kappa_ / 3) * C, communicator_);
+    minus_C = diagonal_matrix(-C, pressures_, communicator_);
+    schur = diagonal_matrix(-(1 + kappa_ / 3) * C, pressures_, communicator_);
     const Eigen::VectorXd f = own_load(internal), g = -unit * (form.B * flat(conditions_.prescribed))(pressures_.own);
     Eigen::VectorXd both(f.size() + g.size());
     both << f, g;

@@ -50,13 +50,13 @@ class PartedProblem {
 
   MPI_Comm communicator_;
   ModelPart part_;
-  double kappa_;                     ///< volume_stiffness_ratio()
-  bool mixed_;                       ///< pressures are unknowns
-  std::vector<char> own_;            ///< nodes of this process
-  BoundaryConditions conditions_;    ///< carried unknowns count as fixed
-  EquationNumbers nodes_;            ///< places: nodes
-  EquationNumbers pressures_;        ///< places: nodes, or cells of the part
-  LatticeTransfers transfers_;       ///< empty: smoothed aggregation
+  double kappa_;                   ///< volume_stiffness_ratio()
+  bool mixed_;                     ///< pressures are unknowns
+  std::vector<char> own_;          ///< nodes of this process
+  BoundaryConditions conditions_;  ///< carried unknowns count as fixed
+  EquationNumbers nodes_;          ///< places: nodes
+  EquationNumbers pressures_;      ///< places: nodes, or cells of the part
+  LatticeTransfers transfers_;     ///< empty: smoothed aggregation
   long unknowns_ = 0, all_cells_ = 0;
 };
 

@@ -27,7 +27,8 @@ PetscMatrix graph(const Network& network, MPI_Comm communicator) {
     begin[n - first + 1] = static_cast<PetscInt>(end - columns);
   }
   PetscMatrix adjacency;
-  require(MatCreateMPIAdj(communicator, last - first, static_cast<PetscInt>(nodes), begin, columns, nullptr, &adjacency));
+  require(
+      MatCreateMPIAdj(communicator, last - first, static_cast<PetscInt>(nodes), begin, columns, nullptr, &adjacency));
   return adjacency;
 }
 
