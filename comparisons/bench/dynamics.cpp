@@ -1,12 +1,10 @@
-#include "comparisons/bench/dynamics.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/bench/benches.h"
 #include "comparisons/bench/bodies.h"
-#include "comparisons/bench/in_child.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/lammps.h"
 #include "comparisons/bench/motion.h"
@@ -78,8 +76,6 @@ void against_peers(const Context& c, const std::string& name, const std::string&
   }
   c.findings.rows.push_back(
       speed_row(c, name + " over the plain loop", size, *ours, seconds[0], "plain loop", seconds[1], plain_target));
-  c.findings.points.push_back(point_of(*ours, seconds[0], c.machine, name, size));
-  c.findings.points.push_back(point_of(plain, seconds[1], c.machine, "plain loop, " + name, size));
 }
 
 void springs_of_lattices(const Context& c) {
@@ -118,9 +114,6 @@ void overhead(const Context& c, const std::string& size, const std::string& name
   const std::vector<double> seconds = least_seconds({ours->advance, base->advance}, c.timer);
   c.findings.rows.push_back({"dynamics", name + " over " + baseline, size, "us per step", 1e6 * seconds[0], baseline,
                              1e6 * seconds[1], target, usage_of(*ours, seconds[0], c.machine), ours->how});
-  const RooflinePoint point = point_of(*ours, seconds[0], c.machine, name, size);
-  const auto same = [&](const RooflinePoint& p) { return p.name == point.name && p.size == point.size; };
-  if (std::none_of(c.findings.points.begin(), c.findings.points.end(), same)) c.findings.points.push_back(point);
 }
 
 /// The same model with dashpots in its cells, or a share of consistent mass.
@@ -192,7 +185,6 @@ void single_precision(const Context& c, int n) {
   const std::vector<double> seconds = least_seconds({fp32->advance, fp64->advance}, c.timer);
   c.findings.rows.push_back(
       speed_row(c, "FP32 over FP64, HybMSS-CF", size, *fp32, seconds[0], "FP64", seconds[1], at_least(2)));
-  c.findings.points.push_back(point_of(*fp32, seconds[0], c.machine, "HybMSS-CF FP32", size));
 }
 
 void several_threads(const Context& c, const std::string& name, const std::string& size, const MassSpringModel& model,

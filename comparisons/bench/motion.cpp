@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "comparisons/bench/bench_kernel_choice.h"
 #include "comparisons/bench/bodies.h"
+#include "comparisons/bench/kernels/bench_kernel_choice.h"
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
@@ -185,12 +185,6 @@ Usage usage_of(const Motion& motion, double seconds, const Machine& machine) {
   const MemoryLevel& level = machine.level_for(motion.work.kept);
   return {motion.work.kept / double(motion.nodes), 1e-9 * motion.work.streamed / seconds / level.GB_s,
           arithmetic_limit(motion, machine.widest()) / seconds};
-}
-
-RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,
-                       const std::string& size) {
-  return {name, size, machine.level_for(motion.work.kept).name, motion.work.flops / motion.work.streamed,
-          1e-9 * motion.work.flops / seconds};
 }
 
 }  // namespace springproof::bench

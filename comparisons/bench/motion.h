@@ -50,8 +50,6 @@ Motion motion_by_forces(const MassSpringModel& model);
 
 /// How well a motion that takes `seconds` per step uses one core.
 Usage usage_of(const Motion& motion, double seconds, const Machine& machine);
-RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,
-                       const std::string& size);
 
 /// Operations of one step of the model, for any implementation.
 Work operations(const MassSpringModel& model);

@@ -1,5 +1,3 @@
-#include "comparisons/bench/parallel.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "comparisons/bench/benches.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/run/find_cases.h"
 #include "problem/system/child.h"

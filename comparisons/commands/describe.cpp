@@ -101,10 +101,6 @@ constexpr std::array environment = {
         "SPRINGPROOF_CUDA, explicit steps without viscosity; equilibria are the processor's; not by the live page "
         "and springproof-lattice)"},
     Variable{"SPRINGPROOF_LAMMPS", "the lmp of LAMMPS that the bench measures beside ours, instead of the one on PATH"},
-    Variable{"SPRINGPROOF_ENGINES",
-             "folder whose node_modules has the engines of bench engines (default: "
-             "$XDG_CACHE_HOME/springproof/engines)"},
-    Variable{"SPRINGPROOF_ENGINE_BULLET", "the program that runs Bullet, instead of springproof-engine-bullet"},
 };
 
 /// The variable of the script that holds the known values of an option or a positional argument.

@@ -25,7 +25,7 @@ plan() {
     "$springproof cross-check "*) echo "check it needs CalculiX; cli.cross_check runs it" ;;
     "$springproof reproduce "*) echo "check minutes; cli.reproduce draws figures from results" ;;
     "$springproof advise "*) echo "check it may end with status 1; cli.advise runs such" ;;
-    "$springproof bench "*) echo "check minutes; cli.bench and cli.bench_engines run such" ;;
+    "$springproof bench "*) echo "check minutes; cli.bench runs such" ;;
     "$springproof diff "*) echo "check it takes the folders of two runs; the tests Differences.* compare such" ;;
     "$springproof pictures"*) echo "check it needs Chromium; cli.pictures runs it" ;;
   esac
