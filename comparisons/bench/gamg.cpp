@@ -121,7 +121,6 @@ GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& co
   require(KSPGetIterationNumber(solver, &iterations));
   result.converged = reason > 0;
   result.iterations = int(iterations);
-  result.memory_MiB = peak_memory_MiB();
   result.difference = difference(u, other, number, free);
   return result;
 }

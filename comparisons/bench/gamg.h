@@ -12,7 +12,6 @@ struct GamgResult {
   bool converged = false;
   int iterations = 0;
   double setup_seconds = 0, solve_seconds = 0;  ///< CPU time; the assembly is not counted
-  double memory_MiB = 0;                        ///< peak of the process
   double difference = 0;                        ///< of the displacement from another, relative (L2)
 };
 

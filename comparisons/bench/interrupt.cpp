@@ -30,7 +30,7 @@ void throw_if_interrupted() {
   if (is_interrupted) throw Interrupted();
 }
 
-nlohmann::json in_child(const std::function<Json()>& work) try {
+nlohmann::json in_child(const std::function<nlohmann::json()>& work) try {
   throw_if_interrupted();
   const std::string text =
       springproof::in_child([&] { return work().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); });
