@@ -1,16 +1,16 @@
 # cmake --install: the programs beside each other, what they read (data_folder in problem/system/child.h finds it from where they lie),
 # the man page and the completion for bash.
-foreach(program springproof springproof-mesh springproof-fem springproof-bench springproof-engine-bullet springproof-lattice)
+foreach(program springproof springproof-mesh springproof-fem springproof-bench springproof-mpi)
   if(TARGET ${program})
     set_target_properties(${program} PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)   # deal.II's and PETSc's libraries
     set(where_built)
-    if(program MATCHES "bench|engine|lattice")   # quickstart.sh does not build these
+    if(program MATCHES "bench|mpi")   # quickstart.sh does not build these
       set(where_built OPTIONAL)
     endif()
     install(TARGETS ${program} DESTINATION bin ${where_built})
   endif()
 endforeach()
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/experiments ${CMAKE_SOURCE_DIR}/comparisons/bench/engines ${CMAKE_SOURCE_DIR}/meshes/geo
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/experiments ${CMAKE_SOURCE_DIR}/meshes/geo
         DESTINATION share/springproof PATTERN *.cpp EXCLUDE)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/advise DESTINATION share/springproof
         FILES_MATCHING PATTERN "*.csv" PATTERN "*.toml")

@@ -45,12 +45,6 @@ set(report_assets
     report_js=${report_dir}/report/page/verification.js
     report_js=${report_dir}/report/page/fem_column.js
     report_js=${report_dir}/report/page/report.js
-    bench_html=${report_dir}/bench/page/bench.html
-    bench_js=${report_dir}/report/page/data.js
-    bench_js=${report_dir}/report/page/figure.js
-    bench_js=${report_dir}/report/page/charts.js
-    bench_js=${report_dir}/bench/page/engines.js
-    bench_js=${report_dir}/bench/page/bench.js
     chart_js=${SPRINGPROOF_CHART_JS}
     three_js=${SPRINGPROOF_THREE_JS}
     orbit_controls_js=${SPRINGPROOF_ORBIT_CONTROLS_JS})

@@ -28,9 +28,8 @@ Frames measure(int n, const IsotropicMaterial& material, Integrator integrator) 
   const double safe = 0.95 * safe_time_step(model, density);
   const bool large = integrator != Integrator::explicit_euler;
   const long steps = large ? 1 : std::lround(std::ceil(frame / safe));
-  DynamicsOptions options;
-  options.integrator = integrator;
-  const auto motion = make_motion(model, density, frame / static_cast<double>(steps), options);
+  const auto motion =
+      make_motion(model, density, {.integrator = integrator, .time_step = frame / static_cast<double>(steps)});
   motion->set_conditions(transfer(loads, mesh, density, Kinematics::finite));
   NodalVectors x = model.network.X;
   x.col(0) += 0.02 * x.col(2);

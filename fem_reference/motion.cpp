@@ -182,7 +182,7 @@ class MidpointRule {
   }
 
   const GridProblem& problem_;
-  const Motion& motion_;
+  const MotionRequest& motion_;
   std::vector<Prescribed> held_;
   BodyCells cells_;
   VectorXd load_;
@@ -199,7 +199,7 @@ void solve_motion(const GridProblem& problem, const Body3& body, const dealii::D
                   Solution& solution) {
   if (process_count() > 1) throw InputError("motion in time is computed by one process");
   start_mpi();
-  const Motion& motion = *problem.motion;
+  const MotionRequest& motion = *problem.motion;
   const double dt = motion.duration / problem.steps;
   const std::vector<Location> places = locate(body, problem.points);
   MidpointRule rule(problem, body, dof_handler);

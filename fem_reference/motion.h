@@ -10,8 +10,8 @@ namespace springproof::fem {
 
 /// Integrates GridProblem::motion in equal steps of the implicit midpoint rule: of second order, without damping of its
 /// own, symplectic, with exact linear and angular momentum; for small strain it is Newmark's average acceleration. With
-/// Motion::energy_momentum its stress is that of step_residual(), so that energy is exact too.  A step is solved by
-/// Newton's method with factors (MUMPS) that are kept while it converges; pressures of the mixed form are unknowns
+/// MotionRequest::energy_momentum its stress is that of step_residual(), so that energy is exact too.  A step is solved
+/// by Newton's method with factors (MUMPS) that are kept while it converges; pressures of the mixed form are unknowns
 /// beside the displacements.  Sets the time, path, kinetic energy, last displacement and description of the solution.
 /// Loads and pressures are dead loads.
 /// @throws InputError for several processes.

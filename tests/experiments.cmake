@@ -13,7 +13,7 @@ set(tested_ratios  # a regular expression of cases, their ratios
     "cross_check/.*" 0.25  # that of CalculiX' values
     "cost/bending" 0.25
     "motion/(released_bar|struck_bar.*)" 0.3
-    "bodies/(rabbit|rabbit_refine.*|l_bracket)" 0.45)
+    "bodies/(rabbit|l_bracket)" 0.45)
 
 # Those that repeat at length what others prove in seconds have the label `long`: the papers' figures one by one (`springproof
 # reproduce` draws them), larger bodies, longer motions, costs.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "comparisons/advise/measure.h"
-#include "comparisons/run/find_cases.h"
+#include "comparisons/sweep/find_cases.h"
 
 namespace springproof {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "comparisons/run/case_run.h"
-#include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/status.h"
+#include "comparisons/sweep/find_cases.h"
+#include "comparisons/sweep/status.h"
 #include "fem_reference/exchange/reference.h"
 #include "problem/system/child.h"
 #include "problem/system/interrupts.h"

@@ -11,9 +11,9 @@
 #include "comparisons/judge/deformation.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
+#include "comparisons/prepare/sampling.h"
+#include "comparisons/reference/reference_grids.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/sampling.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/locate/locate.h"
 #include "meshes/volume.h"
@@ -353,7 +353,7 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   const DeformationSize deformation = deformation_size(mesh, u, e.model_kinematics());
   out.strain = deformation.principal_strain;
   out.rotation_deg = deformation.rotation * 180 / std::numbers::pi;
-  out.size = prepared.size;
+  out.size = prepared.body.size;
   out.volume = volume(mesh, mesh.nodes);
   for (std::size_t m = 0; m < prepared.models.size(); ++m) out.models.push_back(pilot_model(run, m));
   out.elements = pilot_elements(run);

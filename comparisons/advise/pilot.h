@@ -7,7 +7,7 @@
 
 #include "comparisons/advise/load_shares.h"
 #include "comparisons/advise/speed.h"
-#include "comparisons/run/prepared_case.h"
+#include "comparisons/prepare/prepared_case.h"
 
 namespace springproof {
 

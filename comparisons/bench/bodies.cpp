@@ -1,7 +1,5 @@
 #include "comparisons/bench/bodies.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <numbers>
 
@@ -64,10 +62,6 @@ BoundaryConditions clamped_bottom(const Network& network, double depth) {
       bc.external.row(n).setZero();
     }
   return bc;
-}
-
-std::string size_text(const std::array<int, 3>& n) {
-  return n[0] == n[1] && n[1] == n[2] ? fmt::format("{}^3", n[0]) : fmt::format("{} x {} x {}", n[0], n[1], n[2]);
 }
 
 }  // namespace springproof::bench

@@ -30,7 +30,4 @@ NodalVectors moved(const Network& network);
 /// behaviour.
 BoundaryConditions clamped_bottom(const Network& network, double depth = 1e-6 * edge);
 
-/// "30^3", "4 x 4 x 24".
-std::string size_text(const std::array<int, 3>& cells);
-
 }  // namespace springproof::bench

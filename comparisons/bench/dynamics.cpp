@@ -1,12 +1,10 @@
-#include "comparisons/bench/dynamics.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/bench/benches.h"
 #include "comparisons/bench/bodies.h"
-#include "comparisons/bench/in_child.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/lammps.h"
 #include "comparisons/bench/motion.h"
@@ -30,9 +28,9 @@ struct Context {
 
 void progress(const std::string& what, const std::string& size) { to_stderr("dynamics: {}, {} ...\n", what, size); }
 
-double ns_per_spring(const Motion& motion, double seconds) { return 1e9 * seconds / double(motion.springs); }
+double ns_per_spring(const TimedStep& motion, double seconds) { return 1e9 * seconds / double(motion.springs); }
 
-BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const Motion& motion,
+BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const TimedStep& motion,
                    double seconds, const std::string& baseline, double baseline_seconds, Target target) {
   const double to_ns = 1e9 / double(motion.springs);
   return {"dynamics",
@@ -58,7 +56,7 @@ void against_peers(const Context& c, const std::string& name, const std::string&
                    Target lammps_target, Target plain_target) {
   progress(name, size);
   const auto ours = fastest_motion(model);
-  const Motion plain = plain_motion(model.network);
+  const TimedStep plain = plain_motion(model.network);
   std::optional<Lammps> lammps;
   double lammps_seconds = 0;
   const double length = c.options.quick ? 0.1 : 0.5;
@@ -78,8 +76,6 @@ void against_peers(const Context& c, const std::string& name, const std::string&
   }
   c.findings.rows.push_back(
       speed_row(c, name + " over the plain loop", size, *ours, seconds[0], "plain loop", seconds[1], plain_target));
-  c.findings.points.push_back(point_of(*ours, seconds[0], c.machine, name, size));
-  c.findings.points.push_back(point_of(plain, seconds[1], c.machine, "plain loop, " + name, size));
 }
 
 void springs_of_lattices(const Context& c) {
@@ -118,9 +114,6 @@ void overhead(const Context& c, const std::string& size, const std::string& name
   const std::vector<double> seconds = least_seconds({ours->advance, base->advance}, c.timer);
   c.findings.rows.push_back({"dynamics", name + " over " + baseline, size, "us per step", 1e6 * seconds[0], baseline,
                              1e6 * seconds[1], target, usage_of(*ours, seconds[0], c.machine), ours->how});
-  const RooflinePoint point = point_of(*ours, seconds[0], c.machine, name, size);
-  const auto same = [&](const RooflinePoint& p) { return p.name == point.name && p.size == point.size; };
-  if (std::none_of(c.findings.points.begin(), c.findings.points.end(), same)) c.findings.points.push_back(point);
 }
 
 /// The same model with dashpots in its cells, or a share of consistent mass.
@@ -170,10 +163,10 @@ void cut_cells(const Context& c) {
     const std::string size = fmt::format("{} cells", model.network.cells.size());
     progress("averaged springs in cut cells", size);
     const auto ours = fastest_motion(model), fp32 = fastest_motion(model, {.precision = Precision::float32});
-    const Motion loops = motion_by_forces(model);
+    const TimedStep loops = motion_by_forces(model);
     const std::vector<double> seconds = least_seconds({ours->advance, loops.advance, fp32->advance}, c.timer);
     const double to_ns = 1e9 / double(model.network.cells.size());
-    const auto row = [&](const char* what, const Motion& motion, double own, const char* baseline, double other,
+    const auto row = [&](const char* what, const TimedStep& motion, double own, const char* baseline, double other,
                          Target target) {
       c.findings.rows.push_back({"dynamics", what, size, "ns per cell and step", to_ns * own, baseline, to_ns * other,
                                  target, usage_of(motion, own, c.machine), motion.how});
@@ -192,7 +185,6 @@ void single_precision(const Context& c, int n) {
   const std::vector<double> seconds = least_seconds({fp32->advance, fp64->advance}, c.timer);
   c.findings.rows.push_back(
       speed_row(c, "FP32 over FP64, HybMSS-CF", size, *fp32, seconds[0], "FP64", seconds[1], at_least(2)));
-  c.findings.points.push_back(point_of(*fp32, seconds[0], c.machine, "HybMSS-CF FP32", size));
 }
 
 void several_threads(const Context& c, const std::string& name, const std::string& size, const MassSpringModel& model,
@@ -256,7 +248,7 @@ void growth(const Context& c, int small, int large) {
 void memory(const Context& c, int n) {
   const MassSpringModel model = lattice("hybmss_cf", {n, n, n}, 0.25);
   const auto ours = fastest_motion(model);
-  const Motion plain = plain_motion(model.network);
+  const TimedStep plain = plain_motion(model.network);
   c.findings.rows.push_back(
       {"dynamics",
        "memory of HybMSS-CF",

@@ -12,7 +12,6 @@ struct GamgResult {
   bool converged = false;
   int iterations = 0;
   double setup_seconds = 0, solve_seconds = 0;  ///< CPU time; the assembly is not counted
-  double memory_MiB = 0;                        ///< peak of the process
   double difference = 0;                        ///< of the displacement from another, relative (L2)
 };
 
@@ -22,7 +21,7 @@ bool has_gamg();
 /// Solves the linearised model for the nodes that are not clamped: MATAIJ, block size 3, rigid-body modes as near null
 /// space, |r| / |f| <= tolerance; PETSc's options apply (PETSC_OPTIONS).  Nodes are clamped in all components or in
 /// none, prescribed displacements are zero.  `other`: what to compare with, n x 3.  Starts PETSc, so once per process.
-/// @throws std::runtime_error if PETSc fails or is not there.
+/// @throws PetscFailure, or std::runtime_error if PETSc is not there.
 GamgResult solve_gamg(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
                       const NodalVectors& other);
 

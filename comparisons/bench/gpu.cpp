@@ -1,7 +1,6 @@
-#include "comparisons/bench/gpu.h"
-
 #include <fmt/format.h>
 
+#include "comparisons/bench/benches.h"
 #include "comparisons/bench/bodies.h"
 #include "comparisons/bench/motion.h"
 #include "msm/gpu/gpu.h"

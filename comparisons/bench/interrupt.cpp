@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "problem/system/child.h"
+#include "problem/system/in_child.h"
 
 namespace springproof::bench {
 namespace {
@@ -26,6 +28,17 @@ bool interrupted() { return is_interrupted; }
 
 void throw_if_interrupted() {
   if (is_interrupted) throw Interrupted();
+}
+
+nlohmann::json in_child(const std::function<nlohmann::json()>& work) try {
+  throw_if_interrupted();
+  const std::string text =
+      springproof::in_child([&] { return work().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); });
+  throw_if_interrupted();
+  return nlohmann::json::parse(text);
+} catch (const std::runtime_error&) {
+  throw_if_interrupted();  // which ended the child
+  throw;
 }
 
 }  // namespace springproof::bench

@@ -40,14 +40,6 @@ std::string last_words(const std::string& output) {
 
 bool Lammps::available() { return !program().empty(); }
 
-std::string Lammps::version() {
-  const TemporaryFolder folder;
-  run_child({program(), {"-help"}, folder.path, folder.path / "log", folder.path / "log", 20});
-  const std::string text = text_of_file(folder.path / "log");
-  const auto at = text.find(" - ");
-  return at == std::string::npos ? "LAMMPS" : "LAMMPS " + text.substr(at + 3, text.find('\n', at) - at - 3);
-}
-
 Lammps::Lammps(const Network& network) : nodes_(network.nodes()), springs_(long(network.springs.size())) {
   const Eigen::VectorXd mass = few_masses(network);
   const MassSpringModel model{network, {Springs{}}};

@@ -12,7 +12,6 @@ class Lammps {
  public:
   /// lmp on PATH, or what SPRINGPROOF_LAMMPS names.
   static bool available();
-  static std::string version();
 
   /// Writes the data file: springs in the network's order (by first node), positions moved().  Nodes of more than 64
   /// different masses all get the mean one, since LAMMPS has masses per type.

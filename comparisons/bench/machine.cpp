@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "comparisons/bench/bench_kernel_choice.h"
+#include "comparisons/bench/kernels/bench_kernel_choice.h"
 #include "comparisons/bench/timer.h"
 #include "msm/kernels/instruction_set.h"
 

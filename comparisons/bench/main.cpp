@@ -5,20 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "comparisons/bench/calculix.h"
-#include "comparisons/bench/dynamics.h"
-#include "comparisons/bench/engines.h"
-#include "comparisons/bench/experiments.h"
-#include "comparisons/bench/fem.h"
-#include "comparisons/bench/gpu.h"
+#include "comparisons/bench/benches.h"
 #include "comparisons/bench/interrupt.h"
-#include "comparisons/bench/page.h"
-#include "comparisons/bench/parallel.h"
-#include "comparisons/bench/statics.h"
-#include "comparisons/bench/table.h"
-#include "comparisons/results/records.h"
 #include "msm/kernels/instruction_set.h"
-#include "problem/system/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/named_files.h"
 #include "problem/system/streams.h"
@@ -32,24 +21,16 @@ using Json = nlohmann::json;
 void add_options(CLI::App& app, BenchOptions& options) {
   app.add_option(
          "WHAT", options.what,
-         "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and "
-         "damped dynamics), "
-         "fem (the finite element reference, against PETSc CG + GAMG and CalculiX), experiments (built-in "
-         "cases), parallel (springproof-lattice on several processes against one), gpu (steps of lattices on the GPU "
-         "against this processor), all of these; "
-         "engines (real-time engines and our springs by the same measures; some 15 minutes)")
+         "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and damped "
+         "dynamics), fem (the finite element reference, against PETSc CG + GAMG and CalculiX), gpu (steps of lattices "
+         "on the GPU against this processor), all of these")
       ->required()
-      ->check(CLI::IsMember({"dynamics", "statics", "fem", "experiments", "parallel", "gpu", "engines", "all"}));
+      ->check(CLI::IsMember({"dynamics", "statics", "fem", "gpu", "all"}));
   app.add_option("--json", options.json, "write the figures to this file too");
-  app.add_option("--out", options.out, "folder for bench.html, with the roofline, and bench.json");
   app.add_flag("--quick", options.quick, "small sizes: a look at the table in half a minute, no measurement");
   app.add_option("--threads", options.threads, "of the rows that compare several threads with one")
       ->check(CLI::Range(2, 256))
       ->capture_default_str();
-  app.add_option("--engine", options.engine,
-                 "engines: only set-ups with this in their name, as Jolt, \"MuJoCo, full\"");
-  app.add_flag("--install", options.install,
-               "engines: first install the packages of those that run in node, by npm ci, in a cache folder");
   const auto pass_on = [&options](const char* option, const std::string& value) {
     options.fem_arguments.insert(options.fem_arguments.end(), {option, value});
   };
@@ -71,45 +52,25 @@ bool wants(const BenchOptions& options, const char* what) { return options.what 
 struct Measured {
   Machine machine = this_machine();
   Findings findings;
-  EngineFindings engines;
   Json fem;
 };
 
 void measure(const BenchOptions& options, Measured& m) {
-  auto& [machine, findings, engines, fem] = m;
+  auto& [machine, findings, fem] = m;
   if (wants(options, "statics")) bench_statics(options, findings);
   if (wants(options, "dynamics")) {
     to_stderr("limits of this machine ...\n");
     measure_limits(options.quick, machine);
     bench_dynamics(options, machine, findings);
   }
-  if (wants(options, "experiments")) bench_experiments(options, findings);
-  if (wants(options, "fem")) {
-    fem = bench_fem(options, findings);
-    if (!fem.is_null()) bench_calculix(options, findings);
-  }
-  if (wants(options, "parallel")) bench_parallel(options, findings);
+  if (wants(options, "fem")) fem = bench_fem(options, findings);
   if (wants(options, "gpu")) bench_gpu(options, findings);
-  if (options.what == "engines") {
-    if (options.install) install_packages();
-    bench_engines(options, findings, engines);
-  }
-}
-
-void write(const BenchOptions& options, const Json& document) {
-  const std::string text = document.dump(1, ' ', false, Json::error_handler_t::replace);
-  if (!options.json.empty()) write_named_file(options.json, text);
-  if (options.out.empty()) return;
-  std::filesystem::create_directories(options.out);
-  write_file(options.out / "bench.json", text);
-  write_page(options.out / "bench.html", document);
-  to_stderr("{}\n", (options.out / "bench.html").string());
 }
 
 int run(const BenchOptions& options) {
   catch_interrupts();
   Measured measured;
-  auto& [machine, findings, engines, fem] = measured;
+  auto& [machine, findings, fem] = measured;
   try {
     measure(options, measured);
   } catch (const std::runtime_error&) {
@@ -123,12 +84,9 @@ int run(const BenchOptions& options) {
       {"version", SPRINGPROOF_VERSION}, {"instruction_set", name_of(instruction_set())}, {"quick", options.quick}};
   document["machine"] = to_json(machine);
   if (!fem.is_null()) document["fem"] = fem;
-  if (options.what == "engines") {
-    document["engines"] = to_json(engines);
-    to_stdout("{}\n", text_of(engines));
-  }
   to_stdout("{}", table_text(machine, findings));
-  write(options, document);
+  if (!options.json.empty())
+    write_named_file(options.json, document.dump(1, ' ', false, Json::error_handler_t::replace));
   if (interrupted()) return 130;
   return complete(findings) ? 0 : 1;
 }

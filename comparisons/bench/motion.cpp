@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "comparisons/bench/bench_kernel_choice.h"
 #include "comparisons/bench/bodies.h"
+#include "comparisons/bench/kernels/bench_kernel_choice.h"
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
@@ -63,39 +63,35 @@ Work operations(const MassSpringModel& model) {
 
 namespace {
 
-Motion new_motion(const std::string& how, const MassSpringModel& model, Precision precision) {
+TimedStep new_motion(const std::string& how, const MassSpringModel& model, Precision precision) {
   return {how, {}, model.network.nodes(), long(model.network.springs.size()), operations(model), precision};
 }
 
-Motion lattice_motion(const MassSpringModel& model, const MotionOptions& options) {
-  const auto kernel = std::make_shared<LatticeMotion>(model, density,
-                                                      LatticeMotionOptions{.precision = options.precision,
-                                                                           .threads = options.threads,
-                                                                           .viscosity = options.viscosity,
-                                                                           .mass_consistency = options.mass_consistency,
-                                                                           .device = options.device});
+TimedStep timed_lattice(const MassSpringModel& model, const MotionOptions& options) {
+  MotionOptions half = options;
+  const double safe = safe_time_step(model, density, false, options.mass_consistency);
+  half.time_step = 0.5 * viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
+  const std::shared_ptr<LatticeMotion> kernel = springproof::lattice_motion(model, density, half);
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
-  Motion motion = new_motion(kernel->description(), model, options.precision);
+  TimedStep motion = new_motion(kernel->description(), model, options.precision);
   motion.work.streamed = (options.precision == Precision::float64 ? 96.0 : 48.0) * double(motion.nodes);
   motion.work.kept = kernel->bytes_per_node() * double(motion.nodes);
-  const double safe = safe_time_step(model, density, false, options.mass_consistency);
-  const double dt = 0.5 * viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
-  motion.advance = [kernel, dt](long steps) { kernel->advance(steps, dt, 0); };
+  motion.advance = [kernel](long steps) { kernel->advance(steps); };
   return motion;
 }
 
 template <class Real>
-Motion motion_of_cells(const MassSpringModel& model, const MotionOptions& options) {
-  const double dt = 0.5 * safe_time_step(model, density);
-  const auto kernel = std::make_shared<ListMotion<Real>>(
-      std::make_unique<CellForces<Real>>(model), model.network.X, masses(model.network, density).cwiseInverse(),
-      ListMotionOptions{.time_step = dt, .threads = options.threads});
+TimedStep motion_of_cells(const MassSpringModel& model, const MotionOptions& options) {
+  const MotionOptions half = {.time_step = 0.5 * safe_time_step(model, density), .threads = options.threads};
+  const auto kernel =
+      std::make_shared<ListMotion<Real>>(std::make_unique<CellForces<Real>>(model), model, density, half);
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
-  Motion motion = new_motion(fmt::format("{}, {}{}", kernel->kernel(), name_of(instruction_set()),
-                                         kernel->threads() == 1 ? "" : fmt::format(", {} threads", kernel->threads())),
-                             model, options.precision);
+  TimedStep motion =
+      new_motion(fmt::format("{}, {}{}", kernel->kernel(), name_of(instruction_set()),
+                             kernel->threads() == 1 ? "" : fmt::format(", {} threads", kernel->threads())),
+                 model, options.precision);
   const double c = double(model.network.cells.size()), n = double(motion.nodes), real = sizeof(Real);
   motion.work.streamed = (10 * real + 32) * c + 20 * real * n;
   motion.work.kept = (10 * real + 32) * c + (24 * real + 28) * n;
@@ -105,17 +101,15 @@ Motion motion_of_cells(const MassSpringModel& model, const MotionOptions& option
 
 /// Entries of the kernel are nearly as many as springs.
 template <class Real>
-Motion list_motion(const MassSpringModel& model, const MotionOptions& options) {
-  const double dt = 0.5 * safe_time_step(model, density);
-  const Eigen::VectorXd mass = masses(model.network, density);
-  const auto kernel = std::make_shared<ListMotion<Real>>(
-      std::make_unique<ListForces<Real>>(model), model.network.X, mass.cwiseInverse(),
-      ListMotionOptions{.time_step = dt, .threads = options.threads});
-  kernel->load(clamped_bottom(model.network, 0.5 * edge));
+TimedStep motion_of_springs(const MassSpringModel& model, const MotionOptions& options) {
+  const MotionOptions half = {.time_step = 0.5 * safe_time_step(model, density), .threads = options.threads};
+  const auto kernel =
+      std::make_shared<ListMotion<Real>>(std::make_unique<ListForces<Real>>(model), model, density, half);
+  kernel->set_conditions(clamped_bottom(model.network, 0.5 * edge));
   const int threads = kernel->threads();
-  Motion motion = new_motion(fmt::format("list kernel, {}{}", name_of(instruction_set()),
-                                         threads == 1 ? "" : fmt::format(", {} threads", threads)),
-                             model, options.precision);
+  TimedStep motion = new_motion(fmt::format("list kernel, {}{}", name_of(instruction_set()),
+                                            threads == 1 ? "" : fmt::format(", {} threads", threads)),
+                                model, options.precision);
   const double m = double(motion.springs), n = double(motion.nodes), real = sizeof(Real);
   const bool disperses = dispersion_of(model) != nullptr;
   motion.work.streamed = disperses ? (10 * real + 10) * m + 49 * real * n : (2 * real + 5) * m + 20 * real * n;
@@ -126,8 +120,8 @@ Motion list_motion(const MassSpringModel& model, const MotionOptions& options) {
 
 }  // namespace
 
-Motion motion_by_forces(const MassSpringModel& model) {
-  Motion motion = new_motion("forces()", model, Precision::float64);
+TimedStep motion_by_forces(const MassSpringModel& model) {
+  TimedStep motion = new_motion("forces()", model, Precision::float64);
   const double m = double(motion.springs), n = double(motion.nodes);
   motion.work.streamed = 24 * m + 216 * n;
   motion.work.kept = 24 * m + 80 * n;
@@ -136,12 +130,12 @@ Motion motion_by_forces(const MassSpringModel& model) {
   return motion;
 }
 
-std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
-  if (LatticeMotion::suits(model, options.viscosity, options.mass_consistency)) return lattice_motion(model, options);
+std::optional<TimedStep> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
+  if (LatticeMotion::suits(model, options)) return timed_lattice(model, options);
   if (options.viscosity.acts() || options.mass_consistency > 0) return {};
   if (ListForces<double>::covers(model))
-    return options.precision == Precision::float64 ? list_motion<double>(model, options)
-                                                   : list_motion<float>(model, options);
+    return options.precision == Precision::float64 ? motion_of_springs<double>(model, options)
+                                                   : motion_of_springs<float>(model, options);
   if (CellForces<double>::covers(model))
     return options.precision == Precision::float64 ? motion_of_cells<double>(model, options)
                                                    : motion_of_cells<float>(model, options);
@@ -149,7 +143,7 @@ std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionO
   return motion_by_forces(model);
 }
 
-Motion plain_motion(const Network& network) {
+TimedStep plain_motion(const Network& network) {
   const MassSpringModel springs{network, {Springs{}}};
   const double dt = 0.5 * safe_time_step(springs, density);
   const auto state = std::make_shared<PlainState>();
@@ -158,7 +152,7 @@ Motion plain_motion(const Network& network) {
   for (const Spring& s : network.springs) state->springs.push_back({s.i, s.j, s.stiffness, s.rest_length});
   for (const double mass : masses(network, density)) state->dt_over_mass.push_back(dt / mass);
   const double m = double(network.springs.size()), n = double(network.nodes());
-  Motion motion{"plain loop", {}, network.nodes(), long(network.springs.size()), operations(springs)};
+  TimedStep motion{"plain loop", {}, network.nodes(), long(network.springs.size()), operations(springs)};
   motion.work.streamed = 24 * m + 296 * n;
   motion.work.kept = 24 * m + 80 * n;
   const auto step = kernels_of(instruction_set()).plain_step;
@@ -173,7 +167,7 @@ Motion plain_motion(const Network& network) {
 namespace {
 
 /// Lower bound [s] on the time that the arithmetic of a step takes on one core.
-double arithmetic_limit(const Motion& motion, const Arithmetic& core) {
+double arithmetic_limit(const TimedStep& motion, const Arithmetic& core) {
   const bool fp64 = motion.precision == Precision::float64;
   return std::max(1e-9 * motion.work.flops / (fp64 ? core.gflops64 : core.gflops32),
                   1e-9 * motion.work.roots * (fp64 ? core.root64 : core.root32));
@@ -181,16 +175,10 @@ double arithmetic_limit(const Motion& motion, const Arithmetic& core) {
 
 }  // namespace
 
-Usage usage_of(const Motion& motion, double seconds, const Machine& machine) {
+Usage usage_of(const TimedStep& motion, double seconds, const Machine& machine) {
   const MemoryLevel& level = machine.level_for(motion.work.kept);
   return {motion.work.kept / double(motion.nodes), 1e-9 * motion.work.streamed / seconds / level.GB_s,
           arithmetic_limit(motion, machine.widest()) / seconds};
-}
-
-RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,
-                       const std::string& size) {
-  return {name, size, machine.level_for(motion.work.kept).name, motion.work.flops / motion.work.streamed,
-          1e-9 * motion.work.flops / seconds};
 }
 
 }  // namespace springproof::bench

@@ -22,7 +22,7 @@ struct Work {
 };
 
 /// Explicit steps of a network: forces and semi-implicit Euler.
-struct Motion {
+struct TimedStep {
   std::string how;  ///< "forces(), AVX2", "plain loop"
   Advance advance;
   long nodes = 0, springs = 0;
@@ -30,28 +30,18 @@ struct Motion {
   Precision precision = Precision::float64;
 };
 
-struct MotionOptions {
-  int threads = 1;
-  Precision precision = Precision::float64;
-  Viscosity viscosity = {};
-  double mass_consistency = 0;  ///< share of consistent mass
-  Device device = Device::processor;
-};
-
 /// The library's fastest implementation for a model; empty if none supports these options.  The model must outlive it.
-std::optional<Motion> fastest_motion(const MassSpringModel& model, const MotionOptions& options = {});
+std::optional<TimedStep> fastest_motion(const MassSpringModel& model, const MotionOptions& options = {});
 
 /// The straightforward baseline: one array of nodes {x, v, f}, one of springs of 24 bytes, a loop over each, compiled
 /// for this processor.
-Motion plain_motion(const Network& network);
+TimedStep plain_motion(const Network& network);
 
 /// Steps with forces(), by the loops that define the model's laws.  The model must outlive it.
-Motion motion_by_forces(const MassSpringModel& model);
+TimedStep motion_by_forces(const MassSpringModel& model);
 
 /// How well a motion that takes `seconds` per step uses one core.
-Usage usage_of(const Motion& motion, double seconds, const Machine& machine);
-RooflinePoint point_of(const Motion& motion, double seconds, const Machine& machine, const std::string& name,
-                       const std::string& size);
+Usage usage_of(const TimedStep& motion, double seconds, const Machine& machine);
 
 /// Operations of one step of the model, for any implementation.
 Work operations(const MassSpringModel& model);

@@ -29,7 +29,7 @@ double lowest_frequency_squared(const MassSpringModel& model, BoundaryConditions
 Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance, double factor) {
   Relaxation result;
   DynamicsOptions options;
-  options.damping = result.damping = factor * 2 * std::sqrt(lowest_frequency_squared(model, conditions));
+  options.damping = factor * 2 * std::sqrt(lowest_frequency_squared(model, conditions));
   options.rest_tolerance = tolerance;
   options.duration = 200 * factor / options.damping * std::max(1.0, factor);
   const double start = cpu_seconds();

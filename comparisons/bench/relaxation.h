@@ -9,7 +9,6 @@ struct Relaxation {
   bool at_rest = false;
   long steps = 0;
   double seconds = 0;  ///< CPU time of the steps; finding the damping is not counted
-  double damping = 0;  ///< [1/s]
   std::string message;
 };
 

@@ -1,4 +1,4 @@
-// Results of a bench: rows, each with its baseline of the same run and its target, and points of the roofline.
+// Results of a bench: rows, each with its baseline of the same run and its target.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,6 +7,8 @@
 #include <vector>
 
 namespace springproof::bench {
+
+struct Machine;
 
 enum class Sense { none, at_least, at_most };
 
@@ -49,26 +51,17 @@ std::string to_string(Outcome outcome);
 /// "at least 5", "at most 1.35"; empty without a target.
 std::string to_string(const Target& target);
 
-/// One kernel in the roofline.
-struct RooflinePoint {
-  std::string name;   ///< "HybMSS-CF"
-  std::string size;   ///< "30^3"
-  std::string level;  ///< of the memory that holds its data: "L1", "L2", "L3", "DRAM"
-  double flops_per_byte = 0;
-  double gflops = 0;
-};
-
 struct Findings {
   std::vector<BenchRow> rows;
-  std::vector<RooflinePoint> points;
   std::vector<std::string> remarks;  ///< what was left out and why
-
-  void add(Findings more);
 };
 
 /// Whether every row has a result.
 bool complete(const Findings& findings);
 
 nlohmann::json to_json(const Findings& findings);
+
+/// A table, under the machine and its limits.
+std::string table_text(const Machine& machine, const Findings& findings);
 
 }  // namespace springproof::bench

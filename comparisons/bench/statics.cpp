@@ -1,14 +1,12 @@
-#include "comparisons/bench/statics.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/bench/benches.h"
 #include "comparisons/bench/bodies.h"
 #include "comparisons/bench/gamg.h"
-#include "comparisons/bench/in_child.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/relaxation.h"
 #include "meshes/mesher/mesher.h"

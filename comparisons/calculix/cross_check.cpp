@@ -8,11 +8,11 @@
 
 #include "comparisons/calculix/run.h"
 #include "comparisons/judge/measures.h"
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/solve_each.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/solve_each.h"
-#include "comparisons/run/status.h"
+#include "comparisons/sweep/status.h"
 #include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
@@ -166,7 +166,7 @@ std::optional<Opinion> ask_calculix(const Question& q, Status& status) {
 /// Round-off of our solver: 1e-7 of the largest forces and displacements.
 Noise our_noise(const Question& q, const Answer& finest) {
   constexpr double relative = 1e-7;
-  const double size = q.prepared.size.norm(), u = finest.displacement.rowwise().norm().maxCoeff();
+  const double size = q.prepared.body.size.norm(), u = finest.displacement.rowwise().norm().maxCoeff();
   double force = 0;
   for (const auto& [name, value] : finest.values) {
     if (name.starts_with("force.")) force = std::max(force, std::abs(value));
@@ -259,7 +259,7 @@ Question question(const PreparedCase& prepared, const IsotropicMaterial& materia
   const Experiment& e = prepared.experiment;
   Question q{prepared, material, three_grids(finest_cells(e, material, options.cells)), {}, options.time_limit};
   for (const Cells& cells : q.cells) {
-    q.meshes.push_back(mesh_geo(prepared.geo, e.body.size, cells));
+    q.meshes.push_back(mesh_geo(prepared.body.geo, e.body.size, cells));
     if (q.meshes.back().grid) grade(e.reference.grading, q.meshes.back());
   }
   return q;

@@ -9,10 +9,10 @@
 
 #include "comparisons/advise/check.h"
 #include "comparisons/advise/measure.h"
-#include "comparisons/commands/number_checks.h"
-#include "comparisons/run/find_cases.h"
-#include "comparisons/run/status.h"
+#include "comparisons/sweep/find_cases.h"
+#include "comparisons/sweep/status.h"
 #include "msm/parameters/model_table.h"
+#include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "comparisons/commands/number_checks.h"
-#include "comparisons/run/find_cases.h"
+#include "comparisons/sweep/find_cases.h"
+#include "problem/system/number_checks.h"
 
 namespace springproof {
 namespace {

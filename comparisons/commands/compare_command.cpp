@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "comparisons/commands/live_page.h"
-#include "comparisons/run/find_cases.h"
+#include "comparisons/sweep/find_cases.h"
 
 namespace springproof {
 

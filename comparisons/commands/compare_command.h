@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/run/suite.h"
+#include "comparisons/sweep/suite.h"
 
 namespace CLI {
 class App;

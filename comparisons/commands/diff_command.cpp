@@ -13,43 +13,36 @@
 namespace springproof {
 namespace {
 
+constexpr std::size_t most_lines = 20;  // of the largest differences, and of runs without a partner
+
 std::string times_uncertainty(const Difference& d) {
   return std::isnan(d.of_uncertainty) ? "" : fmt::format("{:.2g}", d.of_uncertainty);
 }
 
-void print_csv(const Differences& all) {
-  to_stdout("case,kinematics,model,poisson_ratio,cells,measure,what,first,second,unit,relative,of_uncertainty\n");
-  for (const Difference& d : all.changed)
-    to_stdout("{},{},{},{},{},{},{},{},{},{},{:.3g},{}\n", csv_text(d.row.case_name), csv_text(d.row.kinematics),
-              csv_text(d.row.model), csv_number(d.row.poisson_ratio), cells_text(d.row.cells), csv_text(d.row.measure),
-              csv_text(d.what), csv_number(d.first), csv_number(d.second), csv_text(d.row.unit), d.relative,
-              times_uncertainty(d));
-}
-
 /// Rows that have no partner, counted by case and model.
-void print_lonely(const std::filesystem::path& folder, const std::vector<Row>& rows, std::size_t lines) {
+void print_lonely(const std::filesystem::path& folder, const std::vector<Row>& rows) {
   if (rows.empty()) return;
   std::map<std::string, int> counts;
   for (const Row& row : rows) ++counts[fmt::format("{}  nu {}  {}", row.case_name, row.poisson_ratio, row.model)];
   to_stdout("\n{} numbers are in {} alone:\n", rows.size(), folder.string());
   std::size_t printed = 0;
   for (const auto& [run, count] : counts)
-    if (printed++ < lines) to_stdout("  {:<60} {}\n", run, count);
-  if (printed > lines) to_stdout("  ... and of {} other runs\n", printed - lines);
+    if (printed++ < most_lines) to_stdout("  {:<60} {}\n", run, count);
+  if (printed > most_lines) to_stdout("  ... and of {} other runs\n", printed - most_lines);
 }
 
-void print_changed(const Differences& all, std::size_t lines) {
+void print_changed(const Differences& all) {
   if (all.changed.empty()) return;
   to_stdout("\n{:<26} {:>7} {:<12} {:<10} {:<32} {:>13} {:>13} {:<4} {:>8} {:>12}\n", "case", "nu", "model", "cells",
             "measure", "first", "second", "", "relative", "uncertainties");
-  for (std::size_t i = 0; i < std::min(lines, all.changed.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(most_lines, all.changed.size()); ++i) {
     const Difference& d = all.changed[i];
     const std::string measure = d.what == "value" ? d.row.measure : fmt::format("{} ({})", d.row.measure, d.what);
     to_stdout("{:<26} {:>7} {:<12} {:<10} {:<32} {:>13.6g} {:>13.6g} {:<4} {:>8.1e} {:>12}\n", d.row.case_name,
               d.row.poisson_ratio, d.row.model, cells_text(d.row.cells), measure, d.first, d.second, d.row.unit,
               d.relative, times_uncertainty(d));
   }
-  if (all.changed.size() > lines) to_stdout("... and {} more (--lines, --csv)\n", all.changed.size() - lines);
+  if (all.changed.size() > most_lines) to_stdout("... and {} more\n", all.changed.size() - most_lines);
 }
 
 }  // namespace
@@ -60,8 +53,6 @@ void DiffCommand::add_options(CLI::App& command) {
   command.add_option("--tolerance", tolerance_, "relative difference up to which two numbers are the same")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command.add_option("--lines", lines_, "so many of the largest differences are printed")->capture_default_str();
-  command.add_flag("--csv", csv_, "all differences as CSV, nothing else");
   command.footer(
       "Relative: to the larger of the two numbers or, for a component, of all components of that vector.\n"
       "Uncertainties: the difference divided by the uncertainty of the reference.\n"
@@ -74,10 +65,6 @@ int DiffCommand::run() const {
     if (results->rows.empty())
       throw InputError(fmt::format("{}: holds no number (allowed: results of at least one run)", folder->string()));
   const Differences all = differences(first, second, tolerance_);
-  if (csv_) {
-    print_csv(all);
-    return all.none() ? 0 : 1;
-  }
   for (const auto& [folder, results] : {std::pair{&first_, &first}, std::pair{&second_, &second}})
     to_stdout("{}: {} numbers, version {}, {}\n", folder->string(), results->rows.size(), results->version,
               results->generated);
@@ -89,9 +76,9 @@ int DiffCommand::run() const {
     return d.what != "reference_uncertainty" && d.of_uncertainty > 1;
   });
   if (!all.changed.empty()) to_stdout("{} of the differences exceed the uncertainty of the reference\n", beyond);
-  print_changed(all, lines_);
-  print_lonely(first_, all.only_first, lines_);
-  print_lonely(second_, all.only_second, lines_);
+  print_changed(all);
+  print_lonely(first_, all.only_first);
+  print_lonely(second_, all.only_second);
   return all.none() ? 0 : 1;
 }
 

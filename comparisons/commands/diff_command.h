@@ -20,8 +20,6 @@ class DiffCommand {
  private:
   std::filesystem::path first_, second_;
   double tolerance_ = 1e-9;
-  std::size_t lines_ = 20;
-  bool csv_ = false;
 };
 
 }  // namespace springproof

@@ -12,9 +12,9 @@
 
 #include "comparisons/judge/calibration.h"
 #include "comparisons/results/records.h"
-#include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/status.h"
+#include "comparisons/sweep/find_cases.h"
+#include "comparisons/sweep/status.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/field.h"
 #include "problem/system/child.h"

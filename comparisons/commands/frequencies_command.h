@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/run/frequencies.h"
+#include "comparisons/models/frequencies.h"
 
 namespace CLI {
 class App;

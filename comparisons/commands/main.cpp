@@ -10,17 +10,17 @@
 #include "comparisons/commands/bench_command.h"
 #include "comparisons/commands/calculix_command.h"
 #include "comparisons/commands/compare_command.h"
-#include "comparisons/commands/describe_command.h"
+#include "comparisons/commands/describe/describe_command.h"
+#include "comparisons/commands/describe/list_command.h"
+#include "comparisons/commands/describe/versions.h"
 #include "comparisons/commands/diff_command.h"
-#include "comparisons/commands/export_command.h"
+#include "comparisons/commands/export/export_command.h"
 #include "comparisons/commands/frequencies_command.h"
-#include "comparisons/commands/homogenise_command.h"
-#include "comparisons/commands/list_command.h"
-#include "comparisons/commands/material_command.h"
+#include "comparisons/commands/material/homogenise_command.h"
+#include "comparisons/commands/material/material_command.h"
 #include "comparisons/commands/pictures_command.h"
 #include "comparisons/commands/report_command.h"
 #include "comparisons/commands/reproduce_command.h"
-#include "comparisons/commands/versions.h"
 #include "msm/gpu/gpu.h"
 #include "problem/system/streams.h"
 
@@ -72,7 +72,8 @@ constexpr Subcommand subcommands[] = {
     {"bench", "Measure what things cost, each beside its baseline (springproof bench --help)", made<BenchCommand>},
     {"advise", "Which models and resolutions reach an error within a budget, predicted from coarse solves of the case",
      made<AdviseCommand>, Reads::bodies},
-    {"describe", "The command line as a man page, or as completion for bash", made<DescribeCommand>, Reads::nothing},
+    {"describe", "The command line as a man page, or as completion for bash; the keys of a case file",
+     made<DescribeCommand>, Reads::nothing},
 };
 
 int parse_and_run(int argc, char** argv) {

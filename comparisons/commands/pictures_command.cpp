@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 
-#include "comparisons/commands/number_checks.h"
 #include "comparisons/judge/differences.h"
 #include "comparisons/report/png_page.h"
-#include "comparisons/run/status.h"
+#include "comparisons/sweep/status.h"
 #include "problem/case_file/experiment.h"
 #include "problem/system/files.h"
+#include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

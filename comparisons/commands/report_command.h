@@ -1,7 +1,7 @@
 // The subcommand that puts the parts of a sweep together.
 #pragma once
 
-#include "comparisons/run/sweep_report.h"
+#include "comparisons/sweep/sweep_report.h"
 
 namespace CLI {
 class App;

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "comparisons/reproduce/reproduce.h"
-#include "comparisons/run/find_cases.h"
+#include "comparisons/sweep/find_cases.h"
 #include "problem/system/input_error.h"
 #include "problem/system/streams.h"
 

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <array>
-#include <nlohmann/json_fwd.hpp>
-#include <string>
 
+#include "comparisons/results/facts.h"
 #include "problem/material.h"
 
 namespace springproof {
@@ -21,9 +20,6 @@ struct EngineFacts {
 /// Compliances of springs inside, on the surface and on the edges of a lattice, of the constraint on 6 V of a corner
 /// tetrahedron (a sixth of a cell) that adds the correction, Bullet's constants, the damping by implicit Euler and the
 /// smallest step of single precision 1 m from the origin under 9.81 m/s^2.
-nlohmann::json json_of(const EngineFacts& facts);
-
-/// The same in words, one fact per line.
-std::string text_of(const EngineFacts& facts);
+FactGroup facts_of(const EngineFacts& facts);
 
 }  // namespace springproof

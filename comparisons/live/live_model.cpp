@@ -94,9 +94,7 @@ void LiveModel::build(const IsotropicMaterial& material) {
   model_ = model_of(body_.mesh, name_, material);
   mass_ = masses(model_.network, material.density);
   safe_step_ = safe_time_step(model_, material.density);
-  LatticeMotionOptions options;
-  options.precision = precision_;
-  motion_ = std::make_unique<LatticeMotion>(model_, material.density, options);
+  motion_ = lattice_on_processor(model_, material.density, {.time_step = safe_step_, .precision = precision_});
   const double edge = model_.network.cell_edge;
   grip_stiffness_ = 4 * material.youngs_modulus * edge;
   grip_limit_ = 6 * material.youngs_modulus * edge * edge;
@@ -195,13 +193,14 @@ double LiveModel::time_step() const { return safety * safe_step_ * shrink() * st
 int LiveModel::advance(double duration, double damping) {
   const int steps = std::max(1, static_cast<int>(std::ceil(duration / time_step())));
   const double dt = duration / steps;
+  motion_->set_step(dt, damping);
   if (grip_.nodes.empty()) {
-    unbalanced_ = motion_->advance(steps, dt, damping).unbalanced;
+    unbalanced_ = motion_->advance(steps).unbalanced;
   } else {
     for (int done = 0; done < steps; done += steps_per_kick) {
       const int now = std::min(steps_per_kick, steps - done);
       kick(now * dt);
-      unbalanced_ = motion_->advance(now, dt, damping).unbalanced;
+      unbalanced_ = motion_->advance(now).unbalanced;
     }
   }
   const NodalVectors x = x_;

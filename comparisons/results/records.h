@@ -23,6 +23,14 @@ struct RunKey {
 /// Whether both are of one model at one Poisson's ratio and resolution.
 bool same_run(const RunKey& a, const RunKey& b);
 
+/// A record of a run, all else in it blank.
+template <class Record>
+Record of_run(const RunKey& key) {
+  Record record;
+  static_cast<RunKey&>(record) = key;
+  return record;
+}
+
 /// One number of one model: a line of results.csv.
 struct Row : RunKey {
   std::string case_name;

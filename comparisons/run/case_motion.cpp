@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "comparisons/models/motion_measured.h"
 #include "comparisons/results/picture.h"
 #include "meshes/volume.h"
 #include "problem/case_file/measures.h"
@@ -55,7 +56,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
       p.frame_times.push_back(time);
       p.frames.push_back(p.surface == "cells"
                              ? picture(key, field, nullptr).displacement
-                             : smooth_picture(key, field, *run.prepared.tetrahedra.back(), nullptr).displacement);
+                             : smooth_picture(key, field, *run.prepared.body.tetrahedra.back(), nullptr).displacement);
     }
   }
   if (!series.empty()) write_pvd(run.vtu.folder / (vtu_stem(key) + ".pvd"), series);

@@ -1,7 +1,7 @@
 // The motions of a case: finite elements in time, histories and rows of the models.
 #pragma once
 
-#include "comparisons/run/motion_run.h"
+#include "comparisons/models/motion_recorder.h"
 #include "comparisons/run/part_run.h"
 
 namespace springproof {

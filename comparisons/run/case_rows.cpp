@@ -4,8 +4,8 @@
 #include <set>
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/reference/reference_grids.h"
 #include "comparisons/run/case_motion.h"
-#include "comparisons/run/reference_grids.h"
 #include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 
@@ -68,10 +68,17 @@ void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<st
 
 }  // namespace
 
+Row blank_row(const PartRun& run, const RunKey& key, const std::string& kinematics) {
+  Row row = of_run<Row>(key);
+  row.case_name = run.experiment().name;
+  row.kinematics = kinematics;
+  return row;
+}
+
 void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
               const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
   const auto* reference = reference_at_rest(run, lattice, model);
-  const Row blank{run.key(model, lattice), run.experiment().name, kinematics, "", 0, "", {}, {}, {}, 1, {}};
+  const Row blank = blank_row(run, run.key(model, lattice), kinematics);
   for (const std::string& measure : measures_in(scalars)) {
     if (!wanted(measure, run.experiment().measures)) continue;
     Row row = blank;

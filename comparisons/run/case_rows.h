@@ -9,6 +9,9 @@
 
 namespace springproof {
 
+/// A row of a run of the case, without a measure.
+Row blank_row(const PartRun& run, const RunKey& key, const std::string& kinematics);
+
 /// Adds the rows of a model or element on a lattice.
 /// @param u one displacement field per sample, at the lattice's nodes [m]
 /// @param scalars the measures that have a value of their own, one set per sample

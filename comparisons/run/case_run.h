@@ -1,10 +1,10 @@
 // Runs one case: every model and the reference, at one Poisson's ratio, measured by the same code.
 #pragma once
 
+#include "comparisons/prepare/prepared_case.h"
+#include "comparisons/reference/run_keeper.h"
+#include "comparisons/reference/vtu_output.h"
 #include "comparisons/results/records.h"
-#include "comparisons/run/prepared_case.h"
-#include "comparisons/run/run_keeper.h"
-#include "comparisons/run/vtu_output.h"
 
 namespace springproof {
 

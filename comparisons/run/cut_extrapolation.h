@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/run/prepared_case.h"
+#include "comparisons/prepare/prepared_case.h"
 
 namespace springproof {
 

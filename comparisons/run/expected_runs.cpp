@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "comparisons/run/grid_cost.h"
-#include "comparisons/run/motion_reference.h"
+#include "comparisons/models/motion_reference.h"
+#include "comparisons/reference/grid_cost.h"
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/voxel_reference.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/voxel_reference.h"
 #include "meshes/volume.h"
 #include "problem/case_file/external.h"
 
@@ -82,7 +82,7 @@ void add_block(const PreparedCase& prepared, Runs& runs) {
 void add_voxels(const PreparedCase& prepared, Runs& runs) {
   const Experiment& e = prepared.experiment;
   for (const std::string& element : e.reference.elements)
-    for (const auto& mesh : prepared.tetrahedra) runs.grid(unknowns(*mesh, degree_of(element)), true);
+    for (const auto& mesh : prepared.body.tetrahedra) runs.grid(unknowns(*mesh, degree_of(element)), true);
   if (e.reference.elements.empty() || e.models.empty()) return;
   for (const Lattice& lattice : prepared.lattices) {
     const Mesh& mesh = *lattice.mesh;

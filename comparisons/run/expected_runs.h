@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "comparisons/run/prepared_case.h"
-#include "comparisons/run/run_keeper.h"
+#include "comparisons/prepare/prepared_case.h"
+#include "comparisons/reference/run_keeper.h"
 
 namespace springproof {
 

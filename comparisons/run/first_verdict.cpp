@@ -20,7 +20,7 @@ std::string first_verdict(const PartRun& run, const NodalVectors& coarsest) {
   std::vector<std::pair<double, std::string>> errors;
   for (std::size_t m = 0; m < run.prepared.models.size(); ++m) {
     if (e.models[m].in_motion) continue;
-    const std::vector<ModelSample> samples = samples_of(run, lattice, m);  // none of a file of other cells or ratios
+    const std::vector<ModelSample> samples = samples_of(run, lattice, {m});  // none of a file of other cells or ratios
     if (samples.empty() || !samples.front().state.ok) continue;
     const NodalVectors difference = samples.front().field.displacement - u;
     errors.emplace_back(weighted_norm(difference, volumes) / scale, e.models[m].label);

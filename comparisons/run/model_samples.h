@@ -1,16 +1,20 @@
-// The samples of a model in a part that is being run: each a run that is kept (comparisons/run/run_keeper.h).
+// The samples of a model in a part that is being run: each a run that is kept (comparisons/reference/run_keeper.h).
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "comparisons/run/fracture_run.h"
-#include "comparisons/run/model_run.h"
+#include "comparisons/models/fracture_run.h"
+#include "comparisons/models/model_run.h"
 #include "comparisons/run/part_run.h"
 
 namespace springproof {
 
-/// Model `number` of the case on a lattice.  `whole`: on whole cubes instead of the cut cells.
-std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, std::size_t number, bool whole = false);
+/// What the samples of a model on a lattice are kept as.
+std::string name_of_samples(std::size_t lattice, ChosenModel model);
+
+/// A model on a lattice.
+std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, ChosenModel model);
 
 /// The same of a body that dries.
 FractureSamples fracture_samples_of(const PartRun& run, std::size_t lattice, std::size_t number);

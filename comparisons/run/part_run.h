@@ -8,13 +8,13 @@
 
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/judge/rigid_motion.h"
+#include "comparisons/models/motion_reference.h"
+#include "comparisons/prepare/prepared_case.h"
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/voxel_reference.h"
+#include "comparisons/reference/vtu_output.h"
 #include "comparisons/results/records.h"
 #include "comparisons/run/cut_extrapolation.h"
-#include "comparisons/run/motion_reference.h"
-#include "comparisons/run/prepared_case.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/voxel_reference.h"
-#include "comparisons/run/vtu_output.h"
 
 namespace springproof {
 

@@ -7,15 +7,15 @@
 #include <limits>
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/models/external.h"
+#include "comparisons/models/fracture_run.h"
+#include "comparisons/models/motion_steps.h"
+#include "comparisons/prepare/case_checks.h"
+#include "comparisons/prepare/lattice_limits.h"
+#include "comparisons/prepare/sampling.h"
+#include "comparisons/prepare/voxel_body.h"
+#include "comparisons/reference/reference_grids.h"
 #include "comparisons/results/records.h"
-#include "comparisons/run/case_checks.h"
-#include "comparisons/run/external.h"
-#include "comparisons/run/fracture_run.h"
-#include "comparisons/run/lattice_limits.h"
-#include "comparisons/run/motion_run.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/sampling.h"
-#include "comparisons/run/voxel_body.h"
 #include "meshes/mesher/mesher.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
@@ -95,9 +95,9 @@ void check_vertex_options(const PreparedCase& prepared) {
 void choose_curve(const Experiment& e, ModelParameters& p) {
   const bool follows = p.has(Extension::averaging) || p.dispersion == Dispersion::finite_strain;
   if (!follows || p.curve) return;
-  p.curve = e.kinematics == "neo_hooke"             ? StrainCurve::neo_hooke
-            : e.kinematics == "neo_hooke_isochoric" ? StrainCurve::neo_hooke_isochoric
-                                                    : StrainCurve::hencky;
+  p.curve = StrainCurve::hencky;
+  for (const StrainCurve curve : {StrainCurve::neo_hooke, StrainCurve::neo_hooke_isochoric})
+    if (e.kinematics == name_of(curve)) p.curve = curve;
 }
 
 /// @throws InputError at a springs file that stands for another material than the case's.
@@ -122,8 +122,8 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   const Mesh& mesh = *lattice.mesh;
   const auto [model, embedding] = build_chosen(prepared, lattice, number, experiment.materials.front());
   if (experiment.models[number].in_motion)
-    for (const IsotropicMaterial& material : experiment.materials)
-      check_motion(*experiment.dynamics, build_chosen(prepared, lattice, number, material).model, material);
+    for (const IsotropicMaterial& material : experiment.materials)  // refuses unsafe ones
+      steps_of(*experiment.dynamics, build_chosen(prepared, lattice, number, material).model, material);
   if (parameters.row.topology == Topology::cells && !*parameters.cut) return;
   const BoundaryConditions bc =
       transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
@@ -148,15 +148,15 @@ void prepare_blocks(PreparedCase& prepared) {
   prepared.reference_cells = reference_cells(e);
   for (const Cells& cells : e.body.cells) check_fineness(e.body, cells);
   for (const Cells& cells : e.body.cells)
-    add_lattice({cells, std::make_shared<Mesh>(mesh_geo(prepared.geo, e.body.size, cells))}, prepared);
+    add_lattice({cells, std::make_shared<Mesh>(mesh_geo(prepared.body.geo, e.body.size, cells))}, prepared);
 }
 
 /// Samples the patches of the body itself, if their mean displacement is measured.
 void sample_patches(PreparedCase& prepared) {
   if (!wanted("mean_displacement", prepared.experiment.measures)) return;
   const bool voxels = prepared.experiment.body.is_voxels();
-  prepared.patch_samples =
-      samples_of_patches(voxels ? *prepared.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
+  prepared.samples.of_patches =
+      samples_of_patches(voxels ? *prepared.body.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
 }
 
 /// @throws InputError for a body that starts behind the plane that it is to fall on: the true one if all models that
@@ -167,7 +167,7 @@ void check_plane(const PreparedCase& prepared, const Lattice& lattice) {
   bool all_cut = true;
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
     all_cut = all_cut && (!e.models[m].in_motion || *prepared.models[m].cut);
-  const Mesh& mesh = all_cut ? *prepared.tetrahedra.back() : *lattice.mesh;
+  const Mesh& mesh = all_cut ? *prepared.body.tetrahedra.back() : *lattice.mesh;
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n)
     nearest = std::min(nearest, e.dynamics->plane->distance(mesh.nodes.row(n).transpose()));
@@ -235,7 +235,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     PreparedCase prepared;
     prepared.experiment = experiment;
     prepared.loads = experiment.loads;
-    prepared.size = experiment.body.size;
+    prepared.body.size = experiment.body.size;
     for (const ModelChoice& choice : experiment.models) {
       prepared.models.push_back(is_external(choice) ? parameters_of_external(choice) : resolve(choice));
       choose_curve(experiment, prepared.models.back());
@@ -245,7 +245,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     check_fracture_models(experiment, prepared.models);
     choose_cut_cells(prepared);
     check_vertex_options(prepared);
-    prepared.geo = find_geo(experiment.body, experiment.file);
+    prepared.body.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
     for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);

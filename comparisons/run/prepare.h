@@ -1,7 +1,7 @@
 // Prepares a case for its runs.
 #pragma once
 
-#include "comparisons/run/prepared_case.h"
+#include "comparisons/prepare/prepared_case.h"
 
 namespace springproof {
 

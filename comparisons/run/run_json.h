@@ -4,8 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "comparisons/run/fracture_run.h"
-#include "comparisons/run/model_run.h"
+#include "comparisons/models/fracture_run.h"
+#include "comparisons/models/model_run.h"
 
 namespace springproof {
 

@@ -5,14 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "problem/large_strain.h"
+
 namespace springproof::fem {
 namespace {
-
-const std::array<std::pair<const char*, Law>, 5> law_table = {{{"hencky", Law::hencky},
-                                                               {"log_cauchy", Law::log_cauchy},
-                                                               {"neo_hooke", Law::neo_hooke},
-                                                               {"neo_hooke_isochoric", Law::neo_hooke_isochoric},
-                                                               {"st_venant_kirchhoff", Law::st_venant_kirchhoff}}};
 
 Eigen::Matrix3d right_cauchy_green(const Matrix3& F) {
   Eigen::Matrix3d C;
@@ -97,14 +93,14 @@ Voigt to_voigt(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; 
 }  // namespace
 
 std::optional<Law> law_named(const std::string& name) {
-  for (const auto& [text, law] : law_table)
-    if (name == text) return law;
-  return {};
+  const auto at = std::find(laws_of_large_strain.begin(), laws_of_large_strain.end(), name);
+  if (at == laws_of_large_strain.end()) return {};
+  return static_cast<Law>(at - laws_of_large_strain.begin());
 }
 
 std::string law_names() {
   std::string all;
-  for (const auto& [text, law] : law_table) all += (all.empty() ? "" : ", ") + std::string(text);
+  for (const char* name : laws_of_large_strain) all += (all.empty() ? "" : ", ") + std::string(name);
   return all;
 }
 

@@ -12,6 +12,7 @@
 
 namespace springproof::fem {
 
+/// In the order of laws_of_large_strain, which names them (problem/large_strain.h).
 enum class Law {
   hencky,               ///< Kirchhoff stress = 2 mu ln V + lambda ln J I; hyperelastic
   log_cauchy,           ///< Cauchy stress = 2 mu ln V + lambda ln J I (as LS-Dyna's hypoelastic solid); not

@@ -27,7 +27,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Course, ramp, pulse, frequency)
 namespace fem {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements, steps, vtu)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Motion, duration, damping, course, released, velocity, spin, viscosity,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MotionRequest, duration, damping, course, released, velocity, spin, viscosity,
                                    energy_momentum)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions,
                                    volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,

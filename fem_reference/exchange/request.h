@@ -30,7 +30,7 @@ struct Discretisation {
 using Stresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 /// Motion in time under the loads.
-struct Motion {
+struct MotionRequest {
   double duration = 0;    ///< [s]
   double damping = 0;     ///< mass-proportional, force -damping rho v per volume [1/s]
   Course course = {};     ///< of the loads and moved supports
@@ -58,7 +58,7 @@ struct Request {
   bool cost = false;                                     ///< measure times and memory for comparison (RunTimes)
   bool vtu_single = false;                               ///< Discretisation::vtu in single precision
   int modes = 0;  ///< compute so many natural modes instead of a displacement: supports at rest, no other loads
-  std::optional<Motion> motion = {};  ///< integrate in time instead of an equilibrium
+  std::optional<MotionRequest> motion = {};  ///< integrate in time instead of an equilibrium
 };
 
 /// The result on one grid.

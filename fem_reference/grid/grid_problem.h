@@ -28,9 +28,10 @@ struct GridProblem {
   NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress
   double tolerance = 1e-9;                          ///< relative residual
   Method method = Method::automatic;
-  bool wide_vectors = true;      ///< use wide SIMD vectors, where the processor has them
-  int modes = 0;                 ///< natural modes to compute instead of a displacement (fem_reference/natural_modes.h)
-  std::optional<Motion> motion;  ///< integrated in `steps` steps instead of an equilibrium (fem_reference/motion.h)
+  bool wide_vectors = true;  ///< use wide SIMD vectors, where the processor has them
+  int modes = 0;             ///< natural modes to compute instead of a displacement (fem_reference/natural_modes.h)
+  std::optional<MotionRequest>
+      motion;  ///< integrated in `steps` steps instead of an equilibrium (fem_reference/motion.h)
   int steps = 0;
   std::string vtu;          ///< file for ParaView of a converged solution (solution_file.h); empty: none
   VtuNotes vtu_notes;       ///< what it says of itself

@@ -7,24 +7,19 @@
 
 namespace springproof {
 
-/// Every spring, triangle, cell and anchor that acts on a node of the part's own, as a model: the forces on own nodes
-/// and their rows of the tangent are those of the whole model.  Those of other nodes are not complete.
+/// Every spring, triangle, cell and anchor that acts on a node of the part's own, among all nodes of the whole: the
+/// forces on own nodes and their rows of the tangent are those of the whole model.  Those of other nodes are not
+/// complete.
 struct ModelPart {
-  MassSpringModel model;   ///< nodes, springs and cells in the order of the whole
-  std::vector<int> nodes;  ///< numbers in the whole, ascending
+  MassSpringModel model;   ///< springs and cells in the order of the whole
   std::vector<int> cells;  ///< numbers in the whole, ascending
-  std::vector<char> own;   ///< per node of the part
 };
 
 /// @param whole a model without periodic images
-/// @param own per node of the whole
+/// @param own per node
 /// @return its part
 /// @throws std::invalid_argument for a periodic model, one whose forces have no energy (conservative()), and
 /// momentum dispersion of finite strain.
 ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own);
-
-/// Nodes to which the nodes `first` <= n < `last` of a network are coupled, ascending and without themselves: rows of a
-/// graph for a partition.
-std::vector<std::vector<int>> neighbours(const Network& network, int first, int last);
 
 }  // namespace springproof

@@ -2,16 +2,8 @@
 
 #include <cmath>
 
-#include "msm/parameters/calibrate.h"
-
 namespace springproof {
 namespace {
-
-const VolumeCorrection* volume_correction_of(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws)
-    if (const auto* volume = std::get_if<VolumeCorrection>(&law)) return volume;
-  return nullptr;
-}
 
 MassSpringModel without_volume_term(const MassSpringModel& model) {
   MassSpringModel springs{model.network, {}, model.small_displacements_only};
@@ -36,7 +28,8 @@ Eigen::Matrix<double, 24, 1> volume_gradient(const MassSpringModel& model, std::
 void set_pressures_of_cells(const MassSpringModel& model, PressureForm& form) {
   const Network& network = model.network;
   const AveragedSprings* averaged = averaged_springs_of(model);
-  const double kappa = averaged ? averaged->lame_lambda - averaged->shear_modulus : volume_correction_of(model)->kappa;
+  const double kappa =
+      averaged ? averaged->lame_lambda - averaged->shear_modulus : law_of<VolumeCorrection>(model)->kappa;
   const Carriers carriers = carriers_of(network.nodes(), network.carried);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(24 * network.cells.size());
@@ -75,15 +68,6 @@ void set_pressures_of_nodes(const MassSpringModel& model, PressureForm& form) {
 }  // namespace
 
 bool has_nodal_pressures(const MassSpringModel& model) { return dispersion_of(model) != nullptr; }
-
-double volume_stiffness_ratio(const MassSpringModel& model) {
-  if (const MomentumDispersion* dispersion = dispersion_of(model))
-    return added_lambda(*dispersion, model.network.triangles.empty() ? 3 : 2);
-  if (const AveragedSprings* averaged = averaged_springs_of(model))
-    return averaged->lame_lambda / averaged->shear_modulus - 1;
-  if (const VolumeCorrection* volume = volume_correction_of(model)) return volume->kappa / affine_shear_modulus(model);
-  return 0;
-}
 
 PressureForm pressure_form(const MassSpringModel& model) {
   PressureForm form{without_volume_term(model), {}, {}};

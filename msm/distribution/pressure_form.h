@@ -13,11 +13,8 @@ struct PressureForm {
   Eigen::VectorXd C;        ///< one per place [m^3/Pa, N m]; 0: no pressure there
 };
 
-/// lambda that the volume term of a model adds to that of its springs, over their shear modulus; 0: it has none.
-/// Of a whole model, not of a part.
-double volume_stiffness_ratio(const MassSpringModel& model);
-
-/// Of a conservative model, or a part of one, with a volume term that adds to lambda: volume_stiffness_ratio() > 0.
+/// Of a conservative model, or a part of one, with a volume term that adds to lambda: volume_stiffness_ratio() > 0
+/// (msm/parameters/calibrate.h).
 PressureForm pressure_form(const MassSpringModel& model);
 
 /// Whether its pressures are those of nodes, not of cells.

@@ -14,7 +14,10 @@
 namespace springproof {
 namespace {
 
-constexpr int slow = 8;  // iterations after which the factors are renewed
+// Largest unbalanced force of a step relative to its inertial and internal forces; round-off where that is more.
+constexpr double newton_tolerance = 1e-11;
+constexpr int most_newton_steps = 30;  // of a step
+constexpr int slow = 8;                // iterations after which the factors are renewed
 constexpr int most_halvings = 6;
 constexpr int most_contacts = 40;  // sets of nodes on a plane that are tried for a step
 constexpr int anderson_depth = 15, most_simple_iterations = 30;
@@ -55,7 +58,7 @@ Eigen::Matrix3d rotation_between(const NodalVectors& X, const NodalVectors& x, c
 
 }  // namespace
 
-ImplicitMotion::ImplicitMotion(const MassSpringModel& model, double density, const ImplicitOptions& options)
+ImplicitMotion::ImplicitMotion(const MassSpringModel& model, double density, const MotionOptions& options)
     : model_(model),
       options_(options),
       density_(density),
@@ -116,7 +119,7 @@ void ImplicitMotion::prepare(const Formula& step) {
   const long unknowns = std::count(conditions_.fixed.begin(), conditions_.fixed.end(), 0);
   if (unknowns > cholesky_limit && consists_of_cells(model_) && network.filled.empty())
     cycle_ = std::make_unique<Multigrid>(lattice_levels(network, conditions_.fixed),
-                                         step.of_stiffness * cell_stiffness(model_).total, 3, true,
+                                         step.of_stiffness * cell_stiffness(model_).total, true,
                                          a * density_ * network.cell_volume() / 8);
 }
 
@@ -278,11 +281,11 @@ bool ImplicitMotion::solve(const Formula& now, NodalVectors& x1, Balance& b) {
     b = balance(now, x1);
   }
   const auto scale = [&] { return std::max(inertia, b.force.norm()); };
-  const auto enough = [&] { return std::max(options_.tolerance * scale(), round_off); };
+  const auto enough = [&] { return std::max(newton_tolerance * scale(), round_off); };
   iterate(now, enough(), x1, b);
   for (int k = 0; !(b.unbalanced.norm() <= enough()); ++k) {
     const double relative = b.unbalanced.norm() / scale();
-    if (k == options_.max_iterations || !std::isfinite(relative)) {
+    if (k == most_newton_steps || !std::isfinite(relative)) {
       failure_ = fmt::format(
           "a step of {:.3g} s has no solution within {} Newton steps (unbalanced force {:.1e} of "
           "the others): a smaller time_step_s helps",
@@ -348,7 +351,7 @@ ForceNorms ImplicitMotion::advance(long steps) {
   for (; steps > 0; --steps) {
     if (!factored()) renewed_ = false;  // the turn follows the body
     ++advanced_;
-    if (!step(options_.time_step, most_halvings)) return {nan, nan};
+    if (!step(options_.time_step.value(), most_halvings)) return {nan, nan};
   }
   return norms_;
 }

@@ -7,32 +7,13 @@
 
 #include "msm/algebra/direct_solver.h"
 #include "msm/algebra/krylov.h"
-#include "msm/dynamics/energy_momentum.h"
-#include "msm/dynamics/lattice_motion.h"
-#include "msm/dynamics/plane_constraint.h"
-#include "msm/dynamics/plane_contact.h"
-#include "msm/dynamics/viscosity.h"
+#include "msm/dynamics/motion.h"
+#include "msm/dynamics/terms/energy_momentum.h"
+#include "msm/dynamics/terms/plane_constraint.h"
+#include "msm/dynamics/terms/plane_contact.h"
 #include "msm/multigrid/multigrid.h"
 
 namespace springproof {
-
-enum class Integrator {
-  explicit_euler,   ///< semi-implicit Euler: order 1 in the energy, 2 in the positions; a bounded step
-  energy_momentum,  ///< midpoint kinematics with the forces of EnergyMomentum: order 2, undamped
-  implicit_euler,   ///< order 1, damps strongly
-};
-
-struct ImplicitOptions {
-  Integrator integrator = Integrator::energy_momentum;
-  double time_step = 0;      ///< [s]
-  double damping = 0;        ///< mass-proportional [1/s]
-  Viscosity viscosity = {};  ///< of the model, which is kept
-  /// A plane without friction that nodes may end a step on, which counts the impulses; nullptr: there is none.
-  PlaneContact* contact = nullptr;
-  /// Largest unbalanced force of a step relative to its inertial and internal forces; round-off where that is more.
-  double tolerance = 1e-11;
-  int max_iterations = 30;  ///< of Newton's method, per step
-};
 
 /// Each step is solved by Newton's method, whose linear equations GMRES solves with differences of the forces (their
 /// derivative is not symmetric).  Preconditioner: the factors of mass and tangent stiffness of an earlier state,
@@ -42,28 +23,29 @@ struct ImplicitOptions {
 /// Nodes that end a step on a plane (PlaneConstraint) have lost their velocity along its normal then, as in explicit
 /// steps.  The reactions at the end of the step do no work on nodes that stay, and take some from those that land, so
 /// that the energy does not grow; momentum changes by what the plane gives.
-class ImplicitMotion {
+class ImplicitMotion : public Motion {
  public:
-  /// At rest at X.  Keeps a reference to the model.
+  /// @param model a model
+  /// @param density [kg/m^3]
+  /// @param options with a time step and an integrator that takes large ones, of which damping, viscosity and contact
+  ///   are read; nodes may end a step on the plane, without friction, which counts the impulses
   /// @throws std::invalid_argument if the model has no energy-momentum forces and these are asked for.
-  ImplicitMotion(const MassSpringModel& model, double density, const ImplicitOptions& options);
+  ImplicitMotion(const MassSpringModel& model, double density, const MotionOptions& options);
 
-  /// Sets supports and loads of the end of the next step; a step's loads are the mean of those of its two ends (energy-
-  /// momentum) or those of its end.
-  void set_conditions(const BoundaryConditions& conditions);
-  void move_supports();                                          ///< moves the fixed unknowns at once
-  void set_state(const NodalVectors& x, const NodalVectors& v);  ///< [m], [m/s]
+  /// Those of the end of the next step; a step's loads are the mean of those of its two ends (energy-momentum) or those
+  /// of its end.
+  void set_conditions(const BoundaryConditions& conditions) override;
+  void move_supports() override;
+  void set_state(const NodalVectors& x, const NodalVectors& v) override;
 
   /// @return the norms of internal and external forces over the last step; NaN if it has none, with the reason
   ///   in failure().
-  ForceNorms advance(long steps);
+  ForceNorms advance(long steps) override;
 
-  const NodalVectors& positions() const { return x_; }   ///< [m]
-  const NodalVectors& velocities() const { return v_; }  ///< [m/s]; of fixed unknowns the mean over the last step
-  const std::string& failure() const { return failure_; }
-  long evaluations() const { return evaluations_; }  ///< of the forces, all steps together
-  long halved() const { return halved_; }            ///< steps that had no solution and were made in halves
-  std::string description() const;
+  NodalVectors positions() const override { return x_; }
+  NodalVectors velocities() const override { return v_; }  ///< of fixed unknowns the mean over the last step
+  std::string description() const override;
+  std::string failure() const override { return failure_; }
 
  private:
   /// A step from x0 as m a (x1 - inertial) = force - damping m rate (x1 - x0), rate (x1 - x0) the mean velocity.
@@ -97,7 +79,7 @@ class ImplicitMotion {
   bool held() const;
 
   const MassSpringModel& model_;
-  ImplicitOptions options_;
+  MotionOptions options_;
   double density_, safe_step_;
   Eigen::VectorXd mass_;
   double spacing_;  ///< of the nodes [m]
@@ -106,7 +88,9 @@ class ImplicitMotion {
   NodalVectors external_before_;
   NodalVectors x_, v_;
   double dt_ = 0;  ///< of the present step [s]
-  long advanced_ = 0, halved_ = 0, evaluations_ = 0, factorisations_ = 0;
+  long advanced_ = 0, factorisations_ = 0;
+  long halved_ = 0;       ///< steps that had no solution and were made in halves
+  long evaluations_ = 0;  ///< of the forces
   std::optional<PlaneConstraint> plane_;
   std::string failure_;
   ForceNorms norms_;

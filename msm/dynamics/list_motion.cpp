@@ -1,7 +1,12 @@
 #include "msm/dynamics/list_motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "msm/kernels/cell_forces.h"
+#include "msm/kernels/list_forces.h"
 
 namespace springproof {
 namespace {
@@ -16,27 +21,28 @@ int useful_threads(const Wavefront& wavefront, int wanted) {
 }  // namespace
 
 template <class Real>
-ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const NodalVectors& X,
-                             const Eigen::VectorXd& inverse_mass, const ListMotionOptions& options,
-                             const MassAverage& average)
+ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const MassSpringModel& model, double density,
+                             const MotionOptions& options)
     : forces_(std::move(forces)),
       order_(forces_->plan().order),
       wavefront_(forces_->plan()),
       workers_(std::make_unique<Workers>(
-          forces_->coupled() || average.acts() ? 1 : useful_threads(wavefront_, options.threads))),
-      X_(X),
+          forces_->coupled() || options.mass_consistency > 0 ? 1 : useful_threads(wavefront_, options.threads))),
+      network_(model.network),
       origin_(forces_->origin()),
-      options_(options),
-      decay_(1 / (1 + options.time_step * options.damping)) {
+      instructions_(options.instructions),
+      time_step_(options.time_step.value()),
+      decay_(1 / (1 + time_step_ * options.damping)),
+      lagged_(options.lagged) {
+  const Eigen::VectorXd inverse_mass = inverse_masses(network_, density);
   x_ = s_ = f_ = external_ = std::vector<Padded<Real>>(order_.size(), Padded<Real>{});
   for (std::size_t p = 0; p < order_.size(); ++p) {
     const int n = order_[p];
-    for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(X_(n, d) - origin_(n, d));
-    if (std::isfinite(inverse_mass[n]))
-      external_[p].v[gain] = static_cast<Real>(options_.time_step * inverse_mass[n] * decay_);
+    for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(network_.X(n, d) - origin_(n, d));
+    if (std::isfinite(inverse_mass[n])) external_[p].v[gain] = static_cast<Real>(time_step_ * inverse_mass[n] * decay_);
     if (forces_->viscous()) x_[p].v[3] = external_[p].v[gain] / static_cast<Real>(decay_);
   }
-  if (average.acts()) set_up(average);
+  if (options.mass_consistency > 0) set_up(MassAverage(network_, options.mass_consistency));
 }
 
 template <class Real>
@@ -51,39 +57,39 @@ void ListMotion<Real>::set_up(const MassAverage& average) {
       const auto& at = hexahedron_corners[n];
       corners_[first + at[0] + 2 * at[1] + 4 * at[2]] = place[cells[c][n]];
     }
-    factors_.push_back(static_cast<Real>(options_.time_step * average.part(c)));
+    factors_.push_back(static_cast<Real>(time_step_ * average.part(c)));
   }
   for (const int node : order_) shares_.push_back(static_cast<Real>(average.share(node)));
   v_.assign(order_.size(), Padded<Real>{});
 }
 
 template <class Real>
-void ListMotion<Real>::load(const BoundaryConditions& conditions) {
+void ListMotion<Real>::set_conditions(const BoundaryConditions& conditions) {
   held_.clear();
   for (int p = 0; p < static_cast<int>(order_.size()); ++p)
     for (int d = 0; d < 3; ++d) {
       const int n = order_[p];
       external_[p].v[d] = static_cast<Real>(conditions.external(n, d));
       if (conditions.fixed[3 * n + d])
-        held_.push_back({p, d, static_cast<Real>(X_(n, d) - origin_(n, d) + conditions.prescribed(n, d))});
+        held_.push_back({p, d, static_cast<Real>(network_.X(n, d) - origin_(n, d) + conditions.prescribed(n, d))});
     }
-  moved_ = true;
+  supports_wait_ = true;
 }
 
 template <class Real>
-void ListMotion<Real>::place_prescribed() {
+void ListMotion<Real>::move_supports() {
   for (const Held& h : held_) x_[h.place].v[h.component] = h.x;
-  moved_ = false;
+  supports_wait_ = false;
 }
 
-/// The same; dashpots see the speeds in the next step.
+/// Moves the supports; dashpots see the speeds in the next step.
 template <class Real>
-void ListMotion<Real>::move_prescribed() {
+void ListMotion<Real>::move_with_speed() {
   if (forces_->viscous())
     for (const Held& h : held_)
-      if (const Real per_s = x_[h.place].v[3] * static_cast<Real>(options_.time_step); per_s > 0)
+      if (const Real per_s = x_[h.place].v[3] * static_cast<Real>(time_step_); per_s > 0)
         s_[h.place].v[h.component] = (h.x - x_[h.place].v[h.component]) / per_s;
-  place_prescribed();
+  move_supports();
 }
 
 template <class Real>
@@ -95,7 +101,7 @@ void ListMotion<Real>::set_state(const NodalVectors& x, const NodalVectors& v) {
       const Real per_s = external_[p].v[gain] / static_cast<Real>(decay_);  // as velocities() reads it
       x_[p].v[d] = static_cast<Real>(x(n, d) - origin_(n, d));
       if (held != held_.end() && held->place == p && held->component == d)
-        ++held;  // it keeps the speed of move_prescribed()
+        ++held;  // it keeps the speed of move_with_speed()
       else
         s_[p].v[d] = per_s > 0 ? static_cast<Real>(v(n, d)) / per_s : 0;
     }
@@ -118,7 +124,7 @@ typename ListMotion<Real>::Squares ListMotion<Real>::move(int begin, int end, bo
   }
   ListStep<Real> s;
   s.nodes = end - begin;
-  s.dt = static_cast<Real>(options_.time_step);
+  s.dt = static_cast<Real>(time_step_);
   s.decay = static_cast<Real>(decay_);
   s.external = external_.data() + begin;
   s.x = x_.data() + begin;
@@ -136,7 +142,7 @@ void ListMotion<Real>::move_by_averages() {
   std::vector<Real> stay;
   for (const Held& h : held_) {
     stay.push_back(x_[h.place].v[h.component]);
-    v_[h.place].v[h.component] = moved_ ? (h.x - stay.back()) / static_cast<Real>(options_.time_step) : 0;
+    v_[h.place].v[h.component] = supports_wait_ ? (h.x - stay.back()) / static_cast<Real>(time_step_) : 0;
   }
   forces_->kernels().average(
       {static_cast<long>(factors_.size()), corners_.data(), factors_.data(), shares_.data(), v_.data(), x_.data()});
@@ -146,7 +152,7 @@ void ListMotion<Real>::move_by_averages() {
 template <class Real>
 typename ListMotion<Real>::Squares ListMotion<Real>::whole_step() {
   if (forces_->coupled())
-    forces_->add(x_.data(), s_.data(), f_.data(), options_.lagged);
+    forces_->add(x_.data(), s_.data(), f_.data(), lagged_);
   else
     forces_->add_blocks(0, wavefront_.begin.back(), x_.data(), s_.data(), f_.data());
   const Squares sum = move(0, static_cast<int>(order_.size()), true);
@@ -176,9 +182,9 @@ typename ListMotion<Real>::Squares ListMotion<Real>::run(long steps) {
 template <class Real>
 ForceNorms ListMotion<Real>::advance(long steps) {
   Squares sum;
-  if (steps > 0 && moved_) {
+  if (steps > 0 && supports_wait_) {
     sum = run(1);
-    move_prescribed();
+    move_with_speed();
     --steps;
   }
   if (steps > 0) sum = run(steps);
@@ -187,7 +193,7 @@ ForceNorms ListMotion<Real>::advance(long steps) {
 
 template <class Real>
 NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>& v) const {
-  NodalVectors out(X_.rows(), 3);
+  NodalVectors out(network_.nodes(), 3);
   for (std::size_t p = 0; p < v.size(); ++p)
     for (int d = 0; d < 3; ++d) out(order_[p], d) = v[p].v[d];
   return out;
@@ -195,7 +201,9 @@ NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>&
 
 template <class Real>
 NodalVectors ListMotion<Real>::positions() const {
-  return origin_ + in_network_order(x_);
+  NodalVectors x = origin_ + in_network_order(x_);
+  carry(network_.carried, x);
+  return x;
 }
 
 template <class Real>
@@ -204,10 +212,45 @@ NodalVectors ListMotion<Real>::velocities() const {
   for (const Held& h : held_) v[h.place].v[h.component] = 0;
   for (std::size_t p = 0; p < v.size(); ++p)
     for (int d = 0; d < 3; ++d) v[p].v[d] *= external_[p].v[gain] / static_cast<Real>(decay_);
-  return in_network_order(v);
+  NodalVectors of_nodes = in_network_order(v);
+  carry(network_.carried, of_nodes);
+  return of_nodes;
+}
+
+template <class Real>
+std::string ListMotion<Real>::description() const {
+  return fmt::format("{}, {}, {}, {}", kernel(), sizeof(Real) == 4 ? "FP32" : "FP64", name_of(instructions_),
+                     threads() == 1 ? "1 thread" : fmt::format("{} threads", threads()));
 }
 
 template class ListMotion<double>;
 template class ListMotion<float>;
+
+namespace {
+
+template <class Real>
+std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, const MotionOptions& options) {
+  if (options.mass_consistency > 0 && options.viscosity.acts()) return nullptr;
+  const AveragedSprings& dashpots = options.viscosity.cells();
+  if (CellForces<Real>::covers(model) && !options.viscosity.along_springs() && dashpots.shift == 0)
+    return std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());
+  if (ListForces<Real>::covers(model) && !options.viscosity.acts())
+    return std::make_unique<ListForces<Real>>(model, options.instructions);
+  return nullptr;
+}
+
+template <class Real>
+std::unique_ptr<Motion> list_motion_of(const MassSpringModel& model, double density, const MotionOptions& options) {
+  std::unique_ptr<BlockForces<Real>> forces = block_forces<Real>(model, options);
+  if (!forces) return nullptr;
+  return std::make_unique<ListMotion<Real>>(std::move(forces), model, density, options);
+}
+
+}  // namespace
+
+std::unique_ptr<Motion> list_motion(const MassSpringModel& model, double density, const MotionOptions& options) {
+  return options.precision == Precision::float32 ? list_motion_of<float>(model, density, options)
+                                                 : list_motion_of<double>(model, density, options);
+}
 
 }  // namespace springproof

@@ -9,9 +9,10 @@
 
 #include "msm/algebra/lobpcg.h"
 #include "msm/algebra/noise.h"
+#include "msm/dynamics/terms/mass_average.h"
 #include "msm/embedding/boundary.h"
 #include "msm/embedding/rigid_motions.h"
-#include "msm/statics/tangent_solver.h"
+#include "msm/statics/stiffness_solver.h"
 #include "problem/system/child.h"
 #include "problem/system/run_cost.h"
 
@@ -57,14 +58,14 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
   BoundaryConditions held;
   held.fixed = supported;
   hold_free_motions(network.X, held, network.carried);
-  TangentSolver stiffness(model, fixed_or_carried(network, held.fixed), modes_direct_limit);
-  modes.solver = "LOBPCG + " + stiffness.name();
-  if (!stiffness.take(network.X)) {
+  const auto stiffness = solver_for(model, fixed_or_carried(network, held.fixed), modes_direct_limit);
+  modes.solver = "LOBPCG + " + stiffness->name();
+  if (!stiffness->take(network.X)) {
     modes.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
     return;
   }
   const Operator K = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-    stiffness.multiply(x, y);
+    stiffness->multiply(x, y);
     clear(fixed, y);
   };
   const Operator M = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
@@ -74,7 +75,7 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
   };
   const Operator solve = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     if (children_interrupted()) throw std::runtime_error("interrupted");
-    stiffness.solve(r, inner_residual, inner_iterations, z);
+    stiffness->solve(r, inner_residual, inner_iterations, z);
   };
   const Eigen::MatrixXd rigid = orthonormalised(M, left_motions(supported, fixed, network.X), {});
   const long unknowns = std::count(fixed.begin(), fixed.end(), 0) - rigid.cols();
@@ -103,22 +104,6 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
 }
 
 }  // namespace
-
-Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
-  Eigen::Matrix<double, 8, 8> C = Eigen::Matrix<double, 8, 8>::Zero();
-  for (int q = 0; q < 8; ++q) {
-    Eigen::Matrix<double, 8, 1> N;
-    for (int a = 0; a < 8; ++a) {
-      N[a] = 1;
-      for (int d = 0; d < 3; ++d) {
-        const double xi = part.mean[d] + (hexahedron_corners[q][d] == 0 ? -1 : 1) * std::sqrt(part.variance[d]);
-        N[a] *= hexahedron_corners[a][d] == 0 ? 0.5 - xi : 0.5 + xi;
-      }
-    }
-    C += full * part.fraction / 8 * N * N.transpose();
-  }
-  return C;
-}
 
 Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, double theta) {
   if (!(theta >= 0 && theta <= 1))

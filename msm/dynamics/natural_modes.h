@@ -9,10 +9,6 @@
 
 namespace springproof {
 
-/// Integral of rho N_a N_b over the filled part of a cell of mass rho l^3 = `full`, N the corners' trilinear weights:
-/// at the two Gauss points per axis of the part's own mean and variance; of a full cell exact.
-Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full);
-
 /// Mass between nodes [kg], n x n, the same for each axis: M = theta C + (1 - theta) L.  C: the consistent mass of the
 /// trilinear displacement in each cell, over the part that the body fills: of its mass, its first moments and its
 /// second along the axes.  L: the sums of the rows of C; of whole cells an eighth of the cell's mass per corner.

@@ -4,12 +4,11 @@
 
 namespace springproof {
 
-PlainMotion::PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step,
-                         const DynamicsOptions& options)
+PlainMotion::PlainMotion(const MassSpringModel& model, double density, const MotionOptions& options)
     : model_(model),
       dispersion_(options.lagged ? dispersion_of(model) : nullptr),
-      inverse_mass_(inverse_mass),
-      dt_(time_step),
+      inverse_mass_(inverse_masses(model.network, density)),
+      dt_(options.time_step.value()),
       damping_(options.damping),
       viscosity_(options.viscosity),
       average_(model.network, options.mass_consistency),

@@ -1,20 +1,18 @@
 // Time integration of any model by the plain force loops.
 #pragma once
 
-#include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/motion.h"
+#include "msm/dynamics/terms/mass_average.h"
 
 namespace springproof {
 
 /// The steps of run_dynamics() as they are written: for models that have no kernel, and what kernels are held against.
 class PlainMotion : public Motion {
  public:
-  /// At rest at X.  Keeps a reference to the model.
   /// @param model a model
-  /// @param inverse_mass inverse_masses() [1/kg]
-  /// @param time_step [s]
-  /// @param options of which damping, viscosity, mass_consistency and lagged are read
-  PlainMotion(const MassSpringModel& model, const Eigen::VectorXd& inverse_mass, double time_step,
-              const DynamicsOptions& options);
+  /// @param density [kg/m^3]
+  /// @param options with a time step, of which damping, viscosity, mass_consistency and lagged are read
+  PlainMotion(const MassSpringModel& model, double density, const MotionOptions& options);
 
   void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
   void move_supports() override;

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/dense.h"
-#include "msm/dynamics/mass_average.h"
+#include "msm/dynamics/terms/mass_average.h"
 #include "msm/laws/nodal_gradients.h"
 #include "msm/multigrid/cell_stiffness.h"
 
@@ -252,6 +252,15 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
     largest = std::min(largest, gain * largest_eigenvalue(blocks));
   }
   return 2 / std::sqrt(largest);
+}
+
+double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
+                         double theta) {
+  if (!viscosity.acts()) return elastic;
+  const MassSpringModel dashpots{model.network, {viscosity.cells()}};
+  const double of_dashpots = viscosity.along_springs() ? elastic : safe_time_step(dashpots, density, false, theta);
+  const double frequency = 2 / elastic, rate = viscosity.time() * 4 / (of_dashpots * of_dashpots);
+  return 4 / (std::sqrt(rate * rate + 4 * frequency * frequency) + rate);
 }
 
 double dispersion_frequency_squared(const MassSpringModel& model, double density) {

@@ -1,6 +1,7 @@
 // Stable time step of explicit integration, from bounds on the frequencies of any network.
 #pragma once
 
+#include "msm/dynamics/terms/viscosity.h"
 #include "msm/laws/laws.h"
 
 namespace springproof {
@@ -31,6 +32,16 @@ namespace springproof {
 /// @return [s]
 /// @throws std::invalid_argument if a node has no mass.
 double safe_time_step(const MassSpringModel& model, double density, bool lagged = false, double theta = 0);
+
+/// Largest safe step [s] of explicit integration whose viscous forces are those of the velocity half a step before:
+/// (sqrt(c^2 + 4 w^2) - c) / w^2, with bounds w^2 on the squared frequencies and c on what viscosity adds.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @param viscosity of the model
+/// @param elastic the step without viscosity, safe_time_step() [s]
+/// @param theta share of consistent mass, 0 to 1
+double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
+                         double theta = 0);
 
 /// Bound on omega*^2 [1/s^2], the part of the squared frequencies that momentum dispersion adds; 0 if it adds none or
 /// reduces them.

@@ -208,7 +208,7 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
 namespace {
 
 /// The rigid motion that the fixed unknowns constrain least; nothing if they constrain all six.
-std::optional<RigidMotions::Motion> free_motion(const BoundaryConditions& bc, const RigidMotions& rigid) {
+std::optional<Eigen::Matrix<double, 6, 1>> free_motion(const BoundaryConditions& bc, const RigidMotions& rigid) {
   const auto motions = free_motions(bc.fixed, rigid);
   if (motions.cols() == 0) return {};
   return motions.col(0);

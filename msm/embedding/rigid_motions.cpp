@@ -11,12 +11,12 @@ constexpr double least_hold = 1e-10;  // of a mean square displacement of one
 
 }  // namespace
 
-RigidMotions::Motion RigidMotions::at(int unknown) const {
+RigidMotions::Values RigidMotions::at(int unknown) const {
   const Vec3 r = (X.row(unknown / 3).transpose() - middle) / size;
-  Motion motion = Motion::Zero();
-  motion[unknown % 3] = 1;
-  for (int axis = 0; axis < 3; ++axis) motion[3 + axis] = Vec3::Unit(axis).cross(r)[unknown % 3];
-  return motion;
+  Values value = Values::Zero();
+  value[unknown % 3] = 1;
+  for (int axis = 0; axis < 3; ++axis) value[3 + axis] = Vec3::Unit(axis).cross(r)[unknown % 3];
+  return value;
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> free_motions(const std::vector<char>& fixed, const RigidMotions& rigid) {

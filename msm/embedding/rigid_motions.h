@@ -10,13 +10,13 @@ namespace springproof {
 /// Values of the six rigid motions at an unknown 3 * node + axis: translations, then rotations about the centre,
 /// divided by the size.
 struct RigidMotions {
-  using Motion = Eigen::Matrix<double, 6, 1>;
+  using Values = Eigen::Matrix<double, 6, 1>;
 
   const NodalVectors& X;
   Vec3 middle = X.colwise().mean().transpose();
   double size = (X.colwise().maxCoeff() - X.colwise().minCoeff()).norm();
 
-  Motion at(int unknown) const;
+  Values at(int unknown) const;
 };
 
 /// Combinations of the six rigid motions that are zero on the fixed unknowns: one column each, 6 x 0 to 6.

@@ -100,7 +100,7 @@ std::string JsonPlace::text() const {
   return value_->get<std::string>();
 }
 
-int JsonPlace::choice(std::initializer_list<const char*> names) const {
+int JsonPlace::choice(std::span<const char* const> names) const {
   int number = 0;
   if (value_->is_string())
     for (const char* name : names) {

@@ -1,9 +1,9 @@
 // A value of a JSON document with its place, for errors that name it.
 #pragma once
 
-#include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,7 +34,7 @@ class JsonPlace {
   double number(double least, double largest) const;  ///< ends included
   bool flag() const;
   std::string text() const;
-  int choice(std::initializer_list<const char*> names) const;  ///< number of the name
+  int choice(std::span<const char* const> names) const;  ///< number of the name
 
   /// A list of rows of `columns` numbers each, row by row; of plain numbers if columns = 1.  `rows`: how many there
   /// must be, of what (`of`); no `of`: any number of them.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -38,9 +39,9 @@ class LawReader {
     value = law_.at(key).flag();
   }
   template <class Enum>
-  void choice(const char* key, Enum& value, std::initializer_list<const char*> names) {
+  void choice(const char* key, Enum& value) {
     known_.emplace_back(key);
-    value = static_cast<Enum>(law_.at(key).choice(names));
+    value = static_cast<Enum>(law_.at(key).choice(names_of(value)));
   }
   void of_springs(const char* key, std::vector<double>& values) {
     known_.emplace_back(key);
@@ -319,7 +320,8 @@ SpringsFile read_document(const JsonPlace& document) {
                           material->at("poisson_ratio").number(-1, 0.5), file.density};
   }
   if (const auto grip = document.find("grip_m")) file.grip = grip->number(0, farthest_node);
-  if (const auto from = document.find("grip_from")) file.grip_from_cells = from->choice({"surface", "cells"}) == 1;
+  if (const auto from = document.find("grip_from"))
+    file.grip_from_cells = from->choice(std::array{"surface", "cells"}) == 1;
   const std::vector<Spring> unsorted = read_springs_of(document, network.X);
   const SpringOrder order(unsorted);
   network.springs = order(unsorted);

@@ -80,8 +80,8 @@ class LawWriter {
   }
   void flag(const char* key, bool value) { writer_.at(law_)[key] = value; }
   template <class Enum>
-  void choice(const char* key, Enum value, std::initializer_list<const char*> names) {
-    writer_.at(law_)[key] = names.begin()[static_cast<std::size_t>(value)];
+  void choice(const char* key, Enum value) {
+    writer_.at(law_)[key] = name_of(value);
   }
   void of_springs(const char* key, const std::vector<double>& values) {
     if (values.empty()) return;

@@ -12,7 +12,7 @@
 
 #define SPRINGPROOF_ONE_LANE
 #define SPRINGPROOF_KERNEL_NAMESPACE gpu
-#include "msm/kernels/one_lane.h"
+#include "msm/kernels/compiled/one_lane.h"
 
 namespace springproof::gpu {
 

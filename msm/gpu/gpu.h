@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "msm/gpu/box.h"
-#include "msm/kernels/lattice_kernel.h"
+#include "msm/kernels/lattice_kernels.h"
 
 namespace springproof::gpu {
 

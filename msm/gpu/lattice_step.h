@@ -6,7 +6,7 @@
 
 #include "msm/gpu/gpu.h"
 #include "msm/gpu/sweep.h"
-#include "msm/kernels/cell_pressure.h"
+#include "msm/kernels/compiled/cell_pressure.h"
 
 namespace springproof::gpu {
 

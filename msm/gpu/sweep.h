@@ -6,7 +6,7 @@
 
 #include "msm/gpu/backend.h"
 #include "msm/gpu/box.h"
-#include "msm/kernels/averaged_cells.h"
+#include "msm/kernels/compiled/averaged_cells.h"
 
 namespace springproof::gpu {
 

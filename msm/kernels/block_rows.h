@@ -1,8 +1,6 @@
 // Kernels for sparse matrices of 3x3 blocks, row by row.
 #pragma once
 
-#include "msm/kernels/instruction_set.h"
-
 namespace springproof {
 
 /// A matrix on plain arrays; vectors hold three values per point.  Row n is that of a point; its blocks are
@@ -29,18 +27,5 @@ struct BlockRowKernels {
   /// point.
   void (*relax)(const BlockRows<Real>& A, const Real* D, bool ascending, const Real* b, Real* x, Real* work);
 };
-
-template <class Real>
-const BlockRowKernels<Real>& block_row_kernels(InstructionSet set = instruction_set());
-
-#define SPRINGPROOF_BLOCK_ROW_KERNELS(instruction_set)           \
-  namespace instruction_set {                                    \
-  extern const BlockRowKernels<double> block_row_kernels_double; \
-  extern const BlockRowKernels<float> block_row_kernels_float;   \
-  }
-SPRINGPROOF_BLOCK_ROW_KERNELS(portable)
-SPRINGPROOF_BLOCK_ROW_KERNELS(avx2)
-SPRINGPROOF_BLOCK_ROW_KERNELS(avx512)
-#undef SPRINGPROOF_BLOCK_ROW_KERNELS
 
 }  // namespace springproof

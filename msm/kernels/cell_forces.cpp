@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
 
-#include "msm/kernels/kernels_of_set.h"
-#include "msm/kernels/lattice_set_up.h"
-#include "msm/kernels/list_forces.h"
+#include "msm/kernels/lattice_constants.h"
 
 namespace springproof {
 namespace {
@@ -20,17 +17,6 @@ int corner_at(int place) {
 }
 
 }  // namespace
-
-template <class Real>
-const CellListKernels<Real>& cell_list_kernels(InstructionSet set) {
-  if constexpr (std::is_same_v<Real, double>)
-    return SPRINGPROOF_KERNELS_OF(set, cell_list_double);
-  else
-    return SPRINGPROOF_KERNELS_OF(set, cell_list_float);
-}
-
-template const CellListKernels<double>& cell_list_kernels<double>(InstructionSet set);
-template const CellListKernels<float>& cell_list_kernels<float>(InstructionSet set);
 
 template <class Real>
 bool CellForces<Real>::covers(const MassSpringModel& model) {
@@ -50,11 +36,10 @@ bool CellForces<Real>::covers(const MassSpringModel& model) {
 template <class Real>
 CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, const AveragedSprings& dashpots,
                              double time)
-    : kernels_(&cell_list_kernels<Real>(set)),
-      steps_(&list_kernels<Real>(set)),
+    : kernels_(&kernels_of<Real>(set)),
       X_(model.network.X),
       viscous_(time > 0),
-      order_(model.network, kernels_->cells),
+      order_(model.network, kernels_->cell_list.cells),
       carried_(model.network.carried) {
   for (CarriedPoint& c : carried_) {
     c.point = order_.place[c.point];
@@ -77,7 +62,7 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
 
 template <class Real>
 void CellForces<Real>::store_cells(const Network& network) {
-  const long cells = kernels_->cells, count = static_cast<long>(order_.cells.size());
+  const long cells = kernels_->cell_list.cells, count = static_cast<long>(order_.cells.size());
   list_.blocks = order_.plan.blocks;
   corners_.resize(8 * cells * list_.blocks);
   numbers_.resize(cell_number::count * cells * list_.blocks);
@@ -124,12 +109,12 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
                                   Padded<Real>* f) const {
   CellList<Real> list = list_;
   list.blocks = end - begin;
-  list.corners = corners_.data() + 8 * kernels_->cells * begin;
-  list.numbers = numbers_.data() + cell_number::count * kernels_->cells * begin;
+  list.corners = corners_.data() + 8 * kernels_->cell_list.cells * begin;
+  list.numbers = numbers_.data() + cell_number::count * kernels_->cell_list.cells * begin;
   if (viscous_)
-    kernels_->viscous_forces(list, x, s, f);
+    kernels_->cell_list.viscous_forces(list, x, s, f);
   else
-    kernels_->forces(list, x, f);
+    kernels_->cell_list.forces(list, x, f);
   if (anchors_.empty()) return;
   for (int number = order_.first_anchor[begin]; number < order_.first_anchor[end]; ++number) {
     const Held& a = anchors_[number];

@@ -1,16 +1,11 @@
 // Forces of averaged springs in cells that the body may fill in part, by the kernels for lists of cells.
 #pragma once
 
-#include "msm/kernels/cell_list_kernels.h"
 #include "msm/kernels/cell_order.h"
-#include "msm/kernels/instruction_set.h"
+#include "msm/kernels/kernels.h"
 #include "msm/laws/laws.h"
 
 namespace springproof {
-
-/// The kernels of an instruction set.
-template <class Real>
-const CellListKernels<Real>& cell_list_kernels(InstructionSet set);
 
 /// Internal forces of a model of averaged springs, with anchors or without; keeps no reference to the model.  `x` are
 /// displacements.
@@ -32,7 +27,7 @@ class CellForces : public BlockForces<Real> {
 
   std::string name() const override { return "cell kernel"; }
   BlockPlan plan() const override { return order_.plan; }
-  const ListKernels<Real>& kernels() const override { return *steps_; }
+  const ListKernels<Real>& kernels() const override { return kernels_->list; }
   NodalVectors origin() const override { return X_; }
   void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const override;
   bool viscous() const override { return viscous_; }
@@ -49,8 +44,7 @@ class CellForces : public BlockForces<Real> {
   void store_cells(const Network& network);
   void store_anchors(const Network& network);
 
-  const CellListKernels<Real>* kernels_;
-  const ListKernels<Real>* steps_;
+  const Kernels<Real>* kernels_;
   NodalVectors X_;
   bool viscous_;
   CellOrder order_;

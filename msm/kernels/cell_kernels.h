@@ -1,8 +1,6 @@
 // Matrix-free kernels for lattices of equal cells: stiffness, divergence and gradient, row by row.
 #pragma once
 
-#include "msm/kernels/instruction_set.h"
-
 namespace springproof {
 
 /// Maximum number of cells in one row of a kernel, so that its intermediate values stay in the first-level cache.
@@ -77,18 +75,5 @@ struct CellKernels {
   /// fine = weight * interpolation of the sum of `count` coarse rows.
   void (*prolongate_row)(int fine_points, bool odd, Real weight, const Real* const* coarse, int count, Real* fine);
 };
-
-template <class Real>
-const CellKernels<Real>& cell_kernels(InstructionSet set = instruction_set());
-
-#define SPRINGPROOF_CELL_KERNELS(instruction_set)       \
-  namespace instruction_set {                           \
-  extern const CellKernels<double> cell_kernels_double; \
-  extern const CellKernels<float> cell_kernels_float;   \
-  }
-SPRINGPROOF_CELL_KERNELS(portable)
-SPRINGPROOF_CELL_KERNELS(avx2)
-SPRINGPROOF_CELL_KERNELS(avx512)
-#undef SPRINGPROOF_CELL_KERNELS
 
 }  // namespace springproof

@@ -4,9 +4,16 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "msm/kernels/compiled_with.h"
-
 namespace springproof {
+
+// msm/kernels/compiled/all_kernels.cpp, once per instruction set.
+namespace avx2 {
+extern const CompiledWith compiled_with;
+}
+namespace avx512 {
+extern const CompiledWith compiled_with;
+}
+
 namespace {
 
 #ifdef SPRINGPROOF_X86_KERNELS

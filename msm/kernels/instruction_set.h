@@ -10,6 +10,11 @@ enum class InstructionSet { portable, avx2, avx512 };
 
 std::string name_of(InstructionSet set);
 
+/// The instructions that the kernels of a set were compiled with.
+struct CompiledWith {
+  bool avx2, avx512;
+};
+
 /// Instruction sets that this program has kernels for and this processor supports, the widest last.
 const std::vector<InstructionSet>& usable_instruction_sets();
 

@@ -61,14 +61,6 @@ bool one_node_per_place(std::vector<Place> places) {
   return std::adjacent_find(places.begin(), places.end()) == places.end();
 }
 
-/// The model's law of a kind; nullptr if it has none.
-template <class Law>
-const Law* law_of(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws)
-    if (const auto* found = std::get_if<Law>(&law)) return found;
-  return nullptr;
-}
-
 /// Whether each law occurs at most once and the kernels have it.
 bool laws_fit(const MassSpringModel& model) {
   std::vector<std::size_t> kinds;

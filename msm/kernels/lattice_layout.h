@@ -1,4 +1,4 @@
-// Memory layout of the nodes and springs of a lattice in its kernels (msm/kernels/lattice_kernel.h).
+// Memory layout of the nodes and springs of a lattice in its kernels (msm/kernels/lattice_kernels.h).
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "msm/kernels/lattice_kernel.h"
+#include "msm/kernels/lattice_kernels.h"
 #include "msm/laws/laws.h"
 
 namespace springproof {

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <type_traits>
 
-#include "msm/kernels/kernels_of_set.h"
+#include "msm/kernels/kernels.h"
 
 namespace springproof {
 namespace {
@@ -21,17 +20,6 @@ void by_place(const SpringBlocks& blocks, const NodalVectors& v, std::vector<Pad
 }
 
 }  // namespace
-
-template <class Real>
-const ListKernels<Real>& list_kernels(InstructionSet set) {
-  if constexpr (std::is_same_v<Real, double>)
-    return SPRINGPROOF_KERNELS_OF(set, list_double);
-  else
-    return SPRINGPROOF_KERNELS_OF(set, list_float);
-}
-
-template const ListKernels<double>& list_kernels<double>(InstructionSet set);
-template const ListKernels<float>& list_kernels<float>(InstructionSet set);
 
 template <class Real>
 ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network,
@@ -88,7 +76,7 @@ bool ListForces<Real>::covers(const MassSpringModel& model) {
 
 template <class Real>
 ListForces<Real>::ListForces(const MassSpringModel& model, InstructionSet set)
-    : kernels_(&list_kernels<Real>(set)), blocks_(model.network), x_(zeros<Real>(blocks_)), f_(x_) {
+    : kernels_(&kernels_of<Real>(set).list), blocks_(model.network), x_(zeros<Real>(blocks_)), f_(x_) {
   if (!covers(model)) throw std::invalid_argument("list forces are of springs and momentum dispersion only");
   const Network& network = model.network;
   k_ = blocks_.per_entry<Real>([&](int s) { return network.springs[s].stiffness; });

@@ -9,10 +9,6 @@
 
 namespace springproof {
 
-/// The kernels of an instruction set.
-template <class Real>
-const ListKernels<Real>& list_kernels(InstructionSet set);
-
 /// Coefficients of momentum dispersion.
 template <class Real>
 struct ListDispersionData {

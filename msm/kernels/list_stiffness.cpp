@@ -44,7 +44,7 @@ template <class Real>
 ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
                                    InstructionSet set)
     : set_(set),
-      kernels_(&list_kernels<Real>(set)),
+      kernels_(&kernels_of<Real>(set).list),
       blocks_(std::move(blocks)),
       m_(blocks_->entries(), Padded<Real>{}) {
   if (!covers(model)) throw std::invalid_argument("list stiffness is of springs and momentum dispersion only");
@@ -69,7 +69,7 @@ template <class Real>
 template <class Other>
 ListStiffness<Real>::ListStiffness(const ListStiffness<Other>& other, double unit)
     : set_(other.set_),
-      kernels_(&list_kernels<Real>(set_)),
+      kernels_(&kernels_of<Real>(set_).list),
       blocks_(other.blocks_),
       m_(other.m_.size()),
       kept_(other.kept_.size()) {
@@ -172,6 +172,14 @@ std::vector<Eigen::Matrix3d> ListStiffness<Real>::node_blocks() const {
   }
   if (!dispersion_.empty()) add_flow_blocks(blocks);
   return blocks;
+}
+
+template <class Real>
+Eigen::VectorXd ListStiffness<Real>::diagonal() const {
+  const std::vector<Eigen::Matrix3d> blocks = node_blocks();
+  Eigen::VectorXd d(static_cast<Eigen::Index>(3 * blocks.size()));
+  for (std::size_t p = 0; p < blocks.size(); ++p) d.segment<3>(3 * blocks_->order[p]) = blocks[p].diagonal();
+  return d;
 }
 
 template class ListStiffness<double>;

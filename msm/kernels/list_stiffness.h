@@ -33,6 +33,9 @@ class ListStiffness {
   /// The diagonal 3x3 block of the node at each place [N/m].
   std::vector<Eigen::Matrix3d> node_blocks() const;
 
+  /// Of K, 3 n in the network's order [N/m].
+  Eigen::VectorXd diagonal() const;
+
   std::shared_ptr<const SpringBlocks> blocks() const { return blocks_; }
   const ListKernels<Real>& kernels() const { return *kernels_; }
 

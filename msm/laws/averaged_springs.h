@@ -67,7 +67,7 @@ struct AveragedSprings {
     f.number("warping", hourglass.warping, 0);
     f.number("shift", shift, 0, 1);
     f.number("contraction", contraction, -0.5, 1);
-    f.choice("curve", curve, {"hencky", "neo_hooke", "neo_hooke_isochoric", "springs_hencky", "springs_neo_hooke"});
+    f.choice("curve", curve);
   }
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if a cell is inverted

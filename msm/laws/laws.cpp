@@ -49,17 +49,9 @@ void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent
   if (const MomentumDispersion* dispersion = dispersion_of(model)) dispersion->add_flow(model.network, x, K);
 }
 
-const MomentumDispersion* dispersion_of(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws)
-    if (const auto* dispersion = std::get_if<MomentumDispersion>(&law)) return dispersion;
-  return nullptr;
-}
+const MomentumDispersion* dispersion_of(const MassSpringModel& model) { return law_of<MomentumDispersion>(model); }
 
-const AveragedSprings* averaged_springs_of(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws)
-    if (const auto* averaged = std::get_if<AveragedSprings>(&law)) return averaged;
-  return nullptr;
-}
+const AveragedSprings* averaged_springs_of(const MassSpringModel& model) { return law_of<AveragedSprings>(model); }
 
 bool of_springs_alone(const MassSpringModel& model) {
   return std::all_of(model.laws.begin(), model.laws.end(),

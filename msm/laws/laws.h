@@ -57,6 +57,16 @@ Tangent tangent(const MassSpringModel& model, const NodalVectors& x);
 /// @param K the tangent, overwritten
 void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent& K);
 
+/// The model's law of a kind.
+/// @param model a model
+/// @return the first one, or nullptr if the model has none
+template <class Law>
+const Law* law_of(const MassSpringModel& model) {
+  for (const ForceLaw& law : model.laws)
+    if (const auto* found = std::get_if<Law>(&law)) return found;
+  return nullptr;
+}
+
 /// The model's momentum dispersion.
 /// @param model a model
 /// @return it, or nullptr if the model has none

@@ -21,6 +21,9 @@ enum class Dispersion {
   published_transposed,  ///< a = q k / L, c = L / b: the paper's other form, for lattices of 18 springs only
   finite_strain,         ///< symmetric at small strain; at large strain a material law (nodal_gradients.h)
 };
+constexpr std::array<const char*, 5> names_of(Dispersion) {
+  return {"symmetric", "share_weighted", "published", "published_transposed", "finite_strain"};
+}
 
 /// Whether the forces of a form derive from an energy.
 inline bool has_energy(Dispersion form) { return form == Dispersion::symmetric || form == Dispersion::finite_strain; }
@@ -43,9 +46,8 @@ struct MomentumDispersion {
   template <class Fields>
   void fields(Fields& f) {
     f.number("q", q);
-    f.choice("form", form, {"symmetric", "share_weighted", "published", "published_transposed", "finite_strain"});
-    if (form == Dispersion::finite_strain)
-      f.choice("curve", curve, {"hencky", "neo_hooke", "neo_hooke_isochoric", "springs_hencky", "springs_neo_hooke"});
+    f.choice("form", form);
+    if (form == Dispersion::finite_strain) f.choice("curve", curve);
     f.of_springs("weight", weight);
     f.of_nodes("group", group);
   }

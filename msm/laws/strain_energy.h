@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 
 #include "msm/laws/volume_correction.h"
@@ -18,6 +19,9 @@ enum class StrainCurve {
   springs_hencky,       ///< thirteen springs whose stiffness falls with their stretch as Hencky's law wants it
   springs_neo_hooke,    ///< thirteen springs tuned to neo_hooke_isochoric
 };
+constexpr std::array<const char*, 5> names_of(StrainCurve) {
+  return {"hencky", "neo_hooke", "neo_hooke_isochoric", "springs_hencky", "springs_neo_hooke"};
+}
 
 /// A direction of springs, and its share in sum k L^2.
 struct SpringDirection {

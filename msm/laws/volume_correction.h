@@ -1,6 +1,8 @@
 // Force law: the volume energy of HybMSS, one term per cubic cell.
 #pragma once
 
+#include <array>
+
 #include "msm/algebra/block_matrix.h"
 #include "msm/laws/law_traits.h"
 #include "msm/topology/network.h"
@@ -12,6 +14,7 @@ enum class VolumeEnergy {
   paper,    ///< kappa/2 (J - 1)^2; Golec et al. (2019), eq. (5.1).  Unbounded below in dilation if kappa < 0.
   bounded,  ///< 9 kappa/2 (J^(1/3) - 1)^2: grows like the springs' energy, so kappa < 0 has no limit point in tension.
 };
+constexpr std::array<const char*, 2> names_of(VolumeEnergy) { return {"paper", "bounded"}; }
 
 /// Energy sum_c V psi(V'/V) with V' = a . (b x c), a, b, c the mean edge vectors of the cell;
 /// Golec et al. (2019), eqs. (5.13)-(5.16).  DEVIATION from eq. (5.16): factor 1/4, docs/papers.md.
@@ -26,7 +29,7 @@ struct VolumeCorrection {
   template <class Fields>
   void fields(Fields& f) {
     f.number("kappa_Pa", kappa);
-    f.choice("form", form, {"paper", "bounded"});
+    f.choice("form", form);
   }
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if J <= 0 (bounded)

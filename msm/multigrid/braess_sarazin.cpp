@@ -59,82 +59,56 @@ void SaddlePointLevel::correct_thin_parts() {
   u += motion;
 }
 
-void SaddlePointLevel::cycle(const std::function<void()>& add_coarse_correction) {
-  u.setZero();
-  p.setZero();
-  for (int s = 0; s < sweeps; ++s) sweep(s == 0);
-  if (thin_) correct_thin_parts();
-  residual();
-  add_coarse_correction();
-  if (thin_) correct_thin_parts();
-  for (int s = 0; s < sweeps; ++s) sweep(false);
+void SaddlePointLevel::smooth(Smoothing when) {
+  const bool before = when == Smoothing::before_coarse;
+  if (before) {
+    u.setZero();
+    p.setZero();
+  }
+  if (!before && thin_) correct_thin_parts();
+  for (int s = 0; s < sweeps; ++s) sweep(before && s == 0);
+  if (before && thin_) correct_thin_parts();
 }
 
-Eigen::VectorXd SaddlePointSystem::to_rows(Nodal kind, const Eigen::VectorXd& u, const Eigen::VectorXd& p) {
-  Eigen::VectorXd u_rows, rows = Eigen::VectorXd::Zero(pressures_begin() + finest().p.size());
-  lattice().to_rows(kind, u, u_rows);
-  rows.head(pressures_begin()) = u_rows;
+Eigen::VectorXd LatticeSaddlePoint::pressure_rows(const Eigen::VectorXd& p) {
+  Eigen::VectorXd rows = Eigen::VectorXd::Zero(finest().p.size());
   const std::vector<int>& place = place_of_pressure();
-  for (std::size_t i = 0; i < place.size(); ++i) rows[pressures_begin() + place[i]] = p[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < place.size(); ++i) rows[place[i]] = p[static_cast<Eigen::Index>(i)];
   return rows;
 }
 
-Eigen::VectorXd SaddlePointSystem::pressures_of(const double* rows) const {
+Eigen::VectorXd LatticeSaddlePoint::pressures_of(const Eigen::VectorXd& rows) const {
   const std::vector<int>& place = place_of_pressure();
   Eigen::VectorXd p(static_cast<Eigen::Index>(place.size()));
   for (std::size_t i = 0; i < place.size(); ++i) p[static_cast<Eigen::Index>(i)] = rows[place[i]];
   return p;
 }
 
-KrylovResult SaddlePointSystem::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance,
-                                      int max_iterations, Eigen::VectorXd& u, Eigen::VectorXd& p) {
-  const LatticeLevel& level = lattice().levels[0];
-  const Eigen::Index n = pressures_begin(), m = finest().p.size();
-  Eigen::VectorXd b = to_rows(Nodal::forces, f, g), x = Eigen::VectorXd::Zero(n + m);
-  level.clear_fixed(b);
-  const Operator A = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
-    y.resize(v.size());
-    multiply_rows(v.data(), y.data());
-    level.clear_fixed(y);
-  };
-  const Operator precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    SaddlePointLevel& top = finest();
-    top.f = r.head(n).cast<float>();
-    top.g = r.tail(m).cast<float>();
-    cycle();
-    z.resize(r.size());
-    z << top.u.cast<double>(), top.p.cast<double>();
-  };
-  const KrylovResult result = gmres(A, precondition, b, tolerance, max_iterations, 60, x);
-  lattice().from_rows(Nodal::displacements, x, u);
-  p = pressures_of(x.data() + n);
-  return result;
-}
-
-void SaddlePointSystem::apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u,
-                              Eigen::VectorXd& p) {
-  SaddlePointLevel& top = finest();
-  const Eigen::VectorXd rows = to_rows(Nodal::forces, f, g);
-  top.f = rows.head(pressures_begin()).cast<float>();
-  top.g = rows.tail(top.p.size()).cast<float>();
-  cycle();
-  lattice().from_rows(Nodal::displacements, top.u.cast<double>(), u);
-  p = pressures_of(top.p.cast<double>().eval().data());
-}
-
-Eigen::VectorXd SaddlePointSystem::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) {
-  const Eigen::VectorXd x = to_rows(Nodal::displacements, u, p);
-  Eigen::VectorXd y(x.size()), f;
-  multiply_rows(x.data(), y.data());
+Eigen::VectorXd LatticeSaddlePoint::force(const MixedVector& x) {
+  Eigen::VectorXd u, f;
+  lattice().to_rows(Nodal::displacements, x.u, u);
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(u.size());
+  force_rows(u.data(), pressure_rows(x.p).data(), y.data());
   lattice().from_rows(Nodal::forces, y, f);
   return f;
 }
 
-Eigen::VectorXd SaddlePointSystem::volume_change(const Eigen::VectorXd& u) {
+Eigen::VectorXd LatticeSaddlePoint::volume_change(const Eigen::VectorXd& u) {
   Eigen::VectorXd u_rows, J = Eigen::VectorXd::Zero(finest().p.size());
   lattice().to_rows(Nodal::displacements, u, u_rows);
   volume_change_rows(u_rows.data(), J.data());
-  return pressures_of(J.data());
+  return pressures_of(J);
+}
+
+MixedVector LatticeSaddlePoint::cycle(const MixedVector& b) {
+  SaddlePointLevel& top = finest();
+  Eigen::VectorXd f, u;
+  lattice().to_rows(Nodal::forces, b.u, f);
+  top.f = f.cast<float>();
+  top.g = pressure_rows(b.p).cast<float>();
+  cycle_on_levels();
+  lattice().from_rows(Nodal::displacements, top.u.cast<double>(), u);
+  return {u, pressures_of(top.p.cast<double>())};
 }
 
 }  // namespace springproof

@@ -1,9 +1,9 @@
 // Multigrid for saddle-point systems on lattices: what pressures per cell and pressures per node share.
 #pragma once
 
-#include <functional>
 #include <memory>
 
+#include "msm/algebra/saddle_point.h"
 #include "msm/multigrid/multigrid.h"
 
 namespace springproof {
@@ -16,8 +16,10 @@ class SaddlePointLevel {
  public:
   virtual ~SaddlePointLevel() = default;
 
-  /// V-cycle: (u, p) of (f, g).  `add_coarse_correction` finds d = f - K u - B^T p and Bu and adds to u and p.
-  void cycle(const std::function<void()>& add_coarse_correction);
+  void smooth(Smoothing when);  ///< (u, p) from (f, g), then again
+  void residual();              ///< d = f - K u - B^T p, zero on fixed unknowns, and Bu = B u
+  virtual void restrict_to(SaddlePointLevel& below) = 0;
+  virtual void prolongate(const SaddlePointLevel& below) = 0;
 
   LatticeOperator<float> K;
   Eigen::VectorXf f, g, u, p;
@@ -44,7 +46,6 @@ class SaddlePointLevel {
 
  private:
   void sweep(bool from_zero);
-  void residual();
   void correct_thin_parts();
 
   int chebyshev_steps_;
@@ -52,37 +53,30 @@ class SaddlePointLevel {
   std::unique_ptr<ThinParts> thin_;  ///< null: none
 };
 
-/// The system in double precision, solved by GMRES over the cycle.  Displacements are 3 per node of the network,
-/// pressures one per cell or per node of it, all in units of (shear modulus, cell edge), so that both equations have
-/// entries of order one.
-class SaddlePointSystem {
+/// The system on a lattice, in double precision, and the cycle for it.  Displacements are 3 per node of the network,
+/// pressures one per cell or per node of it, all in units of (shear modulus, cell edge).
+class LatticeSaddlePoint : public SaddlePoint {
  public:
-  virtual ~SaddlePointSystem() = default;
-
-  /// (u, p) of the system, u = 0 on the fixed unknowns.
-  KrylovResult solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance, int max_iterations,
-                     Eigen::VectorXd& u, Eigen::VectorXd& p);
-  /// (u, p) = M^-1 (f, g), one cycle.
-  void apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u, Eigen::VectorXd& p);
-
-  /// K u + B^T p, fixed unknowns included: minus the internal force.
-  Eigen::VectorXd force(const Eigen::VectorXd& u, const Eigen::VectorXd& p);
-  /// B u: first-order change of the volumes.
-  Eigen::VectorXd volume_change(const Eigen::VectorXd& u);
+  Eigen::VectorXd force(const MixedVector& x) override;
+  Eigen::VectorXd volume_change(const Eigen::VectorXd& u) override;
+  const Eigen::VectorXd& compliance() const override { return compliance_; }
+  MixedVector cycle(const MixedVector& b) override;
 
   virtual SaddlePointLevel& finest() = 0;
-  virtual void cycle() = 0;  ///< on the finest level
+  virtual void cycle_on_levels() = 0;  ///< (u, p) of (f, g) of the finest level
 
  protected:
   virtual const LatticeLevels& lattice() const = 0;
-  virtual const std::vector<int>& place_of_pressure() const = 0;    ///< per cell or node of the network
-  virtual void multiply_rows(const double* x, double* y) = 0;       ///< y = A x, u before p
-  virtual void volume_change_rows(const double* u, double* J) = 0;  ///< J = B u
+  virtual const std::vector<int>& place_of_pressure() const = 0;             ///< per cell or node of the network
+  virtual void force_rows(const double* u, const double* p, double* y) = 0;  ///< y = K u + B^T p
+  virtual void volume_change_rows(const double* u, double* J) = 0;           ///< J = B u
+  void take_compliance(const Eigen::VectorXd& rows) { compliance_ = pressures_of(rows); }
 
  private:
-  Eigen::Index pressures_begin() const { return 3 * lattice().levels[0].stride(); }
-  Eigen::VectorXd to_rows(Nodal kind, const Eigen::VectorXd& u, const Eigen::VectorXd& p);
-  Eigen::VectorXd pressures_of(const double* rows) const;
+  Eigen::VectorXd pressure_rows(const Eigen::VectorXd& p);
+  Eigen::VectorXd pressures_of(const Eigen::VectorXd& rows) const;
+
+  Eigen::VectorXd compliance_;
 };
 
 }  // namespace springproof

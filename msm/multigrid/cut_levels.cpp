@@ -192,7 +192,7 @@ AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unk
       corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
 
 std::vector<char> AnchoredNodes::fixed_corners() const {
-  std::vector<char> corner(fixed.begin(), fixed.begin() + 3 * corners), own = corner;
+  std::vector<char> corner = unknowns_of_corners(), own = corner;
   for (const CarriedPoint& p : carried) std::fill_n(own.begin() + 3 * p.point, 3, 0);
   if (std::count(own.begin(), own.end(), 0) == 3 * corners) return {};
   return corner;

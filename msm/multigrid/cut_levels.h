@@ -50,7 +50,8 @@ struct AnchoredNodes {
   int corners = 0;          ///< nodes that are corners; the anchored ones follow
 
   AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns);
-  /// `fixed` of the corners; empty if none but carried ones is.
+  std::vector<char> unknowns_of_corners() const { return {fixed.begin(), fixed.begin() + 3 * corners}; }  ///< fixed?
+  /// The same; empty if none but carried ones is.
   std::vector<char> fixed_corners() const;
 
   /// Right-hand side of the corners once the free directions of anchored nodes are eliminated; zero where fixed.

@@ -177,19 +177,19 @@ BlockRows<Real> CutMatrix<Real>::view() const {
 template <class Real>
 void CutMatrix<Real>::multiply(const Real* x, Real* y) const {
   const BlockRows<Real> A = view();
-  block_row_kernels<Real>().multiply(A, x, y, work_.data());
+  kernels_of<Real>().rows.multiply(A, x, y, work_.data());
 }
 
 template <class Real>
 void CutMatrix<Real>::residual(const Real* b, const Real* x, Real* r) const {
   const BlockRows<Real> A = view();
-  block_row_kernels<Real>().residual(A, b, x, r, work_.data());
+  kernels_of<Real>().rows.residual(A, b, x, r, work_.data());
 }
 
 template <class Real>
 void CutMatrix<Real>::relax(const std::vector<Real>& D, bool ascending, const Real* b, Real* x) const {
   const BlockRows<Real> A = view();
-  block_row_kernels<Real>().relax(A, D.data(), ascending, b, x, work_.data());
+  kernels_of<Real>().rows.relax(A, D.data(), ascending, b, x, work_.data());
 }
 
 template <class Real>
@@ -197,7 +197,7 @@ void CutMatrix<Real>::relax_from_zero(const std::vector<Real>& D, const Real* b,
   BlockRows<Real> A = view();
   A.end = diagonal_.data();  // the rows that follow are zero yet
   std::fill_n(x, 3 * point_.size(), Real(0));
-  block_row_kernels<Real>().relax(A, D.data(), true, b, x, work_.data());
+  kernels_of<Real>().rows.relax(A, D.data(), true, b, x, work_.data());
 }
 
 template <class Real>

@@ -4,7 +4,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "msm/kernels/block_rows.h"
+#include "msm/kernels/kernels.h"
 #include "msm/laws/averaged_springs.h"
 
 namespace springproof {

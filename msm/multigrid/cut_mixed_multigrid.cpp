@@ -4,7 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "msm/multigrid/multigrid.h"
+#include "msm/algebra/fixed.h"
+#include "msm/multigrid/v_cycle.h"
 
 namespace springproof {
 namespace {
@@ -20,60 +21,58 @@ AveragedSprings springs_alone(AveragedSprings law) {
 
 }  // namespace
 
-CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
-    : nodes_(model.network, fixed),
-      scaled_nodes_(nodes_),
-      network_(model.network),
-      lattice_(cut_levels(model.network, nodes_)) {
-  const AveragedSprings& law = *averaged_springs_of(model);
-  const AveragedSprings springs = springs_alone(law);
-  const Network& network = model.network;
-  const double l = network.cell_edge, kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
-  unit_ = law.shear_modulus * l;
-  for (Anchor& a : scaled_nodes_.anchors) a.stiffness /= unit_;
-  schur_sweeps_ = kappa > 1000 ? 12 : 6;
-  gradient_.resize(24, static_cast<Eigen::Index>(network.cells.size()));
-  compliance_.resize(gradient_.cols());
-  for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const double h = network.edge(c) / l;
-    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient(h, network.filled[c]);
-    compliance_[static_cast<Eigen::Index>(c)] = network.filled[c].fraction * h * h * h / kappa;
-  }
-  levels_.resize(lattice_.size());
-  for (std::size_t i = 0; i < lattice_.size(); ++i) {
-    const std::vector<char> fixed_here = i == 0 ? nodes_.fixed_corners() : std::vector<char>{};
-    if (i + 1 == lattice_.size()) {  // the pressure is eliminated there
-      take_matrix(CutMatrix<double>(law, unit_, lattice_[i], fixed_here), unit_, fixed_here, lattice_[i]);
-      coarsest_.factor(lattice_[i].A.sparse());
-    }
-    CutMatrix<double> of_cells(springs, unit_, lattice_[i], fixed_here);
-    take_matrix(of_cells, unit_, fixed_here, lattice_[i]);
-    if (i == 0) K_ = std::move(of_cells);
-    set_up(i, kappa);
-  }
-}
+/// One level of the cycle, in single precision.
+class CutMixedMultigrid::Level {
+ public:
+  /// Of a lattice with the matrix of its springs alone; `fixed_unknowns` of the finest level, else empty.
+  Level(CutLevel lattice_of_level, std::vector<char> fixed_unknowns, double finest_edge, double kappa);
 
-void CutMixedMultigrid::set_up(std::size_t l, double kappa) {
-  CutLevel& lattice = lattice_[l];
-  Level& level = levels_[l];
+  void smooth(Smoothing when);
+  void residual();  ///< d = f - K u - B^T p, Bu = B u
+  void restrict_to(Level& below) const;
+  void prolongate(Level& below);
+  void solve_coarsest(const CoarsestFactors& factors);
+
+  CutLevel lattice;
+  Eigen::VectorXf f, g, u, p;
+
+ private:
+  void set_up_schur();
+  void relax_schur(bool ascending);  ///< Gauss-Seidel for S q = r
+  void sweep(bool ascending);
+  Eigen::VectorXf load() const;  ///< f - B^T p
+  void divergence(const Eigen::VectorXf& displacements, Eigen::VectorXf& out) const;
+  void add_gradient(const Eigen::VectorXf& pressures, Eigen::VectorXf& out) const;
+  void scale_by_diagonal(Eigen::VectorXf& v) const;
+
+  std::vector<char> fixed_;      ///< unknowns; empty: none
+  std::vector<float> gradient_;  ///< 24 per cell: row of B
+  Eigen::VectorXf compliance_;   ///< diagonal of C
+  int schur_sweeps_;
+  std::vector<int> begin_, column_;  ///< of the rows of S = C + B D B^T, a cell each
+  std::vector<float> schur_;         ///< its entries
+  Eigen::VectorXf inverse_schur_;    ///< of its diagonal
+  Eigen::VectorXf d_, Bu_, r_, q_;
+};
+
+CutMixedMultigrid::Level::Level(CutLevel lattice_of_level, std::vector<char> fixed_unknowns, double finest_edge,
+                                double kappa)
+    : lattice(std::move(lattice_of_level)), fixed_(std::move(fixed_unknowns)), schur_sweeps_(kappa > 1000 ? 12 : 6) {
   lattice.invert_anchored();
   const std::size_t cells = lattice.cubes.size();
-  level.f = level.u = level.d = Eigen::VectorXf::Zero(lattice.unknowns());
-  level.compliance = level.inverse_schur = level.g = level.p = level.Bu = level.r = level.q =
-      Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
-  level.gradient.resize(24 * cells);
+  f = u = d_ = Eigen::VectorXf::Zero(lattice.unknowns());
+  compliance_ = inverse_schur_ = g = p = Bu_ = r_ = q_ = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
+  gradient_.resize(24 * cells);
   for (std::size_t c = 0; c < cells; ++c) {
-    const double h = lattice.cell_edge(c) / lattice_[0].edge;
+    const double h = lattice.cell_edge(c) / finest_edge;
     const Eigen::Matrix<double, 24, 1> b = volume_gradient(h, lattice.filled[c]);
-    for (int i = 0; i < 24; ++i) level.gradient[24 * c + i] = static_cast<float>(b[i]);
-    level.compliance[static_cast<Eigen::Index>(c)] = static_cast<float>(lattice.filled[c].fraction * h * h * h / kappa);
+    for (int i = 0; i < 24; ++i) gradient_[24 * c + i] = static_cast<float>(b[i]);
+    compliance_[static_cast<Eigen::Index>(c)] = static_cast<float>(lattice.filled[c].fraction * h * h * h / kappa);
   }
-  set_up_schur(l);
+  set_up_schur();
 }
 
-void CutMixedMultigrid::set_up_schur(std::size_t l) {
-  const CutLevel& lattice = lattice_[l];
-  Level& level = levels_[l];
+void CutMixedMultigrid::Level::set_up_schur() {
   struct Entry {
     int cell;
     Eigen::Vector3f b, Db;
@@ -81,67 +80,65 @@ void CutMixedMultigrid::set_up_schur(std::size_t l) {
   std::vector<std::vector<Entry>> at(lattice.point.size());  // columns of B, with what carried corners hand back
   const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   const int cells = static_cast<int>(lattice.corners.size());
-  const auto hand = [&](int p, int c, const Eigen::Vector3f& b) {
-    const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> D(&lattice.D[9 * static_cast<std::size_t>(p)]);
-    at[p].push_back({c, b, damped * (D * b)});
+  const auto hand = [&](int i, int c, const Eigen::Vector3f& b) {
+    const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> D(&lattice.D[9 * static_cast<std::size_t>(i)]);
+    at[i].push_back({c, b, damped * (D * b)});
   };
   for (int c = 0; c < cells; ++c)
     for (int n = 0; n < 8; ++n) {
-      const Eigen::Vector3f b =
-          Eigen::Map<const Eigen::Vector3f>(&level.gradient[24 * static_cast<std::size_t>(c) + 3 * n]);
+      const Eigen::Vector3f b = Eigen::Map<const Eigen::Vector3f>(&gradient_[24 * static_cast<std::size_t>(c) + 3 * n]);
       for_each_carrier(carriers, lattice.corners[c][n],
-                       [&](int p, double w) { hand(p, c, static_cast<float>(w) * b); });
+                       [&](int i, double w) { hand(i, c, static_cast<float>(w) * b); });
     }
-  level.begin = {0};
+  begin_ = {0};
   std::vector<int> place(cells, -1);  // of each column in the row
   std::set<int> points;
   for (int c = 0; c < cells; ++c) {
-    const int start = level.begin.back();
+    const int start = begin_.back();
     const auto add = [&](int column, float value) {
       if (place[column] < start) {
-        place[column] = static_cast<int>(level.column.size());
-        level.column.push_back(column);
-        level.schur.push_back(0);
+        place[column] = static_cast<int>(column_.size());
+        column_.push_back(column);
+        schur_.push_back(0);
       }
-      level.schur[place[column]] += value;
+      schur_[place[column]] += value;
     };
-    add(c, level.compliance[c]);
+    add(c, compliance_[c]);
     points.clear();
-    for (const int q : lattice.corners[c]) for_each_carrier(carriers, q, [&](int p, double) { points.insert(p); });
-    for (const int p : points)
-      for (const Entry& own : at[p])
+    for (const int q : lattice.corners[c]) for_each_carrier(carriers, q, [&](int i, double) { points.insert(i); });
+    for (const int i : points)
+      for (const Entry& own : at[i])
         if (own.cell == c)
-          for (const Entry& other : at[p]) add(other.cell, own.b.dot(other.Db));
-    level.inverse_schur[c] = 1 / level.schur[start];
-    level.begin.push_back(static_cast<int>(level.column.size()));
+          for (const Entry& other : at[i]) add(other.cell, own.b.dot(other.Db));
+    inverse_schur_[c] = 1 / schur_[start];
+    begin_.push_back(static_cast<int>(column_.size()));
   }
 }
 
-void CutMixedMultigrid::relax_schur(bool ascending, Level& level) {
-  const int rows = static_cast<int>(level.r.size());
+void CutMixedMultigrid::Level::relax_schur(bool ascending) {
+  const int rows = static_cast<int>(r_.size());
   for (int n = 0; n < rows; ++n) {
     const int i = ascending ? n : rows - 1 - n;
     float even = 0, odd = 0;  // two sums, since each addition waits for the one before
-    int e = level.begin[i];
-    for (; e + 1 < level.begin[i + 1]; e += 2) {
-      even += level.schur[e] * level.q[level.column[e]];
-      odd += level.schur[e + 1] * level.q[level.column[e + 1]];
+    int e = begin_[i];
+    for (; e + 1 < begin_[i + 1]; e += 2) {
+      even += schur_[e] * q_[column_[e]];
+      odd += schur_[e + 1] * q_[column_[e + 1]];
     }
-    if (e < level.begin[i + 1]) even += level.schur[e] * level.q[level.column[e]];
-    const float sum = level.r[i] - even - odd;
-    level.q[i] += level.inverse_schur[i] * sum;
+    if (e < begin_[i + 1]) even += schur_[e] * q_[column_[e]];
+    const float sum = r_[i] - even - odd;
+    q_[i] += inverse_schur_[i] * sum;
   }
 }
 
-void CutMixedMultigrid::divergence(std::size_t l, const Eigen::VectorXf& u, Eigen::VectorXf& out) const {
-  const CutLevel& lattice = lattice_[l];
-  const float* b = levels_[l].gradient.data();
+void CutMixedMultigrid::Level::divergence(const Eigen::VectorXf& displacements, Eigen::VectorXf& out) const {
+  const float* b = gradient_.data();
   Eigen::VectorXf copy;
   if (!lattice.carried.empty()) {
-    copy = u;
+    copy = displacements;
     carry(lattice.carried, copy);
   }
-  const float* at = lattice.carried.empty() ? u.data() : copy.data();
+  const float* at = lattice.carried.empty() ? displacements.data() : copy.data();
   for (std::size_t c = 0; c < lattice.corners.size(); ++c, b += 24) {
     float sum = 0;
     for (int n = 0; n < 8; ++n) {
@@ -152,11 +149,10 @@ void CutMixedMultigrid::divergence(std::size_t l, const Eigen::VectorXf& u, Eige
   }
 }
 
-void CutMixedMultigrid::add_gradient(std::size_t l, const Eigen::VectorXf& p, Eigen::VectorXf& out) const {
-  const CutLevel& lattice = lattice_[l];
-  const float* b = levels_[l].gradient.data();
+void CutMixedMultigrid::Level::add_gradient(const Eigen::VectorXf& pressures, Eigen::VectorXf& out) const {
+  const float* b = gradient_.data();
   for (std::size_t c = 0; c < lattice.corners.size(); ++c, b += 24) {
-    const float value = p[static_cast<Eigen::Index>(c)];
+    const float value = pressures[static_cast<Eigen::Index>(c)];
     for (int n = 0; n < 8; ++n) {
       float* v = out.data() + 3 * lattice.corners[c][n];
       for (int a = 0; a < 3; ++a) v[a] += value * b[3 * n + a];
@@ -165,100 +161,123 @@ void CutMixedMultigrid::add_gradient(std::size_t l, const Eigen::VectorXf& p, Ei
   hand_back(lattice.carried, out);
 }
 
-void CutMixedMultigrid::scale_by_diagonal(std::size_t l, Eigen::VectorXf& v) const {
-  const float* D = lattice_[l].D.data();
+void CutMixedMultigrid::Level::scale_by_diagonal(Eigen::VectorXf& v) const {
+  const float* D = lattice.D.data();
   for (Eigen::Index i = 0; i < v.size(); i += 3, D += 9) {
     const float x = v[i], y = v[i + 1], z = v[i + 2];
     for (int a = 0; a < 3; ++a) v[i + a] = damped * (D[3 * a] * x + D[3 * a + 1] * y + D[3 * a + 2] * z);
   }
 }
 
-Eigen::VectorXf CutMixedMultigrid::load(std::size_t l) const {
-  const Level& level = levels_[l];
-  Eigen::VectorXf all = level.f;
-  const Eigen::VectorXf minus_p = -level.p;
-  add_gradient(l, minus_p, all);
-  if (l == 0)
-    for (Eigen::Index i = 0; i < all.size(); ++i)
-      if (nodes_.fixed[i]) all[i] = 0;
+Eigen::VectorXf CutMixedMultigrid::Level::load() const {
+  Eigen::VectorXf all = f;
+  const Eigen::VectorXf minus_p = -p;
+  add_gradient(minus_p, all);
+  clear_fixed(fixed_, all);
   return all;
 }
 
-/// d = f - K u - B^T p, Bu = B u.
-void CutMixedMultigrid::residual(std::size_t l) {
-  Level& level = levels_[l];
-  lattice_[l].A.residual(load(l).data(), level.u.data(), level.d.data());
-  divergence(l, level.u, level.Bu);
+void CutMixedMultigrid::Level::residual() {
+  lattice.A.residual(load().data(), u.data(), d_.data());
+  divergence(u, Bu_);
 }
 
 /// Gauss-Seidel for the displacements, then pressures q and displacements -D B^T q that restore the volumes.
-void CutMixedMultigrid::sweep(std::size_t l, bool ascending) {
-  Level& level = levels_[l];
-  const CutLevel& lattice = lattice_[l];
-  const Eigen::VectorXf b = load(l);
+void CutMixedMultigrid::Level::sweep(bool ascending) {
+  const Eigen::VectorXf b = load();
   const auto relax_anchored = [&] {
     const std::size_t count = lattice.anchored.size();
-    for (std::size_t c = 0; c < count; ++c)
-      lattice.relax_anchored(ascending ? c : count - 1 - c, b.data(), level.u.data());
+    for (std::size_t c = 0; c < count; ++c) lattice.relax_anchored(ascending ? c : count - 1 - c, b.data(), u.data());
   };
   if (!ascending) relax_anchored();
-  lattice.A.relax(lattice.D, ascending, b.data(), level.u.data());
+  lattice.A.relax(lattice.D, ascending, b.data(), u.data());
   if (ascending) relax_anchored();
-  divergence(l, level.u, level.Bu);
-  level.r = level.Bu - level.g - level.compliance.cwiseProduct(level.p);
-  level.q.setZero();
-  for (int s = 0; s < schur_sweeps_; ++s) relax_schur((s % 2 == 0) == ascending, level);
-  Eigen::VectorXf t = Eigen::VectorXf::Zero(level.u.size());
-  add_gradient(l, level.q, t);
-  scale_by_diagonal(l, t);
-  level.u -= t;
-  level.p += level.q;
+  divergence(u, Bu_);
+  r_ = Bu_ - g - compliance_.cwiseProduct(p);
+  q_.setZero();
+  for (int s = 0; s < schur_sweeps_; ++s) relax_schur((s % 2 == 0) == ascending);
+  Eigen::VectorXf t = Eigen::VectorXf::Zero(u.size());
+  add_gradient(q_, t);
+  scale_by_diagonal(t);
+  u -= t;
+  p += q_;
+}
+
+void CutMixedMultigrid::Level::smooth(Smoothing when) {
+  const bool before = when == Smoothing::before_coarse;
+  if (before) {
+    u.setZero();
+    p.setZero();
+  }
+  for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(before);
+}
+
+void CutMixedMultigrid::Level::restrict_to(Level& below) const {
+  below.f.setZero();
+  lattice.restrict_to(d_, below.lattice, below.f);
+  below.g.setZero();
+  const Eigen::VectorXf volumes = g - Bu_ + compliance_.cwiseProduct(p);
+  for (Eigen::Index c = 0; c < volumes.size(); ++c) below.g[lattice.parent[c]] += volumes[c];
+}
+
+void CutMixedMultigrid::Level::prolongate(Level& below) {
+  lattice.prolongate(below.u, below.lattice, u);
+  clear_fixed(fixed_, u);
+  for (Eigen::Index c = 0; c < p.size(); ++c) p[c] += below.p[lattice.parent[c]];
 }
 
 /// Eliminates p: (K_s + B^T C^-1 B) u = f + B^T C^-1 g, p = C^-1 (B u - g).
-void CutMixedMultigrid::solve_coarsest() {
-  const std::size_t l = levels_.size() - 1;
-  Level& level = levels_[l];
-  level.p = level.g.cwiseQuotient(level.compliance);
-  Eigen::VectorXf b = level.f;
-  add_gradient(l, level.p, b);
-  level.u = coarsest_.solve(b);
-  divergence(l, level.u, level.Bu);
-  level.p = (level.Bu - level.g).cwiseQuotient(level.compliance);
+void CutMixedMultigrid::Level::solve_coarsest(const CoarsestFactors& factors) {
+  p = g.cwiseQuotient(compliance_);
+  Eigen::VectorXf b = f;
+  add_gradient(p, b);
+  u = factors.solve(b);
+  divergence(u, Bu_);
+  p = (Bu_ - g).cwiseQuotient(compliance_);
 }
 
-void CutMixedMultigrid::cycle(std::size_t l) {
-  if (l + 1 == levels_.size()) return solve_coarsest();
-  Level &level = levels_[l], &below = levels_[l + 1];
-  const CutLevel& lattice = lattice_[l];
-  level.u.setZero();
-  level.p.setZero();
-  for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(l, true);
-  residual(l);
-  below.f.setZero();
-  lattice.restrict_to(level.d, lattice_[l + 1], below.f);
-  below.g.setZero();
-  const Eigen::VectorXf volumes = level.g - level.Bu + level.compliance.cwiseProduct(level.p);
-  for (Eigen::Index c = 0; c < volumes.size(); ++c) below.g[lattice.parent[c]] += volumes[c];
-  cycle(l + 1);
-  lattice.prolongate(below.u, lattice_[l + 1], level.u);
-  if (l == 0)
-    for (Eigen::Index i = 0; i < level.u.size(); ++i)
-      if (nodes_.fixed[i]) level.u[i] = 0;
-  for (Eigen::Index c = 0; c < volumes.size(); ++c) level.p[c] += below.p[lattice.parent[c]];
-  for (int s = 0; s < sweeps_of_cut_cells; ++s) sweep(l, false);
+CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
+    : nodes_(model.network, fixed), network_(model.network) {
+  const AveragedSprings& law = *averaged_springs_of(model);
+  const double l = network_.cell_edge, unit = law.shear_modulus * l,
+               kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
+  gradient_.resize(24, static_cast<Eigen::Index>(network_.cells.size()));
+  compliance_.resize(gradient_.cols());
+  for (std::size_t c = 0; c < network_.cells.size(); ++c) {
+    const double h = network_.edge(c) / l;
+    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient(h, network_.filled[c]);
+    compliance_[static_cast<Eigen::Index>(c)] = network_.filled[c].fraction * h * h * h / kappa;
+  }
+  std::vector<CutLevel> lattices = cut_levels(network_, nodes_);
+  const double finest_edge = lattices[0].edge;
+  for (CutLevel& lattice : lattices) {
+    const bool finest = levels_.empty();
+    const std::vector<char> fixed_here = finest ? nodes_.fixed_corners() : std::vector<char>{};
+    if (&lattice == &lattices.back()) {  // the pressure is eliminated there
+      take_matrix(CutMatrix<double>(law, unit, lattice, fixed_here), unit, fixed_here, lattice);
+      coarsest_.factor(lattice.A.sparse());
+    }
+    CutMatrix<double> of_cells(springs_alone(law), unit, lattice, fixed_here);
+    take_matrix(of_cells, unit, fixed_here, lattice);
+    if (finest) K_ = std::move(of_cells);
+    levels_.push_back(std::make_unique<Level>(
+        std::move(lattice), finest ? nodes_.unknowns_of_corners() : std::vector<char>{}, finest_edge, kappa));
+  }
+  for (Anchor& a : nodes_.anchors) a.stiffness /= unit;
 }
 
-Eigen::VectorXd CutMixedMultigrid::force(const Eigen::VectorXd& u, const Eigen::VectorXd& p) const {
+CutMixedMultigrid::~CutMixedMultigrid() = default;
+
+Eigen::VectorXd CutMixedMultigrid::force(const MixedVector& x) {
   Eigen::VectorXd y;
-  scaled_nodes_.multiply(K_, 1, u, y);
-  for (Eigen::Index c = 0; c < p.size(); ++c)
-    for (int n = 0; n < 8; ++n) y.segment<3>(3 * network_.cells[c][n]) += p[c] * gradient_.col(c).segment<3>(3 * n);
+  nodes_.multiply(K_, 1, x.u, y);
+  for (Eigen::Index c = 0; c < x.p.size(); ++c)
+    for (int n = 0; n < 8; ++n) y.segment<3>(3 * network_.cells[c][n]) += x.p[c] * gradient_.col(c).segment<3>(3 * n);
   hand_back(network_.carried, y);
   return y;
 }
 
-Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& displacement) const {
+Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& displacement) {
   Eigen::VectorXd u = displacement;
   carry(network_.carried, u);
   Eigen::VectorXd J = Eigen::VectorXd::Zero(gradient_.cols());
@@ -267,41 +286,14 @@ Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& displace
   return J;
 }
 
-void CutMixedMultigrid::apply(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u,
-                              Eigen::VectorXd& p) {
-  levels_[0].f = scaled_nodes_.eliminated(f).cast<float>();
-  levels_[0].g = g.cast<float>();
-  cycle(0);
-  scaled_nodes_.complete(f, levels_[0].u.cast<double>(), u);
-  p = levels_[0].p.cast<double>();
-}
-
-KrylovResult CutMixedMultigrid::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& g, double tolerance,
-                                      int max_iterations, Eigen::VectorXd& u, Eigen::VectorXd& p) {
-  const Eigen::Index n = f.size(), m = g.size();
-  Eigen::VectorXd b(n + m), x = Eigen::VectorXd::Zero(n + m);
-  b << f, g;
-  const auto clear_fixed = [&](Eigen::VectorXd& v) {
-    for (Eigen::Index i = 0; i < n; ++i)
-      if (nodes_.fixed[i]) v[i] = 0;
-  };
-  clear_fixed(b);
-  const Operator A = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
-    y.resize(n + m);
-    const Eigen::VectorXd of_u = v.head(n), of_p = v.tail(m);
-    y << force(of_u, of_p), volume_change(of_u) - compliance_.cwiseProduct(of_p);
-    clear_fixed(y);
-  };
-  const Operator precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    Eigen::VectorXd of_u, of_p;
-    apply(r.head(n), r.tail(m), of_u, of_p);
-    z.resize(n + m);
-    z << of_u, of_p;
-  };
-  const KrylovResult result = gmres(A, precondition, b, tolerance, max_iterations, 60, x);
-  u = x.head(n);
-  p = x.tail(m);
-  return result;
+MixedVector CutMixedMultigrid::cycle(const MixedVector& b) {
+  Level& finest = *levels_[0];
+  finest.f = nodes_.eliminated(b.u).cast<float>();
+  finest.g = b.p.cast<float>();
+  v_cycle(levels_, [&](Level& coarsest) { coarsest.solve_coarsest(coarsest_); });
+  MixedVector x{{}, finest.p.cast<double>()};
+  nodes_.complete(b.u, finest.u.cast<double>(), x.u);
+  return x;
 }
 
 }  // namespace springproof

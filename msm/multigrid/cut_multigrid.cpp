@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "msm/algebra/fixed.h"
+
 namespace springproof {
 namespace {
 
@@ -17,20 +19,19 @@ bool CutMultigrid::covers(const MassSpringModel& model) {
 }
 
 CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
-    : nodes_(model.network, fixed),
-      unit_(averaged_springs_of(model)->shear_modulus * model.network.cell_edge),
-      levels_(cut_levels(model.network, nodes_)) {
-  for (CutLevel& level : levels_) {
-    const bool finest = &level == &levels_.front();
+    : nodes_(model.network, fixed), unit_(averaged_springs_of(model)->shear_modulus * model.network.cell_edge) {
+  for (CutLevel& lattice : cut_levels(model.network, nodes_)) {
+    const bool finest = levels_.empty();
     const std::vector<char> fixed_here = finest ? nodes_.fixed_corners() : std::vector<char>{};
-    CutMatrix<double> of_cells(*averaged_springs_of(model), unit_, level, fixed_here);
-    take_matrix(of_cells, unit_, fixed_here, level);
+    CutMatrix<double> of_cells(*averaged_springs_of(model), unit_, lattice, fixed_here);
+    take_matrix(of_cells, unit_, fixed_here, lattice);
     if (finest) K_ = std::move(of_cells);
-    level.invert_anchored();
-    const Eigen::VectorXf zero = Eigen::VectorXf::Zero(level.unknowns());
-    at_level_.push_back({zero, zero, zero});
+    lattice.invert_anchored();
+    const Eigen::VectorXf zero = Eigen::VectorXf::Zero(lattice.unknowns());
+    std::vector<char> held = finest ? nodes_.unknowns_of_corners() : std::vector<char>{};
+    levels_.push_back(std::make_unique<Level>(Level{std::move(lattice), std::move(held), zero, zero, zero}));
   }
-  coarsest_.factor(levels_.back().A.sparse());
+  coarsest_.factor(levels_.back()->lattice.A.sparse());
 }
 
 Eigen::VectorXd CutMultigrid::diagonal() const {
@@ -42,41 +43,40 @@ Eigen::VectorXd CutMultigrid::diagonal() const {
   return d;
 }
 
-void CutMultigrid::cycle(std::size_t l) const {
-  auto& [b, x, r] = at_level_[l];
-  if (l + 1 == levels_.size()) {
-    x = coarsest_.solve(b);
-    return;
-  }
-  const CutLevel& level = levels_[l];
+void CutMultigrid::Level::smooth(Smoothing when) {
+  const CutMatrix<float>& A = lattice.A;
+  const std::size_t anchored = lattice.anchored.size();
   for (int s = 0; s < relaxations; ++s) {
+    if (when == Smoothing::after_coarse) {
+      for (std::size_t c = anchored; c-- > 0;) lattice.relax_anchored(c, b.data(), x.data());
+      A.relax(lattice.D, false, b.data(), x.data());
+      continue;
+    }
     if (s == 0)
-      level.A.relax_from_zero(level.D, b.data(), x.data());
+      A.relax_from_zero(lattice.D, b.data(), x.data());
     else
-      level.A.relax(level.D, true, b.data(), x.data());
-    for (std::size_t c = 0; c < level.anchored.size(); ++c) level.relax_anchored(c, b.data(), x.data());
+      A.relax(lattice.D, true, b.data(), x.data());
+    for (std::size_t c = 0; c < anchored; ++c) lattice.relax_anchored(c, b.data(), x.data());
   }
-  level.A.residual(b.data(), x.data(), r.data());
-  Vectors& below = at_level_[l + 1];
+}
+
+void CutMultigrid::Level::restrict_to(Level& below) const {
   below.b.setZero();
-  level.restrict_to(r, levels_[l + 1], below.b);
-  cycle(l + 1);
-  level.prolongate(below.x, levels_[l + 1], x);
-  if (l == 0)
-    for (Eigen::Index i = 0; i < x.size(); ++i)
-      if (nodes_.fixed[i]) x[i] = 0;
-  for (int s = 0; s < relaxations; ++s) {
-    for (std::size_t c = level.anchored.size(); c-- > 0;) level.relax_anchored(c, b.data(), x.data());
-    level.A.relax(level.D, false, b.data(), x.data());
-  }
+  lattice.restrict_to(r, below.lattice, below.b);
+}
+
+void CutMultigrid::Level::prolongate(Level& below) {
+  lattice.prolongate(below.x, below.lattice, x);
+  clear_fixed(fixed, x);
 }
 
 void CutMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
   const Eigen::VectorXd b = nodes_.eliminated(r);
   const double largest = b.lpNorm<Eigen::Infinity>(), scale = largest > 0 ? largest : 1;
-  at_level_[0].b = (b / scale).cast<float>();
-  cycle(0);
-  nodes_.complete(r, at_level_[0].x.cast<double>() * (scale / unit_), z);
+  Level& finest = *levels_[0];
+  finest.b = (b / scale).cast<float>();
+  v_cycle(levels_, [&](Level& coarsest) { coarsest.x = coarsest_.solve(coarsest.b); });
+  nodes_.complete(r, finest.x.cast<double>() * (scale / unit_), z);
 }
 
 }  // namespace springproof

@@ -1,7 +1,10 @@
 // Multigrid for lattices of cut cells: the displacement form, for Poisson's ratios away from 1/2.
 #pragma once
 
+#include <memory>
+
 #include "msm/multigrid/cut_levels.h"
+#include "msm/multigrid/v_cycle.h"
 
 namespace springproof {
 
@@ -21,16 +24,21 @@ class CutMultigrid {
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
 
  private:
-  struct Vectors {
+  struct Level {
+    CutLevel lattice;
+    std::vector<char> fixed;  ///< unknowns, of the finest level
     Eigen::VectorXf b, x, r;
+
+    void smooth(Smoothing when);
+    void residual() { lattice.A.residual(b.data(), x.data(), r.data()); }
+    void restrict_to(Level& below) const;
+    void prolongate(Level& below);
   };
-  void cycle(std::size_t l) const;
 
   AnchoredNodes nodes_;
   double unit_;          ///< of stiffness [N/m]
   CutMatrix<double> K_;  ///< of the cells, in units
-  std::vector<CutLevel> levels_;
-  mutable std::vector<Vectors> at_level_;
+  std::vector<std::unique_ptr<Level>> levels_;
   CoarsestFactors coarsest_;
 };
 

@@ -48,6 +48,20 @@ class NodalPressures : public SaddlePointLevel {
     find_thin_parts(cell);
   }
 
+  void restrict_to(SaddlePointLevel& below) override {
+    const LatticeLevel& lattice = below.K.level();
+    below.f.setZero();
+    below.g.setZero();
+    restrict_field(lattice, K.kernels(), K.stride(), d.data(), below.f.data());
+    lattice.clear_fixed(below.f);
+  }
+
+  void prolongate(const SaddlePointLevel& below) override {
+    prolongate_field(below.K.level(), K.kernels(), below.u.data(), K.stride(), d.data());
+    K.level().clear_fixed(d);
+    u += d;
+  }
+
  private:
   void take_residual() override {
     transpose(p);
@@ -105,35 +119,20 @@ DispersionMultigrid::DispersionMultigrid(const MassSpringModel& model, LatticeLe
       K_(lattice_.levels[0], springs_of(model, lattice_, G).total),
       B_(volumes_, lattice_.levels[0].stride()),
       level_(std::make_unique<NodalPressures>(lattice_.levels[0], springs_of(model, lattice_, G).total, volumes_,
-                                              added_lambda(*dispersion_of(model)))) {}
-
-void DispersionMultigrid::cycle() {
-  SaddlePointLevel &level = *level_, &below = below_.finest();
-  level.cycle([&] {
-    const CellKernels<float>& kernels = level.K.kernels();
-    const long stride = level.K.stride();
-    below.f.setZero();
-    below.g.setZero();
-    restrict_field(below_.finest_lattice(), kernels, stride, level.d.data(), below.f.data());
-    below_.finest_lattice().clear_fixed(below.f);
-    below_.cycle();
-    prolongate_field(below_.finest_lattice(), kernels, below.u.data(), stride, level.d.data());
-    lattice_.levels[0].clear_fixed(level.d);
-    level.u += level.d;
-  });
+                                              added_lambda(*dispersion_of(model)))) {
+  take_compliance(volumes_.compliance);
 }
 
-void DispersionMultigrid::multiply_rows(const double* x, double* y) {
+void DispersionMultigrid::cycle_on_levels() {
+  two_level_cycle(*level_, below_.finest(), [&] { below_.cycle_on_levels(); });
+}
+
+void DispersionMultigrid::force_rows(const double* u, const double* p, double* y) {
   const long stride = K_.stride();
-  const double* p = x + 3 * stride;
-  double* Bu = y + 3 * stride;
-  K_.pass(x, nullptr, nullptr, [&](int a, long begin, long n, const double* Ku) {
+  K_.pass(u, nullptr, nullptr, [&](int a, long begin, long n, const double* Ku) {
     std::memcpy(y + a * stride + begin, Ku, n * sizeof(double));
   });
-  for (int a = 0; a < 3; ++a) std::fill_n(y + (a + 1) * stride - array_slack, array_slack, 0.0);
   B_.add_forces(p, y);
-  B_.change(x, Bu);
-  for (long n = 0; n < stride; ++n) Bu[n] -= volumes_.compliance[n] * p[n];
 }
 
 }  // namespace springproof

@@ -12,20 +12,20 @@ namespace springproof {
 /// pressures; its coarse correction is the mixed cycle of HybMSS cells of twice the edge, with a pressure per cell,
 /// springs of the same moduli and the bulk modulus that dispersion adds: forces are restricted, displacements
 /// prolongated, pressures are not transferred.
-class DispersionMultigrid : public SaddlePointSystem {
+class DispersionMultigrid : public LatticeSaddlePoint {
  public:
   /// G: the springs' shear modulus [Pa].
   /// @throws std::invalid_argument unless NodalVolumes::covers(model), or for a single cell.
   DispersionMultigrid(const MassSpringModel& model, const std::vector<char>& fixed, double G);
 
   SaddlePointLevel& finest() override { return *level_; }
-  void cycle() override;
+  void cycle_on_levels() override;
 
  private:
   DispersionMultigrid(const MassSpringModel& model, LatticeLevels lattice, double G);
   const LatticeLevels& lattice() const override { return lattice_; }
   const std::vector<int>& place_of_pressure() const override { return lattice_.point_of_node; }
-  void multiply_rows(const double* x, double* y) override;
+  void force_rows(const double* u, const double* p, double* y) override;
   void volume_change_rows(const double* u, double* J) override { B_.change(u, J); }
 
   LatticeLevels lattice_;  ///< the finest level only

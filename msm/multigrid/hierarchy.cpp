@@ -14,21 +14,18 @@ Index half(const Index& a) { return {a[0] / 2, a[1] / 2, a[2] / 2}; }
 
 /// Dense numbering of a box of lattice points or cells; -1 = not in the body.
 struct Numbering {
-  Index low, size;
+  Index size;
   std::vector<int> number;
 
-  Numbering(const Index& first, const Index& box)
-      : low(first), size(box), number(std::size_t(box[0]) * box[1] * box[2], -1) {}
-  Numbering(const Index& first, const Index& box, const std::vector<Index>& in_order) : Numbering(first, box) {
+  explicit Numbering(const Index& box) : size(box), number(std::size_t(box[0]) * box[1] * box[2], -1) {}
+  Numbering(const Index& box, const std::vector<Index>& in_order) : Numbering(box) {
     for (std::size_t n = 0; n < in_order.size(); ++n) at(in_order[n]) = static_cast<int>(n);
   }
-  std::size_t place(const Index& p) const {
-    return (std::size_t(p[2] - low[2]) * size[1] + p[1] - low[1]) * size[0] + p[0] - low[0];
-  }
+  std::size_t place(const Index& p) const { return (std::size_t(p[2]) * size[1] + p[1]) * size[0] + p[0]; }
   int& at(const Index& p) { return number[place(p)]; }
   int get(const Index& p) const {
     for (int d = 0; d < 3; ++d)
-      if (p[d] < low[d] || p[d] >= low[d] + size[d]) return -1;
+      if (p[d] < 0 || p[d] >= size[d]) return -1;
     return number[place(p)];
   }
   /// Numbers and lists the marked entries, x fastest.  Returns the first of each plane, and the end.
@@ -41,7 +38,7 @@ struct Numbering {
         for (int i = 0; i < size[0]; ++i, ++at)
           if (*at >= 0) {
             *at = static_cast<int>(list.size());
-            list.push_back({low[0] + i, low[1] + j, low[2] + k});
+            list.push_back({i, j, k});
           }
     }
     begin.push_back(static_cast<long>(list.size()));
@@ -49,28 +46,24 @@ struct Numbering {
   }
 };
 
-Numbering numbering_of_cells(const LatticeLevel& level) {
-  return {level.first_cell, level.cells_per_side, level.cell_index};
-}
 Numbering numbering_of_points(const LatticeLevel& level) {
-  return {level.first_cell, plus(level.cells_per_side, {1, 1, 1}), level.point_index};
+  return {plus(level.cells_per_side, {1, 1, 1}), level.point_index};
 }
 
 /// Builds a level of the marked cells: numbers them and their corners, and sets the rows.
 LatticeLevel lay_out(Numbering& cells, double edge_ratio) {
   LatticeLevel level;
   level.edge_ratio = edge_ratio;
-  level.first_cell = cells.low;
   level.cells_per_side = cells.size;
   level.cell_begin = cells.number_marked(level.cell_index);
-  Numbering points(cells.low, plus(cells.size, {1, 1, 1}));
+  Numbering points(plus(cells.size, {1, 1, 1}));
   for (const Index& cell : level.cell_index)
     for (const auto& corner : hexahedron_corners) points.at(plus(cell, corner)) = 0;
   level.point_begin = points.number_marked(level.point_index);
   int plane = 0;
   for (std::size_t c = 0; c < level.cell_index.size(); ++c) {
     const Index& at = level.cell_index[c];
-    for (; plane <= at[2] - cells.low[2]; ++plane) level.row_begin.push_back(static_cast<long>(level.rows.size()));
+    for (; plane <= at[2]; ++plane) level.row_begin.push_back(static_cast<long>(level.rows.size()));
     const bool goes_on = c > 0 && level.cell_index[c - 1] == Index{at[0] - 1, at[1], at[2]} &&
                          level.rows.back().length < longest_cell_row;
     if (!goes_on) {
@@ -104,7 +97,7 @@ void lay_out_finest(const Network& network, const std::vector<char>& fixed, cons
                     LatticeLevels& all) {
   const Grid& grid = *network.grid;
   all.axes = order_axes(grid.cells);
-  Numbering cells({0, 0, 0}, reorder(grid.cells, all.axes));
+  Numbering cells(reorder(grid.cells, all.axes));
   for (const Index& c : grid.cell_index) cells.at(reorder(c, all.axes)) = 0;
   LatticeLevel level = lay_out(cells, 1);
   Numbering points = numbering_of_points(level);
@@ -125,21 +118,6 @@ void lay_out_finest(const Network& network, const std::vector<char>& fixed, cons
   std::sort(level.fixed.begin(), level.fixed.end());
   for (int a = 0; a < 3; ++a) level.arms[a] = std::pow(all.proportions[all.axes[a]], 2);
   all.levels.push_back(std::move(level));
-}
-
-/// The coarser level, of the cells that contain those of a finer one.
-LatticeLevel coarsen(const LatticeLevel& fine) {
-  Index size;
-  for (int d = 0; d < 3; ++d) size[d] = (fine.cells_per_side[d] + 1) / 2;
-  Numbering cells({0, 0, 0}, size);
-  for (const Index& cell : fine.cell_index) cells.at(half(cell)) = 0;
-  LatticeLevel coarse = lay_out(cells, 2 * fine.edge_ratio);
-  coarse.arms = fine.arms;
-  coarse.fill.assign(coarse.cell_index.size(), 0);
-  for (std::size_t c = 0; c < fine.cell_index.size(); ++c)
-    coarse.fill[cells.at(half(fine.cell_index[c]))] += (fine.fill.empty() ? 1 : fine.fill[c]) / 8;
-  if (std::all_of(coarse.fill.begin(), coarse.fill.end(), [](double f) { return f == 1; })) coarse.fill.clear();
-  return coarse;
 }
 
 void set_transfer(const LatticeLevel& fine, Numbering& coarse_points, LatticeLevel& coarse) {
@@ -186,6 +164,26 @@ void set_fixed(const LatticeLevel& fine, const Numbering& fine_points, LatticeLe
       if (held[a * coarse.points() + n]) coarse.fixed.push_back(static_cast<int>(a * coarse.stride() + n));
 }
 
+/// The coarser level, of the cells that contain those of a finer one, with the transfer between them.
+LatticeLevel coarsen(const LatticeLevel& fine) {
+  Index size;
+  for (int d = 0; d < 3; ++d) size[d] = (fine.cells_per_side[d] + 1) / 2;
+  Numbering cells(size);
+  for (const Index& cell : fine.cell_index) cells.at(half(cell)) = 0;
+  LatticeLevel coarse = lay_out(cells, 2 * fine.edge_ratio);
+  coarse.arms = fine.arms;
+  coarse.fill.assign(coarse.cell_index.size(), 0);
+  for (std::size_t c = 0; c < fine.cell_index.size(); ++c) {
+    coarse.parent.push_back(cells.at(half(fine.cell_index[c])));
+    coarse.fill[coarse.parent.back()] += (fine.fill.empty() ? 1 : fine.fill[c]) / 8;
+  }
+  if (std::all_of(coarse.fill.begin(), coarse.fill.end(), [](double f) { return f == 1; })) coarse.fill.clear();
+  Numbering points = numbering_of_points(coarse);
+  set_transfer(fine, points, coarse);
+  set_fixed(fine, numbering_of_points(fine), coarse);
+  return coarse;
+}
+
 }  // namespace
 
 long LatticeLevel::corner(const CellRow& row, int i, int c) {
@@ -211,48 +209,18 @@ void LatticeLevels::from_rows(Nodal kind, const Eigen::VectorXd& rows, Eigen::Ve
       nodal[3 * static_cast<long>(n) + axes[a]] = unit[axes[a]] * rows[a * stride + point_of_node[n]];
 }
 
-void link(const LatticeLevel& fine, LatticeLevel& coarse) {
-  Numbering cells = numbering_of_cells(coarse), points = numbering_of_points(coarse);
-  coarse.parent.resize(fine.cell_index.size());
-  for (std::size_t c = 0; c < fine.cell_index.size(); ++c) coarse.parent[c] = cells.at(half(fine.cell_index[c]));
-  set_transfer(fine, points, coarse);
-  set_fixed(fine, numbering_of_points(fine), coarse);
-}
-
-void add_coarser_levels(LatticeLevels& all, int coarsest_unknowns) {
-  const auto longest = [](const LatticeLevel& l) {
-    return *std::max_element(l.cells_per_side.begin(), l.cells_per_side.end());
-  };
-  while (3 * all.levels.back().points() > coarsest_unknowns && longest(all.levels.back()) >= 2) {
-    LatticeLevel coarse = coarsen(all.levels.back());
-    link(all.levels.back(), coarse);
-    all.levels.push_back(std::move(coarse));
-  }
-}
-
 LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fixed, int coarsest_unknowns,
                              const std::vector<double>& fill) {
   if (!network.grid) throw std::invalid_argument("multigrid needs a network made from a lattice of cells");
   LatticeLevels all;
   all.proportions = network.proportions;
   lay_out_finest(network, fixed, fill, all);
-  add_coarser_levels(all, coarsest_unknowns);
+  const auto longest = [](const LatticeLevel& l) {
+    return *std::max_element(l.cells_per_side.begin(), l.cells_per_side.end());
+  };
+  while (3 * all.levels.back().points() > coarsest_unknowns && longest(all.levels.back()) >= 2)
+    all.levels.push_back(coarsen(all.levels.back()));
   return all;
-}
-
-LatticeLevel block_level(const std::array<int, 3>& cells, int level, int z_begin, int z_end) {
-  const int edge = 1 << level;
-  Index size = {(cells[0] + edge - 1) / edge, (cells[1] + edge - 1) / edge, z_end - z_begin};
-  Numbering all({0, 0, z_begin}, size);
-  std::fill(all.number.begin(), all.number.end(), 0);
-  LatticeLevel block = lay_out(all, edge);
-  for (const Index& at : block.cell_index) {
-    double fill = 1;
-    for (int d = 0; d < 3; ++d) fill *= std::min(1.0, double(cells[d] - at[d] * edge) / edge);
-    block.fill.push_back(fill);
-  }
-  if (std::all_of(block.fill.begin(), block.fill.end(), [](double f) { return f == 1; })) block.fill.clear();
-  return block;
 }
 
 }  // namespace springproof

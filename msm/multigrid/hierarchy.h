@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "msm/kernels/cell_kernels.h"
+#include "msm/kernels/kernels.h"
 #include "msm/topology/network.h"
 
 namespace springproof {
@@ -21,8 +21,7 @@ struct TransferRow {
 /// One level: cells of edge 2^level times the finest, only where the body is.  Points and cells are numbered along x,
 /// then y, then z of the level's own axes; a nodal field is three arrays of `stride` values, one after the other.
 struct LatticeLevel {
-  std::array<int, 3> first_cell{};      ///< lowest (i,j,k) of the level's box of cells
-  std::array<int, 3> cells_per_side{};  ///< of that box
+  std::array<int, 3> cells_per_side{};  ///< of the level's box of cells
   std::vector<CellRow> rows;
   std::vector<long> row_begin, cell_begin, point_begin;  ///< per plane z, then the end; planes of points: one more
   std::vector<double> fill;  ///< fraction of each cell that lies in the body, 0 < fill <= 1; empty: 1
@@ -70,16 +69,5 @@ struct LatticeLevels {
 /// @throws std::invalid_argument if the network has no grid.
 LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fixed, int coarsest_unknowns = 900,
                              const std::vector<double>& fill = {});
-
-/// Adds coarser levels below the coarsest in `all`.
-void add_coarser_levels(LatticeLevels& all, int coarsest_unknowns = 900);
-
-// Parts of a block, for several processes.
-
-/// Planes z_begin ... z_end of cells of one level of a block whose finest level has `cells`; nothing fixed.
-LatticeLevel block_level(const std::array<int, 3>& cells, int level, int z_begin, int z_end);
-
-/// Sets the transfer between two existing levels: parents, transfer rows, and the fixed unknowns of the coarser one.
-void link(const LatticeLevel& fine, LatticeLevel& coarse);
 
 }  // namespace springproof

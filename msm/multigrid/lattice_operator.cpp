@@ -91,7 +91,7 @@ template <class Real>
 LatticeOperator<Real>::LatticeOperator(const LatticeLevel& level, const CellMatrix& cell, double gradient,
                                        InstructionSet set)
     : level_(&level),
-      kernels_(&cell_kernels<Real>(set)),
+      kernels_(&kernels_of<Real>(set).cells),
       blocks_(cell_blocks<Real>(level.edge_ratio * cell, level.edge_ratio * level.edge_ratio * gradient)),
       stride_(level.stride()) {
   if (!level.fill.empty()) {

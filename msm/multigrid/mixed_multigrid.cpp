@@ -32,6 +32,23 @@ class CellPressures : public SaddlePointLevel {
     if (!coarsest) find_thin_parts(cell.without_volume);
   }
 
+  void restrict_to(SaddlePointLevel& below) override {
+    const LatticeLevel& lattice = below.K.level();
+    below.f.setZero();
+    restrict_field(lattice, K.kernels(), K.stride(), d.data(), below.f.data());
+    below.g.setZero();
+    const Eigen::VectorXf volumes = g - Bu + compliance.cwiseProduct(p);
+    for (long c = 0; c < K.level().cells(); ++c) below.g[lattice.parent[c]] += volumes[c];
+  }
+
+  void prolongate(const SaddlePointLevel& below) override {
+    const LatticeLevel& lattice = below.K.level();
+    prolongate_field(lattice, K.kernels(), below.u.data(), K.stride(), d.data());
+    K.level().clear_fixed(d);
+    u += d;
+    for (long c = 0; c < K.level().cells(); ++c) p[c] += below.p[lattice.parent[c]];
+  }
+
  private:
   void take_residual() override {
     K.pass(u.data(), p.data(), Bu.data(), [&](int a, long begin, long n, const float* y) {
@@ -94,10 +111,12 @@ MixedMultigrid::MixedMultigrid(LatticeLevels levels, const CellStiffness& of_net
   for (const LatticeLevel& level : lattice_.levels)
     levels_.push_back(std::make_unique<CellPressures>(level, cell, corner_gradient(of_network, lattice_),
                                                       &level == &lattice_.levels.back()));
-  compliance_ = finest().compliance.cast<double>();
   const LatticeLevel& finest = lattice_.levels[0];
+  Eigen::VectorXd compliance(finest.cells());
   for (long c = 0; c < finest.cells(); ++c)
-    compliance_[c] = cell.volume / cell.kappa * (finest.fill.empty() ? 1 : finest.fill[c]);
+    compliance[c] = cell.volume / cell.kappa * (finest.fill.empty() ? 1 : finest.fill[c]);
+  take_compliance(compliance);
+  change_.setZero(finest.cells() + array_slack);
   factor_coarsest(assemble(lattice_.levels.back(), cell.total), lattice_, may_float, coarsest_);
 }
 
@@ -118,40 +137,15 @@ void MixedMultigrid::solve_coarsest(SaddlePointLevel& level) const {
   level.p.head(cells) = (level.Bu.head(cells) - level.g.head(cells)).cwiseQuotient(level.compliance.head(cells));
 }
 
-void MixedMultigrid::add_coarse_correction(std::size_t l) {
-  SaddlePointLevel &level = *levels_[l], &below = *levels_[l + 1];
-  const LatticeOperator<float>& K = level.K;
-  const LatticeLevel& lattice = below.K.level();
-  const Eigen::VectorXf volumes = level.g - level.Bu + level.compliance.cwiseProduct(level.p);
-  below.f.setZero();
-  restrict_field(lattice, K.kernels(), K.stride(), level.d.data(), below.f.data());
-  below.g.setZero();
-  const long cells = K.level().cells();
-  for (long c = 0; c < cells; ++c) below.g[lattice.parent[c]] += volumes[c];
-  cycle(l + 1);
-  prolongate_field(lattice, K.kernels(), below.u.data(), K.stride(), level.d.data());
-  K.level().clear_fixed(level.d);
-  level.u += level.d;
-  for (long c = 0; c < cells; ++c) level.p[c] += below.p[lattice.parent[c]];
+void MixedMultigrid::cycle_on_levels() {
+  v_cycle(levels_, [&](SaddlePointLevel& level) { solve_coarsest(level); });
 }
 
-void MixedMultigrid::cycle(std::size_t l) {
-  if (l + 1 == levels_.size())
-    solve_coarsest(*levels_[l]);
-  else
-    levels_[l]->cycle([&] { add_coarse_correction(l); });
-}
-
-void MixedMultigrid::multiply_rows(const double* x, double* y) {
-  const long stride = K_.stride(), cells = lattice_.levels[0].cells();
-  const double* p = x + 3 * stride;
-  double* Bu = y + 3 * stride;
-  K_.pass(x, p, Bu, [&](int a, long begin, long n, const double* values) {
+void MixedMultigrid::force_rows(const double* u, const double* p, double* y) {
+  const long stride = K_.stride();
+  K_.pass(u, p, change_.data(), [&](int a, long begin, long n, const double* values) {
     std::memcpy(y + a * stride + begin, values, n * sizeof(double));
   });
-  for (long c = 0; c < cells; ++c) Bu[c] -= compliance_[c] * p[c];
-  for (int a = 0; a < 3; ++a) std::fill_n(y + (a + 1) * stride - array_slack, array_slack, 0.0);
-  std::fill_n(Bu + cells, array_slack, 0.0);
 }
 
 }  // namespace springproof

@@ -10,6 +10,7 @@
 namespace springproof {
 namespace {
 
+constexpr int smoothing_degree = 3;
 constexpr int lanczos_steps = 10;
 
 void solve_coarsest(const DirectSolver& factors, SmoothingLevel& level) {
@@ -38,13 +39,14 @@ bool holds_rigid_motions(const LatticeLevel& level) {
   return found[0] > 1e-12 * found[5];
 }
 
-}  // namespace
-
+/// Largest eigenvalue of diag(K)^-1 K of one cell: a bound for every lattice of such cells.
 double largest_scaled_eigenvalue(const CellMatrix& cell) {
   const CellVector root = cell.diagonal().cwiseSqrt().cwiseInverse();
   const CellMatrix scaled = root.asDiagonal() * cell * root.asDiagonal();
   return symmetric_eigenvalues(scaled)[23];
 }
+
+}  // namespace
 
 void factor_coarsest(BlockMatrix K, const LatticeLevels& lattice, bool may_float, DirectSolver& coarsest) {
   const LatticeLevel& level = lattice.levels.back();
@@ -80,10 +82,8 @@ void prolongate_field(const LatticeLevel& coarse, const CellKernels<float>& kern
     }
 }
 
-Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, int smoothing_degree, bool may_float,
-                     double mass)
+Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, bool may_float, double mass)
     : lattice_(std::move(levels)),
-      degree_(smoothing_degree),
       K_(lattice_.levels[0], cell_of_levels(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_)) {
   // The stiffness of a cell grows with its edge, its mass with the cube.
   const auto of_level = [&](const LatticeLevel& level) {
@@ -93,11 +93,10 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, in
   const CellMatrix finest = of_level(lattice_.levels[0]);
   const double unit = finest.diagonal().mean();
   unit_ = 1 / unit;
-  const CellMatrix of_network = cell_of_network + CellMatrix(mass * CellMatrix::Identity());
-  largest_diagonal_ = diagonal(lattice_.levels[0], reorder(of_network, lattice_.axes)).maxCoeff();
+  cell_ = reorder(cell_of_network + CellMatrix(mass * CellMatrix::Identity()), lattice_.axes);
   for (const LatticeLevel& level : lattice_.levels) {
     const CellMatrix here = of_level(level) / unit;
-    SmoothingLevel& l = levels_.emplace_back(level, here);
+    SmoothingLevel& l = *levels_.emplace_back(std::make_unique<SmoothingLevel>(level, here));
     if (levels_.size() == lattice_.levels.size()) break;
     l.bound_eigenvalues(largest_scaled_eigenvalue(here));
     l.find_thin_parts(here);
@@ -156,7 +155,7 @@ void SmoothingLevel::bound_eigenvalues(double at_most) {
 }
 
 /// Chebyshev steps `first` ... `last`, each after the residual update of the step before.
-void SmoothingLevel::smooth(int first, int last) {
+void SmoothingLevel::chebyshev(int first, int last) {
   const long stride = K.stride();
   for (int k = first; k <= last; ++k) {
     const ChebyshevStep step(k, largest_eigenvalue);
@@ -165,53 +164,46 @@ void SmoothingLevel::smooth(int first, int last) {
       K.kernels().chebyshev(n, y, inverse_diagonal.data() + at, static_cast<float>(step.previous),
                             static_cast<float>(step.step), r.data() + at, z.data() + at, x.data() + at);
     });
-    if (complete && k < last) complete(z);
   }
 }
 
 /// r -= K z.
-void SmoothingLevel::take_residual() {
-  if (complete) complete(z);
+void SmoothingLevel::residual() {
   K.pass(z.data(), nullptr, nullptr, [&](int a, long begin, long n, const float* y) {
     r.segment(a * K.stride() + begin, n) -= Eigen::Map<const Eigen::VectorXf>(y, n);
   });
-  if (complete) complete(r);
   K.level().clear_fixed(r);
 }
 
-void SmoothingLevel::before_coarse(int degree) {
+void SmoothingLevel::smooth(Smoothing when) {
+  if (when == Smoothing::after_coarse) {
+    if (thin) thin->correct(r.data(), z.data());
+    x += z;
+    chebyshev(1, smoothing_degree);
+    return;
+  }
   z = static_cast<float>(ChebyshevStep(1, largest_eigenvalue).step) * inverse_diagonal.cwiseProduct(r);
   x = z;
-  if (complete) complete(z);
-  smooth(2, degree);
-  take_residual();
+  chebyshev(2, smoothing_degree);
   if (!thin) return;
+  residual();
   z.setZero();
   thin->correct(r.data(), z.data());
   x += z;
-  take_residual();
 }
 
-void SmoothingLevel::after_coarse(int degree) {
-  K.level().clear_fixed(z);
-  if (thin) thin->correct(r.data(), z.data());
-  x += z;
-  smooth(1, degree);
-}
-
-void Multigrid::cycle(std::size_t l) {
-  SmoothingLevel& level = levels_[l];
-  if (l + 1 == levels_.size()) {
-    solve_coarsest(coarsest_, level);
-    return;
-  }
-  SmoothingLevel& below = levels_[l + 1];
-  level.before_coarse(degree_);
+void SmoothingLevel::restrict_to(SmoothingLevel& below) {
   below.r.setZero();
-  restrict_field(below.K.level(), level.K.kernels(), level.K.stride(), level.r.data(), below.r.data());
-  cycle(l + 1);
-  prolongate_field(below.K.level(), level.K.kernels(), below.x.data(), level.K.stride(), level.z.data());
-  level.after_coarse(degree_);
+  restrict_field(below.K.level(), K.kernels(), K.stride(), r.data(), below.r.data());
+}
+
+void SmoothingLevel::prolongate(const SmoothingLevel& below) {
+  prolongate_field(below.K.level(), K.kernels(), below.x.data(), K.stride(), z.data());
+  K.level().clear_fixed(z);
+}
+
+void Multigrid::cycle() {
+  v_cycle(levels_, [&](SmoothingLevel& level) { solve_coarsest(coarsest_, level); });
 }
 
 void Multigrid::apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
@@ -220,9 +212,9 @@ void Multigrid::apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z.setZero(r.size());
     return;
   }
-  levels_[0].r = (r / scale).cast<float>();
-  cycle(0);
-  z = (scale * unit_) * levels_[0].x.cast<double>();
+  finest().r = (r / scale).cast<float>();
+  cycle();
+  z = (scale * unit_) * finest().x.cast<double>();
 }
 
 void Multigrid::multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
@@ -239,6 +231,16 @@ void Multigrid::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
   lattice_.to_rows(Nodal::displacements, x, x_rows);
   multiply_rows(x_rows, y_rows);
   lattice_.from_rows(Nodal::forces, y_rows, y);
+}
+
+Eigen::VectorXd Multigrid::diagonal() const {
+  const LatticeLevel& finest = lattice_.levels[0];
+  const Eigen::VectorXd rows = springproof::diagonal(finest, cell_);
+  Eigen::VectorXd d(static_cast<Eigen::Index>(3 * lattice_.point_of_node.size()));
+  for (std::size_t n = 0; n < lattice_.point_of_node.size(); ++n)
+    for (int a = 0; a < 3; ++a)
+      d[static_cast<Eigen::Index>(3 * n) + lattice_.axes[a]] = rows[a * finest.stride() + lattice_.point_of_node[n]];
+  return d;
 }
 
 void Multigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) {

@@ -1,7 +1,6 @@
 // Geometric multigrid on lattices: the displacement form, for Poisson's ratios away from 1/2.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "msm/multigrid/chebyshev.h"
 #include "msm/multigrid/lattice_operator.h"
 #include "msm/multigrid/thin_parts.h"
+#include "msm/multigrid/v_cycle.h"
 
 namespace springproof {
 
@@ -30,8 +30,10 @@ struct SmoothingLevel {
   /// `cell` in the level's axes and a unit in which its entries are of order one.
   SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell);
 
-  void before_coarse(int degree);  ///< pre-smoothing: x from r; r becomes the residual, zero on fixed unknowns
-  void after_coarse(int degree);   ///< post-smoothing of x and r after adding z, the coarse correction
+  void smooth(Smoothing when);  ///< x from r; then x and r after adding z, the coarse correction
+  void residual();              ///< r becomes the residual, zero on fixed unknowns
+  void restrict_to(SmoothingLevel& below);
+  void prolongate(const SmoothingLevel& below);
 
   /// Estimates largest_eigenvalue by Lanczos steps, at most `at_most`.
   void bound_eigenvalues(double at_most);
@@ -42,16 +44,10 @@ struct SmoothingLevel {
   Eigen::VectorXf r, z, x;           ///< nodal fields
   double largest_eigenvalue = 0;     ///< of diag(K)^-1 K, or a bound
   std::unique_ptr<ThinParts> thin;   ///< null: none
-  std::function<void(Eigen::VectorXf&)>
-      complete;  ///< sets a field's ghost values from other processes; empty: there are none
 
  private:
-  void smooth(int first, int last);
-  void take_residual();
+  void chebyshev(int first, int last);
 };
-
-/// Largest eigenvalue of diag(K)^-1 K of one cell: a bound for every lattice of such cells.
-double largest_scaled_eigenvalue(const CellMatrix& cell);
 
 /// Symmetric V-cycle: Chebyshev over Jacobi, trilinear transfer, lattices of doubled edge below; matrix-free above the
 /// coarsest level.  The cycle works in single precision, the Krylov method that it preconditions in double.
@@ -63,8 +59,7 @@ double largest_scaled_eigenvalue(const CellMatrix& cell);
 /// values per node of the network.
 class Multigrid {
  public:
-  Multigrid(LatticeLevels levels, const CellMatrix& cell, int smoothing_degree = 3, bool may_float = false,
-            double mass = 0);
+  Multigrid(LatticeLevels levels, const CellMatrix& cell, bool may_float = false, double mass = 0);
 
   /// u = K^-1 b on the free unknowns, 0 on the fixed.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& u);
@@ -72,23 +67,18 @@ class Multigrid {
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y);
   /// z = M^-1 r, symmetric positive definite.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z);
-  double largest_diagonal() const { return largest_diagonal_; }
-
-  /// The finest level and the cycle on it, x from r, in units of the mean diagonal entry of the cell: for outer cycles
-  /// with finer levels.
-  SmoothingLevel& finest() { return levels_[0]; }
-  void cycle() { cycle(0); }
+  Eigen::VectorXd diagonal() const;  ///< of K
 
  private:
+  SmoothingLevel& finest() { return *levels_[0]; }
+  void cycle();  ///< x of the finest level from its r
   void multiply_rows(const Eigen::VectorXd& x, Eigen::VectorXd& y);
   void apply_rows(const Eigen::VectorXd& r, Eigen::VectorXd& z);
-  void cycle(std::size_t l);
 
   LatticeLevels lattice_;
-  double largest_diagonal_ = 0;
+  CellMatrix cell_;  ///< of the finest level, in the network's displacements
   double unit_ = 1;  ///< 1 / unit of stiffness: the cycle works with entries of order one
-  int degree_;
-  std::vector<SmoothingLevel> levels_;
+  std::vector<std::unique_ptr<SmoothingLevel>> levels_;
   LatticeOperator<double> K_;
   DirectSolver coarsest_;
 };

@@ -144,9 +144,8 @@ void Passage::restrict_to(const Eigen::VectorXd& r, const std::vector<char>& nod
     if (fixed[i]) r_lattice[i] = 0;
 }
 
-NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed,
-                                   const ListStiffness<double>* list)
-    : fixed_(fixed), smoother_(network_smoother(model, fixed, list)) {
+NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
+    : fixed_(fixed), smoother_(network_smoother(model, fixed)) {
   const Network& network = model.network;
   const double edge = network.cells.empty() ? auxiliary_spacings * std::cbrt(network.volume.sum() / network.nodes())
                                             : 2 * network.cell_edge;
@@ -154,7 +153,7 @@ NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vect
   passage_ = passage(network, aux);
   hold(fixed, passage_);
   lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, passage_.fixed, 900, aux.fill),
-                                         auxiliary_cell(model, edge), 3, true);
+                                         auxiliary_cell(model, edge), true);
 }
 
 void NetworkMultigrid::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {

@@ -30,9 +30,11 @@ struct Passage {
 /// edges), with the network's affine shear modulus and the bulk modulus that momentum dispersion adds.
 class NetworkMultigrid {
  public:
-  /// `list`: the model's stiffness at rest, if ListStiffness covers it; null: smooths with the assembled tangent.
-  NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed, const ListStiffness<double>* list);
+  NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed);
 
+  /// y = K x, all unknowns.
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const { smoother_->multiply(x, y); }
+  Eigen::VectorXd diagonal() const { return smoother_->diagonal(); }  ///< of K
   /// z = M^-1 r, symmetric positive definite; zero on the fixed unknowns.
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "msm/algebra/noise.h"
+#include "msm/kernels/list_stiffness.h"
+#include "msm/multigrid/chebyshev.h"
 
 namespace springproof {
 namespace {
@@ -11,9 +13,6 @@ namespace {
 constexpr int degree = 3;
 constexpr int power_steps = 15;
 constexpr double power_margin = 1.1;  // safety factor for unconverged power iterations
-
-double old_part(int k) { return k == 1 ? 0 : (2.0 * k - 3) / (2.0 * k + 1); }
-double new_part(int k, double largest_eigenvalue) { return (8.0 * k - 4) / ((2.0 * k + 1) * largest_eigenvalue); }
 
 /// Inverse of a node's block, without the rows and columns of its fixed unknowns.
 Eigen::Matrix3d inverse_block(Eigen::Matrix3d block, const char* fixed) {
@@ -38,13 +37,14 @@ Eigen::VectorXd rough(Eigen::Index size) {
 
 class ListSmoother : public NetworkSmoother {
  public:
-  ListSmoother(const MassSpringModel& model, const std::vector<char>& fixed, const ListStiffness<double>& K)
+  ListSmoother(const MassSpringModel& model, const std::vector<char>& fixed)
       : unit_(mean_stiffness(model.network)),
-        blocks_(K.blocks()),
-        K_(K, unit_),
+        blocks_(std::make_shared<SpringBlocks>(model.network)),
+        exact_(model, blocks_),
+        K_(exact_, unit_),
         z_(blocks_->order.size(), Padded<float>{}) {
     x_ = r_ = y_ = z_;
-    std::vector<Eigen::Matrix3d> block = K.node_blocks();
+    std::vector<Eigen::Matrix3d> block = exact_.node_blocks();
     inverse_.resize(3 * z_.size());
     for (std::size_t p = 0; p < z_.size(); ++p) {
       const Eigen::Matrix3d inverse = unit_ * inverse_block(block[p], &fixed[3 * blocks_->order[p]]);
@@ -55,6 +55,9 @@ class ListSmoother : public NetworkSmoother {
     largest_eigenvalue_ = dispersion_of(model) ? power_margin * power_estimate() : 2;
   }
 
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const override { exact_.multiply(x, y); }
+  Eigen::VectorXd diagonal() const override { return exact_.diagonal(); }
+
   void before(const Eigen::VectorXd& b, Eigen::VectorXd& r) override {
     const double largest = b.lpNorm<Eigen::Infinity>();
     scale_ = largest > 0 ? largest : 1;
@@ -62,7 +65,7 @@ class ListSmoother : public NetworkSmoother {
     clear(x_);
     clear(y_);
     for (int k = 1; k <= degree; ++k) {
-      smooth(k);
+      smooth(ChebyshevStep(k, largest_eigenvalue_));
       K_.add(z_.data(), y_.data());
     }
     for (std::size_t p = 0; p < r_.size(); ++p)
@@ -77,7 +80,7 @@ class ListSmoother : public NetworkSmoother {
       for (int d = 0; d < 3; ++d) x_[p].v[d] += z_[p].v[d];
     K_.add(z_.data(), y_.data());  // in addition to K z from before()
     for (int k = 1; k <= degree; ++k) {
-      smooth(k);
+      smooth(ChebyshevStep(k, largest_eigenvalue_));
       if (k < degree) K_.add(z_.data(), y_.data());
     }
     x.resize(correction.size());
@@ -93,18 +96,16 @@ class ListSmoother : public NetworkSmoother {
 
   static void clear(std::vector<Padded<float>>& v) { std::fill(v.begin(), v.end(), Padded<float>{}); }
 
-  void smooth(int k) { smooth(old_part(k), new_part(k, largest_eigenvalue_)); }
-
-  /// r -= y, z = old z + new D^-1 r, x += z, y = 0.
-  void smooth(double old_z, double new_z) {
-    K_.kernels().smooth({static_cast<long>(z_.size()), static_cast<float>(old_z), static_cast<float>(new_z),
+  /// r -= y, z = previous z + step D^-1 r, x += z, y = 0.
+  void smooth(const ChebyshevStep& by) {
+    K_.kernels().smooth({static_cast<long>(z_.size()), static_cast<float>(by.previous), static_cast<float>(by.step),
                          inverse_.data(), y_.data(), r_.data(), z_.data(), x_.data()});
   }
 
   double power_estimate() {
     by_place(*blocks_, rough(static_cast<Eigen::Index>(3 * z_.size())).data(), 1, r_);
     clear(y_);
-    smooth(0, 1);
+    smooth(ChebyshevStep(0.0, 1.0));
     double estimate = 1;
     for (int i = 0; i < power_steps; ++i) {
       double square = 0;
@@ -115,7 +116,7 @@ class ListSmoother : public NetworkSmoother {
         for (float& value : z.v) value *= factor;
       clear(r_);
       K_.add(z_.data(), y_.data());
-      smooth(0, -1);  // z = D^-1 y
+      smooth(ChebyshevStep(0.0, -1.0));  // z = D^-1 y
       square = 0;
       for (const Padded<float>& z : z_)
         for (float value : z.v) square += value * value;
@@ -126,6 +127,7 @@ class ListSmoother : public NetworkSmoother {
 
   double unit_;
   std::shared_ptr<const SpringBlocks> blocks_;
+  ListStiffness<double> exact_;
   ListStiffness<float> K_;  ///< in units of the mean spring, against overflow in single precision
   std::vector<Padded<float>> inverse_, z_, x_, r_, y_;
   double largest_eigenvalue_ = 0, scale_ = 1;
@@ -145,6 +147,9 @@ class AssembledSmoother : public NetworkSmoother {
     block_jacobi(Kv, v);
     largest_eigenvalue_ = power_margin * v.norm();
   }
+
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const override { K_.multiply(x, y); }
+  Eigen::VectorXd diagonal() const override { return K_.diagonal(); }
 
   void before(const Eigen::VectorXd& b, Eigen::VectorXd& r) override {
     x_.setZero(b.size());
@@ -166,7 +171,8 @@ class AssembledSmoother : public NetworkSmoother {
     z_.setZero(r_.size());
     for (int k = 1; k <= degree; ++k) {
       block_jacobi(r_, Dr_);
-      z_ = old_part(k) * z_ + new_part(k, largest_eigenvalue_) * Dr_;
+      const ChebyshevStep by(k, largest_eigenvalue_);
+      z_ = by.previous * z_ + by.step * Dr_;
       x_ += z_;
       if (k == degree && !update_residual) return;
       K_.multiply(z_, Kz_);
@@ -187,9 +193,8 @@ class AssembledSmoother : public NetworkSmoother {
 
 }  // namespace
 
-std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed,
-                                                  const ListStiffness<double>* list) {
-  if (list) return std::make_unique<ListSmoother>(model, fixed, *list);
+std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed) {
+  if (ListStiffness<double>::covers(model)) return std::make_unique<ListSmoother>(model, fixed);
   return std::make_unique<AssembledSmoother>(model, fixed);
 }
 

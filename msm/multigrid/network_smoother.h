@@ -5,15 +5,18 @@
 #include <memory>
 #include <vector>
 
-#include "msm/algebra/tangent.h"
-#include "msm/kernels/list_stiffness.h"
+#include "msm/laws/laws.h"
 
 namespace springproof {
 
-/// Pre- and post-smoothing of a symmetric cycle for K x = b on the finest level; vectors of 3 n, fixed unknowns stay 0.
+/// The stiffness K at rest of a model and the smoothing of a symmetric cycle for K x = b on the network; vectors of 3
+/// n, fixed unknowns of x stay 0.
 class NetworkSmoother {
  public:
   virtual ~NetworkSmoother() = default;
+
+  virtual void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const = 0;  ///< y = K x
+  virtual Eigen::VectorXd diagonal() const = 0;                                   ///< of K
 
   /// Smooths from zero and stores x; r = b - K x.
   virtual void before(const Eigen::VectorXd& b, Eigen::VectorXd& r) = 0;
@@ -22,8 +25,7 @@ class NetworkSmoother {
   virtual void after(const Eigen::VectorXd& correction, Eigen::VectorXd& x) = 0;
 };
 
-/// Matrix-free in single precision by `list`, the model's stiffness; null: with the assembled tangent.
-std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed,
-                                                  const ListStiffness<double>* list);
+/// Matrix-free, smoothing in single precision, if ListStiffness covers the model; else with the assembled tangent.
+std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed);
 
 }  // namespace springproof

@@ -143,7 +143,7 @@ Eigen::VectorXd NodalVolumes::schur_diagonal(const LatticeLevel& level, const Ei
 
 template <class Real>
 NodalVolumeOperator<Real>::NodalVolumeOperator(const NodalVolumes& volumes, long stride, InstructionSet set)
-    : kernels_(&cell_kernels<Real>(set)),
+    : kernels_(&kernels_of<Real>(set).cells),
       runs_(volumes.runs),
       members_(volumes.members),
       pressure_(Vector::Zero(stride)),

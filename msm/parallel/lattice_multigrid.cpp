@@ -40,31 +40,6 @@ PetscMatrix galerkin(Mat A, Mat P, bool coarsest, MPI_Comm communicator) {
   return coarse;
 }
 
-/// A V-cycle of so many levels, PETSc's number of the finest being the largest.
-PC multigrid_of(KSP solver, std::size_t levels) {
-  PC cycle;
-  require(KSPGetPC(solver, &cycle));
-  require(PCSetType(cycle, PCMG));
-  require(PCMGSetLevels(cycle, static_cast<PetscInt>(levels), nullptr));
-  require(PCMGSetGalerkin(cycle, PC_MG_GALERKIN_NONE));
-  return cycle;
-}
-
-KSP smoother_of(PC cycle, std::size_t number, Mat A) {
-  KSP smoother;
-  require(PCMGGetSmoother(cycle, static_cast<PetscInt>(number), &smoother));
-  require(KSPSetOperators(smoother, A, A));
-  return smoother;
-}
-
-void solve_directly(PC cycle, Mat A) {
-  PC direct;
-  const KSP coarsest = smoother_of(cycle, 0, A);
-  require(KSPSetType(coarsest, KSPPREONLY));
-  require(KSPGetPC(coarsest, &direct));
-  require(PCSetType(direct, PCREDUNDANT));
-}
-
 /// A nested matrix whose vectors are plain ones.
 PetscMatrix nested(Mat a, Mat b, Mat c, Mat d, MPI_Comm communicator) {
   PetscMatrix all;
@@ -204,53 +179,67 @@ void set_step(KSP smoother, std::unique_ptr<Step> step) {
   }));
 }
 
+/// Preconditions a solver of the finest matrix by a V-cycle that smooths by `Step` and factorises the coarsest matrix.
+/// @param interpolation (l) from level l + 1 to l, the finest being 0
+/// @param coarsen (l, matrix of level l, whether the next is the coarsest) to that of level l + 1
+template <class Step, class Interpolation, class Coarsen>
+void set_cycle(KSP solver, Mat finest, const LatticeTransfers& transfers, Interpolation interpolation,
+               Coarsen coarsen) {
+  const auto coarser = static_cast<PetscInt>(transfers.displacements.size());
+  PC cycle, direct;
+  require(KSPGetPC(solver, &cycle));
+  require(PCSetType(cycle, PCMG));
+  require(PCMGSetLevels(cycle, coarser + 1, nullptr));
+  require(PCMGSetGalerkin(cycle, PC_MG_GALERKIN_NONE));
+  const auto smoother_of = [&](PetscInt l, Mat A) {  // PETSc numbers the levels from the coarsest
+    KSP smoother;
+    require(PCMGGetSmoother(cycle, coarser - l, &smoother));
+    require(KSPSetOperators(smoother, A, A));
+    return smoother;
+  };
+  PetscMatrix level;
+  Mat fine = finest;
+  for (PetscInt l = 0; l < coarser; ++l) {
+    set_step(smoother_of(l, fine), std::make_unique<Step>(fine, transfers.anchored[l]));
+    require(PCMGSetInterpolation(cycle, coarser - l, interpolation(l)));
+    level = coarsen(l, fine, l + 1 == coarser);
+    fine = level;
+  }
+  const KSP coarsest = smoother_of(coarser, fine);
+  require(KSPSetType(coarsest, KSPPREONLY));
+  require(KSPGetPC(coarsest, &direct));
+  require(PCSetType(direct, PCREDUNDANT));
+}
+
 }  // namespace
 
 void set_lattice_multigrid(KSP solver, Mat A, const LatticeTransfers& transfers, MPI_Comm communicator) {
-  const std::size_t coarser = transfers.displacements.size();
-  const PC cycle = multigrid_of(solver, coarser + 1);
-  const auto smooth = [&](std::size_t l, Mat matrix) {
-    set_step(smoother_of(cycle, coarser - l, matrix), std::make_unique<Relaxation>(matrix, transfers.anchored[l]));
-  };
-  smooth(0, A);
-  PetscMatrix level;
-  for (std::size_t l = 0; l < coarser; ++l) {
-    const Mat P = transfers.displacements[l];
-    level = galerkin(l == 0 ? A : Mat(level), P, l + 1 == coarser, communicator);
-    require(PCMGSetInterpolation(cycle, static_cast<PetscInt>(coarser - l), P));
-    if (l + 1 < coarser) smooth(l + 1, level);
-  }
-  solve_directly(cycle, level);
+  const auto& P = transfers.displacements;
+  set_cycle<Relaxation>(
+      solver, A, transfers, [&](PetscInt l) -> Mat { return P[l]; },
+      [&](PetscInt l, Mat fine, bool coarsest) { return galerkin(fine, P[l], coarsest, communicator); });
 }
 
 void set_mixed_lattice_multigrid(KSP solver, Mat system, const LatticeTransfers& transfers, MPI_Comm communicator) {
-  const std::size_t coarser = transfers.displacements.size();
-  const PC cycle = multigrid_of(solver, coarser + 1);
-  const auto smooth = [&](std::size_t l, Mat matrix) {
-    set_step(smoother_of(cycle, coarser - l, matrix), std::make_unique<BraessSarazin>(matrix, transfers.anchored[l]));
-  };
-  smooth(0, system);
-  PetscMatrix level;  // a nested matrix keeps its blocks
-  Mat fine = system;
-  for (std::size_t l = 0; l < coarser; ++l) {
-    const Mat P = transfers.displacements[l], Q = transfers.pressures[l];
+  const auto& P = transfers.displacements;
+  const auto& Q = transfers.pressures;
+  const auto coarsen = [&](PetscInt l, Mat fine, bool coarsest) {
     const Mat A = block_of(fine, 0, 0), B = block_of(fine, 1, 0), minus_C = block_of(fine, 1, 1);
-    PetscMatrix BP, coarse_B, coarse_B_transposed;
-    require(MatMatMult(B, P, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &BP));
-    require(MatTransposeMatMult(Q, BP, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse_B));
-    const bool coarsest = l + 1 == coarser;
-    const PetscMatrix coarse_A = galerkin(A, P, coarsest, communicator), coarse_minus_C = triple_product(minus_C, Q);
+    PetscMatrix BP, coarse_B, coarse_B_transposed, factored;
+    require(MatMatMult(B, P[l], MAT_INITIAL_MATRIX, PETSC_DEFAULT, &BP));
+    require(MatTransposeMatMult(Q[l], BP, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse_B));
+    const PetscMatrix coarse_A = galerkin(A, P[l], coarsest, communicator),
+                      coarse_minus_C = triple_product(minus_C, Q[l]);
     coarsest ? require(MatTranspose(coarse_B, MAT_INITIAL_MATRIX, &coarse_B_transposed))
              : require(MatCreateTranspose(coarse_B, &coarse_B_transposed));
-    level = nested(coarse_A, coarse_B_transposed, coarse_B, coarse_minus_C, communicator);
-    require(
-        PCMGSetInterpolation(cycle, static_cast<PetscInt>(coarser - l), nested(P, nullptr, nullptr, Q, communicator)));
-    if (!coarsest) smooth(l + 1, level);
-    fine = level;
-  }
-  PetscMatrix factored;
-  require(MatConvert(level, MATAIJ, MAT_INITIAL_MATRIX, &factored));
-  solve_directly(cycle, factored);
+    PetscMatrix level = nested(coarse_A, coarse_B_transposed, coarse_B, coarse_minus_C, communicator);
+    if (!coarsest) return level;
+    require(MatConvert(level, MATAIJ, MAT_INITIAL_MATRIX, &factored));
+    return factored;
+  };
+  set_cycle<BraessSarazin>(
+      solver, system, transfers, [&](PetscInt l) { return nested(P[l], nullptr, nullptr, Q[l], communicator); },
+      coarsen);
 }
 
 }  // namespace springproof

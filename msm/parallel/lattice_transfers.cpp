@@ -59,50 +59,28 @@ std::vector<int> owners_above(const Weights& weights, const std::vector<int>& ow
   return above;
 }
 
-EquationNumbers number_all(const std::vector<int>& owner, MPI_Comm communicator) {
-  std::vector<int> all(owner.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  return number_equations(owner, all, communicator);
-}
-
 /// `block` unknowns per point; rows of `fixed` unknowns (empty: none) are zero.
 PetscMatrix transfer_matrix(const Weights& weights, const EquationNumbers& fine, const EquationNumbers& coarse,
                             int block, const std::vector<char>& fixed, MPI_Comm communicator) {
-  std::vector<PetscInt> begin = {0}, columns;
-  std::vector<PetscScalar> values;
-  std::vector<std::pair<int, double>> row;
-  for (const int point : fine.own) {
-    row.clear();
-    for (const auto& [p, w] : weights[point])
-      if (coarse.number[p] >= 0) row.emplace_back(coarse.number[p], w);
-    std::sort(row.begin(), row.end());
+  MatrixRows rows;
+  for (const int point : fine.own)
     for (int d = 0; d < block; ++d) {
       const bool is_free = fixed.empty() || !fixed[block * point + d];
-      for (const auto& [number, w] : row) {
-        columns.push_back(block * number + d);
-        values.push_back(is_free ? w : 0);
-      }
-      begin.push_back(static_cast<PetscInt>(columns.size()));
+      std::vector<std::pair<PetscInt, double>> row;
+      for (const auto& [p, w] : weights[point])
+        if (coarse.number[p] >= 0) row.emplace_back(block * coarse.number[p] + d, is_free ? w : 0);
+      rows.add(std::move(row));
     }
-  }
-  PetscMatrix P;
-  require(MatCreate(communicator, &P));
-  require(MatSetSizes(P, static_cast<PetscInt>(block * fine.own.size()),
-                      static_cast<PetscInt>(block * coarse.own.size()), PETSC_DETERMINE, PETSC_DETERMINE));
-  require(MatSetType(P, MATAIJ));
-  require(MatSetBlockSize(P, block));
-  require(MatSeqAIJSetPreallocationCSR(P, begin.data(), columns.data(), values.data()));
-  require(MatMPIAIJSetPreallocationCSR(P, begin.data(), columns.data(), values.data()));
-  return P;
+  return rows.matrix(block * coarse.own.size(), block, communicator);
 }
 
 /// The equations on each level: those of the finest by `owner`, and as the weights lead to coarser ones.
 std::vector<EquationNumbers> equations_of(const std::vector<Weights>& weights, std::vector<int> owner,
                                           const std::vector<std::size_t>& sizes, MPI_Comm communicator) {
-  std::vector<EquationNumbers> equations = {number_all(owner, communicator)};
+  std::vector<EquationNumbers> equations = {number_equations(owner, communicator)};
   for (std::size_t l = 0; l < weights.size(); ++l) {
     owner = owners_above(weights[l], owner, sizes[l + 1]);
-    equations.push_back(number_all(owner, communicator));
+    equations.push_back(number_equations(owner, communicator));
   }
   return equations;
 }

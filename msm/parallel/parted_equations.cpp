@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <iterator>
+#include <numeric>
 
 #include "msm/parallel/lattice_multigrid.h"
 
@@ -29,68 +29,37 @@ class TangentRows {
     if (K.dispersive()) flow_ = NodalForms(K.outflow.transpose()) * K.inflow;
   }
 
-  std::vector<int> columns(int node) const {
-    const std::vector<int>&own = coupled_[node], flow = flow_columns(node);
-    std::vector<int> both;
-    std::set_union(own.begin(), own.end(), flow.begin(), flow.end(), std::back_inserter(both));
-    return both;
-  }
-
   template <class Act>
   void for_each_block(int node, Act act) const {
     for (const int other : coupled_[node]) act(other, K_.local.at(node, other));
-    for (const int other : flow_columns(node)) {
-      Blocks block;
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) block(a, b) = flow_.coeff(3 * node + a, 3 * other + b);
-      act(other, block);
-    }
+    if (flow_.rows() == 0) return;
+    for (NodalForms::InnerIterator e(flow_, 3 * node); e; ++e)
+      if (e.col() % 3 == 0) {
+        const int other = static_cast<int>(e.col() / 3);
+        Blocks block;
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) block(a, b) = flow_.coeff(3 * node + a, 3 * other + b);
+        act(other, block);
+      }
   }
 
  private:
-  std::vector<int> flow_columns(int node) const {
-    std::vector<int> columns;
-    if (flow_.rows() > 0)
-      for (NodalForms::InnerIterator e(flow_, 3 * node); e; ++e)
-        if (e.col() % 3 == 0) columns.push_back(static_cast<int>(e.col() / 3));
-    return columns;
-  }
-
   const Tangent& K_;
   std::vector<std::vector<int>> coupled_;
   NodalForms flow_;
 };
-
-void assemble(Mat A) {
-  require(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
-  require(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
-}
-
-/// Entries per row in own columns and in those of other processes.
-struct RowLengths {
-  std::vector<PetscInt> own, others;
-
-  explicit RowLengths(std::size_t rows) : own(rows), others(rows) {}
-  void count(std::size_t row, bool is_own, int entries) { (is_own ? own : others)[row] += entries; }
-};
-
-PetscMatrix sparse_matrix(PetscInt rows, PetscInt columns, int block, const RowLengths& lengths,
-                          MPI_Comm communicator) {
-  PetscMatrix A;
-  require(MatCreate(communicator, &A));
-  require(MatSetSizes(A, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
-  require(MatSetType(A, MATAIJ));
-  require(MatSetBlockSize(A, block));
-  require(MatSeqAIJSetPreallocation(A, 0, lengths.own.data()));
-  require(MatMPIAIJSetPreallocation(A, 0, lengths.own.data(), 0, lengths.others.data()));
-  return A;
-}
 
 bool is_own(const EquationNumbers& equations, int number) {
   return number >= equations.first && number < equations.first + static_cast<int>(equations.own.size());
 }
 
 }  // namespace
+
+EquationNumbers number_equations(const std::vector<int>& owner, MPI_Comm communicator) {
+  std::vector<int> all(owner.size());
+  std::iota(all.begin(), all.end(), 0);
+  return number_equations(owner, all, communicator);
+}
 
 EquationNumbers number_equations(const std::vector<int>& owner, const std::vector<int>& of_part,
                                  MPI_Comm communicator) {
@@ -113,13 +82,20 @@ EquationNumbers number_equations(const std::vector<int>& owner, const std::vecto
 PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNumbers& nodes,
                       const std::vector<char>& fixed, MPI_Comm communicator) {
   const TangentRows rows(K, network);
-  RowLengths lengths(3 * nodes.own.size());
-  for (std::size_t i = 0; i < nodes.own.size(); ++i)
-    for (const int other : rows.columns(nodes.own[i]))
-      if (nodes.number[other] >= 0)
-        for (int d = 0; d < 3; ++d) lengths.count(3 * i + d, is_own(nodes, nodes.number[other]), 3);
   const auto size = static_cast<PetscInt>(3 * nodes.own.size());
-  PetscMatrix A = sparse_matrix(size, size, 3, lengths, communicator);
+  std::vector<PetscInt> in_own(size), in_others(size);  // entries of each row
+  for (std::size_t i = 0; i < nodes.own.size(); ++i)
+    rows.for_each_block(nodes.own[i], [&](int other, const Blocks&) {
+      if (nodes.number[other] < 0) return;
+      for (int d = 0; d < 3; ++d) (is_own(nodes, nodes.number[other]) ? in_own : in_others)[3 * i + d] += 3;
+    });
+  PetscMatrix A;
+  require(MatCreate(communicator, &A));
+  require(MatSetSizes(A, size, size, PETSC_DETERMINE, PETSC_DETERMINE));
+  require(MatSetType(A, MATAIJ));
+  require(MatSetBlockSize(A, 3));
+  require(MatSeqAIJSetPreallocation(A, 0, in_own.data()));
+  require(MatMPIAIJSetPreallocation(A, 0, in_own.data(), 0, in_others.data()));
   for (const int node : nodes.own)
     rows.for_each_block(node, [&](int other, Blocks block) {
       const PetscInt row = nodes.number[node], column = nodes.number[other];
@@ -129,40 +105,29 @@ PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNu
           if ((fixed[3 * node + a] || fixed[3 * other + b]) && !(node == other && a == b)) block(a, b) = 0;
       require(MatSetValuesBlocked(A, 1, &row, 1, &column, block.data(), ADD_VALUES));
     });
-  assemble(A);
+  require(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  require(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   require(MatSetOption(A, MAT_SPD, PETSC_TRUE));
   return A;
 }
 
 PetscMatrix matrix_of(const NodalForms& B, double unit, const EquationNumbers& pressures, const EquationNumbers& nodes,
                       const std::vector<char>& fixed, MPI_Comm communicator) {
-  RowLengths lengths(pressures.own.size());
-  const auto for_each_entry = [&](auto act) {
-    for (std::size_t i = 0; i < pressures.own.size(); ++i)
-      for (NodalForms::InnerIterator e(B, pressures.own[i]); e; ++e)
-        if (const int node = nodes.number[e.col() / 3]; node >= 0 && !fixed[e.col()])
-          act(i, node, 3 * node + static_cast<int>(e.col() % 3), unit * e.value());
-  };
-  for_each_entry([&](std::size_t i, int node, PetscInt, double) { lengths.count(i, is_own(nodes, node), 1); });
-  PetscMatrix matrix = sparse_matrix(static_cast<PetscInt>(pressures.own.size()),
-                                     static_cast<PetscInt>(3 * nodes.own.size()), 1, lengths, communicator);
-  for_each_entry([&](std::size_t i, int, PetscInt column, double value) {
-    require(MatSetValue(matrix, pressures.first + static_cast<PetscInt>(i), column, value, INSERT_VALUES));
-  });
-  assemble(matrix);
-  return matrix;
+  MatrixRows rows;
+  for (const int pressure : pressures.own) {
+    std::vector<std::pair<PetscInt, double>> row;
+    for (NodalForms::InnerIterator e(B, pressure); e; ++e)
+      if (const int node = nodes.number[e.col() / 3]; node >= 0 && !fixed[e.col()])
+        row.emplace_back(3 * node + static_cast<int>(e.col() % 3), unit * e.value());
+    rows.add(std::move(row));
+  }
+  return rows.matrix(3 * nodes.own.size(), 1, communicator);
 }
 
-PetscMatrix diagonal_matrix(const Eigen::VectorXd& values, MPI_Comm communicator) {
-  RowLengths lengths(static_cast<std::size_t>(values.size()));
-  std::fill(lengths.own.begin(), lengths.own.end(), 1);
-  const auto size = static_cast<PetscInt>(values.size());
-  PetscMatrix matrix = sparse_matrix(size, size, 1, lengths, communicator);
-  PetscInt first;
-  require(MatGetOwnershipRange(matrix, &first, nullptr));
-  for (PetscInt i = 0; i < size; ++i) require(MatSetValue(matrix, first + i, first + i, values[i], INSERT_VALUES));
-  assemble(matrix);
-  return matrix;
+PetscMatrix diagonal_matrix(const Eigen::VectorXd& values, const EquationNumbers& equations, MPI_Comm communicator) {
+  MatrixRows rows;
+  for (int i = 0; i < values.size(); ++i) rows.add({{equations.first + i, values[i]}});
+  return rows.matrix(equations.own.size(), 1, communicator);
 }
 
 void set_rigid_motions(Mat A, const NodalVectors& own_positions, MPI_Comm communicator) {

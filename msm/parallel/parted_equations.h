@@ -7,23 +7,25 @@
 
 namespace springproof {
 
-/// The places of a part that have equations: nodes, or places of pressures.
+/// The places that have equations: nodes, or places of pressures.
 struct EquationNumbers {
-  std::vector<int> number;  ///< per place of the part in the whole, -1: it has none
-  std::vector<int> own;     ///< places of the part whose equations are this process', in their order
+  std::vector<int> number;  ///< per place, -1: it has none
+  std::vector<int> own;     ///< places whose equations are this process', in their order
   int first = 0;            ///< number of the first of them
 };
 
-/// Numbers `places` of the whole that have an equation, process by process.
+/// Numbers the places that have an equation, process by process.
 /// @param owner process of each, -1: it has no equation
-/// @param of_part numbers of the part's places in the whole
+EquationNumbers number_equations(const std::vector<int>& owner, MPI_Comm communicator);
+
+/// The same for the places `of_part` of them, ascending.
 EquationNumbers number_equations(const std::vector<int>& owner, const std::vector<int>& of_part, MPI_Comm communicator);
 
 /// Matrix of a tangent between free unknowns; fixed unknowns of nodes that are not fixed as a whole keep their diagonal
 /// alone.
-/// @param K of the part
-/// @param network of the part
-/// @param fixed per unknown of the part
+/// @param K with complete rows of the own nodes
+/// @param network that it is of
+/// @param fixed per unknown
 PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNumbers& nodes,
                       const std::vector<char>& fixed, MPI_Comm communicator);
 
@@ -31,8 +33,8 @@ PetscMatrix matrix_of(const Tangent& K, const Network& network, const EquationNu
 PetscMatrix matrix_of(const NodalForms& B, double unit, const EquationNumbers& pressures, const EquationNumbers& nodes,
                       const std::vector<char>& fixed, MPI_Comm communicator);
 
-/// Diagonal matrix of `values` of own pressures.
-PetscMatrix diagonal_matrix(const Eigen::VectorXd& values, MPI_Comm communicator);
+/// Diagonal matrix of `values` of own equations.
+PetscMatrix diagonal_matrix(const Eigen::VectorXd& values, const EquationNumbers& equations, MPI_Comm communicator);
 
 /// Tells a solver of A, by the nodes' positions, what rigid motions are.
 void set_rigid_motions(Mat A, const NodalVectors& own_positions, MPI_Comm communicator);

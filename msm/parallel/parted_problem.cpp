@@ -5,28 +5,18 @@
 #include <algorithm>
 
 #include "msm/distribution/pressure_form.h"
+#include "msm/parameters/calibrate.h"
 #include "msm/parallel/partition.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
 namespace {
 
-/// Values of the part's nodes.
-template <class Values>
-Values of_nodes(const Values& all, const std::vector<int>& nodes) {
-  Values part(3 * nodes.size());
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    for (int d = 0; d < 3; ++d) part[3 * n + d] = all[3 * nodes[n] + d];
-  return part;
-}
-
-/// Process of each place of a pressure: nodes have theirs; a cell belongs to the owner of its first corner, or of the
-/// node that carries that.
-std::vector<int> owners_of_pressures(const MassSpringModel& model, const std::vector<int>& owner) {
-  if (has_nodal_pressures(model)) return owner;
-  const Carriers carriers = carriers_of(model.network.nodes(), model.network.carried);
+/// Process of each cell: the owner of its first corner, or of the node that carries that.
+std::vector<int> owners_of_cells(const Network& network, const std::vector<int>& owner) {
+  const Carriers carriers = carriers_of(network.nodes(), network.carried);
   std::vector<int> of_cells;
-  for (const Hexahedron& cell : model.network.cells) {
+  for (const Hexahedron& cell : network.cells) {
     const int corner = cell[0];
     of_cells.push_back(owner[carriers.empty() || carriers[corner].empty() ? corner : carriers[corner].front().first]);
   }
@@ -54,29 +44,28 @@ PartedProblem::PartedProblem(const MassSpringModel& model, const BoundaryConditi
     : communicator_(communicator),
       kappa_(volume_stiffness_ratio(model)),
       mixed_(kappa_ > (has_nodal_pressures(model) ? 0 : parted_mixed_above_kappa)),
-      all_prescribed_(conditions.prescribed),
-      all_carried_(model.network.carried) {
-  const std::vector<int> owner = owners_of_nodes(model.network, communicator);
+      conditions_(conditions) {
+  const Network& network = model.network;
+  std::vector<int> owner = owners_of_nodes(network, communicator);
   agree(communicator, [&] {
-    const int rank = rank_of(communicator);
-    std::vector<char> own(owner.size());
-    std::transform(owner.begin(), owner.end(), own.begin(), [&](int o) { return o == rank; });
-    part_ = part_of(model, own);
-    const std::vector<char> fixed = fixed_or_carried(model.network, conditions.fixed);
+    for (const int o : owner) own_.push_back(o == rank_of(communicator));
+    part_ = part_of(model, own_);
+    const std::vector<char>& fixed = conditions_.fixed = fixed_or_carried(network, conditions.fixed);
     unknowns_ = std::count(fixed.begin(), fixed.end(), 0);
-    fixed_ = of_nodes(fixed, part_.nodes);
-    prescribed_ = of_nodes<Eigen::VectorXd>(flat(conditions.prescribed), part_.nodes);
-    external_ = of_nodes<Eigen::VectorXd>(flat(conditions.external), part_.nodes);
-    std::vector<int> with_equations = owner;
+    std::vector<int> with_equations = owner, of_cells;
     for (std::size_t n = 0; n < owner.size(); ++n)
       if (fixed[3 * n] && fixed[3 * n + 1] && fixed[3 * n + 2]) with_equations[n] = -1;
-    nodes_ = number_equations(with_equations, part_.nodes, communicator);
-    const std::vector<int> of_pressures = mixed_ ? owners_of_pressures(model, owner) : std::vector<int>{};
-    if (!mixed_ || !has_nodal_pressures(model))
-      transfers_ = lattice_transfers(model.network, fixed, with_equations, of_pressures, communicator);
-    if (!mixed_) return;
-    all_pressures_ = static_cast<long>(of_pressures.size());
-    pressures_ = number_equations(of_pressures, has_nodal_pressures(model) ? part_.nodes : part_.cells, communicator);
+    nodes_ = number_equations(with_equations, communicator);
+    if (mixed_ && has_nodal_pressures(model)) {
+      pressures_ = number_equations(owner, communicator);
+      return;
+    }
+    if (mixed_) {
+      of_cells = owners_of_cells(network, owner);
+      all_cells_ = static_cast<long>(of_cells.size());
+      pressures_ = number_equations(of_cells, part_.cells, communicator);
+    }
+    transfers_ = lattice_transfers(network, fixed, with_equations, of_cells, communicator);
   });
 }
 
@@ -85,7 +74,7 @@ Eigen::VectorXd PartedProblem::own_load(const Eigen::VectorXd& internal) const {
   for (std::size_t i = 0; i < nodes_.own.size(); ++i)
     for (int d = 0; d < 3; ++d) {
       const int at = 3 * nodes_.own[i] + d;
-      load[3 * i + d] = fixed_[at] ? 0 : external_[at] - internal[at];
+      load[3 * i + d] = conditions_.fixed[at] ? 0 : conditions_.external(nodes_.own[i], d) - internal[at];
     }
   return load;
 }
@@ -102,9 +91,9 @@ PartedProblem::Solution PartedProblem::solve_displacements(double tolerance, int
   {
     const Tangent K = tangent(part_.model, part_.model.network.X);
     Eigen::VectorXd internal;
-    K.multiply(prescribed_, internal);
+    K.multiply(flat(conditions_.prescribed), internal);
     b = vector_of(own_load(internal), 3, communicator_);
-    A = matrix_of(K, part_.model.network, nodes_, fixed_, communicator_);
+    A = matrix_of(K, part_.model.network, nodes_, conditions_.fixed, communicator_);
   }
   set_rigid_motions(A, own_positions(), communicator_);
   const PetscSolver solver = displacement_solver(A, transfers_, communicator_);
@@ -122,20 +111,20 @@ PartedProblem::Solution PartedProblem::solve_mixed(double tolerance, int max_ite
     const PressureForm form = pressure_form(part_.model);
     const Tangent K = tangent(form.springs, form.springs.network.X);
     Eigen::VectorXd internal;
-    K.multiply(prescribed_, internal);
-    A = matrix_of(K, form.springs.network, nodes_, fixed_, communicator_);
+    K.multiply(flat(conditions_.prescribed), internal);
+    A = matrix_of(K, part_.model.network, nodes_, conditions_.fixed, communicator_);
     const Eigen::VectorXd diagonal = K.diagonal();
     const double stiffness = mean(diagonal, 3, nodes_.own, communicator_);
     unit = stiffness / std::sqrt(mean(row_squares(form.B), 1, pressures_.own, communicator_));
-    B = matrix_of(form.B, unit, pressures_, nodes_, fixed_, communicator_);
+    B = matrix_of(form.B, unit, pressures_, nodes_, conditions_.fixed, communicator_);
     Eigen::VectorXd C(static_cast<Eigen::Index>(pressures_.own.size()));
     for (Eigen::Index i = 0; i < C.size(); ++i) {
       const double own = form.C[pressures_.own[i]];
       C[i] = own > 0 ? unit * unit * own : stiffness;  // a place without a volume: p = 0
     }
-    minus_C = diagonal_matrix(-C, communicator_);
-    schur = diagonal_matrix(-(1 + kappa_ / 3) * C, communicator_);
-    const Eigen::VectorXd f = own_load(internal), g = -unit * (form.B * prescribed_)(pressures_.own);
+    minus_C = diagonal_matrix(-C, pressures_, communicator_);
+    schur = diagonal_matrix(-(1 + kappa_ / 3) * C, pressures_, communicator_);
+    const Eigen::VectorXd f = own_load(internal), g = -unit * (form.B * flat(conditions_.prescribed))(pressures_.own);
     Eigen::VectorXd both(f.size() + g.size());
     both << f, g;
     b = vector_of(both, 1, communicator_);
@@ -159,7 +148,8 @@ Equilibrium PartedProblem::solve(double tolerance, int max_iterations) {
   const Solution s = mixed_ ? solve_mixed(tolerance, max_iterations) : solve_displacements(tolerance, max_iterations);
   Equilibrium result;
   result.unknowns = unknowns_;
-  result.solver = s.solver;
+  const int processes = size_of(communicator_);
+  result.solver = fmt::format("{}, {} process{}", s.solver, processes, processes == 1 ? "" : "es");
   result.iterations = s.outcome.iterations;
   result.residual = s.outcome.residual;
   result.ok = s.outcome.converged;
@@ -167,46 +157,48 @@ Equilibrium PartedProblem::solve(double tolerance, int max_iterations) {
     result.message = fmt::format("{} did not converge: residual {:.2e} after {} iterations", s.solver, result.residual,
                                  result.iterations);
   result.displacement = all_displacements(s.u);
-  result.support = all_support(result.displacement, part_pressures(s.p));
+  result.support = all_support(result.displacement, pressures_of_part(s.p));
   result.seconds = cpu_seconds() - start;
   result.memory_MiB = peak_memory_MiB();
   return result;
 }
 
-/// Pressures of all places of this process' part.
-Eigen::VectorXd PartedProblem::part_pressures(const Eigen::VectorXd& own) const {
-  const std::vector<int>& places = has_nodal_pressures(part_.model) ? part_.nodes : part_.cells;
+/// Pressures of all nodes, or of the part's cells.
+Eigen::VectorXd PartedProblem::pressures_of_part(const Eigen::VectorXd& own) const {
   if (!mixed_) return {};
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(all_pressures_);
-  for (Eigen::Index i = 0; i < own.size(); ++i) all[places[pressures_.own[i]]] = own[i];
+  const bool of_cells = all_cells_ > 0;
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(of_cells ? all_cells_ : static_cast<long>(own_.size()));
+  for (Eigen::Index i = 0; i < own.size(); ++i) {
+    const int place = pressures_.own[i];
+    all[of_cells ? part_.cells[place] : place] = own[i];
+  }
   Sum{communicator_}.all(all.data(), all.size());
-  return all(places);
+  if (of_cells) return all(part_.cells);
+  return all;
 }
 
 NodalVectors PartedProblem::all_displacements(const Eigen::VectorXd& own) const {
-  NodalVectors all = NodalVectors::Zero(all_prescribed_.rows(), 3);
-  for (std::size_t i = 0; i < nodes_.own.size(); ++i)
-    for (int d = 0; d < 3; ++d) all(part_.nodes[nodes_.own[i]], d) = own[3 * i + d];
+  NodalVectors all = NodalVectors::Zero(conditions_.prescribed.rows(), 3);
+  for (std::size_t i = 0; i < nodes_.own.size(); ++i) all.row(nodes_.own[i]) = own.segment<3>(3 * i).transpose();
   Sum{communicator_}.all(all.data(), all.size());
-  all += all_prescribed_;
-  carry(all_carried_, all);
+  all += conditions_.prescribed;
+  carry(part_.model.network.carried, all);
   return all;
 }
 
 NodalVectors PartedProblem::all_support(const NodalVectors& displacement, const Eigen::VectorXd& pressure) const {
   NodalVectors all = NodalVectors::Zero(displacement.rows(), 3);
   Eigen::VectorXd internal;
-  const Eigen::VectorXd u = of_nodes<Eigen::VectorXd>(flat(displacement), part_.nodes);
   if (mixed_) {
     const PressureForm form = pressure_form(part_.model);
-    tangent(form.springs, form.springs.network.X).multiply(u, internal);
+    tangent(form.springs, form.springs.network.X).multiply(flat(displacement), internal);
     internal += form.B.transpose() * pressure;
   } else {
-    tangent(part_.model, part_.model.network.X).multiply(u, internal);
+    tangent(part_.model, part_.model.network.X).multiply(flat(displacement), internal);
   }
-  for (std::size_t n = 0; n < part_.nodes.size(); ++n)
+  for (Eigen::Index n = 0; n < all.rows(); ++n)
     for (int d = 0; d < 3; ++d)
-      if (part_.own[n] && fixed_[3 * n + d]) all(part_.nodes[n], d) = internal[3 * n + d] - external_[3 * n + d];
+      if (own_[n] && conditions_.fixed[3 * n + d]) all(n, d) = internal[3 * n + d] - conditions_.external(n, d);
   Sum{communicator_}.all(all.data(), all.size());
   return all;
 }

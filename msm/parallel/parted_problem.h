@@ -42,7 +42,7 @@ class PartedProblem {
   std::string multigrid_name() const;
   Solution solve_displacements(double tolerance, int max_iterations) const;
   Solution solve_mixed(double tolerance, int max_iterations) const;
-  Eigen::VectorXd part_pressures(const Eigen::VectorXd& own) const;
+  Eigen::VectorXd pressures_of_part(const Eigen::VectorXd& own) const;
   Eigen::VectorXd own_load(const Eigen::VectorXd& internal) const;
   NodalVectors own_positions() const;
   NodalVectors all_displacements(const Eigen::VectorXd& own) const;
@@ -50,15 +50,14 @@ class PartedProblem {
 
   MPI_Comm communicator_;
   ModelPart part_;
-  double kappa_;                           ///< volume_stiffness_ratio()
-  bool mixed_;                             ///< pressures are unknowns
-  std::vector<char> fixed_;                ///< per unknown of the part, carried ones included
-  Eigen::VectorXd prescribed_, external_;  ///< of the part
-  EquationNumbers nodes_, pressures_;
-  LatticeTransfers transfers_;  ///< empty: smoothed aggregation
-  NodalVectors all_prescribed_;
-  std::vector<CarriedPoint> all_carried_;
-  long unknowns_ = 0, all_pressures_ = 0;
+  double kappa_;                   ///< volume_stiffness_ratio()
+  bool mixed_;                     ///< pressures are unknowns
+  std::vector<char> own_;          ///< nodes of this process
+  BoundaryConditions conditions_;  ///< carried unknowns count as fixed
+  EquationNumbers nodes_;          ///< places: nodes
+  EquationNumbers pressures_;      ///< places: nodes, or cells of the part
+  LatticeTransfers transfers_;     ///< empty: smoothed aggregation
+  long unknowns_ = 0, all_cells_ = 0;
 };
 
 }  // namespace springproof

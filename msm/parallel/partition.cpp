@@ -1,6 +1,8 @@
 #include "msm/parallel/partition.h"
 
-#include "msm/distribution/model_part.h"
+#include <algorithm>
+
+#include "msm/algebra/block_matrix.h"
 #include "msm/parallel/petsc.h"
 
 namespace springproof {
@@ -11,21 +13,22 @@ using Partitioning = Owned<MatPartitioning, MatPartitioningDestroy>;
 /// This process' rows of the graph of springs and cells; its arrays become PETSc's.
 PetscMatrix graph(const Network& network, MPI_Comm communicator) {
   const int rank = rank_of(communicator), processes = size_of(communicator);
-  const long n = network.nodes();
-  const int first = static_cast<int>(n * rank / processes), last = static_cast<int>(n * (rank + 1) / processes);
-  const auto rows = neighbours(network, first, last);
+  const long nodes = network.nodes();
+  const int first = static_cast<int>(nodes * rank / processes), last = static_cast<int>(nodes * (rank + 1) / processes);
+  const auto coupled = coupled_through(carriers_of(network.nodes(), network.carried), coupled_nodes(network));
   std::size_t entries = 0;
-  for (const auto& row : rows) entries += row.size();
+  for (int n = first; n < last; ++n) entries += coupled[n].size() - 1;
   PetscInt *begin, *columns;
-  require(PetscMalloc1(rows.size() + 1, &begin));
+  require(PetscMalloc1(last - first + 1, &begin));
   require(PetscMalloc1(entries, &columns));
   begin[0] = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    std::copy(rows[i].begin(), rows[i].end(), columns + begin[i]);
-    begin[i + 1] = begin[i] + static_cast<PetscInt>(rows[i].size());
+  for (int n = first; n < last; ++n) {  // each node is coupled with itself too
+    const PetscInt* end = std::remove_copy(coupled[n].begin(), coupled[n].end(), columns + begin[n - first], n);
+    begin[n - first + 1] = static_cast<PetscInt>(end - columns);
   }
   PetscMatrix adjacency;
-  require(MatCreateMPIAdj(communicator, last - first, static_cast<PetscInt>(n), begin, columns, nullptr, &adjacency));
+  require(
+      MatCreateMPIAdj(communicator, last - first, static_cast<PetscInt>(nodes), begin, columns, nullptr, &adjacency));
   return adjacency;
 }
 

@@ -6,13 +6,29 @@
 
 namespace springproof {
 
-double Sum::operator()(double own) const {
-  MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_DOUBLE, MPI_SUM, communicator);
-  return own;
+void MatrixRows::add(std::vector<std::pair<PetscInt, double>> entries) {
+  std::sort(entries.begin(), entries.end());
+  for (const auto& [column, value] : entries) {
+    columns_.push_back(column);
+    values_.push_back(value);
+  }
+  begin_.push_back(static_cast<PetscInt>(columns_.size()));
 }
 
-double Sum::largest(double own) const {
-  MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_DOUBLE, MPI_MAX, communicator);
+PetscMatrix MatrixRows::matrix(std::size_t own_columns, int block, MPI_Comm communicator) const {
+  PetscMatrix A;
+  require(MatCreate(communicator, &A));
+  require(MatSetSizes(A, static_cast<PetscInt>(begin_.size() - 1), static_cast<PetscInt>(own_columns), PETSC_DETERMINE,
+                      PETSC_DETERMINE));
+  require(MatSetType(A, MATAIJ));
+  require(MatSetBlockSize(A, block));
+  require(MatSeqAIJSetPreallocationCSR(A, begin_.data(), columns_.data(), values_.data()));
+  require(MatMPIAIJSetPreallocationCSR(A, begin_.data(), columns_.data(), values_.data()));
+  return A;
+}
+
+double Sum::operator()(double own) const {
+  MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_DOUBLE, MPI_SUM, communicator);
   return own;
 }
 

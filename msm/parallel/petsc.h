@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace springproof {
 
@@ -59,11 +60,24 @@ using PetscSolver = Owned<KSP, KSPDestroy>;
 using PetscIndices = Owned<IS, ISDestroy>;
 using PetscKernel = Owned<MatNullSpace, MatNullSpaceDestroy>;
 
-/// Sums and largest values over all processes.
+/// The rows of a sparse matrix that are this process', one after the other.
+class MatrixRows {
+ public:
+  /// @param entries columns, each once, and values
+  void add(std::vector<std::pair<PetscInt, double>> entries);
+  /// @param own_columns of this process
+  /// @param block size
+  PetscMatrix matrix(std::size_t own_columns, int block, MPI_Comm communicator) const;
+
+ private:
+  std::vector<PetscInt> begin_ = {0}, columns_;
+  std::vector<PetscScalar> values_;
+};
+
+/// Sums over all processes.
 struct Sum {
   MPI_Comm communicator;
   double operator()(double own) const;
-  double largest(double own) const;
   /// Adds up values of all processes, entry by entry; any number of them.
   void all(double* values, long count) const;
 };

@@ -61,6 +61,15 @@ double affine_shear_modulus(const MassSpringModel& model) {
   return averaged ? averaged->shear_modulus : affine_shear_modulus(model.network);
 }
 
+double volume_stiffness_ratio(const MassSpringModel& model) {
+  if (const MomentumDispersion* dispersion = dispersion_of(model))
+    return added_lambda(*dispersion, model.network.triangles.empty() ? 3 : 2);
+  if (const AveragedSprings* averaged = averaged_springs_of(model))
+    return averaged->lame_lambda / averaged->shear_modulus - 1;
+  if (const auto* volume = law_of<VolumeCorrection>(model)) return volume->kappa / affine_shear_modulus(model);
+  return 0;
+}
+
 void calibrate(double shear_modulus, Network& network) {
   const double factor = shear_modulus / affine_shear_modulus(network);
   for (Spring& s : network.springs) s.stiffness *= factor;

@@ -1,4 +1,6 @@
 // Model options of a case file: one row per option.
+#include "msm/parameters/model_options.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,16 +18,27 @@ namespace {
 
 using Value = std::variant<bool, double, std::string>;
 
+using Type = ModelOption::Type;
+
 /// An option and its setter, which returns the allowed values if the given one is invalid.
 struct Option {
   const char* name;
+  const char* what;
+  Type type;
   std::function<std::optional<std::string>(const Value&, ModelParameters&)> set;
+  bool of_body = false;
 };
+
+Option of_body(Option option) {
+  option.of_body = true;
+  return option;
+}
 
 /// An option whose value is a name from a list of names and their meanings.
 template <class T>
-Option choice(const char* name, T ModelParameters::*member, std::vector<std::pair<std::string, T>> allowed) {
-  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+Option choice(const char* name, const char* what, T ModelParameters::*member,
+              std::vector<std::pair<std::string, T>> allowed) {
+  return {name, what, Type::name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
             const std::string* given = std::get_if<std::string>(&value);
             std::vector<std::string> names;
             for (const auto& [known, meaning] : allowed) {
@@ -48,9 +61,17 @@ std::optional<std::string> set_face_to_cube(const Value& value, ModelParameters&
   return {};
 }
 
+/// All enumerators by their names.
+template <class Enum, class Member>
+std::vector<std::pair<std::string, Member>> all_of() {
+  std::vector<std::pair<std::string, Member>> all;
+  for (const char* name : names_of(Enum{})) all.emplace_back(name, static_cast<Enum>(all.size()));
+  return all;
+}
+
 /// Yes or no.
-Option flag(const char* name, std::function<void(bool, ModelParameters&)> set) {
-  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+Option flag(const char* name, const char* what, std::function<void(bool, ModelParameters&)> set) {
+  return {name, what, Type::flag, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
             const bool* on = std::get_if<bool>(&value);
             if (!on) return "must be true or false";
             set(*on, p);
@@ -59,19 +80,20 @@ Option flag(const char* name, std::function<void(bool, ModelParameters&)> set) {
 }
 
 /// A number in a range, stored by `set`.
-Option number(const char* name, double low, double high, std::function<void(double, ModelParameters&)> set) {
-  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+Option number(const char* name, const char* what, std::pair<double, double> range,
+              std::function<void(double, ModelParameters&)> set) {
+  return {name, what, Type::number, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
             const double* given = std::get_if<double>(&value);
-            if (!given || !(*given >= low && *given <= high))
-              return fmt::format("must be a number, {:g} <= {} <= {:g}", low, name, high);
+            if (!given || !(*given >= range.first && *given <= range.second))
+              return fmt::format("must be a number, {:g} <= {} <= {:g}", range.first, name, range.second);
             set(*given, p);
             return {};
           }};
 }
 
 /// A whole number from 1.
-Option whole(const char* name, double high, std::function<void(double, ModelParameters&)> set) {
-  return {name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
+Option whole(const char* name, const char* what, double high, std::function<void(double, ModelParameters&)> set) {
+  return {name, what, Type::number, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
             const double* given = std::get_if<double>(&value);
             if (!given || !(*given >= 1 && *given <= high && *given == std::floor(*given)))
               return fmt::format("must be a whole number, 1 <= {} <= {:g}", name, high);
@@ -80,47 +102,70 @@ Option whole(const char* name, double high, std::function<void(double, ModelPara
           }};
 }
 
+std::optional<std::string> set_surface(const Value& value, ModelParameters& p) {
+  const std::string* given = std::get_if<std::string>(&value);
+  if (!given || (*given != "nodes" && *given != "cut")) return "must be \"nodes\" or \"cut\"";
+  p.random.surface_nodes = *given == "nodes";
+  return {};
+}
+
 std::vector<Option> random_options() {
-  return {
-      number("min_length", 0.1, 0.95, [](double v, ModelParameters& p) { p.random.min_length = v; }),
-      number("max_length", 0.5, 4, [](double v, ModelParameters& p) { p.random.max_length = v; }),
-      number("springs_per_node", 4, 60, [](double v, ModelParameters& p) { p.random.springs_per_node = v; }),
-      number("stiffness_exponent", -4, 4, [](double v, ModelParameters& p) { p.random.stiffness_exponent = v; }),
-      number("nodes_per_m3", 1e-12, 1e24, [](double v, ModelParameters& p) { p.node_density = v; }),
-      whole("seed", 4294967295.0, [](double v, ModelParameters& p) { p.random.seed = static_cast<std::uint64_t>(v); }),
-      whole("seeds", 1000, [](double v, ModelParameters& p) { p.seeds = static_cast<int>(v); }),
-      {"surface",
-       [](const Value& value, ModelParameters& p) -> std::optional<std::string> {
-         const std::string* given = std::get_if<std::string>(&value);
-         if (!given || (*given != "nodes" && *given != "cut")) return "must be \"nodes\" or \"cut\"";
-         p.random.surface_nodes = *given == "nodes";
-         return {};
-       }},
-      flag("windows", [](bool on, ModelParameters& p) { p.random.windows = on; })};
+  return {number("min_length", "random: least distance of two nodes over the spacing (default 0.8)", {0.1, 0.95},
+                 [](double v, ModelParameters& p) { p.random.min_length = v; }),
+          number("max_length", "random: longest spring over the spacing, instead of springs_per_node", {0.5, 4},
+                 [](double v, ModelParameters& p) { p.random.max_length = v; }),
+          number("springs_per_node", "random: mean number of springs at a node (default 15; emsm_patch: 50)", {4, 60},
+                 [](double v, ModelParameters& p) { p.random.springs_per_node = v; }),
+          number("stiffness_exponent", "random: p in k ~ L^-p (default 0)", {-4, 4},
+                 [](double v, ModelParameters& p) { p.random.stiffness_exponent = v; }),
+          of_body(number("nodes_per_m3", "random: nodes per cubic metre (default: one per cube of the lattice)",
+                         {1e-12, 1e24}, [](double v, ModelParameters& p) { p.node_density = v; })),
+          whole("seed", "random: first seed (default 1)", 4294967295.0,
+                [](double v, ModelParameters& p) { p.random.seed = static_cast<std::uint64_t>(v); }),
+          whole("seeds", "random: number of networks (default 1)", 1000,
+                [](double v, ModelParameters& p) { p.seeds = static_cast<int>(v); }),
+          {"surface", "random: nodes on the surface (default), or cut, whose springs are left as they are made",
+           Type::name, set_surface},
+          flag("windows", "random: nodes in stages, by spherical windows, as the paper; with surface = \"cut\"",
+               [](bool on, ModelParameters& p) { p.random.windows = on; })};
 }
 
 Option hold_option() {
-  return flag("hold_rigid_motions", [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; });
+  return of_body(flag("hold_rigid_motions", "rigid motions that the loads leave free are constrained, not refused",
+                      [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; }));
 }
 
 Option grip_option() {
-  return number("grip", 0, 100, [](double v, ModelParameters& p) { p.grip = v; });
+  return of_body(number("grip", "depth, in node spacings, to which supports hold nodes that are not the mesh's",
+                        {0, 100}, [](double v, ModelParameters& p) { p.grip = v; }));
+}
+
+std::vector<Option> averaging_options() {
+  return {
+      choice<std::optional<StrainCurve>>("curve", "averaged springs: law of large strain (default: the case's)",
+                                         &ModelParameters::curve, all_of<StrainCurve, std::optional<StrainCurve>>()),
+      choice<bool>("torsion", "averaged springs: exact (default), or slender, of bodies two and more cells across",
+                   &ModelParameters::slender, {{"exact", false}, {"slender", true}})};
+}
+
+std::vector<Option> dispersion_options(const ModelRow& row) {
+  auto forms = all_of<Dispersion, Dispersion>();
+  if (row.topology == Topology::hexagonal)
+    std::erase_if(forms, [](const auto& form) { return form.second == Dispersion::finite_strain; });
+  return {choice<Dispersion>("dispersion", "eMSM: form of the dispersion (default symmetric)",
+                             &ModelParameters::dispersion, std::move(forms)),
+          choice<std::optional<bool>>("weights", "eMSM, symmetric or finite_strain (default: by the sign of q)",
+                                      &ModelParameters::exact_volumes, {{"volume", true}, {"kL", false}})};
 }
 
 /// The options that a model has.
 std::vector<Option> options_of(const ModelRow& row) {
   if (row.topology == Topology::file) return {hold_option(), grip_option()};
-  std::vector<Option> options = {flag("paper_e_form", [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
+  std::vector<Option> options = {flag("paper_e_form", "springs from E as in the tables of Golec et al. (2019)",
+                                      [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
   if ((row.topology == Topology::cells || row.topology == Topology::centres) && row.extension != Extension::averaging)
-    options.push_back({"face_to_cube", set_face_to_cube});
-  if (row.extension == Extension::averaging)
-    options = {choice<std::optional<StrainCurve>>("curve", &ModelParameters::curve,
-                                                  {{"hencky", StrainCurve::hencky},
-                                                   {"neo_hooke", StrainCurve::neo_hooke},
-                                                   {"neo_hooke_isochoric", StrainCurve::neo_hooke_isochoric},
-                                                   {"springs_hencky", StrainCurve::springs_hencky},
-                                                   {"springs_neo_hooke", StrainCurve::springs_neo_hooke}}),
-               choice<bool>("torsion", &ModelParameters::slender, {{"exact", false}, {"slender", true}})};
+    options.push_back({"face_to_cube", "lattices: A = k_f / k_c", Type::number, set_face_to_cube});
+  if (row.extension == Extension::averaging) options = averaging_options();
   if (row.topology == Topology::random) options = random_options();
   if (passes_patch_test(row))  // needs nodes on the surface, and chooses the springs' constants itself
     std::erase_if(options, [](const Option& o) {
@@ -128,32 +173,36 @@ std::vector<Option> options_of(const ModelRow& row) {
     });
   if (row.topology == Topology::centres)
     options.push_back(
-        number("turned_deg", -90, 90, [](double v, ModelParameters& p) { p.turned = v * std::numbers::pi / 180; }));
+        of_body(number("turned_deg", "node-centred lattices: angle about z between lattice and axes", {-90, 90},
+                       [](double v, ModelParameters& p) { p.turned = v * std::numbers::pi / 180; })));
   options.push_back(hold_option());
   if (row.topology == Topology::cells && row.extension != Extension::momentum_dispersion) {
-    options.push_back(flag("cut", [](bool on, ModelParameters& p) { p.cut = on; }));
-    options.push_back(number("shift", 0, 1, [](double v, ModelParameters& p) { p.shift = v; }));
+    options.push_back(of_body(flag("cut", "cut cells of a body of voxels, or whole cubes (default: as the body says)",
+                                   [](bool on, ModelParameters& p) { p.cut = on; })));
+    options.push_back(of_body(number("shift",
+                                     "averaged springs, cut cells: part of the way from the middle of a cell to the "
+                                     "centroid of its filled part, at which the strain is taken (default 0)",
+                                     {0, 1}, [](double v, ModelParameters& p) { p.shift = v; })));
   }
   if (row.topology != Topology::cells) options.push_back(grip_option());
   if (row.extension == Extension::volume_correction)
-    options.push_back(choice<VolumeEnergy>("volume_energy", &ModelParameters::volume_energy,
-                                           {{"paper", VolumeEnergy::paper}, {"bounded", VolumeEnergy::bounded}}));
-  if (row.extension == Extension::momentum_dispersion) {
-    std::vector<std::pair<std::string, Dispersion>> forms = {
-        {"symmetric", Dispersion::symmetric},
-        {"share_weighted", Dispersion::share_weighted},
-        {"published", Dispersion::published},
-        {"published_transposed", Dispersion::published_transposed}};
-    if (row.topology != Topology::hexagonal) forms.emplace_back("finite_strain", Dispersion::finite_strain);
-    options.push_back(choice<Dispersion>("dispersion", &ModelParameters::dispersion, std::move(forms)));
-  }
+    options.push_back(choice<VolumeEnergy>("volume_energy", "volume correction: bounded (default), or the paper's",
+                                           &ModelParameters::volume_energy, all_of<VolumeEnergy, VolumeEnergy>()));
   if (row.extension == Extension::momentum_dispersion)
-    options.push_back(
-        choice<std::optional<bool>>("weights", &ModelParameters::exact_volumes, {{"volume", true}, {"kL", false}}));
+    for (Option& option : dispersion_options(row)) options.push_back(std::move(option));
   if (row.topology == Topology::random && !passes_patch_test(row))
-    options.push_back(
-        choice<bool>("calibration", &ModelParameters::homogenised, {{"homogenised", true}, {"affine", false}}));
+    options.push_back(choice<bool>("calibration",
+                                   "random: homogenised (default, as compare), or affine (the papers' formulas)",
+                                   &ModelParameters::homogenised, {{"homogenised", true}, {"affine", false}}));
   return options;
+}
+
+/// "a number >= 0": what the setter says against a value of another type.
+std::string allowed_by(const Option& option, const ModelRow& row) {
+  ModelParameters p;
+  p.row = row;
+  const Value wrong = option.type == Type::number ? Value(false) : Value(0.0);
+  return option.set(wrong, p).value().substr(std::string("must be ").size());
 }
 
 [[noreturn]] void refuse_option(const ModelChoice& choice, const std::string& message) {
@@ -205,6 +254,15 @@ ModelParameters of_row(const ModelRow& row) {
 }
 
 }  // namespace
+
+std::vector<ModelOption> model_options() {
+  std::vector<ModelOption> all;
+  for (const ModelRow& row : model_table())
+    for (const Option& o : options_of(row))
+      if (std::none_of(all.begin(), all.end(), [&](const ModelOption& known) { return known.name == o.name; }))
+        all.push_back({o.name, o.what, allowed_by(o, row), o.type, o.of_body});
+  return all;
+}
 
 ModelParameters resolve(const ModelChoice& choice) {
   ModelParameters p = choice.file.empty() ? of_row(row_of(choice)) : read_own_model(choice);

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/krylov.h"
-#include "msm/statics/tangent_solver.h"
+#include "msm/statics/stiffness_solver.h"
 
 namespace springproof {
 namespace {

@@ -21,12 +21,12 @@ class MovingModel {
   MovingModel(ModelPointer model, std::vector<Load> loads, NodeConditions nodes, DynamicsOptions options)
       : model_(std::move(model)), loads_(std::move(loads)), nodes_(std::move(nodes)) {
     const double density = model_->springs.density;
-    dt_ = checked_time_step(model_->model(), density, options);
-    motion_ = make_motion(model_->model(), density, dt_, options);
+    options.time_step = dt_ = checked_time_step(model_->model(), density, options);
+    motion_ = make_motion(model_->model(), density, options);
     apply();
     const NodalVectors& X = model_->network().X;
     options.velocity = NodalVectors::Zero(X.rows(), 3);
-    set_state(X, velocity_before(model_->model(), density, X, conditions_, dt_, options));
+    set_state(X, velocity_before(model_->model(), density, X, conditions_, options));
     motion_->move_supports();
   }
 

@@ -4,14 +4,11 @@
 #include <stdexcept>
 
 #include "meshes/volume.h"
-#include "msm/algebra/krylov.h"
-#include "msm/multigrid/cell_stiffness.h"
-#include "msm/multigrid/cut_mixed_multigrid.h"
-#include "msm/multigrid/cut_multigrid.h"
-#include "msm/multigrid/dispersion_multigrid.h"
+#include "msm/algebra/direct_solver.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/equilibrium.h"
-#include "msm/statics/tangent_solver.h"
+#include "msm/statics/mixed_form.h"
+#include "msm/statics/stiffness_solver.h"
 #include "problem/system/progress.h"
 #include "problem/system/run_cost.h"
 
@@ -23,11 +20,6 @@ constexpr long judge_limit = 20000;            // up to it a factorisation is tr
 
 NodalVectors nodal(const Eigen::VectorXd& v) { return Eigen::Map<const NodalVectors>(v.data(), v.size() / 3, 3); }
 
-void keep(const std::vector<char>& fixed, bool on_fixed, Eigen::VectorXd& v) {
-  for (std::size_t i = 0; i < fixed.size(); ++i)
-    if (bool(fixed[i]) != on_fixed) v[i] = 0;
-}
-
 /// The linear problem: u = prescribed + du, du zero on fixed unknowns.
 struct LinearProblem {
   const MassSpringModel& model;
@@ -38,7 +30,8 @@ struct LinearProblem {
 
 void finish(const LinearProblem& p, const Eigen::VectorXd& u, const Eigen::VectorXd& internal, Equilibrium& result) {
   Eigen::VectorXd support = internal - p.external;
-  keep(p.fixed, true, support);
+  for (std::size_t i = 0; i < p.fixed.size(); ++i)
+    if (!p.fixed[i]) support[static_cast<Eigen::Index>(i)] = 0;
   result.displacement = nodal(u);
   carry(p.model.network.carried, result.displacement);
   result.support = nodal(support);
@@ -56,52 +49,32 @@ void report(const KrylovResult& k, const std::string& name, Equilibrium& result)
 }
 
 void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
-  TangentSolver K(p.model, p.fixed, direct ? std::numeric_limits<long>::max() : 0);
-  if (!K.take(p.model.network.X)) {
+  const auto K = solver_for(p.model, p.fixed, direct ? std::numeric_limits<long>::max() : 0);
+  if (!K->take(p.model.network.X)) {
     result.message = "the stiffness is not positive definite: the model has zero-energy or unstable modes here";
-    result.solver = K.name();
+    result.solver = K->name();
     return;
   }
   Eigen::VectorXd Ku, du;
-  K.multiply(p.prescribed, Ku);
+  K->multiply(p.prescribed, Ku);
   // A factorisation is a preconditioner too: one or two steps remove its round-off.
-  report(K.solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du), K.name(), result);
+  report(K->solve(p.external - Ku, p.options.tolerance, p.options.max_iterations, du), K->name(), result);
   const Eigen::VectorXd u = p.prescribed + du;
-  K.multiply(u, Ku);
+  K->multiply(u, Ku);
   finish(p, u, Ku, result);
 }
 
-/// `unit`: that of stiffness; `volumes`: number of pressures.
-template <class Mixed>
-void solve_mixed(const LinearProblem& p, Mixed&& multigrid, double unit, std::size_t volumes, Equilibrium& result) {
+void solve_mixed(const LinearProblem& p, Equilibrium& result) {
+  const auto system = saddle_point_at_rest(p.model, p.fixed);
+  const double unit = affine_shear_modulus(p.model) * p.model.network.cell_edge;
   // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
-  const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(volumes));
-  Eigen::VectorXd f = p.external / unit - multigrid.force(p.prescribed, no_pressure), du, pressure;
-  keep(p.fixed, false, f);
-  const KrylovResult k = multigrid.solve(f, -multigrid.volume_change(p.prescribed), p.options.tolerance,
-                                         p.options.max_iterations, du, pressure);
-  report(k, "GMRES + mixed multigrid", result);
-  const Eigen::VectorXd u = p.prescribed + du;
-  finish(p, u, unit * multigrid.force(u, pressure), result);
-}
-
-/// Mixed form with a pressure per node of a lattice with momentum dispersion, else one per cell.
-void solve_mixed(const LinearProblem& p, const CellStiffness& cell, double G, Equilibrium& result) {
-  const Network& network = p.model.network;
-  const double l = network.cell_edge, unit = G * l;
-  if (CutMultigrid::covers(p.model))
-    solve_mixed(p, CutMixedMultigrid(p.model, p.fixed), unit, network.cells.size(), result);
-  else if (dispersion_of(p.model))
-    solve_mixed(p, DispersionMultigrid(p.model, p.fixed, G), unit, network.volume.size(), result);
-  else
-    solve_mixed(p, MixedMultigrid(lattice_levels(network, p.fixed), in_units(cell, G, l)), unit, network.cells.size(),
-                result);
-}
-
-/// Stiffness of the volume term [Pa] of a lattice for which there is a mixed multigrid.
-double volume_stiffness(const MassSpringModel& model, const CellStiffness& cell, double G) {
-  if (CutMultigrid::covers(model)) return averaged_springs_of(model)->lame_lambda - G;
-  return NodalVolumes::covers(model) ? added_lambda(*dispersion_of(model)) * G : cell.kappa;
+  const MixedVector prescribed{p.prescribed, Eigen::VectorXd::Zero(system->compliance().size())},
+      b{p.external / unit - system->force(prescribed), -system->volume_change(p.prescribed)};
+  MixedVector x;
+  report(solve_saddle_point(*system, p.fixed, b, p.options.tolerance, p.options.max_iterations, x),
+         "GMRES + mixed multigrid", result);
+  x.u += p.prescribed;
+  finish(p, x.u, unit * system->force(x), result);
 }
 
 }  // namespace
@@ -115,23 +88,15 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
   for (char fixed : problem.fixed) result.unknowns += !fixed;
   progress::detail([&] { return fmt::format("{} unknowns", result.unknowns); });
   LinearSolver solver = options.solver;
-  const double G = affine_shear_modulus(model);
-  const bool has_cells = consists_of_cells(model);
-  const CellStiffness cell = has_cells ? cell_stiffness(model) : CellStiffness{};
   if (solver == LinearSolver::automatic) {
-    if (result.unknowns <= (has_cells || NodalVolumes::covers(model) || CutMultigrid::covers(model)
-                                ? lattice_cholesky_limit
-                                : cholesky_limit))
+    if (result.unknowns <= (on_lattice(model) ? lattice_cholesky_limit : cholesky_limit))
       solver = LinearSolver::cholesky;
     else
-      solver = volume_stiffness(model, cell, G) >
-                       (CutMultigrid::covers(model) ? cut_cells_mixed_above_kappa : mixed_above_kappa) * G
-                   ? LinearSolver::mixed_multigrid
-                   : LinearSolver::multigrid;
+      solver = mixed_form_pays(model) ? LinearSolver::mixed_multigrid : LinearSolver::multigrid;
   }
   try {
     if (solver == LinearSolver::mixed_multigrid)
-      solve_mixed(problem, cell, G, result);
+      solve_mixed(problem, result);
     else
       solve_primal(problem, solver == LinearSolver::cholesky, result);
     const bool iterated = solver == LinearSolver::multigrid && options.solver == LinearSolver::automatic;

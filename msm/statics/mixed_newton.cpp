@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "msm/multigrid/cut_mixed_multigrid.h"
-#include "msm/multigrid/cut_multigrid.h"
-#include "msm/multigrid/mixed_multigrid.h"
 #include "msm/parameters/calibrate.h"
+#include "msm/statics/mixed_form.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -44,18 +42,60 @@ Split split(const MassSpringModel& model) {
 
 }  // namespace
 
-struct MixedNewton::Linearised {
-  std::vector<CellVolume> volumes;
-  Eigen::VectorXd curvature;  ///< psi'' per cell
-  Eigen::VectorXd force;      ///< external - internal force [N]
-  Eigen::VectorXd mismatch;   ///< (p / kappa - psi') / psi'' V [m^3]
-};
+/// The equations at a state, in the units of the saddle point at rest:  K du + g^T dp = r,  g du - V/(kappa psi'') dp =
+/// h.
+class MixedNewton::Linearised : public SaddlePoint {
+ public:
+  explicit Linearised(const MixedNewton& newton) : newton_(newton) {}
 
-bool MixedNewton::suits(const MassSpringModel& model) {
-  const bool cut = CutMultigrid::covers(model);
-  return (cut || consists_of_cells(model)) &&
-         split(model).kappa > (cut ? cut_cells_mixed_above_kappa : mixed_above_kappa) * affine_shear_modulus(model);
-}
+  Eigen::VectorXd force(const MixedVector& x) override {
+    const double l = newton_.unit_length_;
+    const Network& network = newton_.network_;
+    Eigen::VectorXd u = x.u, y;
+    carry(network.carried, u);
+    newton_.K_.multiply(u, y);
+    y /= newton_.unit_pressure_ * l;
+    for (std::size_t c = 0; c < volumes.size(); ++c)
+      for (int n = 0; n < 8; ++n)
+        y.segment<3>(3 * network.cells[c][n]) +=
+            x.p[static_cast<Eigen::Index>(c)] / (l * l) * volumes[c].gradient.segment<3>(3 * n);
+    hand_back(network.carried, y);
+    return y;
+  }
+
+  Eigen::VectorXd volume_change(const Eigen::VectorXd& displacement) override {
+    Eigen::VectorXd u = displacement;
+    carry(newton_.network_.carried, u);
+    return changes(u) / (newton_.unit_length_ * newton_.unit_length_);
+  }
+
+  const Eigen::VectorXd& compliance() const override { return compliance_; }
+  MixedVector cycle(const MixedVector& b) override { return newton_.rest_->cycle(b); }
+
+  /// g u [m^3] of displacements of all nodes.
+  Eigen::VectorXd changes(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(curvature.size());
+    for (std::size_t c = 0; c < volumes.size(); ++c)
+      for (int n = 0; n < 8; ++n)
+        change[static_cast<Eigen::Index>(c)] +=
+            volumes[c].gradient.segment<3>(3 * n).dot(u.segment<3>(3 * newton_.network_.cells[c][n]));
+    return change;
+  }
+
+  void take_compliance() {
+    const double l = newton_.unit_length_;
+    compliance_ = newton_.unit_pressure_ / (newton_.kappa_ * l * l * l) * newton_.rest_volume_.cwiseQuotient(curvature);
+  }
+
+  std::vector<CellVolume> volumes;
+  Eigen::VectorXd curvature;   ///< psi'' per cell
+  Eigen::VectorXd unbalanced;  ///< external - internal force [N]
+  Eigen::VectorXd mismatch;    ///< (p / kappa - psi') / psi'' V [m^3]
+
+ private:
+  const MixedNewton& newton_;
+  Eigen::VectorXd compliance_;
+};
 
 MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& fixed)
     : network_(model.network), fixed_(fixed) {
@@ -65,14 +105,7 @@ MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& 
   density_ = std::move(parts.density);
   unit_pressure_ = affine_shear_modulus(model);
   unit_length_ = model.network.cell_edge;
-  const auto use = [this](auto multigrid) {
-    precondition_ = [multigrid](const auto& f, const auto& g, auto& u, auto& p) { multigrid->apply(f, g, u, p); };
-  };
-  if (CutMultigrid::covers(model))
-    use(std::make_shared<CutMixedMultigrid>(model, fixed));
-  else
-    use(std::make_shared<MixedMultigrid>(lattice_levels(model.network, fixed),
-                                         in_units(cell_stiffness(model), unit_pressure_, unit_length_)));
+  rest_ = saddle_point_at_rest(model, fixed);
   K_ = BlockMatrix(model.network);
   rest_volume_.resize(static_cast<Eigen::Index>(network_.cells.size()));
   for (std::size_t c = 0; c < network_.cells.size(); ++c)
@@ -83,7 +116,8 @@ MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& 
 MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& positions, const Eigen::VectorXd& external) {
   NodalVectors x = positions;
   carry(network_.carried, x);
-  Linearised at{{}, Eigen::VectorXd(p_.size()), external, Eigen::VectorXd(p_.size())};
+  Linearised at(*this);
+  at.curvature = at.mismatch = Eigen::VectorXd(p_.size());
   K_.set_zero();
   NodalVectors f = NodalVectors::Zero(x.rows(), 3);
   for (const ForceLaw& law : springs_)
@@ -104,63 +138,30 @@ MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& positions, co
     add_volume_curvature(network_, c, x, p_[i], K_);
   }
   hand_back(network_.carried, f);
-  at.force += flat(f);
+  at.unbalanced = external + flat(f);
+  at.take_compliance();
   return at;
 }
 
-/// K du + g^T dp = r on free unknowns, g du - V / (kappa psi'') dp = h.
-void MixedNewton::solve(const Linearised& at, const Eigen::VectorXd& r, const Eigen::VectorXd& h, double tolerance,
-                        Eigen::VectorXd& du, Eigen::VectorXd& dp) {
-  const Eigen::Index n = r.size(), m = h.size();
-  const double area = unit_length_ * unit_length_, volume = area * unit_length_,
-               stiffness = unit_pressure_ * unit_length_;
-  const auto clear = [&](Eigen::VectorXd& v) {
-    for (Eigen::Index i = 0; i < n; ++i)
-      if (fixed_[i]) v[i] = 0;
-  };
-  Eigen::VectorXd u(n), Ku;
-  const Operator A = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-    y.resize(n + m);
-    u = x.head(n);
-    carry(network_.carried, u);
-    K_.multiply(u, Ku);
-    y.head(n) = Ku / stiffness;
-    for (Eigen::Index c = 0; c < m; ++c) {
-      const Hexahedron& cell = network_.cells[c];
-      double change = 0;
-      for (int k = 0; k < 8; ++k) {
-        const auto gradient = at.volumes[c].gradient.segment<3>(3 * k);
-        change += gradient.dot(u.segment<3>(3 * cell[k]));
-        y.segment<3>(3 * cell[k]) += x[n + c] / area * gradient;
-      }
-      y[n + c] = change / area - unit_pressure_ / (kappa_ * at.curvature[c]) * rest_volume_[c] / volume * x[n + c];
-    }
-    hand_back(network_.carried, y);
-    clear(y);
-  };
-  const Operator precondition = [&](const Eigen::VectorXd& x, Eigen::VectorXd& z) {
-    Eigen::VectorXd z_u, z_p;
-    precondition_(x.head(n), x.tail(m), z_u, z_p);
-    z.resize(n + m);
-    z << z_u, z_p;
-  };
-  Eigen::VectorXd b(n + m), x = Eigen::VectorXd::Zero(n + m);
-  b << r / (unit_pressure_ * area), h / volume;
-  clear(b);
-  gmres(A, precondition, b, tolerance, most_krylov_steps, 60, x);
-  du = unit_length_ * x.head(n);
-  dp = unit_pressure_ * x.tail(m);
+MixedVector MixedNewton::solve(Linearised& at, const Eigen::VectorXd& r, const Eigen::VectorXd& h,
+                               double tolerance) const {
+  const double area = unit_length_ * unit_length_;
+  const MixedVector b{r / (unit_pressure_ * area), h / (area * unit_length_)};
+  MixedVector x;
+  solve_saddle_point(at, fixed_, b, tolerance, most_krylov_steps, x);
+  return {unit_length_ * x.u, unit_pressure_ * x.p};
 }
 
 bool MixedNewton::step(const BoundaryConditions& bc, double tolerance, int max_iterations, NodalVectors& x) {
   p_ = accepted_p_;
-  Eigen::VectorXd du = Eigen::VectorXd::Zero(x.size()), dp;
+  Eigen::VectorXd du = Eigen::VectorXd::Zero(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i)
     if (fixed_[i]) du[i] = network_.X.data()[i] + bc.prescribed.data()[i] - x.data()[i];
   for (int k = 0; k <= max_iterations; ++k) {
-    const Linearised at = linearise(x, flat(bc.external));
+    Linearised at = linearise(x, flat(bc.external));
     double on_fixed = 0, on_free = 0;
-    for (Eigen::Index i = 0; i < at.force.size(); ++i) (fixed_[i] ? on_fixed : on_free) += at.force[i] * at.force[i];
+    for (Eigen::Index i = 0; i < at.unbalanced.size(); ++i)
+      (fixed_[i] ? on_fixed : on_free) += at.unbalanced[i] * at.unbalanced[i];
     const double scale = std::sqrt(std::max(on_fixed, bc.external.squaredNorm())),
                  relative = scale > 0 ? std::sqrt(on_free) / scale : 0;
     if (!std::isfinite(relative)) return false;
@@ -171,21 +172,18 @@ bool MixedNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
     progress::detail([&] {
       return fmt::format("{} unknowns, Newton step {} at this load, residual {:.1e}", x.size(), k + 1, relative);
     });
-    Eigen::VectorXd r = at.force, h = at.mismatch, moved = Eigen::VectorXd::Zero(x.size());
+    Eigen::VectorXd r = at.unbalanced, h = at.mismatch, moved = Eigen::VectorXd::Zero(x.size());
     if (k == 0) {  // the displacements of the supports are known
       Eigen::VectorXd Ku;
       K_.multiply(du, Ku);
       r -= Ku;
-      for (Eigen::Index c = 0; c < h.size(); ++c)
-        for (int n = 0; n < 8; ++n)
-          h[c] -= at.volumes[c].gradient.segment<3>(3 * n).dot(du.segment<3>(3 * network_.cells[c][n]));
+      h -= at.changes(du);
       moved = du;
     }
-    Eigen::VectorXd correction;
-    solve(at, r, h, std::clamp(1e-2 * relative, 1e-8, 1e-3), correction, dp);
-    correction += moved;
-    x += Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
-    p_ += dp;
+    const MixedVector correction = solve(at, r, h, std::clamp(1e-2 * relative, 1e-8, 1e-3));
+    moved += correction.u;
+    x += Eigen::Map<const NodalVectors>(moved.data(), x.rows(), 3);
+    p_ += correction.p;
   }
   return false;
 }

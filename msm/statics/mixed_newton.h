@@ -3,8 +3,8 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 
+#include "msm/algebra/saddle_point.h"
 #include "msm/embedding/boundary.h"
 #include "msm/laws/laws.h"
 
@@ -16,9 +16,7 @@ namespace springproof {
 /// solved by GMRES preconditioned by the mixed multigrid of the rest state.
 class MixedNewton {
  public:
-  /// Whether the model is a lattice of springs with a volume term for which this form is worthwhile.
-  static bool suits(const MassSpringModel& model);
-
+  /// For a lattice with a volume term per cell (mixed_form.h), which must outlive it.
   MixedNewton(const MassSpringModel& model, const std::vector<char>& fixed);
 
   /// Moves x, from the pressures of the step accepted last, to equilibrium under the conditions.
@@ -28,10 +26,9 @@ class MixedNewton {
   int iterations() const { return iterations_; }  ///< so far
 
  private:
-  struct Linearised;
+  class Linearised;
   Linearised linearise(const NodalVectors& x, const Eigen::VectorXd& external);  ///< also assembles K_
-  void solve(const Linearised& at, const Eigen::VectorXd& r, const Eigen::VectorXd& g, double tolerance,
-             Eigen::VectorXd& du, Eigen::VectorXd& dp);
+  MixedVector solve(Linearised& at, const Eigen::VectorXd& r, const Eigen::VectorXd& h, double tolerance) const;
 
   const Network& network_;
   std::vector<ForceLaw> springs_;  ///< the laws without the volume term
@@ -39,11 +36,9 @@ class MixedNewton {
   std::function<VolumeDensity(double J)> density_;
   std::vector<char> fixed_;
   double unit_length_ = 1, unit_pressure_ = 1;
-  BlockMatrix K_;  ///< stiffness at constant pressures [N/m]
-  /// (u, p) of (f, g) by one cycle of the mixed multigrid of the rest state, in units of G and the cells' edge.
-  std::function<void(const Eigen::VectorXd& f, const Eigen::VectorXd& g, Eigen::VectorXd& u, Eigen::VectorXd& p)>
-      precondition_;
-  Eigen::VectorXd rest_volume_;  ///< of the filled part of each cell [m^3]
+  BlockMatrix K_;                      ///< stiffness at constant pressures [N/m]
+  std::unique_ptr<SaddlePoint> rest_;  ///< at rest, in units of G and the cells' edge: preconditions
+  Eigen::VectorXd rest_volume_;        ///< of the filled part of each cell [m^3]
   Eigen::VectorXd p_, accepted_p_;
   int iterations_ = 0;
 };

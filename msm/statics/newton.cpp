@@ -5,9 +5,10 @@
 
 #include "meshes/volume.h"
 #include "msm/statics/equilibrium.h"
+#include "msm/statics/mixed_form.h"
 #include "msm/statics/mixed_newton.h"
 #include "msm/statics/softest_motion.h"
-#include "msm/statics/tangent_solver.h"
+#include "msm/statics/stiffness_solver.h"
 #include "problem/system/progress.h"
 #include "problem/system/run_cost.h"
 
@@ -31,9 +32,9 @@ struct Newton {
   const LoadPath& path;
   const NewtonOptions& options;
   const std::vector<char> fixed;
-  TangentSolver K;                     ///< tangent at the state of the last take()
-  std::unique_ptr<MixedNewton> mixed;  ///< near nu = 1/2; null: the form without pressures
-  double stiffness = 0;                ///< largest diagonal entry at rest [N/m]
+  const std::unique_ptr<StiffnessSolver> K;  ///< tangent at the state of the last take()
+  std::unique_ptr<MixedNewton> mixed;        ///< near nu = 1/2; null: the form without pressures
+  double stiffness = 0;                      ///< largest diagonal entry at rest [N/m]
   int iterations = 0;
 
   Newton(const MassSpringModel& m, const LoadPath& p, const NewtonOptions& o, const std::vector<char>& fixed_unknowns)
@@ -41,8 +42,8 @@ struct Newton {
         path(p),
         options(o),
         fixed(fixed_unknowns),
-        K(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit) {
-    if (K.unknowns() > cholesky_limit && MixedNewton::suits(m))
+        K(solver_for(m, fixed_unknowns, dispersion_of(m) ? dispersive_limit : cholesky_limit)) {
+    if (K->unknowns() > cholesky_limit && !dispersion_of(m) && mixed_form_pays(m))
       mixed = std::make_unique<MixedNewton>(m, fixed_unknowns);
   }
 
@@ -62,7 +63,7 @@ struct Newton {
 
   /// du = K^-1 b; false if K is found not to be positive definite.
   bool solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& du) const {
-    return !K.solve(b, tolerance, 4000, du).negative_curvature;
+    return !K->solve(b, tolerance, 4000, du).negative_curvature;
   }
 
   double potential(const NodalVectors& x, const NodalVectors& external) const {
@@ -75,7 +76,7 @@ struct Newton {
     for (Eigen::Index i = 0; i < du.size(); ++i)
       if (fixed[i]) du.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i] - x.data()[i];
     Eigen::VectorXd r, Kdu, correction;
-    K.multiply(flat(du), Kdu);
+    K->multiply(flat(du), Kdu);
     residual(x, bc.external, r);
     solve(r - Kdu, 1e-3, correction);
     return x + du + Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
@@ -104,7 +105,7 @@ struct Newton {
 
   /// Checks the stability of a state in equilibrium; x becomes it if it is accepted.
   Loss judge(const NodalVectors& trial, bool definite, NodalVectors& x) const {
-    if (!definite || !K.stable()) return Loss::unstable;
+    if (!definite || !K->stable()) return Loss::unstable;
     if (has_inverted_cell(model.network, trial)) return Loss::inverted_cell;
     x = trial;
     return Loss::none;
@@ -118,7 +119,7 @@ struct Newton {
     if (!balanced) return Loss::no_convergence;
     Eigen::VectorXd r;
     relative = residual(trial, bc.external, r);
-    const bool definite = K.take(trial);
+    const bool definite = K->take(trial);
     const Loss loss = judge(trial, definite, x);
     if (loss == Loss::none) mixed->accept();
     return loss;
@@ -127,7 +128,7 @@ struct Newton {
   Loss step(double factor_of_load, NodalVectors& x, double& relative) {
     const BoundaryConditions bc = path(factor_of_load);
     progress::detail([&] {
-      return fmt::format("{} unknowns, load step to {:.3g} %, {} Newton steps so far", K.unknowns(),
+      return fmt::format("{} unknowns, load step to {:.3g} %, {} Newton steps so far", K->unknowns(),
                          100 * factor_of_load, iterations);
     });
     if (mixed)
@@ -137,11 +138,11 @@ struct Newton {
       Eigen::VectorXd r, du;
       relative = residual(trial, bc.external, r);
       if (!std::isfinite(relative)) return Loss::no_convergence;
-      const bool definite = K.take(trial);
+      const bool definite = K->take(trial);
       if (relative <= options.tolerance) return judge(trial, definite, x);
       ++iterations;
       progress::detail([&] {
-        return fmt::format("{} unknowns, load step to {:.3g} %, Newton step {}, residual {:.1e}", K.unknowns(),
+        return fmt::format("{} unknowns, load step to {:.3g} %, Newton step {}, residual {:.1e}", K->unknowns(),
                            100 * factor_of_load, i + 1, relative);
       });
       if (!definite) return Loss::unstable;
@@ -176,10 +177,10 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   int steps = 0;
   if (model.small_displacements_only) {
     result.message = "this model holds for linear kinematics only";
-  } else if (!newton.K.take(x)) {
+  } else if (!newton.K->take(x)) {
     result.message = "the stiffness at rest is not positive definite: the model has zero-energy or unstable modes";
   } else {
-    newton.stiffness = newton.K.largest_diagonal();
+    newton.stiffness = newton.K->diagonal().maxCoeff();
     double step = options.first_step;
     while (result.load_reached < 1 && step >= options.smallest_step) {
       const double next = std::min(1.0, result.load_reached + step);
@@ -189,7 +190,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
         ++steps;
         step *= 1.5;
       } else {
-        newton.K.take(x);
+        newton.K->take(x);
         step = std::min(step, next - result.load_reached) / 2;
         result.message = describe(loss, result.load_reached);
         result.loss = loss;
@@ -199,15 +200,16 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   result.ok = result.load_reached >= 1;
   if (result.ok) result.message.clear(), result.loss = Loss::none;
   if (options.softest_motion && newton.stiffness > 0 && conservative(model))
-    result.softest = softest_motion(model, newton.K, full.fixed);
+    result.softest = softest_motion(model, *newton.K, full.fixed);
   const BoundaryConditions reached = load_path(result.load_reached);
   result.displacement = x - model.network.X;
   carry(model.network.carried, result.displacement);
   result.support = support_forces(model, x, reached);
-  result.solver = fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K.name(),
-                              steps, steps == 1 ? "" : "s");
+  result.solver =
+      fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K->name(), steps,
+                  steps == 1 ? "" : "s");
   result.iterations = newton.iterations;
-  result.unknowns = newton.K.unknowns();
+  result.unknowns = newton.K->unknowns();
   result.seconds = cpu_seconds() - start;
   result.memory_MiB = peak_memory_MiB();
   return result;

@@ -30,7 +30,7 @@ Vec3 alternation_of(const Network& network, const NodalVectors& u) {
 
 }  // namespace
 
-SoftestMotion softest_motion(const MassSpringModel& model, const TangentSolver& K, const std::vector<char>& fixed) {
+SoftestMotion softest_motion(const MassSpringModel& model, const StiffnessSolver& K, const std::vector<char>& fixed) {
   const Tangent rest = tangent(model, model.network.X);
   Eigen::VectorXd u(static_cast<Eigen::Index>(fixed.size())), Ku, Ru;
   fill_with_noise(u);

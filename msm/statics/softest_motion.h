@@ -2,7 +2,7 @@
 #pragma once
 
 #include "msm/statics/equilibrium.h"
-#include "msm/statics/tangent_solver.h"
+#include "msm/statics/stiffness_solver.h"
 
 namespace springproof {
 
@@ -11,6 +11,6 @@ namespace springproof {
 /// @param model a conservative one
 /// @param K its tangent at the state, positive definite
 /// @param fixed unknowns
-SoftestMotion softest_motion(const MassSpringModel& model, const TangentSolver& K, const std::vector<char>& fixed);
+SoftestMotion softest_motion(const MassSpringModel& model, const StiffnessSolver& K, const std::vector<char>& fixed);
 
 }  // namespace springproof

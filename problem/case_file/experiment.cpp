@@ -8,6 +8,8 @@
 
 #include "problem/body_size.h"
 #include "problem/case_file/experiment_parts.h"
+#include "problem/large_strain.h"
+#include "problem/moduli.h"
 #include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
@@ -15,49 +17,16 @@
 namespace springproof {
 namespace {
 
-constexpr Key document_schema[] = {{"cite"},       {"what"},
-                                   {"kinematics"}, {"body", "a table [body] with geo, size_m, cells"},
-                                   {"patch"},      {"material", "a table [material] with two moduli"},
-                                   {"load"},       {"compare"},
-                                   {"external"},   {"section"},
-                                   {"line"},       {"dynamics"},
-                                   {"fracture"},   {"probe"},
-                                   {"reference"},  {"expect"},
-                                   {"published"}};
+Range range_of(const ModulusName& modulus) {
+  if (modulus.member == &Moduli::poisson_ratio) return {"-1 < poisson_ratio < 0.5", -1, 0.5};
+  return modulus.member == &Moduli::lame_lambda ? any_number : positive_number;
+}
 
-constexpr Key body_schema[] = {
-    {"geo", "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .msh, .step or .brep file"},
-    {"size_m"},
-    {"scale"},
-    {"cells"},
-    {"voxels"},
-    {"voxel_edge_m"},
-    {"cut"},
-    {"accuracy"}};
-
-constexpr Key material_schema[] = {{"youngs_modulus_Pa"}, {"poisson_ratio"},  {"shear_modulus_Pa"},
-                                   {"bulk_modulus_Pa"},   {"lame_lambda_Pa"}, {"density_kg_m3"}};
-
-constexpr Key section_schema[] = {{"point_m", "[x, y, z]"}, {"normal", "[x, y, z]"}};
-constexpr Key probe_schema[] = {{"name", "a name"}, {"at_m", "[x, y, z], a rest position"}};
-constexpr Key reference_schema[] = {{"cells"},  {"elements"}, {"grading"},   {"edge_m"},
-                                    {"smooth"}, {"in_time"},  {"integrator"}};
-
-/// A key of [material] and the modulus that it sets.
-struct ModulusKey {
-  const char* key;
-  std::optional<double> Moduli::*member;
-  Range range;
-};
-
-constexpr ModulusKey modulus_keys[] = {{"youngs_modulus_Pa", &Moduli::youngs_modulus, positive_number},
-                                       {"poisson_ratio", &Moduli::poisson_ratio, {"-1 < poisson_ratio < 0.5", -1, 0.5}},
-                                       {"shear_modulus_Pa", &Moduli::shear_modulus, positive_number},
-                                       {"bulk_modulus_Pa", &Moduli::bulk_modulus, positive_number},
-                                       {"lame_lambda_Pa", &Moduli::lame_lambda, any_number}};
-
-const std::vector<std::string> kinematics_names = {
-    "linear", "hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"};
+std::vector<std::string> kinematics_names() {
+  std::vector<std::string> names = {"linear"};
+  names.insert(names.end(), laws_of_large_strain.begin(), laws_of_large_strain.end());
+  return names;
+}
 
 [[noreturn]] void missing(const TomlValue& table, const std::string& key, const std::string& allowed) {
   refuse({table.node, table.key + "." + key, table.file}, "is missing", allowed);
@@ -91,7 +60,7 @@ std::vector<T> read_each_once(const TomlValue& value, const Range& range) {
 }
 
 Body read_body(const TomlValue& value) {
-  const TomlTable table(value, body_schema);
+  const TomlTable table(value, keys_of("body"));
   Body body;
   body.where = location_of(table.at("geo"));
   body.geo = as_text(table.at("geo"));
@@ -137,22 +106,22 @@ Body read_body(const TomlValue& value) {
 /// Two moduli, each a number or a list; a single number is kept fixed while the other runs through its list, and two
 /// lists of the same length are read in pairs.
 std::vector<IsotropicMaterial> read_materials(const TomlValue& value) {
-  const TomlTable table(value, material_schema);
+  const TomlTable table(value, keys_of("material"));
   double density = 1000;
   if (const auto given = table.find("density_kg_m3")) density = as_number(*given, positive_number);
   std::vector<std::string> names;
   std::vector<Moduli> solids(1);
-  for (const auto& [key, member, range] : modulus_keys) {
-    const auto given = table.find(key);
+  for (const ModulusName& modulus : modulus_names) {
+    const auto given = table.find(modulus.key);
     if (!given) continue;
-    names.emplace_back(key);
+    names.emplace_back(modulus.key);
     const auto items = one_or_several(*given);
     if (solids.size() == 1) solids.resize(items.size(), solids.front());
     if (items.size() != 1 && items.size() != solids.size())
       refuse(*given, fmt::format("is a list of {}", items.size()),
              fmt::format("a list of {}, as above", solids.size()));
     for (std::size_t i = 0; i < solids.size(); ++i)
-      solids[i].*member = as_number(items[items.size() == 1 ? 0 : i], range);
+      solids[i].*modulus.member = as_number(items[items.size() == 1 ? 0 : i], range_of(modulus));
   }
   if (names.size() != 2)
     refuse(value,
@@ -176,7 +145,7 @@ std::vector<IsotropicMaterial> read_materials(const TomlValue& value) {
 std::vector<Probe> read_probes(const TomlTable& document) {
   std::vector<Probe> probes;
   for (const TomlValue& value : document.tables("probe")) {
-    const TomlTable table(value, probe_schema);
+    const TomlTable table(value, keys_of("probe"));
     const Probe probe{as_text(table.at("name")), as_vector(table.at("at_m"))};
     for (const Probe& other : probes)
       if (other.name == probe.name)
@@ -187,12 +156,12 @@ std::vector<Probe> read_probes(const TomlTable& document) {
 }
 
 Section read_section(const TomlValue& value) {
-  const TomlTable table(value, section_schema);
+  const TomlTable table(value, keys_of("section"));
   return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
 }
 
 ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
-  const TomlTable table(value, reference_schema);
+  const TomlTable table(value, keys_of("reference"));
   ReferenceChoice reference;
   if (voxels) reference.elements = {"p2"};
   if (const auto edge = table.find("edge_m")) {
@@ -224,21 +193,22 @@ void leave_out_equilibria(const TomlTable& document, Experiment& experiment) {
   const auto& motion = experiment.dynamics;
   if (!motion || motion->equilibrium || motion->released) return;
   const auto reference = document.find("reference");
-  if (!reference || !TomlTable(*reference, reference_schema).find("elements")) experiment.reference.elements.clear();
+  if (!reference || !TomlTable(*reference, keys_of("reference")).find("elements"))
+    experiment.reference.elements.clear();
 }
 
 /// Gravity requires a density.
 void require_density(const TomlTable& document, const Experiment& experiment) {
   const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
                                   [](const Load& load) { return std::holds_alternative<Gravity>(load); });
-  if (weighs && !TomlTable(document.at("material"), material_schema).find("density_kg_m3"))
+  if (weighs && !TomlTable(document.at("material"), keys_of("material")).find("density_kg_m3"))
     missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
 }
 
 Experiment read_document(const TomlTable& document, Experiment experiment) {
   if (const auto cite = document.find("cite")) experiment.cite = as_text(*cite);
   if (const auto what = document.find("what")) experiment.what = as_text(*what);
-  if (const auto name = document.find("kinematics")) experiment.kinematics = as_choice(*name, kinematics_names);
+  if (const auto name = document.find("kinematics")) experiment.kinematics = as_choice(*name, kinematics_names());
   experiment.body = read_body(document.at("body"));
   experiment.patches = read_patch_rules(document);
   if (!experiment.patches.empty() && !experiment.body.is_voxels())
@@ -319,7 +289,7 @@ Experiment parse_experiment(const std::string& text, const std::filesystem::path
   }
   if (document.empty())
     throw InputError({file.string(), 0, 0}, "the case file is empty (needed: [body], [material], [[load]])");
-  return read_document(TomlTable({&document, "", file.string()}, document_schema), std::move(experiment));
+  return read_document(TomlTable({&document, "", file.string()}, keys_of("")), std::move(experiment));
 }
 
 Experiment read_experiment(const std::filesystem::path& file) {

@@ -12,28 +12,6 @@
 namespace springproof {
 namespace {
 
-constexpr Key compare_schema[] = {{"models"}, {"measures"}, {"elements"}, {"max_unknowns"},
-                                  {"cost"},   {"parts"},    {"exact"}};
-
-constexpr Key expect_schema[] = {{"model", "a model of [compare], or fem, fem_q1, ..."},
-                                 {"poisson_ratio"},
-                                 {"cells"},
-                                 {"measure", "the name of a row"},
-                                 {"source", "analytic, extrapolated FEM, published, regression"},
-                                 {"value"},
-                                 {"within"},
-                                 {"within_relative"},
-                                 {"at_least"},
-                                 {"where"}};
-
-constexpr Key published_schema[] = {{"model", "the name of a model"},
-                                    {"poisson_ratio", "one of the case's Poisson's ratios"},
-                                    {"cells"},
-                                    {"measure", "the name of a row"},
-                                    {"value", "a finite number"},
-                                    {"where", "table or figure"},
-                                    {"remark"}};
-
 bool is_fem(const std::string& model) {
   const auto elements = element_names();
   return model == "fem" ||
@@ -226,7 +204,7 @@ void read_tolerance(const TomlTable& table, Expectation& expect) {
 }
 
 Expectation read_expectation(const TomlValue& value, const Experiment& experiment) {
-  const TomlTable table(value, expect_schema);
+  const TomlTable table(value, keys_of("expect"));
   Expectation expect;
   expect.location = location_of(value);
   expect.model = read_judged_model(table.at("model"), experiment);
@@ -263,7 +241,7 @@ double most_cells(const Body& body) {
 }
 
 void read_compare_table(const TomlValue& value, const TomlTable& document, Experiment& experiment) {
-  const TomlTable table(value, compare_schema);
+  const TomlTable table(value, keys_of("compare"));
   if (const auto models = table.find("models")) experiment.models = read_models(*models, document);
   if (const auto exact = table.find("exact")) {
     experiment.exact = as_choice(*exact, exact_field_names());
@@ -335,7 +313,7 @@ void read_expectations(const TomlTable& document, Experiment& experiment) {
 
 void read_published(const TomlTable& document, Experiment& experiment) {
   for (const TomlValue& value : document.tables("published")) {
-    const TomlTable table(value, published_schema);
+    const TomlTable table(value, keys_of("published"));
     PublishedValue printed;
     printed.location = location_of(value);
     printed.model = as_text(table.at("model"));

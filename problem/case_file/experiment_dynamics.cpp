@@ -9,34 +9,12 @@
 namespace springproof {
 namespace {
 
-constexpr Key dynamics_schema[] = {{"duration_s", "a finite number > 0"},
-                                   {"integrator"},
-                                   {"start"},
-                                   {"time_step_s"},
-                                   {"damping_1_s"},
-                                   {"viscosity_s"},
-                                   {"loss_factor"},
-                                   {"mass_consistency"},
-                                   {"band_Hz"},
-                                   {"ramp_s"},
-                                   {"pulse_s"},
-                                   {"shake_Hz"},
-                                   {"plane"},
-                                   {"velocity_m_s"},
-                                   {"spin_rad_s"},
-                                   {"equilibrium"},
-                                   {"samples"},
-                                   {"frames"}};
-
-constexpr Key plane_schema[] = {
-    {"point_m", "a point in the plane [m]"}, {"normal", "its normal, towards the body"}, {"friction"}};
-
 /// A plane that the body falls on: of models alone, in large steps without friction.
 void read_plane(const TomlTable& table, const Experiment& experiment, MotionChoice& motion) {
   const auto value = table.find("plane");
   if (!value) return;
   if (experiment.reference.in_time) refuse(*value, "has no finite elements in time", "no in_time in [reference]");
-  const TomlTable keys(*value, plane_schema);
+  const TomlTable keys(*value, keys_of("dynamics.plane"));
   Plane plane;
   plane.point = as_vector(keys.at("point_m"));
   plane.normal = as_vector(keys.at("normal"));
@@ -112,7 +90,7 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
     refuse(document.at("reference"), "in_time integrates the motion of the case, and measures it at its probes",
            "with [dynamics] and a [[probe]] in the file");
   if (!value) return;
-  const TomlTable table(*value, dynamics_schema);
+  const TomlTable table(*value, keys_of("dynamics"));
   if (experiment.model_kinematics() == Kinematics::linear)
     refuse(*value, "moves the models by their forces at large displacements, and the case has kinematics = \"linear\"",
            "with kinematics = \"hencky\", \"neo_hooke\" or another finite-strain law");

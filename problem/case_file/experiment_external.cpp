@@ -7,19 +7,6 @@
 namespace springproof {
 namespace {
 
-constexpr Key external_schema[] = {{"name", "a name for its results"},
-                                   {"file"},
-                                   {"files"},
-                                   {"poisson_ratio"},
-                                   {"scale"},
-                                   {"up_axis"},
-                                   {"springs"},
-                                   {"reaction_N"}};
-
-// What differs from one Poisson's ratio to the other; of one file alone it stands in [[external]] itself.
-constexpr Key file_schema[] = {
-    {"file", "the name of a CSV file of points and displacements"}, {"poisson_ratio"}, {"reaction_N"}};
-
 /// One vector of each patch, as options.
 void read_reactions(const TomlValue& value, ModelChoice& choice) {
   const toml::table* patches = value.node->as_table();
@@ -51,7 +38,7 @@ ModelChoice read_file(const TomlTable& of, ModelChoice choice, const Experiment&
 
 /// One entry for each file.
 std::vector<ModelChoice> read_external(const TomlValue& value, const Experiment& experiment) {
-  const TomlTable table(value, external_schema);
+  const TomlTable table(value, keys_of("external"));
   ModelChoice choice;
   choice.name = external_model;
   choice.label = as_text(table.at("name"));
@@ -63,11 +50,11 @@ std::vector<ModelChoice> read_external(const TomlValue& value, const Experiment&
     refuse({value.node, value.key + ".file", value.file}, "is missing",
            "the name of a CSV file of points and displacements, or files = [{ poisson_ratio = 0.3, file = \"...\" }]");
   if (!files) return {read_file(table, choice, experiment)};
-  for (const Key& key : file_schema)
+  for (const Key& key : keys_of("external.files"))
     if (const auto beside = table.find(key.name)) refuse(*beside, "stands beside files", "in the rows of files");
   std::vector<ModelChoice> of_files;
   for (const TomlValue& item : as_list(*files, "a list of { poisson_ratio = 0.3, file = \"...\" }"))
-    of_files.push_back(read_file(TomlTable(item, file_schema), choice, experiment));
+    of_files.push_back(read_file(TomlTable(item, keys_of("external.files")), choice, experiment));
   return of_files;
 }
 

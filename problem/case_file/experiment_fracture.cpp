@@ -5,15 +5,6 @@
 namespace springproof {
 namespace {
 
-constexpr Key fracture_schema[] = {{"shrinkage", "of the rest lengths at the top at the end, 0 to 0.5"},
-                                   {"steps"},
-                                   {"depth_m"},
-                                   {"threshold", "the stretch at which springs break, > 0"},
-                                   {"scatter"},
-                                   {"apart"},
-                                   {"seed"},
-                                   {"seeds"}};
-
 int as_count(const TomlValue& value, double most) {
   const std::string words = fmt::format("a whole number from 1 to {:g}", most);
   const double x = as_number(value, {words.c_str(), 1, most, true, true});
@@ -37,7 +28,7 @@ void check_supports(const Experiment& e) {
 void read_fracture(const TomlTable& document, Experiment& experiment) {
   const auto value = document.find("fracture");
   if (!value) return;
-  const TomlTable table(*value, fracture_schema);
+  const TomlTable table(*value, keys_of("fracture"));
   Fracture f;
   f.shrinkage = as_number(table.at("shrinkage"), {"a number from 0 to 0.5", 0, 0.5, true, true});
   f.threshold = as_number(table.at("threshold"), {"a number > 0, up to 1", 0, 1, false, true});

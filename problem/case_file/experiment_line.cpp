@@ -7,8 +7,6 @@
 namespace springproof {
 namespace {
 
-constexpr Key line_schema[] = {{"from_m", "[x, y, z]"}, {"to_m", "[x, y, z]"}, {"points"}, {"middle"}};
-
 /// The requirement of Kelvin's solution that a case does not meet; nullptr: none.
 const char* missing_for_kelvin(const Experiment& experiment) {
   if (experiment.materials.size() != 1) return "one material";
@@ -42,7 +40,7 @@ void settle_kelvin(Experiment& experiment) {
 void read_line(const TomlTable& document, Experiment& experiment) {
   const auto value = document.find("line");
   if (!value) return;
-  const TomlTable table(*value, line_schema);
+  const TomlTable table(*value, keys_of("line"));
   Line line;
   line.from = as_vector(table.at("from_m"));
   line.to = as_vector(table.at("to_m"));

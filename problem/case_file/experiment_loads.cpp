@@ -9,30 +9,6 @@
 namespace springproof {
 namespace {
 
-constexpr const char* patch_words = "a patch name or a list of them";
-constexpr const char* vector_words = "[x, y, z]";
-
-constexpr Key on_key = {"on", patch_words};
-
-constexpr Key displacement_schema[] = {on_key, {"displacement_m", "[x, y, z], each a number or \"free\""}};
-constexpr Key affine_schema[] = {on_key, {"displacement_gradient", "3 rows of 3 numbers"}, {"displacement_m"}};
-constexpr Key rotation_schema[] = {on_key,
-                                   {"rotation_deg", "an angle"},
-                                   {"axis", "[x, y, z], the direction of the axis"},
-                                   {"about_m", "[x, y, z], a point of the axis"}};
-constexpr Key field_schema[] = {on_key, {"field", "the name of an exact field"}};
-constexpr Key pressure_schema[] = {on_key, {"pressure_Pa", "a number"}};
-constexpr Key body_force_schema[] = {{"body_force_of", "the name of an exact field"}};
-constexpr Key traction_schema[] = {on_key, {"traction_Pa", vector_words}};
-constexpr Key patch_force_schema[] = {on_key, {"force_N", vector_words}};
-constexpr Key point_force_schema[] = {{"force_N", vector_words}, {"at_m", "[x, y, z], a rest position"}};
-constexpr Key gravity_schema[] = {{"gravity_m_s2", vector_words}};
-
-constexpr Key any_load_schema[] = {
-    {"on"},    {"displacement_m"}, {"displacement_gradient"}, {"rotation_deg"}, {"axis"},         {"about_m"},
-    {"field"}, {"traction_Pa"},    {"pressure_Pa"},           {"force_N"},      {"gravity_m_s2"}, {"body_force_of"},
-    {"at_m"}};
-
 Load read_displacement(const TomlTable& table, const std::string& on) {
   PrescribedDisplacement load{on, {}};
   const TomlValue value = table.at("displacement_m");
@@ -90,31 +66,40 @@ Load read_body_force(const TomlTable& table, const std::string&) {
   return FieldBodyForce{as_choice(table.at("body_force_of"), exact_field_names())};
 }
 
-/// A kind of load is recognised by its keys and then read with its own schema.
+/// A kind of load is recognised by its keys and then read with those of its own.
 struct LoadKind {
-  const char* marks[2];  ///< keys that must all be present (nullptr: no second)
-  std::span<const Key> schema;
+  const char* table;     ///< its keys in keys.h: "load." and the key that it is recognised by
+  const char* together;  ///< a second key that must be there; null: none
   Load (*read)(const TomlTable&, const std::string& on);
+
+  const char* mark() const { return table + std::string_view("load.").size(); }
 };
 
 // The first matching kind is used, so the affine kind precedes the plain displacement and the point force the patch
 // force.
 const LoadKind load_kinds[] = {
-    {{"displacement_gradient", nullptr}, affine_schema, read_affine},
-    {{"displacement_m", nullptr}, displacement_schema, read_displacement},
-    {{"rotation_deg", nullptr}, rotation_schema, read_rotation},
-    {{"field", nullptr}, field_schema, read_field},
-    {{"traction_Pa", nullptr}, traction_schema, read_traction},
-    {{"pressure_Pa", nullptr}, pressure_schema, read_pressure},
-    {{"force_N", "at_m"}, point_force_schema, read_point_force},
-    {{"force_N", nullptr}, patch_force_schema, read_patch_force},
-    {{"gravity_m_s2", nullptr}, gravity_schema, read_gravity},
-    {{"body_force_of", nullptr}, body_force_schema, read_body_force},
+    {"load.displacement_gradient", nullptr, read_affine}, {"load.displacement_m", nullptr, read_displacement},
+    {"load.rotation_deg", nullptr, read_rotation},        {"load.field", nullptr, read_field},
+    {"load.traction_Pa", nullptr, read_traction},         {"load.pressure_Pa", nullptr, read_pressure},
+    {"load.at_m", "force_N", read_point_force},           {"load.force_N", nullptr, read_patch_force},
+    {"load.gravity_m_s2", nullptr, read_gravity},         {"load.body_force_of", nullptr, read_body_force},
 };
+
+/// The keys of loads of all kinds.
+std::vector<Key> keys_of_loads() {
+  std::vector<Key> keys;
+  for (const LoadKind& kind : load_kinds)
+    for (Key key : keys_of(kind.table)) {
+      key.otherwise = "";  // none is required before the kind is known
+      if (std::none_of(keys.begin(), keys.end(), [&](const Key& k) { return std::string_view(k.name) == key.name; }))
+        keys.push_back(key);
+    }
+  return keys;
+}
 
 const LoadKind& kind_of(const TomlTable& table) {
   for (const LoadKind& kind : load_kinds)
-    if (table.find(kind.marks[0]) && (!kind.marks[1] || table.find(kind.marks[1]))) return kind;
+    if (table.find(kind.mark()) && (!kind.together || table.find(kind.together))) return kind;
   refuse(table.value(), "says where but not what",
          "displacement_m, displacement_gradient, rotation_deg, field, traction_Pa, pressure_Pa, force_N, gravity_m_s2, "
          "body_force_of");
@@ -134,8 +119,8 @@ std::vector<std::string> read_patches(const TomlValue& value) {
 }  // namespace
 
 std::vector<Load> read_load(const TomlValue& value) {
-  const LoadKind& kind = kind_of(TomlTable(value, any_load_schema));
-  const TomlTable table(value, kind.schema);
+  const LoadKind& kind = kind_of(TomlTable(value, keys_of_loads()));
+  const TomlTable table(value, keys_of(kind.table));
   const auto on = table.find("on");
   if (!on) return {kind.read(table, "")};
   std::vector<Load> loads;

@@ -7,12 +7,6 @@
 namespace springproof {
 namespace {
 
-constexpr Key rule_schema[] = {{"name", "a name"}, {"box_m"}, {"beyond"}, {"facing"}, {"near"}};
-constexpr Key beyond_schema[] = {{"point_m", "[x, y, z], a point of the plane"},
-                                 {"normal", "[x, y, z], towards the facets that are meant"}};
-constexpr Key facing_schema[] = {{"direction", "[x, y, z]"}, {"within_deg", "an angle > 0 and <= 180"}};
-constexpr Key near_schema[] = {{"point_m", "[x, y, z]"}, {"radius_m", "a length > 0"}};
-
 PatchRule::Box read_box(const TomlValue& value) {
   const auto corners = as_list_of(2, value, "two corners, [[x, y, z], [x, y, z]]");
   const PatchRule::Box box{as_vector(corners[0]), as_vector(corners[1])};
@@ -25,23 +19,23 @@ PatchRule::Box read_box(const TomlValue& value) {
 }
 
 PatchRule::Beyond read_beyond(const TomlValue& value) {
-  const TomlTable table(value, beyond_schema);
+  const TomlTable table(value, keys_of("patch.beyond"));
   return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
 }
 
 PatchRule::Facing read_facing(const TomlValue& value) {
-  const TomlTable table(value, facing_schema);
+  const TomlTable table(value, keys_of("patch.facing"));
   return {as_direction(table.at("direction")),
           as_number(table.at("within_deg"), {"an angle > 0 and <= 180", 0, 180, false, true})};
 }
 
 PatchRule::Near read_near(const TomlValue& value) {
-  const TomlTable table(value, near_schema);
+  const TomlTable table(value, keys_of("patch.near"));
   return {as_vector(table.at("point_m")), as_number(table.at("radius_m"), positive_number)};
 }
 
 PatchRule read_rule(const TomlValue& value) {
-  const TomlTable table(value, rule_schema);
+  const TomlTable table(value, keys_of("patch"));
   PatchRule rule;
   rule.where = location_of(value);
   rule.name = as_text(table.at("name"));
@@ -63,7 +57,7 @@ std::vector<PatchRule> read_patch_rules(const TomlTable& document) {
     rules.push_back(read_rule(value));
     for (std::size_t i = 0; i + 1 < rules.size(); ++i)
       if (rules[i].name == rules.back().name)
-        refuse(TomlTable(value, rule_schema).at("name"),
+        refuse(TomlTable(value, keys_of("patch")).at("name"),
                fmt::format("'{}' is the name of another patch", rules[i].name), "a name of its own");
   }
   return rules;

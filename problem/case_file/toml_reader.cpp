@@ -37,9 +37,9 @@ std::string join_key(const std::string& table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
 }
 
-void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::span<const Key> schema) {
+void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::span<const Key> keys) {
   std::vector<std::string> names;
-  for (const Key& key : schema) names.emplace_back(key.name);
+  for (const Key& key : keys) names.emplace_back(key.name);
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
@@ -209,13 +209,13 @@ std::vector<TomlValue> one_or_several(const TomlValue& value) {
   return as_list(value, "one value or a list that is not empty");
 }
 
-TomlTable::TomlTable(const TomlValue& value, std::span<const Key> schema) : value_(value) {
+TomlTable::TomlTable(const TomlValue& value, std::span<const Key> keys) : value_(value) {
   const toml::table* table = value.node->as_table();
   if (!table) wrong_type(value, "a table");
-  refuse_unknown_keys(value, *table, schema);
-  for (const Key& key : schema)
-    if (key.required && !table->contains(key.name))
-      refuse({value.node, join_key(value.key, key.name), value.file}, "is missing", key.required);
+  refuse_unknown_keys(value, *table, keys);
+  for (const Key& key : keys)
+    if (!key.otherwise && !table->contains(key.name))
+      refuse({value.node, join_key(value.key, key.name), value.file}, "is missing", key.allowed);
 }
 
 std::optional<TomlValue> TomlTable::find(const std::string& key) const {

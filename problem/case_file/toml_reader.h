@@ -1,5 +1,5 @@
-// Reading TOML with a schema: every unknown key, missing key, wrong type and value out of range raises an InputError
-// with its location and what is allowed.
+// Reading TOML against a list of keys (keys.h): every unknown key, missing key, wrong type and value out of range
+// raises an InputError with its location and what is allowed.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "problem/case_file/experiment.h"
+#include "problem/case_file/keys.h"
 
 namespace springproof {
 
@@ -39,12 +40,6 @@ inline constexpr double smallest_number = 1e-30, largest_number = 1e30;
 inline constexpr Range any_number{"a finite number"};
 inline constexpr Range positive_number{"a finite number > 0", 0};
 inline constexpr Range not_negative{"a finite number >= 0", 0, std::numeric_limits<double>::infinity(), true};
-
-/// A line of a table's schema: {"what"} is optional, {"geo", "a file"} is required.
-struct Key {
-  const char* name;
-  const char* required = nullptr;  ///< description for the message when it is missing; null: the key is optional
-};
 
 /// @throws InputError "FILE:LINE:COLUMN: key: what is wrong (allowed: ...)"; `hint` follows, e.g. "; did you
 /// mean 'x'?".
@@ -74,14 +69,14 @@ Cells as_cells(const TomlValue& value);     ///< three integers 1..1000
 /// The value itself, or its items if it is a list: for keys that take one or several.
 std::vector<TomlValue> one_or_several(const TomlValue& value);
 
-/// A table whose keys have been checked against a schema.
+/// A table whose keys have been checked against keys.h.
 class TomlTable {
  public:
-  /// @throws InputError if the value is no table, has a key that the schema lacks or lacks a required one.
-  TomlTable(const TomlValue& value, std::span<const Key> schema);
+  /// @throws InputError if the value is no table, has a key that is not among these or lacks a required one.
+  TomlTable(const TomlValue& value, std::span<const Key> keys);
 
   std::optional<TomlValue> find(const std::string& key) const;
-  TomlValue at(const std::string& key) const;  ///< a key the schema requires
+  TomlValue at(const std::string& key) const;  ///< a key that is required
   const TomlValue& value() const { return value_; }
 
   /// The tables of [[key]], in order; none if the key is missing.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The man page and the completion know every command and option of --help, and work.   describe.sh PROGRAM SOURCE-FOLDER
+# The man page and the completion know every command and option of --help, and work; docs/keys.md is what the program prints.   describe.sh PROGRAM SOURCE-FOLDER
 . "$(dirname "$0")/lib.sh"
 program=$1 source=$2
 
@@ -35,6 +35,9 @@ done
 [[ $(complete_words compare golec_2019/compression --out "$work/spring") == *"$work/springproof.1"* ]] || fail "no files after --out"
 [[ $(complete_words material --model "$work/") != *"$work"* ]] || fail "files after --model"
 [[ $(complete_words descr) != *describe* ]] || fail "the hidden command is completed"
+
+"$program" describe keys | diff "$source/docs/keys.md" - >"$work/diff" ||
+  fail "docs/keys.md is not what springproof describe keys prints:"$'\n'"$(head "$work/diff")"
 
 # The variables that the sources read.
 variables=$(grep -rhoE '"SPRINGPROOF_[A-Z_]+"' --include='*.cpp' "$source"/{problem,meshes,msm,fem_reference,comparisons} | tr -d '"' | sort -u)

@@ -33,26 +33,19 @@ grep -q 'edges.*E = 1e+06 Pa, nu = 0.25' <("$program" export bar.toml --to jolt 
 grep -q '<elasticity young="1000000" poisson="0.4" damping="0"/>' bar.xml || fail "bar.xml"
 [ "$(grep -c '<body name="n[0-9]*" pos="0 [^/]*/>' bar.xml)" -eq 9 ] || fail "the pins of bar.xml: $(grep '<body' bar.xml | head -3)"
 
-refused() {
-  local pattern=$1
-  shift
-  rm -f no.json no.xml
-  "$program" export "$@" >log 2>&1
-  local status=$?
-  [ $status -eq 2 ] && grep -qE -- "$pattern" log && [ ! -e no.json ] && [ ! -e no.xml ] || fail "$*: status $status: $(head -c 600 log)"
-}
-refused 'hybmss has more than springs.*lock \(allowed: msm_18, msm_14, hybmss_cf\)' bar.toml --to jolt --model hybmss --out no.json
-refused 'is 0.4, and springs alone.*\(allowed: 0.25;' bar.toml --to jolt --nu 0.4 --out no.json
-refused 'msm_18: Bullet.s links have no modulus' bar.toml --to bullet --model msm_18 --out no.json
-refused 'a name that ends in .xml' bar.toml --to mujoco --out no.json
+refused 'hybmss has more than springs.*lock \(allowed: msm_18, msm_14, hybmss_cf\)' export bar.toml --to jolt --model hybmss --out no.json
+refused 'is 0.4, and springs alone.*\(allowed: 0.25;' export bar.toml --to jolt --nu 0.4 --out no.json
+refused 'msm_18: Bullet.s links have no modulus' export bar.toml --to bullet --model msm_18 --out no.json
+refused 'a name that ends in .xml' export bar.toml --to mujoco --out no.json
 # Boxes: an engine gets cubes, and the message says how.
 sed 's/cells = .*/cells = [8, 2, 2]/; s/"hybmss", "msm_18"/"hybmss_avg"/' bar.toml >boxes.toml
 for engine in jolt bullet mujoco lammps; do
-  refused "boxes.toml: the cells are 0.125 x 0.25 x 0.25 m \(allowed with --to $engine: cubes, --cells NX NY NZ" boxes.toml --to $engine
+  refused "boxes.toml: the cells are 0.125 x 0.25 x 0.25 m \(allowed with --to $engine: cubes, --cells NX NY NZ" export boxes.toml --to $engine
 done
 "$program" export boxes.toml --to jolt --cells 8 4 4 --out cubes.json >log 2>&1 || fail "boxes as cubes: $(cat log)"
 "$program" export boxes.toml --to springs --out boxes.json >log 2>&1 || fail "boxes as springs: $(cat log)"
-refused 'not the corners of whole cubes' bar.toml --to jolt --model msm_centred --out no.json
+refused 'not the corners of whole cubes' export bar.toml --to jolt --model msm_centred --out no.json
+[ ! -e no.json ] && [ ! -e no.xml ] || fail "a refused export wrote a file"
 
 # The numbers of `material` are those of the file: a spring inside, on the surface, on an edge.
 "$program" material -E 1e6 --nu 0.25 --cell-size 0.25 --model msm_18 --json >material.json || fail "material"
@@ -67,5 +60,5 @@ assert {k: {float("%.9g" % c) for c in v.values()} for k, v in want.items()} == 
 assert abs(sum(file["nodes"]["mass_kg"]) - 250) < 1e-9
 END
 "$program" material -E 1e6 --nu 0.4 --frequency 3 >log || fail "material: $(cat log)"
-grep -qE "Bullet's neo-Hooke: mu = 4/3 G = 476190 Pa" log && grep -q 'damps 3 Hz by pi f dt of the critical: 0.157 at 1/60 s, 0.0393' log || fail "material: $(cat log)"
+grep -qE "Bullet's neo-Hooke, mu +476190 Pa   4/3 G" log && grep -qE 'damps 3 Hz in steps of 1/60 s by +0.15708   of the critical' log || fail "material: $(cat log)"
 exit $((failures > 0))

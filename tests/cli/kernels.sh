@@ -4,7 +4,7 @@
 command -v nm >/dev/null || { echo "no nm"; exit 77; }
 checked=0
 for set in portable avx2 avx512; do
-  for object in "$1"/msm/CMakeFiles/msm_$set.dir/kernels/*.o; do
+  for object in "$1"/msm/CMakeFiles/msm_$set.dir/kernels/compiled/*.o; do
     [ -e "$object" ] || continue
     checked=$((checked + 1))
     foreign=$(nm -C --defined-only "$object" | grep -E ' [WVuTB] ' | grep -v -e "springproof::$set::" -e "DW.ref.__gxx_personality_v0")

@@ -13,17 +13,10 @@ measure = "displacement_error"
 source = "extrapolated FEM"
 within = 10
 TOML
-fail() {
-  echo "FAILED after $killed kills (seed $seed): $1"
-  cat "$work/log"
-  exit 1
-}
 start() { "$program" $arguments --out "$work/$1" >"$work/log" 2>&1; }
-# Everything but times and memory.
-numbers() { cat "$work/$1/results.csv" && grep -vE '"(generated|seconds|set_up_seconds|memory_MiB)"' "$work/$1/results.json"; }
 compare() {
-  numbers "$1" >"$work/numbers" || fail "no results"
-  cmp "$work/undisturbed" "$work/numbers" || fail "other numbers than those of an undisturbed run"
+  numbers "$work/$1" >"$work/numbers" || stop "no results"
+  cmp "$work/undisturbed" "$work/numbers" || stop "other numbers than those of an undisturbed run"
 }
 # Programs that a start has left running: each has inherited the variable.
 survivors() { grep -lzs "^SPRINGPROOF_KILL_TEST=$work\$" /proc/[0-9]*/environ; }
@@ -32,17 +25,18 @@ none_survives() {
     left=$(for p in $(survivors); do readlink "${p%environ}exe"; done | grep springproof) || return 0
     sleep 0.1
   done
-  fail "still running five seconds later: $left"
+  stop "still running five seconds later: $left"
 }
 
 arguments="compare $work/case.toml --jobs 2 --resume"
 killed=0 finished=0
+echo "seed $seed"
 begin=$(date +%s%N)
 start whole
 whole=$?  # 1 where the reference is too coarse, or not there
-[ $whole -le 1 ] || fail "the undisturbed run failed"
+[ $whole -le 1 ] || stop "the undisturbed run failed"
 milliseconds=$((($(date +%s%N) - begin) / 1000000))
-numbers whole >"$work/undisturbed" || fail "no results of the undisturbed run"
+numbers "$work/whole" >"$work/undisturbed" || stop "no results of the undisturbed run"
 while [ $killed -lt "$kills" ]; do
   (exec "$program" $arguments --out "$work/out" >"$work/log" 2>&1) &
   pid=$!
@@ -55,14 +49,14 @@ while [ $killed -lt "$kills" ]; do
     killed=$((killed + 1))
     none_survives
   else
-    [ $status -eq $whole ] || fail "a resumed run ended with $status and not with $whole"
+    [ $status -eq $whole ] || stop "a resumed run ended with $status and not with $whole"
     finished=$((finished + 1))
     compare out
     rm -rf "$work/out"
   fi
 done
 start out
-[ $? -eq $whole ] || fail "resuming failed"
+[ $? -eq $whole ] || stop "resuming failed"
 compare out
-[ -z "$(ls -A "$TMPDIR")" ] || fail "left in the temporary folder: $(ls -A "$TMPDIR")"
+[ -z "$(ls -A "$TMPDIR")" ] || stop "left in the temporary folder: $(ls -A "$TMPDIR")"
 echo "$killed kills, $((finished + 1)) runs finished with the same numbers (seed $seed)"

@@ -18,6 +18,24 @@ stop() {
   exit 1
 }
 
+# refused PATTERN ARGUMENTS...: $program ends with 2 and says why.
+refused() {
+  local pattern=$1
+  shift
+  "$program" "$@" >"$work/log" 2>&1
+  [ $? -eq 2 ] && grep -qE -- "$pattern" "$work/log" || fail "not refused: $*" "$work/log"
+}
+
+# entry CSV COLUMN NAME=VALUE...: that column of the rows whose columns NAME are VALUE.
+entry() {
+  awk -F, -v column="$2" -v wanted="${*:3}" '
+    NR == 1 { n = split(wanted, want, "[ =]"); for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    { for (i = 1; i < n; i += 2) if ($at[want[i]] != want[i + 1]) next; print $at[column] }' "$1"
+}
+
+# numbers FOLDER: its results.csv and results.json, but for times and memory.
+numbers() { cat "$1/results.csv" && grep -vE '"(generated|seconds|set_up_seconds|memory_MiB)"' "$1/results.json"; }
+
 # block_case POISSON-RATIOS [CELLS]: a block whose top is lifted by a hundredth.
 block_case() {
   cat <<TOML

@@ -4,7 +4,6 @@
 cd "$1" || exit 1
 page=docs/papers.md
 found=0
-fail() { echo "FAILED: $page: $*"; failures=$((failures + 1)); }
 
 # All tests as SUITE.NAME (a test of a suite with parameters too), all words of the sources.
 grep -rhoE '^(TEST|TEST_F|TEST_P|TYPED_TEST)\([A-Za-z0-9_]+, [A-Za-z0-9_]+' --include='*.cpp' tests | sed -E 's/^[A-Z_]+\(//; s/, /./' >"$work/tests"

@@ -18,6 +18,7 @@ plan() {
     "ctest --test-dir build/release -"* | "cmake --build build/release --target "*) echo "check ctest would run itself" ;;
     "$springproof compare golec_2019 --shard "* | "$springproof report "*) echo "check it takes a shared folder; cli.shard runs such" ;;
     "sbatch "* | "parallel "*) echo "check it needs a cluster" ;;
+    "mpirun "* | "$springproof compare bodies/rabbit_5000 "*) echo "check minutes; cli.mpi_models runs such" ;;
     "$springproof compare golec_2019/"* | "$springproof compare verification" | "$springproof compare calibration" | \
       "$springproof compare large_strain" | "$springproof compare motion")
       echo "check minutes; the tests experiment.* run these cases" ;;
@@ -25,7 +26,7 @@ plan() {
     "$springproof cross-check "*) echo "check it needs CalculiX; cli.cross_check runs it" ;;
     "$springproof reproduce "*) echo "check minutes; cli.reproduce draws figures from results" ;;
     "$springproof advise "*) echo "check it may end with status 1; cli.advise runs such" ;;
-    "$springproof bench "*) echo "check minutes; cli.bench and cli.bench_engines run such" ;;
+    "$springproof bench "*) echo "check minutes; cli.bench runs such" ;;
     "$springproof diff "*) echo "check it takes the folders of two runs; the tests Differences.* compare such" ;;
     "$springproof pictures"*) echo "check it needs Chromium; cli.pictures runs it" ;;
   esac
@@ -120,11 +121,12 @@ check() {
   read -ra words <<<"$1"
   case ${words[0]} in
     build/release/springproof) ;;
+    mpirun) [ -x "${words[3]}" ] || return 0; words=("${words[3]}" "" "${words[@]:4}") ;;
     ctest | cmake) check_name "${words[@]}"; return ;;
     sbatch | parallel) check "$(sed -E "s/.* '([^']*)'.*/\1/" <<<"$1")"; return ;;
     *) check_script "${words[@]}"; return ;;
   esac
-  help=$(build/release/springproof "${words[1]}" --help) || { echo "no command ${words[1]}"; return 1; }
+  help=$("${words[0]}" ${words[1]:+"${words[1]}"} --help) || { echo "no command ${words[1]}"; return 1; }
   cases=$(build/release/springproof list)
   for word in "${words[@]:2}"; do
     if [ $takes_value = 1 ]; then takes_value=0; continue; fi

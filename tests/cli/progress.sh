@@ -2,12 +2,7 @@
 # Long runs speak: a live line on a terminal, a line per long phase elsewhere, an estimate before long runs.   progress.sh PROGRAM
 . "$(dirname "$0")/lib.sh"
 program=$1
-fail() {
-  echo "FAILED: $1"
-  [ -z "$(jobs -p)" ] || kill $(jobs -p)
-  cat -v "$work/log" | tail -30
-  exit 1
-}
+trap '[ -z "$(jobs -p)" ] || kill $(jobs -p); rm -rf "$work"' EXIT
 write_case() {  # NAME REFERENCE_CELLS
   { block_case '[0.3, 0.48]' '[4, 4, 4]'; printf '[reference]\ncells = [%s, %s, %s]\n' "$2" "$2" "$2"; } >"$work/$1.toml"
 }
@@ -16,10 +11,10 @@ write_case seconds 8
 write_case minutes 96
 
 # Not a terminal, short phases: a line per part, nothing else; --quiet: nothing.
-"$program" compare "$work/short.toml" --out "$work/out" 2>"$work/log" >"$work/results" || fail "a short run failed"
-[ "$(wc -l <"$work/log")" -eq 2 ] || fail "a short run should say one line per part"
-"$program" compare "$work/short.toml" --out "$work/out" --quiet 2>"$work/log" >"$work/results" || fail "a quiet run failed"
-[ ! -s "$work/log" ] || fail "--quiet says something"
+"$program" compare "$work/short.toml" --out "$work/out" 2>"$work/log" >"$work/results" || stop "a short run failed"
+[ "$(wc -l <"$work/log")" -eq 2 ] || stop "a short run should say one line per part"
+"$program" compare "$work/short.toml" --out "$work/out" --quiet 2>"$work/log" >"$work/results" || stop "a quiet run failed"
+[ ! -s "$work/log" ] || stop "--quiet says something"
 
 # Not a terminal, a phase of more than ten seconds: one line.  The first grid is at it until that is said.
 cat >"$work/slow" <<SLOW
@@ -44,16 +39,16 @@ pid=$!
 until grep -q 'beside the coarsest grid alone: ' "$work/log"; do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
 kill -INT $pid
 wait $pid
-[ $? -eq 130 ] || fail "an interrupted run should end with 130"
-head -1 "$work/log" | grep -Eq '^about ([0-9]+ (s|min|h) )+for 2 parts, [12] at once$' || fail "no estimate of a long run"
-grep -Eq '^\[[12]/2\] minutes  nu0\.(3|48): beside the coarsest grid alone: [a-z_]+ [0-9.]+ %' "$work/log" || fail "no first verdict of a long run"
+[ $? -eq 130 ] || stop "an interrupted run should end with 130"
+head -1 "$work/log" | grep -Eq '^about ([0-9]+ (s|min|h) )+for 2 parts, [12] at once$' || stop "no estimate of a long run"
+grep -Eq '^\[[12]/2\] minutes  nu0\.(3|48): beside the coarsest grid alone: [a-z_]+ [0-9.]+ %' "$work/log" || stop "no first verdict of a long run"
 
 # A terminal: the live line says what springproof-fem is at, and is gone at the end, interrupted or not.
-script --version >/dev/null 2>&1 || { kill $slow; echo "no terminal to be had: install util-linux"; exit 77; }
+script --version >/dev/null 2>&1 || { echo "no terminal to be had: install util-linux"; exit 77; }
 gone_at_the_end() {
   local text
   text=$(cat "$work/log")
-  [[ "${text##*finite elements}" == *$'\r\e[K'* ]] || fail "$1"
+  [[ "${text##*finite elements}" == *$'\r\e[K'* ]] || stop "$1"
 }
 # seen FILE: a solver that ends when the terminal has shown what it was at, and then a detail of it.
 cat >"$work/seen" <<SEEN
@@ -70,19 +65,19 @@ done
 SEEN
 chmod +x "$work/seen"
 : >"$work/log"
-SPRINGPROOF_FEM_PROGRAM="$work/seen" script -qefc "stty cols 200; '$program' compare '$work/seconds.toml' --poisson-ratio 0.3 --jobs 1 --out '$work/out' >'$work/results'" "$work/log" >/dev/null || fail "a run on a terminal failed"
+SPRINGPROOF_FEM_PROGRAM="$work/seen" script -qefc "stty cols 200; '$program' compare '$work/seconds.toml' --poisson-ratio 0.3 --jobs 1 --out '$work/out' >'$work/results'" "$work/log" >/dev/null || stop "a run on a terminal failed"
 for grid in 'q2 on 2 x 2 x 2' 'q2 on 4 x 4 x 4' 'q2 on 8 x 8 x 8' 'q1 on 4 x 4 x 4'; do
-  grep -q "finite elements, $grid cells" "$work/log" || fail "no live line of $grid"
+  grep -q "finite elements, $grid cells" "$work/log" || stop "no live line of $grid"
 done
-grep -q 'finite elements, q' "$work/results" && fail "the live line went to standard output"
+grep -q 'finite elements, q' "$work/results" && stop "the live line went to standard output"
 gone_at_the_end "the live line is left behind"
 : >"$work/log"
 script -qefc "stty cols 200; '$program' compare '$work/minutes.toml' --jobs 1 --out '$work/out' & until grep -q 'finite elements[,] ' '$work/log'; do sleep 0.1; done; kill -INT \$!; wait \$!" "$work/log" >/dev/null
-[ $? -eq 130 ] || fail "an interrupted run on a terminal should end with 130"
+[ $? -eq 130 ] || stop "an interrupted run on a terminal should end with 130"
 gone_at_the_end "an interrupt leaves the live line behind"
 
-wait $slow || { mv "$work/slow_log" "$work/log"; fail "a slow run failed"; }
+wait $slow || { mv "$work/slow_log" "$work/log"; stop "a slow run failed"; }
 mv "$work/slow_log" "$work/log"
-[ "$(grep -c '^  \[1/1\] short  nu0.3: a phase, its detail ([0-9]* s so far' "$work/log")" -eq 1 ] || fail "a phase of 11 s should have one line"
-grep -q 'a phase' "$work/slow_results" && fail "progress went to standard output"
+[ "$(grep -c '^  \[1/1\] short  nu0.3: a phase, its detail ([0-9]* s so far' "$work/log")" -eq 1 ] || stop "a phase of 11 s should have one line"
+grep -q 'a phase' "$work/slow_results" && stop "progress went to standard output"
 echo "long runs speak"

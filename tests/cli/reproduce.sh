@@ -4,19 +4,10 @@
 . "$(dirname "$0")/lib.sh"
 program=$1 source=$2
 
-# refused STATUS TEXT ARGUMENT...: ends with that status and says so.
-refused() {
-  local status=$1 text=$2 got
-  shift 2
-  "$program" reproduce "$@" --out "$work/none" >"$work/said" 2>&1
-  got=$?
-  [ $got -eq "$status" ] || fail "reproduce $*: status $got"
-  grep -qF "$text" "$work/said" || fail "reproduce $* does not say: $text"
-}
-refused 2 'allowed: golec_2019, kot_2014, kot_2015' golec
-refused 2 'allowed: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13' kot_2015 --figure 14
-refused 2 'no results.json here' kot_2015 --from "$work"
-refused 2 'PAPER is required'
+refused 'allowed: golec_2019, kot_2014, kot_2015' reproduce golec
+refused 'allowed: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13' reproduce kot_2015 --figure 14
+refused 'no results.json here' reproduce kot_2015 --from "$work"
+refused 'PAPER is required' reproduce
 
 fem=${SPRINGPROOF_FEM_PROGRAM:-$(dirname "$program")/springproof-fem}
 "$program" reproduce kot_2014 --figure 1,13 --out "$work/out" --jobs 1 --quiet >"$work/said" 2>&1 || [ ! -x "$fem" ] || fail "Fig. 13: status $?"

@@ -255,27 +255,27 @@ sed 's/MODEL/hybmss/g' template.toml >own.toml
 sed -i 's/"version": 1/"version":  1/' hybmss.json
 "$program" compare own.toml --out own --resume 2>&1 | grep -q 'kept from before' && fail "a part of another springs file is kept"
 
-# refused PATTERN SED-EXPRESSION: the file of hybmss, spoilt
+# spoilt PATTERN SED-EXPRESSION: the file of hybmss, spoilt
 cp hybmss.json good.json
-refused() {
+spoilt() {
   sed -E "$2" good.json >hybmss.json
   cmp -s good.json hybmss.json && fail "nothing is spoilt by $2"
   "$program" compare own.toml --out refused >log 2>&1
   local status=$?
   [ $status -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log && [ ! -e refused ] || fail "$2: status $status: $(head -c 600 log)"
 }
-refused 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
-refused 'own.toml:16:.*hybmss.json: /version: is 5 \(allowed' 's/"version":  1/"version": 5/'
-refused 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
-refused 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
-refused 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'
-refused 'hybmss.json: /nodes/mass_kg: has 44 numbers \(allowed: 45, as there are nodes' 's/("mass_kg": \[)[^,]*,/\1/'
-refused 'hybmss.json: /springs/rest_length_m/0: is -0.05 ' 's/("rest_length_m": \[)[^,]*/\1-0.05/'
-refused 'hybmss.json: /springs/stiffness_N_m/0: is null ' 's/("stiffness_N_m": \[)[^,]*/\1null/'
-refused 'hybmss.json: /nodes: node 0 is not at rest' 's/("rest_length_m": \[)[^,]*/\10.06/'
-refused 'hybmss.json: /material: the springs are those of E = 10000 Pa, nu = 0.3.*nu = 0.4' 's/"poisson_ratio": 0.4/"poisson_ratio": 0.3/'
-refused "hybmss.json: /laws/volume_corection: is an unknown key.*did you mean 'volume_correction'" 's/volume_correction/volume_corection/'
-refused 'hybmss.json: /density: is an unknown key' 's/density_kg_m3/density/'
+spoilt 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
+spoilt 'own.toml:16:.*hybmss.json: /version: is 5 \(allowed' 's/"version":  1/"version": 5/'
+spoilt 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
+spoilt 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
+spoilt 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'
+spoilt 'hybmss.json: /nodes/mass_kg: has 44 numbers \(allowed: 45, as there are nodes' 's/("mass_kg": \[)[^,]*,/\1/'
+spoilt 'hybmss.json: /springs/rest_length_m/0: is -0.05 ' 's/("rest_length_m": \[)[^,]*/\1-0.05/'
+spoilt 'hybmss.json: /springs/stiffness_N_m/0: is null ' 's/("stiffness_N_m": \[)[^,]*/\1null/'
+spoilt 'hybmss.json: /nodes: node 0 is not at rest' 's/("rest_length_m": \[)[^,]*/\10.06/'
+spoilt 'hybmss.json: /material: the springs are those of E = 10000 Pa, nu = 0.3.*nu = 0.4' 's/"poisson_ratio": 0.4/"poisson_ratio": 0.3/'
+spoilt "hybmss.json: /laws/volume_corection: is an unknown key.*did you mean 'volume_correction'" 's/volume_correction/volume_corection/'
+spoilt 'hybmss.json: /density: is an unknown key' 's/density_kg_m3/density/'
 cp good.json hybmss.json
 sed -i 's/hybmss.json/none.json/' own.toml
 "$program" compare own.toml --out refused >log 2>&1

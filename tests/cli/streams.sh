@@ -51,7 +51,7 @@ own export "$work/case.toml" --poisson-ratio 0.25 --model hybmss --to springs --
 own frequencies "$work/case.toml" --poisson-ratio 0.25 --modes 2
 "$program" "${compare[@]}" "$work/mute" >/dev/full 2>"$work/log"
 lost $? "compare >/dev/full"
-for name in springproof-mesh springproof-fem springproof-bench springproof-lattice; do
+for name in springproof-mesh springproof-fem springproof-bench springproof-mpi; do
   other=$(dirname "$program")/$name
   [ -x "$other" ] || continue
   argument=--help

@@ -2,11 +2,6 @@
 # What the verdict says, and when a comparison is no success.   verdict.sh PROGRAM
 . "$(dirname "$0")/lib.sh"
 program=$1
-fail() {
-  echo "FAILED: $1"
-  cat "$work/stdout" "$work/stderr"
-  failures=$((failures + 1))
-}
 
 # make NAME REFERENCE MODELS NU: a slender bar, twisted by 5 degrees at one end
 make() {
@@ -40,20 +35,14 @@ expect() {
   shift 3
   env "$@" "$program" compare "$work/$name.toml" --verbose --jobs 1 --out "$work/out-$name" >"$work/stdout" 2>"$work/stderr"
   local found=$?
-  [ $found -eq "$status" ] || fail "$name: status $found, not $status"
-  grep -qE "$pattern" "$work/stdout" || fail "$name: does not say '$pattern'"
-}
-
-# value NAME MODEL MEASURE COLUMN
-value() {
-  awk -F, -v model="$2" -v measure="$3" -v column="$4" \
-    'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i } $at["model"] == model && $at["measure"] == measure { print $at[column] }' "$work/out-$1/results.csv"
+  [ $found -eq "$status" ] || fail "$name: status $found, not $status" "$work/stdout" "$work/stderr"
+  grep -qE "$pattern" "$work/stdout" || fail "$name: does not say '$pattern'" "$work/stdout" "$work/stderr"
 }
 
 # between NAME MODEL MEASURE COLUMN LOW HIGH
 between() {
   local x
-  x=$(value "$1" "$2" "$3" "$4")
+  x=$(entry "$work/out-$1/results.csv" "$4" "model=$2" "measure=$3")
   awk -v x="$x" -v low="$5" -v high="$6" 'BEGIN { exit !(x != "" && x >= low && x <= high) }' || fail "$1: $2 $3 $4 is '$x', not within $5 ... $6"
 }
 

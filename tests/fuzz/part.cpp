@@ -3,7 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "comparisons/run/part_file.h"
+#include "comparisons/sweep/part_file.h"
 #include "fuzz/reader.h"
 #include "problem/system/checksum.h"
 

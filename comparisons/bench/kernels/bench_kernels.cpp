@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "msm/kernels/simd_math.h"
+#include "msm/kernels/compiled/simd_math.h"
 
 namespace springproof::bench::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {

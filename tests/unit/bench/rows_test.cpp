@@ -7,7 +7,7 @@
 #include <cmath>
 #include <thread>
 
-#include "comparisons/bench/table.h"
+#include "comparisons/bench/machine.h"
 #include "comparisons/bench/timer.h"
 
 namespace springproof::bench::rows_test {
@@ -38,7 +38,7 @@ TEST(BenchRows, WithoutBaselineTheValueIsJudged) {
 TEST(BenchRows, WhatIsNoNumberIsNoResult) {
   EXPECT_EQ(outcome(row(std::nan(""), 0, at_most(13))), Outcome::no_result);
   EXPECT_EQ(outcome(row(0, 10, at_least(5))), Outcome::no_result);
-  EXPECT_FALSE(complete({{row(1, 0, {}), row(std::nan(""), 0, {})}, {}, {}}));
+  EXPECT_FALSE(complete({{row(1, 0, {}), row(std::nan(""), 0, {})}, {}}));
 }
 
 TEST(BenchTimer, SamplesHaveTheStepsThatThreadsNeedToTakeThemInTurn) {
@@ -52,7 +52,7 @@ TEST(BenchTimer, SamplesHaveTheStepsThatThreadsNeedToTakeThemInTurn) {
 }
 
 TEST(BenchTable, MissedTargetsAreNotHidden) {
-  const Findings findings{{row(2, 9, at_least(5)), row(2, 11, at_least(5))}, {}, {"a remark"}};
+  const Findings findings{{row(2, 9, at_least(5)), row(2, 11, at_least(5))}, {"a remark"}};
   const std::string text = table_text({"a processor", 2, {}, {{"L1", 32768}}}, findings);
   EXPECT_NE(text.find("MISSED"), std::string::npos);
   EXPECT_NE(text.find("1 of 2 targets met"), std::string::npos);

@@ -10,7 +10,7 @@
 namespace springproof::motion_test {
 namespace {
 
-fem::GridProblem block_in_motion(const Vec3& size, const Cells& cells, double nu, const fem::Motion& motion,
+fem::GridProblem block_in_motion(const Vec3& size, const Cells& cells, double nu, const fem::MotionRequest& motion,
                                  int steps) {
   fem::GridProblem problem = test::fem_block(size, cells, 0, 2, nu);
   problem.loads.clear();
@@ -46,7 +46,7 @@ TEST(FemMotion, OfABarLetGoIsATriangularWave) {
   const double length = 2;
   fem::GridProblem problem = block_in_motion({length, 0.5, 0.5}, {16, 1, 1}, 0, {}, 0);
   const double c = std::sqrt(problem.material.youngs_modulus / problem.material.density), period = 4 * length / c;
-  problem.motion = fem::Motion{period, 0, {}, true};
+  problem.motion = fem::MotionRequest{period, 0, {}, true};
   problem.steps = 400;
   const double traction = 1e-3 * problem.material.youngs_modulus, amplitude = 1e-3 * length;
   problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, Traction{"x_max", {traction, 0, 0}}};
@@ -198,7 +198,7 @@ TEST(FemMotion, ViscosityDampsASwingByItsShare) {
       problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, PatchForce{"x_max", {0, 0, -2000}}};
       problem.points.resize(1, 3);
       problem.points << 4, 0.5, 0.5;
-      problem.motion = fem::Motion{.duration = 3.5, .released = true, .viscosity = 0.02};
+      problem.motion = fem::MotionRequest{.duration = 3.5, .released = true, .viscosity = 0.02};
       problem.steps = 280;
       const fem::Solution s = fem::solve_grid(problem);
       ASSERT_TRUE(s.ok) << s.message;
@@ -210,7 +210,7 @@ TEST(FemMotion, ViscosityDampsASwingByItsShare) {
 
 TEST(FemMotion, ViscosityDoesNotBrakeASpin) {
   const double turn = 2 * std::numbers::pi / 5;
-  fem::Motion motion{.duration = turn, .spin = {0, 0, 5}, .viscosity = 0.05};
+  fem::MotionRequest motion{.duration = turn, .spin = {0, 0, 5}, .viscosity = 0.05};
   fem::GridProblem problem = block_in_motion({1, 0.6, 0.8}, {2, 1, 1}, 0.3, motion, 400);
   problem.law = "hencky";
   problem.material.youngs_modulus = 1e6;
@@ -225,7 +225,7 @@ TEST(FemMotion, ViscosityDoesNotBrakeASpin) {
 /// Largest change of the energy and of the angular momentum of a free bar that spins and rings for four turns.
 std::pair<double, double> lost(bool energy_momentum, const char* law, double nu, int steps) {
   const double turn = 2 * std::numbers::pi / 20;
-  fem::Motion motion{.duration = 4 * turn, .spin = {0, 6, 19}};
+  fem::MotionRequest motion{.duration = 4 * turn, .spin = {0, 6, 19}};
   motion.energy_momentum = energy_momentum;
   fem::GridProblem problem = block_in_motion({0.3, 0.1, 0.1}, {3, 1, 1}, nu, motion, steps);
   problem.law = law;

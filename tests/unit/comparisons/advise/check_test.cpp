@@ -8,8 +8,8 @@
 
 #include "comparisons/advise/measure.h"
 #include "comparisons/run/case_run.h"
-#include "comparisons/run/find_cases.h"
 #include "comparisons/run/prepare.h"
+#include "comparisons/sweep/find_cases.h"
 #include "fem_reference/exchange/reference.h"
 
 namespace springproof::check_test {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/voxel_reference.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/reference_grids.h"
-#include "comparisons/run/voxel_reference.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/patches/rule_region.h"
 #include "msm/embedding/boundary.h"
@@ -91,7 +91,7 @@ class RulePatches : public testing::TestWithParam<RuleCase> {};
 TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
   const RuleCase& c = GetParam();
   const PreparedCase prepared = prepare(experiment_of(c, 0.12, ""));
-  const double area = c.area > 0 ? c.area : area_of(prepared.experiment.patches[0], *prepared.tetrahedra.back());
+  const double area = c.area > 0 ? c.area : area_of(prepared.experiment.patches[0], *prepared.body.tetrahedra.back());
   const Load& load = prepared.loads[1];
   Vec3 force = wrench_of(load)->value().force;
   if (const auto* t = std::get_if<Traction>(&load)) {
@@ -99,7 +99,7 @@ TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
   } else if (c.area > 0) {
     EXPECT_NEAR(force.norm(), area * std::get<Pressure>(load).pressure, 1e-6 * force.norm());
   }
-  std::vector<std::shared_ptr<const Mesh>> all = prepared.tetrahedra;
+  std::vector<std::shared_ptr<const Mesh>> all = prepared.body.tetrahedra;
   for (const Lattice& lattice : prepared.lattices)
     if (lattice.tetrahedra) all.push_back(lattice.tetrahedra);
   ASSERT_EQ(all.size(), 4u);
@@ -120,7 +120,7 @@ TEST_P(RulePatches, HaveTheRulesAreaAndForceOnEveryDiscretisation) {
 TEST_P(RulePatches, HoldTheRulesAreaOnEveryMesh) {
   const PreparedCase prepared = prepare(experiment_of(GetParam(), 0.15, ""));
   const auto held = [&](const Mesh& m) { return nodal_areas(m, patch(m, "foot")).sum(); };
-  for (const auto& mesh : prepared.tetrahedra) {
+  for (const auto& mesh : prepared.body.tetrahedra) {
     if (GetParam().body == cube) {
       EXPECT_NEAR(held(*mesh), 1 + 4 * 0.23, 1e-9);
     }
@@ -133,16 +133,18 @@ INSTANTIATE_TEST_SUITE_P(Cases, RulePatches, testing::ValuesIn(cases),
 
 TEST(RulePatchesOnCurvedBodies, SpreadOfTheAreaIsPartOfTheUncertainty) {
   const PreparedCase cap = prepare(experiment_of(cases[6], 0.12, "")), box = prepare(experiment_of(cases[0], 0.12, ""));
-  const auto area = [&](int i) { return nodal_areas(*cap.tetrahedra[i], patch(*cap.tetrahedra[i], "spot")).sum(); };
-  EXPECT_NEAR(cap.load_spread, std::abs(area(1) / area(2) - 1), 1e-12);
-  EXPECT_GT(cap.load_spread, 1e-5);
+  const auto area = [&](int i) {
+    return nodal_areas(*cap.body.tetrahedra[i], patch(*cap.body.tetrahedra[i], "spot")).sum();
+  };
+  EXPECT_NEAR(cap.body.load_spread, std::abs(area(1) / area(2) - 1), 1e-12);
+  EXPECT_GT(cap.body.load_spread, 1e-5);
   const auto says = [](const PreparedCase& c) {
-    return std::any_of(c.notes.begin(), c.notes.end(), [](const std::string& n) {
+    return std::any_of(c.body.notes.begin(), c.body.notes.end(), [](const std::string& n) {
       return n.find("% in the area of patch 'spot'") != std::string::npos;
     });
   };
   EXPECT_TRUE(says(cap));
-  EXPECT_EQ(box.load_spread, 0);
+  EXPECT_EQ(box.body.load_spread, 0);
   EXPECT_FALSE(says(box));
   ReferenceField field{
       NodalVectors::Constant(2, 3, 2), 0.01, Eigen::Vector2d(0.1, 0.2), {}, "", Sequence::converging, {}};
@@ -182,13 +184,13 @@ edge_m = 0.12
                                     "rod.toml"));
   };
   const PreparedCase twisted = rod_with("rotation_deg = 1\naxis = [0, 0, 1]\nabout_m = [0.5, 0.5, 1]");
-  EXPECT_EQ(twisted.load_spread, 0);
+  EXPECT_EQ(twisted.body.load_spread, 0);
   const PreparedCase pulled = rod_with("traction_Pa = [0, 0, 1000]");
   const auto area = [&](int i) {
-    return nodal_areas(*pulled.tetrahedra[i], patch(*pulled.tetrahedra[i], "high")).sum();
+    return nodal_areas(*pulled.body.tetrahedra[i], patch(*pulled.body.tetrahedra[i], "high")).sum();
   };
-  EXPECT_NEAR(pulled.load_spread, std::abs(area(1) / area(2) - 1), 1e-12) << "of the two finest meshes";
-  EXPECT_GT(pulled.load_spread, 1e-4);
+  EXPECT_NEAR(pulled.body.load_spread, std::abs(area(1) / area(2) - 1), 1e-12) << "of the two finest meshes";
+  EXPECT_GT(pulled.body.load_spread, 1e-4);
 }
 
 /// Love (1929): how much less a half-space sinks at r than in the middle of a disc of radius a that is pressed, over

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "comparisons/run/find_cases.h"
+#include "comparisons/sweep/find_cases.h"
 #include "problem/case_file/experiment.h"
 #include "problem/system/files.h"
 #include "problem/system/input_error.h"

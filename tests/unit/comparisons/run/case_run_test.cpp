@@ -12,10 +12,10 @@
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
-#include "comparisons/run/folder_lock.h"
-#include "comparisons/run/part_file.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/suite_results.h"
+#include "comparisons/sweep/folder_lock.h"
+#include "comparisons/sweep/part_file.h"
+#include "comparisons/sweep/suite_results.h"
 #include "problem/system/child.h"
 
 namespace springproof::case_run_test {

@@ -77,7 +77,7 @@ TEST(FemRequest, TheRestArrives) {
   request.meshes = {std::make_shared<Mesh>(block_mesh(Vec3(1, 1, 1), {1, 1, 1}))};
   request.cost = true;
   request.modes = 7;
-  request.motion = fem::Motion{2, 0.5, {.pulse = 0.25}, true, {1, 2, 3}, {4, 5, 6}, 0.125, true};
+  request.motion = fem::MotionRequest{2, 0.5, {.pulse = 0.25}, true, {1, 2, 3}, {4, 5, 6}, 0.125, true};
   const fem::Request arrived = sent(request);
   EXPECT_EQ(to_json(arrived), to_json(request));
   EXPECT_EQ(arrived.geo, request.geo);

@@ -9,6 +9,7 @@
 
 #include "msm/algebra/dense.h"
 #include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/topology/cubic_lattice.h"
 #include "support/zoo.h"
@@ -75,7 +76,7 @@ struct Bar {
     for (long s = 0; s < steps; ++s) {
       motion.advance(1);
       if (!motion.failure().empty()) return {INFINITY, INFINITY, INFINITY, 0, 0};
-      const NodalVectors &at = motion.positions(), &speed = motion.velocities();
+      const NodalVectors at = motion.positions(), speed = motion.velocities();
       most.final_energy = energy_of(at, speed) / E - 1;
       most.final_spin = spin_of(at, speed)[2] / L[2] - 1;
       most.energy = std::max(most.energy, std::abs(most.final_energy));
@@ -136,7 +137,8 @@ TEST(ImplicitMotion, DashpotsTakeTheEnergyThatIsLostAndKeepBothMomenta) {
       const Bar bar(name, nu);
       const Viscosity viscosity = Viscosity::of(bar.model, {2.5e5, nu, density}, 2 * bar.safe_step);
       const double dt = ratio * bar.safe_step;
-      ImplicitMotion motion(bar.model, density, {.time_step = dt, .viscosity = viscosity});
+      ImplicitMotion motion(bar.model, density,
+                            {.integrator = Integrator::energy_momentum, .time_step = dt, .viscosity = viscosity});
       motion.set_conditions(bar.free());
       motion.set_state(bar.x, bar.v);
       const double E = bar.energy_of(bar.x, bar.v);
@@ -146,7 +148,7 @@ TEST(ImplicitMotion, DashpotsTakeTheEnergyThatIsLostAndKeepBothMomenta) {
         const NodalVectors x0 = motion.positions();
         motion.advance(1);
         ASSERT_EQ(motion.failure(), "") << name << nu << " " << ratio;
-        const NodalVectors &x1 = motion.positions(), &v1 = motion.velocities();
+        const NodalVectors x1 = motion.positions(), v1 = motion.velocities();
         NodalVectors f = NodalVectors::Zero(x0.rows(), 3);
         viscosity.add_forces(bar.model.network, (x0 + x1) / 2, (x1 - x0) / dt, f);
         const double work = f.cwiseProduct(x1 - x0).sum(), now = bar.energy_of(x1, v1);
@@ -172,7 +174,8 @@ TEST(EnergyMomentum, ModelsWithoutItAreRefusedWithTheReason) {
   EXPECT_EQ(why("hybmss_avg"), "");
   ModelParameters p = test::model("hybmss_bt");
   const MassSpringModel model = build_model(p, test::notched_block(), {1e4, 0.3, density});
-  EXPECT_THROW((ImplicitMotion(model, density, {.time_step = 1e-3})), std::invalid_argument);
+  EXPECT_THROW((ImplicitMotion(model, density, {.integrator = Integrator::energy_momentum, .time_step = 1e-3})),
+               std::invalid_argument);
 }
 
 TEST(ImplicitMotion, EnergyMomentumKeepsSpinAndEnergyAtLargeSteps) {
@@ -200,20 +203,20 @@ TEST(ImplicitMotion, ExplicitStepsKeepSpinToRoundOffAndEnergyToSecondOrder) {
   const Bar bar("hybmss", 0.25);
   const auto energy_error = [&](double ratio) {
     const double dt = ratio * bar.safe_step;
-    LatticeMotion motion(bar.model, density);
-    motion.set_conditions(bar.free());
+    const auto motion = lattice_motion(bar.model, density, {.time_step = dt});
+    motion->set_conditions(bar.free());
     NodalVectors x = bar.x;
     // Velocities half a step before, from those of now.
     NodalVectors v = bar.v - dt / 2 * bar.mass.cwiseInverse().asDiagonal() * forces(bar.model, x);
-    motion.set_state(x, v);
+    motion->set_state(x, v);
     const double E = bar.energy_of(bar.x, bar.v);
     const Vec3 L = bar.spin_of(x, v);
     double most = 0;
     for (long s = std::lround(0.4 * std::numbers::pi / dt); s > 0; --s) {
-      motion.advance(1, dt, 0);
-      const NodalVectors after = motion.velocities();
+      motion->advance(1);
+      const NodalVectors after = motion->velocities();
       most = std::max(most, std::abs(bar.energy_of(x, (v + after) / 2) / E - 1));
-      x = motion.positions();
+      x = motion->positions();
       v = after;
     }
     EXPECT_LT((bar.spin_of(x, v) - L).norm(), 1e-12 * L.norm());
@@ -226,7 +229,8 @@ TEST(ImplicitMotion, ExplicitStepsKeepSpinToRoundOffAndEnergyToSecondOrder) {
 
 TEST(ImplicitMotion, ManyUnknownsAreSolvedByMultigridWhileTheBodyTurns) {
   Bar bar("hybmss_avg", 0.3, {24, 8, 8});
-  ImplicitMotion motion(bar.model, density, {.time_step = 10 * bar.safe_step});
+  ImplicitMotion motion(bar.model, density,
+                        {.integrator = Integrator::energy_momentum, .time_step = 10 * bar.safe_step});
   motion.set_conditions(bar.free());
   motion.set_state(bar.x, bar.v);
   motion.advance(24);  // 114 degrees

@@ -65,24 +65,25 @@ std::vector<ModelParameters> models() {
   return all;
 }
 
-std::string label(const ModelParameters& p, const Body& body, const LatticeMotionOptions& options) {
+std::string label(const ModelParameters& p, const Body& body, const MotionOptions& options) {
   return fmt::format("{}{} form {} {} {} float{} {} threads", p.row.name,
                      p.volume_energy == VolumeEnergy::paper ? " (paper)" : "", static_cast<int>(p.dispersion),
                      body.name, options.device == Device::gpu ? "gpu" : name_of(options.instructions),
                      options.precision == Precision::float32 ? 32 : 64, options.threads);
 }
 
-std::vector<LatticeMotionOptions> every_kernel(const std::vector<int>& thread_counts = {1, 2, 3}) {
-  std::vector<LatticeMotionOptions> all;
+std::vector<MotionOptions> every_kernel(const std::vector<int>& thread_counts = {1, 2, 3}) {
+  std::vector<MotionOptions> all;
   for (InstructionSet set : usable_instruction_sets())
     for (Precision precision : {Precision::float64, Precision::float32})
-      for (int threads : thread_counts) all.push_back({precision, threads, set});
+      for (int threads : thread_counts)
+        all.push_back({.time_step = 1, .precision = precision, .threads = threads, .instructions = set});
   for (Precision precision : {Precision::float64, Precision::float32})
-    all.push_back({.precision = precision, .device = Device::gpu});
+    all.push_back({.time_step = 1, .precision = precision, .device = Device::gpu});
   return all;
 }
 
-bool lacks(const LatticeMotionOptions& options, const MassSpringModel& model) {
+bool lacks(const MotionOptions& options, const MassSpringModel& model) {
   return options.device == Device::gpu && !LatticeMotion::suits_gpu(model, options);
 }
 
@@ -98,13 +99,13 @@ TEST(LatticeMotion, ForcesAreThoseOfThePlainLoops) {
       const NodalVectors x = X + test::noise(X.rows(), 0.15 * edge), v = test::noise(X.rows(), 1, 2),
                          f = forces(model, x);
       ASSERT_TRUE(LatticeMotion::suits(model)) << body.name;
-      for (const LatticeMotionOptions& options : every_kernel()) {
+      for (const MotionOptions& options : every_kernel()) {
         if (lacks(options, model)) continue;
-        LatticeMotion motion(model, density, options);
-        motion.set_state(x, v);
+        const auto motion = lattice_motion(model, density, options);
+        motion->set_state(x, v);
         const double allowed = options.precision == Precision::float64 ? 1e-12 : 1e-5;
-        EXPECT_LE(worst(motion.forces(), f), allowed) << label(p, body, options);
-        EXPECT_LE(worst(motion.forces(), f), allowed) << label(p, body, options) << ", asked again";
+        EXPECT_LE(worst(motion->forces(), f), allowed) << label(p, body, options);
+        EXPECT_LE(worst(motion->forces(), f), allowed) << label(p, body, options) << ", asked again";
       }
     }
 }
@@ -174,16 +175,18 @@ TEST(LatticeMotion, StepsAreThoseOfThePlainLoops) {
       const double scale = bc.external.norm();
       const State plain = plain_steps(model, rest, bc, steps, dt, damping);
       // Other numbers of threads: ForcesAreThoseOfThePlainLoops and ThreadsDoNotChangeTheMotionAndRepeatIt.
-      for (const LatticeMotionOptions& options : every_kernel({2})) {
+      for (MotionOptions options : every_kernel({2})) {
+        options.time_step = dt;
+        options.damping = damping;
         if (lacks(options, model)) continue;
         const bool exact = options.precision == Precision::float64;
-        LatticeMotion motion(model, density, options);
-        motion.set_conditions(bc);
-        motion.advance(steps / 2, dt, damping);
-        const ForceNorms norms = motion.advance(steps - steps / 2, dt, damping);
+        const auto motion = lattice_motion(model, density, options);
+        motion->set_conditions(bc);
+        motion->advance(steps / 2);
+        const ForceNorms norms = motion->advance(steps - steps / 2);
         const std::string what = label(p, body, options);
-        EXPECT_LE(worst(motion.positions() - X, plain.x - X), exact ? 1e-12 : 1e-5) << what;
-        EXPECT_LE((motion.velocities() - plain.v).rowwise().norm().maxCoeff(),
+        EXPECT_LE(worst(motion->positions() - X, plain.x - X), exact ? 1e-12 : 1e-5) << what;
+        EXPECT_LE((motion->velocities() - plain.v).rowwise().norm().maxCoeff(),
                   (exact ? 1e-12 : 1e-4) * plain.peak_speed)
             << what;
         EXPECT_NEAR(norms.unbalanced, plain.norms.unbalanced, (exact ? 1e-11 : 1e-4) * scale) << what;
@@ -202,7 +205,7 @@ TEST(LatticeMotion, ViscousStepsAreThoseOfThePlainLoops) {
       const NodalVectors& X = model.network.X;
       const double elastic = safe_time_step(model, density);
       const Viscosity viscosity = Viscosity::of(model, material, 0.3 * elastic);
-      ASSERT_TRUE(LatticeMotion::suits(model, viscosity)) << p.row.name;
+      ASSERT_TRUE(LatticeMotion::suits(model, {.viscosity = viscosity})) << p.row.name;
       const double dt = 0.8 * viscous_time_step(model, density, viscosity, elastic), damping = 5;
       const BoundaryConditions bc = conditions_of(model.network);
       BoundaryConditions moved = bc;
@@ -211,24 +214,26 @@ TEST(LatticeMotion, ViscousStepsAreThoseOfThePlainLoops) {
       const int steps = body.mesh.hexahedra.size() > 500 ? 3 : 6;
       const State first = plain_steps(model, rest, bc, steps, dt, damping, viscosity);
       const State plain = plain_steps(model, first, moved, steps, dt, damping, viscosity);
-      for (LatticeMotionOptions options : every_kernel({2})) {
+      for (MotionOptions options : every_kernel({2})) {
+        options.time_step = dt;
+        options.damping = damping;
         options.viscosity = viscosity;
         if (lacks(options, model)) continue;
         const bool exact = options.precision == Precision::float64;
-        LatticeMotion motion(model, density, options);
-        motion.set_conditions(bc);
-        motion.advance(steps, dt, damping);
-        motion.set_conditions(moved);
-        const ForceNorms norms = motion.advance(steps, dt, damping);
+        const auto motion = lattice_motion(model, density, options);
+        motion->set_conditions(bc);
+        motion->advance(steps);
+        motion->set_conditions(moved);
+        const ForceNorms norms = motion->advance(steps);
         const std::string what = label(p, body, options);
-        EXPECT_LE(worst(motion.positions() - X, plain.x - X), exact ? 1e-12 : 1e-5) << what;
-        EXPECT_LE((motion.velocities() - plain.v).rowwise().norm().maxCoeff(),
+        EXPECT_LE(worst(motion->positions() - X, plain.x - X), exact ? 1e-12 : 1e-5) << what;
+        EXPECT_LE((motion->velocities() - plain.v).rowwise().norm().maxCoeff(),
                   (exact ? 1e-12 : 1e-4) * plain.peak_speed)
             << what;
         const double scale = bc.external.norm() + plain.norms.support;
         EXPECT_NEAR(norms.unbalanced, plain.norms.unbalanced, (exact ? 1e-11 : 1e-4) * scale) << what;
         EXPECT_NEAR(norms.support, plain.norms.support, (exact ? 1e-11 : 1e-4) * scale) << what;
-        EXPECT_LE(worst(motion.forces(), forces(model, motion.positions())), exact ? 1e-11 : 1e-3) << what;
+        EXPECT_LE(worst(motion->forces(), forces(model, motion->positions())), exact ? 1e-11 : 1e-3) << what;
       }
     }
 }
@@ -238,10 +243,10 @@ TEST(LatticeMotion, ThreadsDoNotChangeTheMotionAndRepeatIt) {
   const MassSpringModel model = build_model(test::model("hybmss"), mesh, {1e5, 0.3, density});
   const double dt = 0.8 * safe_time_step(model, density);
   const auto positions = [&](int threads) {
-    LatticeMotion motion(model, density, {Precision::float64, threads});
-    motion.set_conditions(conditions_of(model.network));
-    motion.advance(100, dt, 5);
-    return NodalVectors(motion.positions() - model.network.X);
+    const auto motion = lattice_motion(model, density, {.time_step = dt, .damping = 5, .threads = threads});
+    motion->set_conditions(conditions_of(model.network));
+    motion->advance(100);
+    return NodalVectors(motion->positions() - model.network.X);
   };
   const NodalVectors one = positions(1);
   for (int threads : {2, 3, 5, 50}) {
@@ -260,9 +265,9 @@ TEST(LatticeMotion, StretchByWholeCellsIsNoTrap) {
     NodalVectors x = X;
     for (int n = 0; n < x.rows(); ++n)
       if (X(n, axis) > X.col(axis).maxCoeff() - 0.1 * edge) x(n, axis) += edge;
-    LatticeMotion motion(model, density);
-    motion.set_state(x, 0 * X);
-    EXPECT_LE(worst(motion.forces(), forces(model, x)), 1e-12);
+    const auto motion = lattice_motion(model, density, {.time_step = 1});
+    motion->set_state(x, 0 * X);
+    EXPECT_LE(worst(motion->forces(), forces(model, x)), 1e-12);
   }
 }
 
@@ -270,10 +275,10 @@ TEST(LatticeMotion, DispersionMayBeNegative) {
   for (const Body& body : bodies()) {
     const MassSpringModel model = build_model(test::model("emsm"), body.mesh, {1e5, 0.1, density});
     const NodalVectors x = model.network.X + test::noise(model.network.nodes(), 0.15 * edge);
-    LatticeMotion motion(model, density);
-    motion.set_state(x, NodalVectors::Zero(x.rows(), 3));
+    const auto motion = lattice_motion(model, density, {.time_step = 1});
+    motion->set_state(x, NodalVectors::Zero(x.rows(), 3));
     EXPECT_LT(dispersion_of(model)->q, 0);
-    EXPECT_LE(worst(motion.forces(), forces(model, x)), 1e-12) << body.name;
+    EXPECT_LE(worst(motion->forces(), forces(model, x)), 1e-12) << body.name;
   }
 }
 
@@ -286,17 +291,20 @@ TEST(LatticeMotion, SuitsLatticesOnly) {
   EXPECT_TRUE(LatticeMotion::suits(model));
   model.network.springs[7].rest_length *= 1.01;
   EXPECT_FALSE(LatticeMotion::suits(model));
-  EXPECT_THROW(LatticeMotion(model, density), std::invalid_argument);
+  EXPECT_THROW(lattice_motion(model, density, {.time_step = 1}), std::invalid_argument);
   const MassSpringModel springs = build_model(test::model("msm_18"), mesh, {1e5, 0.25, density});
   EXPECT_TRUE(LatticeMotion::suits(springs));
-  EXPECT_FALSE(LatticeMotion::suits(springs, Viscosity::of(springs, {1e5, 0.25, density}, 1e-3)));
+  EXPECT_FALSE(LatticeMotion::suits(springs, {.viscosity = Viscosity::of(springs, {1e5, 0.25, density}, 1e-3)}));
 }
 
 TEST(LatticeMotion, KeepsFewBytesPerNode) {
   const Mesh mesh = block_mesh(edge * Vec3(31, 31, 31), {31, 31, 31});
   const MassSpringModel model = build_model(test::model("hybmss"), mesh, {1e5, 0.3, density});
-  EXPECT_LE(LatticeMotion(model, density).bytes_per_node(), 80);
-  EXPECT_LE(LatticeMotion(model, density, {Precision::float32}).bytes_per_node(), 50);
+  const auto bytes = [&](Precision precision) {
+    return lattice_motion(model, density, {.time_step = 1, .precision = precision})->bytes_per_node();
+  };
+  EXPECT_LE(bytes(Precision::float64), 80);
+  EXPECT_LE(bytes(Precision::float32), 50);
 }
 
 }  // namespace

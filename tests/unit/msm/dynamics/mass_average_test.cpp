@@ -1,5 +1,5 @@
 // A share of consistent mass in explicit motion: what moves, what is kept, which frequencies, which step.
-#include "msm/dynamics/mass_average.h"
+#include "msm/dynamics/terms/mass_average.h"
 
 #include <gtest/gtest.h>
 
@@ -277,7 +277,8 @@ TEST(MassAverage, TakesTheVelocityOfSupportsAlong) {
     DynamicsOptions options;
     options.mass_consistency = 0.6;
     const double dt = checked_time_step(model, density, options);
-    const auto motion = make_motion(model, density, dt, options);
+    options.time_step = dt;
+    const auto motion = make_motion(model, density, options);
     motion->set_conditions(bc);
     motion->set_state(network.X, s);
     motion->move_supports();
@@ -329,17 +330,21 @@ TEST(MassAverage, KernelsMoveAsThePlainLoops) {
       for (const InstructionSet set : usable_instruction_sets())
         for (const Precision precision : {Precision::float64, Precision::float32})
           for (const int threads : {1, 2}) {
-            LatticeMotion motion(
-                model, density,
-                {.precision = precision, .threads = threads, .instructions = set, .mass_consistency = theta});
+            const auto motion = lattice_motion(model, density,
+                                               {.time_step = dt,
+                                                .damping = damping,
+                                                .mass_consistency = theta,
+                                                .precision = precision,
+                                                .threads = threads,
+                                                .instructions = set});
             for (int step = 0; step < 12; ++step) {
-              motion.set_conditions(at(step));
-              motion.advance(1, dt, damping);
+              motion->set_conditions(at(step));
+              motion->advance(1);
             }
-            motion.advance(steps - 12, dt, damping);
+            motion->advance(steps - 12);
             const double moved = (x - network.X).norm(), limit = precision == Precision::float64 ? 1e-12 : 1e-5;
-            EXPECT_LT((motion.positions() - x).norm(), limit * moved) << name << name_of(set) << threads;
-            EXPECT_LT((motion.velocities() - s).norm(), 10 * limit * s.norm()) << name << name_of(set) << threads;
+            EXPECT_LT((motion->positions() - x).norm(), limit * moved) << name << name_of(set) << threads;
+            EXPECT_LT((motion->velocities() - s).norm(), 10 * limit * s.norm()) << name << name_of(set) << threads;
           }
     }
 }
@@ -347,7 +352,8 @@ TEST(MassAverage, KernelsMoveAsThePlainLoops) {
 TEST(MassAverage, HasAKernelOnBoxesAlone) {
   const auto suits = [](const std::string& name, const Mesh& mesh, double viscosity) {
     const MassSpringModel model = build_model(test::model(name), mesh, {1e4, 0.25, density});
-    return LatticeMotion::suits(model, Viscosity::of(model, {1e4, 0.25, density}, viscosity), 0.5);
+    return LatticeMotion::suits(
+        model, {.viscosity = Viscosity::of(model, {1e4, 0.25, density}, viscosity), .mass_consistency = 0.5});
   };
   EXPECT_TRUE(suits("hybmss", block_mesh({1, 1, 1}, {3, 3, 3}), 0));
   EXPECT_FALSE(suits("hybmss", test::notched_block(), 0));

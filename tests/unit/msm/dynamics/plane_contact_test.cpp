@@ -1,5 +1,5 @@
 // Bodies that fall on a rigid plane.
-#include "msm/dynamics/plane_contact.h"
+#include "msm/dynamics/terms/plane_contact.h"
 
 #include <gtest/gtest.h>
 

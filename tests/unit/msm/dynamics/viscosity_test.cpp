@@ -1,5 +1,5 @@
 // Viscosity: what it resists, what it keeps, and what vibrations lose by it.
-#include "msm/dynamics/viscosity.h"
+#include "msm/dynamics/terms/viscosity.h"
 
 #include <gtest/gtest.h>
 

@@ -208,16 +208,13 @@ void expect_plain_steps(double tolerance, int halved = 0) {
       NodalVectors first_x, first_v;
       for (const int threads : {1, 2, 3}) {
         ListMotion<Real> motion(std::make_unique<CellForces<Real>>(model, set, *averaged_springs_of(model), time),
-                                network.X, inverse_masses(network, 1000),
-                                {.time_step = dt, .damping = damping, .threads = threads});
-        motion.load(bc);
+                                model, 1000, {.time_step = dt, .damping = damping, .threads = threads});
+        motion.set_conditions(bc);
         for (const long steps : {7, 1, 2}) motion.advance(steps);
         motion.set_state(motion.positions(), motion.velocities());
         const ForceNorms norms = motion.advance(31);
         EXPECT_EQ(motion.threads(), halved > 0 ? 1 : threads);
-        NodalVectors x = motion.positions(), v = motion.velocities();
-        carry(network.carried, x);
-        carry(network.carried, v);
+        const NodalVectors x = motion.positions(), v = motion.velocities();
         EXPECT_LE(worst(x - network.X, expected.x - network.X), tolerance) << name_of(set) << ", " << time << " s";
         EXPECT_LE(worst(v, expected.v), tolerance) << name_of(set) << ", " << time << " s";
         EXPECT_NEAR(norms.unbalanced, expected.norms.unbalanced, 10 * tolerance * expected.norms.unbalanced);
@@ -246,26 +243,23 @@ template <class Real>
 void expect_plain_averages(double tolerance) {
   const MassSpringModel model = bar(test::model("hybmss_avg"), 0.3, 60);
   const Network& network = model.network;
-  DynamicsOptions options;
-  options.damping = 0.3;
-  options.mass_consistency = 0.6;
-  const double dt = 0.2 * safe_time_step(model, 1000, false, options.mass_consistency);
-  const Eigen::VectorXd inverse_mass = inverse_masses(network, 1000);
+  const MotionOptions options = {.time_step = 0.2 * safe_time_step(model, 1000, false, 0.6),
+                                 .damping = 0.3,
+                                 .mass_consistency = 0.6,
+                                 .threads = 2};
   const BoundaryConditions bc = pulled(network);
   BoundaryConditions further = bc;
   further.prescribed *= 1.3;
-  PlainMotion plain(model, inverse_mass, dt, options);
+  PlainMotion plain(model, 1000, options);
   plain.set_conditions(bc);
   plain.advance(9);
   plain.set_conditions(further);
   plain.advance(20);
   for (const InstructionSet set : usable_instruction_sets()) {
-    ListMotion<Real> motion(std::make_unique<CellForces<Real>>(model, set), network.X, inverse_mass,
-                            {.time_step = dt, .damping = options.damping, .threads = 2},
-                            MassAverage(network, options.mass_consistency));
-    motion.load(bc);
+    ListMotion<Real> motion(std::make_unique<CellForces<Real>>(model, set), model, 1000, options);
+    motion.set_conditions(bc);
     for (const long steps : {7, 2}) motion.advance(steps);
-    motion.load(further);
+    motion.set_conditions(further);
     motion.set_state(motion.positions(), motion.velocities());
     motion.advance(20);
     EXPECT_EQ(motion.threads(), 1);
@@ -280,14 +274,15 @@ TEST(CellMotion, OfAveragedMassIsThePlainMotion) {
 }
 
 TEST(CellMotion, IsChosenWhereTheKernelsHaveTheModel) {
-  const auto how = [](const MassSpringModel& model, const DynamicsOptions& options) {
-    return make_motion(model, 1000, 1e-6, options)->description();
+  const auto how = [](const MassSpringModel& model, MotionOptions options) {
+    options.time_step = 1e-6;
+    return make_motion(model, 1000, options)->description();
   };
   const ModelParameters averaged = test::model("hybmss_avg");
   MassSpringModel model = bar(averaged);
   const std::string kernel = "cell kernel, FP64, " + name_of(instruction_set()) + ", 1 thread";
   EXPECT_EQ(how(model, {}), kernel);
-  DynamicsOptions options;
+  MotionOptions options;
   options.viscosity = Viscosity::of(model, {1e4, 0.3, 1000}, retardation);
   EXPECT_EQ(how(model, options), kernel);
   options.precision = Precision::float32;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "msm/kernels/list_forces.h"
+#include "msm/kernels/kernels.h"
 
 namespace springproof::inverse_root_test {
 namespace {
@@ -23,7 +23,7 @@ std::vector<Real> inverse_lengths(InstructionSet set, std::vector<Real> lengths)
   }
   const std::vector<Real> zeros(entries, 0);
   std::vector<Real> J(x.size(), 0), inverse(entries);
-  list_kernels<Real>(set).inflow(
+  kernels_of<Real>(set).list.inflow(
       {static_cast<long>(i.size()), i.data(), j.data()}, {zeros.data(), zeros.data(), zeros.data()},
       {zeros.data(), zeros.data(), zeros.data(), zeros.data()}, x.data(), J.data(), inverse.data());
   return inverse;

@@ -238,11 +238,10 @@ TEST(ListMotion, StepsThatFollowEachOtherAreThePlainStepsOnAnyNumberOfThreads) {
   const ForceNorms expected = plain_norms(model, before, bc);
   for (const InstructionSet set : usable_instruction_sets())
     for (const int threads : {1, 2, 3}) {
-      ListMotion<double> motion(std::make_unique<ListForces<double>>(model, set), network.X,
-                                masses(network, 1).cwiseInverse(),
+      ListMotion<double> motion(std::make_unique<ListForces<double>>(model, set), model, 1,
                                 {.time_step = *o.time_step, .damping = o.damping, .threads = threads});
-      motion.load(bc);
-      motion.place_prescribed();
+      motion.set_conditions(bc);
+      motion.move_supports();
       for (const long steps : {7, 1, 2}) motion.advance(steps);
       const ForceNorms norms = motion.advance(31);
       EXPECT_EQ(motion.threads(), threads);

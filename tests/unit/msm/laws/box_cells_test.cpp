@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "meshes/volume.h"
+#include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/dynamics/plain_motion.h"
 #include "msm/dynamics/time_step.h"
@@ -170,13 +171,10 @@ TEST(BoxCells, MultigridSolvesWhatCholeskyDoes) {
 TEST(BoxCells, MoveAsThePlainLoopsDo) {
   for (const double viscous : {0.0, 1e-4}) {
     const MassSpringModel model = build(block({0.5, 0.25, 1}), 0.4).model;
-    DynamicsOptions options;
-    options.precision = Precision::float64;
-    options.viscosity = Viscosity::of(model, {1e4, 0.4, 1000}, viscous);
-    const double dt = 0.5 * safe_time_step(model, 1000);
-    const Eigen::VectorXd inverse_mass = inverse_masses(model.network, 1000);
-    PlainMotion plain(model, inverse_mass, dt, options);
-    const std::unique_ptr<Motion> motion = make_motion(model, 1000, dt, options);
+    const MotionOptions options = {.time_step = 0.5 * safe_time_step(model, 1000),
+                                   .viscosity = Viscosity::of(model, {1e4, 0.4, 1000}, viscous)};
+    PlainMotion plain(model, 1000, options);
+    const std::unique_ptr<Motion> motion = make_motion(model, 1000, options);
     EXPECT_NE(motion->description().find("cell kernel"), std::string::npos) << motion->description();
     const NodalVectors x = model.network.X * test::rotation().transpose() + test::noise(model.network.nodes(), 0.02),
                        v = test::noise(model.network.nodes(), 0.5, 2);

@@ -110,7 +110,7 @@ void expect_plain_loops(double tolerance) {
     x0.push_back(Real(0.1) * Real((i * 5) % 7));
   }
   for (const InstructionSet set : usable_instruction_sets()) {
-    const BlockRowKernels<Real>& kernels = block_row_kernels<Real>(set);
+    const BlockRowKernels<Real>& kernels = kernels_of<Real>(set).rows;
     std::vector<Real> y(12), r(12), work(16);
     kernels.multiply(s.rows(), x0.data(), y.data(), work.data());
     kernels.residual(s.rows(), b.data(), x0.data(), r.data(), work.data());

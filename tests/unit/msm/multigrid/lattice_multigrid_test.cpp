@@ -156,7 +156,7 @@ TEST(LatticeLevels, InterpolationIsExactForLinearFieldsAndTransposed) {
           X_coarse[a * coarse.stride() + LatticeLevel::corner(row, i, n)] =
               static_cast<float>(corner[row.cell + i][a] + 2 * h * hexahedron_corners[n][a]);
   for (InstructionSet set : usable_instruction_sets()) {
-    const CellKernels<float>& kernels = cell_kernels<float>(set);
+    const CellKernels<float>& kernels = kernels_of<float>(set).cells;
     Eigen::VectorXf field = Eigen::VectorXf::Zero(3 * coarse.stride()),
                     fine_field = Eigen::VectorXf::Zero(3 * fine.stride());
     for (int a = 0; a < 3; ++a)

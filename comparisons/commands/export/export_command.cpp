@@ -1,0 +1,345 @@
+#include "comparisons/commands/export/export_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "comparisons/calculix/cross_check.h"
+#include "comparisons/calculix/deck.h"
+#include "comparisons/commands/export/export_engines.h"
+#include "comparisons/prepare/springs_of_case.h"
+#include "comparisons/run/prepare.h"
+#include "comparisons/sweep/find_cases.h"
+#include "comparisons/sweep/status.h"
+#include "meshes/mesher/mesher.h"
+#include "meshes/mesher/mesher_exchange.h"
+#include "msm/exchange/lammps.h"
+#include "msm/parameters/made_of.h"
+#include "msm/topology/cubic_lattice.h"
+#include "problem/case_file/external.h"
+#include "problem/system/named_files.h"
+#include "problem/system/nearest_name.h"
+#include "problem/system/number_checks.h"
+#include "problem/system/streams.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int default_voxels = 2000;
+
+Cells cells_of_option(const std::vector<int>& cells) {
+  return cells.empty() ? Cells{0, 0, 0} : Cells{cells[0], cells[1], cells[2]};
+}
+
+bool is_body(const std::string& name) {
+  const auto& endings = mesh_file_extensions();
+  return std::find(endings.begin(), endings.end(), extension_of(name)) != endings.end();
+}
+
+Experiment read_case(const std::string& name) {
+  const std::vector<fs::path> found = find_cases({name});
+  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", name, found.size()));
+  return read_experiment(found.front());
+}
+
+/// Before the work.
+void require_writable(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const char* why = fs::is_directory(file)                ? "is a folder"
+                    : !fs::is_directory(folder)           ? "its folder does not exist"
+                    : ::access(folder.c_str(), W_OK) != 0 ? "its folder is write-protected"
+                                                          : nullptr;
+  if (why)
+    throw InputError(fmt::format("--out: cannot write {}: {} (allowed: a name in a folder that can be written)",
+                                 file.string(), why));
+}
+
+int export_calculix(const ExportRequest& request) {
+  if (is_body(request.what))
+    throw InputError(fmt::format("{}: is a body without loads (allowed with --to calculix: a case)", request.what));
+  if (!request.model.empty() || request.voxels || request.moduli.youngs_modulus || !request.size.empty())
+    throw InputError("--to calculix: a deck has the case's elements and material (allowed: --poisson-ratio, --cells)");
+  const Experiment experiment = read_case(request.what);
+  calculix::require_counterpart(experiment);
+  const IsotropicMaterial material = material_of(experiment, request.moduli.poisson_ratio);
+  const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
+  require_writable(file);
+  Status status(false);
+  const Status::Working working(status, request.what);
+  const PreparedCase prepared = prepare(experiment);
+  if (experiment.body.is_voxels() && !request.cells.empty())
+    throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
+  const Cells cells = request.cells.empty() && !experiment.body.is_voxels() ? experiment.body.cells.front()
+                                                                            : cells_of_option(request.cells);
+  const Mesh mesh = experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
+                                                : mesh_geo(prepared.body.geo, experiment.body.size, cells);
+  const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
+  std::ostringstream out;
+  calculix::write(deck, out);
+  write_named_file(file, out.view());
+  to_stdout("{}: {} nodes, {} elements {}, nu = {:g}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
+            deck.element, material.poisson_ratio);
+  return 0;
+}
+
+/// The row that the table recommends.
+std::string recommended_model() {
+  const auto& rows = model_table();
+  return std::find_if(rows.begin(), rows.end(), [](const ModelRow& row) { return row.what.starts_with("recommended"); })
+      ->name;
+}
+
+ModelChoice named_model(const std::string& name) { return {name, {}, name, {}}; }
+
+/// A body alone, of the material and the model of the command line.
+Experiment body_alone(const ExportRequest& request) {
+  Experiment e;
+  e.file = request.what;
+  e.name = e.file.stem().string();
+  e.body.geo = e.file.filename().string();
+  e.body.scale = request.scale;
+  if (e.body.is_script() && request.size.empty())
+    throw InputError(fmt::format("{}: a script needs its size (allowed: --size X Y Z [m])", request.what));
+  if (!request.size.empty()) e.body.size = Vec3(request.size[0], request.size[1], request.size[2]);
+  try {
+    e.materials = {material_from(request.moduli, request.density)};
+  } catch (const std::invalid_argument& error) {
+    throw InputError(
+        fmt::format("{}: {} (a body alone needs -E and --nu, or another two moduli)", request.what, error.what()));
+  }
+  e.models = {named_model(request.model.empty() ? recommended_model() : request.model)};
+  if (request.cells.empty()) e.body.voxel_counts = {request.voxels.value_or(default_voxels)};
+  return e;
+}
+
+/// The model of the case with this label, or a row of the table; by default the case's first.
+ModelChoice chosen_model(const Experiment& e, const std::string& name) {
+  std::vector<std::string> known;
+  for (const ModelChoice& m : e.models) known.push_back(m.label);
+  const auto at = std::find(known.begin(), known.end(), name);
+  if (at != known.end()) return e.models[static_cast<std::size_t>(at - known.begin())];
+  if (name.empty() && !e.models.empty()) return e.models.front();
+  for (const ModelRow& row : model_table()) {
+    if (row.name == name) return named_model(name);
+    if (std::find(known.begin(), known.end(), row.name) == known.end()) known.push_back(row.name);
+  }
+  throw InputError(fmt::format("--model: unknown model '{}' (allowed: {}){}", name, fmt::join(known, ", "),
+                               did_you_mean(name, known)));
+}
+
+/// The case with one material, one model and one resolution, without what is computed of it.
+Experiment one_of_each(Experiment e, const ExportRequest& request) {
+  if (request.moduli.youngs_modulus || request.scale != 1 || !request.size.empty())
+    throw InputError(
+        fmt::format("{}: a case has its own material and size (allowed: --poisson-ratio, --model, --cells, "
+                    "--voxels)",
+                    request.what));
+  e.materials = {material_of(e, request.moduli.poisson_ratio)};
+  std::erase_if(e.models, is_external);
+  e.models = {chosen_model(e, request.model)};
+  if (!e.body.cells.empty()) e.body.cells.resize(1);
+  if (e.body.voxel_edges.size() > 1) e.body.voxel_edges.resize(1);
+  if (e.body.voxel_counts.size() > 1) e.body.voxel_counts.resize(1);
+  if (e.body.accuracies.size() > 1) e.body.accuracies.resize(1);
+  if (request.voxels) {
+    e.body.accuracies.clear();
+    if (!e.body.is_voxels()) throw InputError("--voxels: is for bodies of voxels; this one has --cells NX NY NZ");
+    e.body.voxel_edges.clear();
+    e.body.voxel_counts = {*request.voxels};
+  }
+  if (e.body.accuracies.empty()) {  // for the loads the cells of several sizes are refined
+    e.loads.clear();
+    e.load_locations.clear();
+  }
+  e.probes.clear();
+  e.measures.clear();
+  e.elements.clear();
+  e.reference.elements.clear();
+  return e;
+}
+
+/// @throws InputError for cells that are boxes where the other program gets springs or nodes of cubes.
+void require_cubes(const ExportRequest& request, const Mesh& mesh) {
+  if (!mesh.grid || has_cubes(*mesh.grid)) return;
+  const Vec3& edge = mesh.grid->spacing;
+  throw InputError(fmt::format(
+      "{}: the cells are {:.6g} x {:.6g} x {:.6g} m (allowed with --to {}: cubes, --cells NX NY NZ in proportion "
+      "to the size; boxes of hybmss_avg with --to springs)",
+      request.what, edge[0], edge[1], edge[2], request.to));
+}
+
+/// `cut`: of cut cells where the model has them and the case does not say otherwise.
+SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
+  Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(read_case(request.what), request);
+  if (!request.cells.empty()) {
+    if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");
+    e.body.cells = {cells_of_option(request.cells)};
+  }
+  if (!cut) {
+    if (!e.body.accuracies.empty())
+      throw InputError(
+          fmt::format("{}: body.accuracy: cells of several sizes are cut cells (allowed: --to springs without "
+                      "--whole-cubes, or --voxels N)",
+                      request.what));
+    e.body.cut = false;
+    for (ModelChoice& m : e.models) m.options.erase("cut");
+  }
+  Status status(false);
+  const Status::Working working(status, request.what);
+  const PreparedCase prepared = prepare_lattices(e);
+  const Topology of = prepared.models.front().row.topology;
+  if (request.to != "springs" && (of == Topology::cells || of == Topology::centres))
+    require_cubes(request, *prepared.lattices.front().mesh);
+  return springs_of(prepared);
+}
+
+fs::path out_or(const ExportRequest& request, const std::string& ending) {
+  return request.out.empty() ? fs::path(request.what).stem().string() + ending : request.out;
+}
+
+/// What the forces are made of, with how many there are: "springs + a term per cell (5856 springs, 384 cells)".
+std::string parts_of(const SpringsFile& s) {
+  const Network& network = s.model.network;
+  const std::string made = made_of(s.model);
+  const std::string springs =
+      network.springs.empty() ? "no springs" : fmt::format("{} springs", network.springs.size());
+  if (made.find("per cell") == std::string::npos) return fmt::format("{} ({})", made, springs);
+  return fmt::format("{} ({}, {} {})", made, springs, network.cells.size(),
+                     network.filled.empty() ? "cells" : "cut cells");
+}
+
+void report(const fs::path& file, const SpringsFile& s) {
+  to_stdout("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(), s.origin.model,
+            s.model.network.nodes(), parts_of(s), s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
+            s.material->poisson_ratio);
+}
+
+/// Says so where the cells of a cut body hold something else than the model has by its name.
+void report_averaging(const SpringsFile& s) {
+  for (const ModelRow& row : model_table())
+    if (row.name == s.origin.model && !s.model.network.filled.empty() && made_of(row) != made_of(s.model))
+      to_stdout(
+          "note: {} is {} on whole cubes; cut cells hold its springs averaged over each cell, which leaves {} "
+          "(--whole-cubes: the springs)\n",
+          row.name, made_of(row), made_of(s.model));
+}
+
+int export_springs(const ExportRequest& request) {
+  const fs::path file = out_or(request, ".json");
+  require_springs_ending(file);
+  require_writable(file);
+  const SpringsFile springs = springs_of(request, !request.whole_cubes);
+  write_springs(file, springs);
+  report(file, springs);
+  report_averaging(springs);
+  return 0;
+}
+
+/// One line for each patch whose nodes LAMMPS can name.
+std::string groups_of(const SpringsFile& springs) {
+  constexpr std::size_t most_groups = 31;
+  std::string out;
+  std::size_t count = 0;
+  for (const auto& [name, nodes] : springs.patches) {
+    const bool plain =
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+    if (!plain || nodes.empty() || ++count > most_groups) continue;
+    out += "group " + name + " id";
+    for (const int n : nodes) out += fmt::format(" {}", n + 1);
+    out += '\n';
+  }
+  return out;
+}
+
+int export_lammps(const ExportRequest& request) {
+  const fs::path data = out_or(request, ".data"), input = fs::path(data).replace_extension(".in");
+  if (data.extension() != ".data")
+    throw InputError(fmt::format("--out: is {} (allowed: a name that ends in .data; the input gets the same with .in)",
+                                 data.string()));
+  const SpringsFile springs = springs_of(request);
+  if (!suits_lammps(springs.model)) {
+    std::vector<std::string> able;
+    for (const ModelRow& row : model_table())
+      if (of_springs_alone(row) || row.extension == Extension::angular_springs) able.push_back(row.name);
+    throw InputError(fmt::format("--model: {} has forces that LAMMPS does not compute (allowed: {})",
+                                 springs.origin.model, fmt::join(able, ", ")));
+  }
+  const MassSpringModel& model = springs.model;
+  const Eigen::VectorXd mass = masses(model.network, springs.density);
+  write_named_file(data, lammps_data(model, model.network.X, mass));
+  write_named_file(input,
+                   lammps_input(model, mass, data.filename().string(), 0.95 * springs.derived.at("safe_time_step_s")) +
+                       groups_of(springs) + "run 0\n");
+  report(data, springs);
+  return 0;
+}
+
+int export_engine(const ExportRequest& request) {
+  const SpringsFile springs = springs_of(for_engine(request));
+  return export_to_engine(request, springs,
+                          is_body(request.what) ? std::vector<std::string>{} : held_patches(read_case(request.what)));
+}
+
+/// A form of export: a row.
+struct ExportForm {
+  const char* name;
+  const char* what;
+  int (*write)(const ExportRequest&);
+};
+constexpr ExportForm forms[] = {
+    {"calculix", "a deck for CalculiX and Abaqus", export_calculix},
+    {"springs", "all that the springs of a body are, as .json, .npz or .vtu by the name's ending", export_springs},
+    {"lammps", "a data file and an input for LAMMPS", export_lammps},
+    {"jolt", "springs of nu = 1/4 for Jolt Physics, as .json", export_engine},
+    {"bullet", "tetrahedra for Bullet's deformable bodies, as .json", export_engine},
+    {"mujoco", "tetrahedra for MuJoCo, as .xml", export_engine}};
+
+}  // namespace
+
+void ExportCommand::add_options(CLI::App& command) {
+  ExportRequest& r = request_;
+  std::vector<std::string> names, words;
+  for (const ExportForm& form : forms) {
+    names.emplace_back(form.name);
+    words.push_back(fmt::format("{}: {}", form.name, form.what));
+  }
+  command.add_option("CASE", r.what, "case file (*.toml), built-in name (springproof list), or a body (*.stl, ...)")
+      ->required();
+  command.add_option("--to", r.to, fmt::format("{}", fmt::join(words, "; ")))->required()->check(CLI::IsMember(names));
+  command.add_option("--out", r.out, "file to write (default: NAME.inp, NAME.json, NAME.data, NAME.xml here)");
+  command.add_option("--poisson-ratio,--nu", r.moduli.poisson_ratio, "of a case: one of its own (default: its first)");
+  command
+      .add_option("--cells", r.cells,
+                  "cells along each side of a body of hexahedra (default: the case's first resolution)")
+      ->expected(3)
+      ->check(CLI::Range(1, 1000));
+  command.add_option(
+      "--model", r.model,
+      fmt::format("springs: a model of the case or of the table (default: the case's first; {})", recommended_model()));
+  command.add_option("--voxels", r.voxels, "springs: about so many cubes (default: the case's first; 2000)")
+      ->check(CLI::Range(1, 4000000));
+  command.add_flag("--whole-cubes", r.whole_cubes,
+                   "springs: whole cubes of a body that is no block (default: cells cut along its surface)");
+  command.add_option("--youngs-modulus,-E", r.moduli.youngs_modulus, "of a body alone: Young's modulus [Pa]");
+  command.add_option("--density", r.density, "of a body alone [kg/m^3]")->check(positive())->capture_default_str();
+  command.add_option("--scale", r.scale, "of a body alone: its coordinates are multiplied by it")
+      ->check(positive())
+      ->capture_default_str();
+  command.add_option("--size", r.size, "of a script for gmsh (*.geo): its size_x size_y size_z [m]")
+      ->expected(3)
+      ->check(positive());
+}
+
+int ExportCommand::run() const {
+  const auto form =
+      std::find_if(std::begin(forms), std::end(forms), [&](const ExportForm& f) { return f.name == request_.to; });
+  return form->write(request_);
+}
+
+}  // namespace springproof

@@ -1,0 +1,247 @@
+#include "comparisons/models/frequencies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
+
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/solve_each.h"
+#include "fem_reference/exchange/case_request.h"
+#include "meshes/volume.h"
+#include "msm/dynamics/natural_modes.h"
+#include "msm/embedding/boundary.h"
+#include "problem/case_file/external.h"
+#include "problem/system/child.h"
+#include "problem/system/progress.h"
+
+namespace springproof {
+namespace {
+
+// Elements (Q2) of the finest grid of a block at most: what a direct solver factors in some ten seconds.
+constexpr double most_mode_elements = 1728;
+constexpr int modes_beside = 6;         // computed beside those compared, as partners and for whole multiplets
+constexpr double eigenvalue_order = 4;  // of frequencies with quadratic elements in smooth solutions
+
+std::string element_of(const PreparedCase& prepared) { return prepared.experiment.body.is_voxels() ? "p2" : "q2"; }
+
+/// Three grids, coarse to fine.
+fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) {
+  const Experiment& e = prepared.experiment;
+  const std::string element = element_of(prepared);
+  fem::Request request = fem::request_of(e, material);
+  request.law = "linear";
+  request.loads = supports_of(e);
+  request.modes = modes;
+  if (e.body.is_voxels()) {
+    request.points = prepared.samples.points;
+    request.meshes = prepared.body.tetrahedra;
+    for (int m = 0; m < 3; ++m) request.grids.push_back({{prepared.body.uncut[m], 0, 0}, element, 1.0, m, 0});
+    return request;
+  }
+  request.points = lattice_points(prepared);
+  double elements = 1;  // as the case says, if it does
+  for (const int n : e.reference.cells) elements *= n;
+  const Cells fine =
+      divisible_cells(e.body.size, elements > 0 ? std::min(elements, most_mode_elements) : most_mode_elements);
+  for (const int divisor : {4, 2, 1})
+    request.grids.push_back({divided(fine, divisor), element, request.loads.empty() ? 1.0 : e.reference.grading});
+  return request;
+}
+
+/// A free block: no edge at which stresses are singular.
+bool has_smooth_modes(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  return supports_of(e).empty() && !e.body.is_voxels() &&
+         std::abs(volume(*prepared.lattices[0].mesh, prepared.lattices[0].mesh->nodes) / e.body.size.prod() - 1) < 1e-9;
+}
+
+/// At the nodes of every lattice, one after the other.
+ModeSet modes_at_nodes(const PreparedCase& prepared, const fem::Solution& s) {
+  ModeSet out{s.frequencies, {}};
+  for (const NodalVectors& u : s.shapes)
+    out.shapes.push_back(prepared.experiment.body.is_voxels() ? at_lattice_nodes(prepared, u) : u);
+  return out;
+}
+
+Eigen::VectorXd weights_of_nodes(const PreparedCase& prepared) {
+  Eigen::VectorXd weights(prepared.nodes());
+  for (const Lattice& lattice : prepared.lattices)
+    weights.segment(lattice.first_node, lattice.mesh->nodes.rows()) = nodal_volumes(*lattice.mesh);
+  return weights;
+}
+
+struct ReferenceModes {
+  std::string form, failure;
+  int rigid_motions = 0;
+  std::vector<ReferenceValue> frequencies;
+  ModeSet finest;  ///< at the nodes of every lattice, one after the other
+};
+
+/// Limits of near frequencies may be in another order than those of the finest grid.
+void put_in_order(ReferenceModes& m) {
+  std::vector<std::size_t> order(m.frequencies.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return m.frequencies[a].value < m.frequencies[b].value; });
+  const ReferenceModes before = m;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    m.frequencies[i] = before.frequencies[order[i]];
+    m.finest.frequencies[i] = before.finest.frequencies[order[i]];
+    m.finest.shapes[i] = before.finest.shapes[order[i]];
+  }
+}
+
+ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
+  ReferenceModes out;
+  const ElementGrids grids{element_of(prepared), solve_each(mode_request(prepared, material, modes + modes_beside))};
+  for (const fem::Solution& s : grids.grids)
+    if (!s.ok) {
+      out.failure = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);
+      return out;
+    }
+  out.form = grids.grids[2].form;
+  out.rigid_motions = grids.grids[2].rigid_motions;
+  out.finest = modes_at_nodes(prepared, grids.grids[2]);
+  std::vector<std::vector<double>> values(modes);
+  for (const fem::Solution& s : grids.grids) {  // modes may cross from grid to grid
+    const auto pairs = pair_modes(out.finest, modes_at_nodes(prepared, s), weights_of_nodes(prepared));
+    for (int i = 0; i < modes; ++i) values[i].push_back(s.frequencies[pairs[i].partner.value_or(i)]);
+  }
+  const double order = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order;
+  std::map<std::string, ReferenceValue> limits;  // in their order, each the one component of its own vector
+  for (int i = 0; i < modes; ++i)
+    limits[fmt::format("frequency.{:03}.value", i + 1)] =
+        extrapolate(values[i], solver_noise * values[i][2], order, ratios_of(grids));
+  raise_to_usual(limits);
+  for (const auto& [name, limit] : limits) out.frequencies.push_back(limit);
+  put_in_order(out);
+  return out;
+} catch (const std::runtime_error& e) {
+  ReferenceModes none;
+  none.failure = e.what();
+  return none;
+}
+
+void compare(const FrequencyTable& table, const Eigen::VectorXd& weights, ModelFrequencies& model) {
+  const std::vector<ModePair> pairs = pair_modes(table.shapes, model.modes, weights);
+  int count = 0;
+  for (std::size_t i = 0; i < table.reference.size(); ++i) {
+    ModeRow& row = model.rows.emplace_back();
+    row.mac = pairs[i].mac;
+    if (!pairs[i].partner) continue;
+    row.frequency = model.modes.frequencies[*pairs[i].partner];
+    const double error = *row.frequency / table.reference[i].value - 1;
+    model.largest = std::max(model.largest, std::abs(error));
+    model.rms = std::sqrt((count * model.rms * model.rms + error * error) / (count + 1));
+    ++count;
+  }
+}
+
+ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lattice, std::size_t number, double theta,
+                                const IsotropicMaterial& material, int modes) try {
+  ModelFrequencies out;
+  out.label = prepared.experiment.models[number].label;
+  out.consistency = theta;
+  const auto [model, embedding] = build_on(prepared, lattice, prepared.models[number], material, false);
+  const BoundaryConditions supports = transfer(supports_of(prepared.experiment), *lattice.mesh, embedding,
+                                               model.network, material.density, Kinematics::linear);
+  const NaturalModes found = natural_modes(model, supports.fixed, material.density, theta, modes + modes_beside);
+  out.message = found.message;
+  out.solver = found.solver;
+  out.seconds = found.seconds;
+  out.modes.frequencies = found.frequencies;
+  for (const NodalVectors& u : found.shapes) out.modes.shapes.emplace_back(embedding.weights * u);
+  return out;
+} catch (const InputError&) {
+  throw;
+} catch (const std::exception& e) {  // no network with this material's moduli
+  ModelFrequencies none;
+  none.label = prepared.experiment.models[number].label;
+  none.consistency = theta;
+  none.message = e.what();
+  return none;
+}
+
+}  // namespace
+
+std::vector<ReferenceRecord> records_of(const FrequencyTable& table) {
+  std::vector<ReferenceRecord> records;
+  for (const ReferenceValue& value : table.reference) {
+    ReferenceRecord& r = records.emplace_back();
+    r.poisson_ratio = table.material.poisson_ratio;
+    r.measure = fmt::format("frequency.{}", records.size());
+    r.unit = "Hz";
+    r.value = value.value;
+    r.uncertainty = value.uncertainty;
+    r.note = value.note;
+    r.element = table.element;
+  }
+  return records;
+}
+
+std::vector<Load> supports_of(const Experiment& e) {
+  std::vector<Load> supports;
+  std::copy_if(e.loads.begin(), e.loads.end(), std::back_inserter(supports), prescribes_displacement);
+  return supports;
+}
+
+Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
+  if (options.free && !e.body.accuracies.empty())
+    throw InputError(e.body.where,
+                     "body.accuracy: cells are halved where the loads strain the body at rest, and --free leaves them "
+                     "out (allowed: voxels, or voxel_edge_m, alone)");
+  if (options.free) {
+    e.loads.clear();
+    e.load_locations.clear();
+  }
+  e.measures.clear();
+  e.expectations.clear();
+  e.elements.clear();
+  e.kinematics = "linear";
+  std::erase_if(e.models, is_external);
+  for (ModelChoice& m : e.models) m.in_motion = false;
+  return e;
+}
+
+std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, const IsotropicMaterial& material,
+                                                const FrequencyOptions& options) {
+  std::vector<std::string> patches;
+  for (const Patch& p : prepared.lattices.front().mesh->patches) patches.push_back(p.name);
+  check_patches(prepared.experiment, patches);
+  const ReferenceModes reference = reference_modes(prepared, material, options.modes);
+  const auto go_on = [] {
+    if (children_interrupted()) throw std::runtime_error("interrupted");
+  };
+  std::vector<FrequencyTable> tables;
+  for (const Lattice& lattice : prepared.lattices) {
+    FrequencyTable& table = tables.emplace_back();
+    table.material = material;
+    table.lattice = &lattice;
+    table.element = element_of(prepared);
+    table.form = reference.form;
+    table.failure = reference.failure;
+    table.rigid_motions = reference.rigid_motions;
+    table.reference = reference.frequencies;
+    table.shapes.frequencies = reference.finest.frequencies;
+    for (const NodalVectors& u : reference.finest.shapes) table.shapes.shapes.push_back(at_nodes(lattice, u));
+    const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
+    for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+      const bool cells = prepared.models[m].row.topology == Topology::cells;
+      for (const double theta : cells ? options.consistency : std::vector<double>{0}) {
+        go_on();
+        progress::phase(
+            fmt::format("{} on {} cells", prepared.experiment.models[m].label, cells_text(lattice.cells, " x ")));
+        table.models.push_back(frequencies_of(prepared, lattice, m, theta, material, options.modes));
+        if (table.failure.empty() && table.models.back().message.empty()) compare(table, weights, table.models.back());
+      }
+    }
+  }
+  go_on();
+  return tables;
+}
+
+}  // namespace springproof

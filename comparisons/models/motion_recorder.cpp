@@ -1,0 +1,116 @@
+#include "comparisons/models/motion_recorder.h"
+
+#include <fmt/format.h>
+
+#include "comparisons/prepare/sampling.h"
+#include "comparisons/prepare/voxel_body.h"
+
+namespace springproof {
+
+MotionRecorder::MotionRecorder(const MovingNetwork& moving, const MotionOptions& options, MotionRecord& record)
+    : moving_(moving),
+      mass_(moving.masses()),
+      per_mass_(inverse_masses(moving.network(), moving.material.density)),
+      behind_(options.integrator == Integrator::explicit_euler ? options.time_step.value() / 2 : 0),
+      damping_(options.damping),
+      viscosity_(options.viscosity),
+      average_(moving.network(), options.mass_consistency),
+      contact_(options.contact),
+      cut_(moving.lattice.cut && !moving.network().filled.empty()),
+      record_(record) {}
+
+void MotionRecorder::operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
+                                const BoundaryConditions& conditions) {
+  const MassSpringModel& model = moving_.built.model;
+  const NodalVectors s = at_positions(x, of_step, conditions), v = average_.velocities(s, conditions.fixed);
+  record_.history.time.push_back(time);
+  const Field field = field_at(x, v, conditions);
+  next_ = 0;
+  add("kinetic_energy", "J", 0.5 * (s.cwiseProduct(v).rowwise().sum().array() * mass_.array()).sum());
+  if (conservative(model)) add("elastic_energy", "J", energy(model, x));
+  add_momenta(x, s);
+  const NodalVectors u = x - model.network.X;
+  add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());
+  add("volume_change", "1", cut_ ? volume_change(model.network, u).exact : field.volume_change);
+  for (const PatchReaction& r : field.reactions) add_vector("force." + r.patch, "N", r.force);
+  if (contact_) add_impulse(contact_->take_impulse());
+  add_probes(u, field);
+  const MotionChoice& motion = moving_.motion();
+  if (time * motion.frames >= (record_.frames.size() + 1) * motion.duration * (1 - 1e-9))
+    record_.frames.emplace_back(time, field.displacement);
+}
+
+/// The velocity at the time of the positions: that of explicit steps is half a step behind.
+NodalVectors MotionRecorder::at_positions(const NodalVectors& x, NodalVectors v,
+                                          const BoundaryConditions& conditions) const {
+  if (behind_ == 0) return v;
+  const NodalVectors f = forces(moving_.built.model, x) + viscous_forces(x, average_.velocities(v, conditions.fixed)) +
+                         conditions.external;
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_[i / 3] - damping_ * v.data()[i]);
+  if (contact_) v = contact_->stopped(conditions.fixed, v);
+  carry(moving_.network().carried, v);
+  return v;
+}
+
+NodalVectors MotionRecorder::viscous_forces(const NodalVectors& x, const NodalVectors& v) const {
+  NodalVectors f = NodalVectors::Zero(x.rows(), 3);
+  if (viscosity_.acts()) viscosity_.add_forces(moving_.network(), x, v, f);
+  return f;
+}
+
+Field MotionRecorder::field_at(const NodalVectors& x, const NodalVectors& v,
+                               const BoundaryConditions& conditions) const {
+  const MassSpringModel& model = moving_.built.model;
+  const PreparedCase& prepared = moving_.prepared;
+  Equilibrium state;
+  state.displacement = x - model.network.X;
+  state.support = support_forces(model, x, conditions);
+  const NodalVectors viscous = viscous_forces(x, v);
+  for (Eigen::Index i = 0; i < viscous.size(); ++i)
+    if (conditions.fixed[i]) state.support.data()[i] -= viscous.data()[i];
+  const Experiment& e = prepared.experiment;
+  Field field = to_field(state, moving_.lattice.mesh, moving_.built.embedding, model.network, prepared.loads,
+                         conditions, e.model_kinematics());
+  if (e.body.is_voxels()) field.reactions = about_true_patches(prepared, *moving_.lattice.mesh, field.reactions);
+  return field;
+}
+
+/// About the origin.
+void MotionRecorder::add_momenta(const NodalVectors& x, const NodalVectors& s) {
+  add_vector("linear_momentum", "kg m/s", s.transpose() * mass_);
+  Vec3 spin = Vec3::Zero();
+  for (Eigen::Index n = 0; n < x.rows(); ++n)
+    spin += mass_[n] * Vec3(x.row(n).transpose()).cross(Vec3(s.row(n).transpose()));
+  add_vector("angular_momentum", "kg m^2/s", spin);
+}
+
+void MotionRecorder::add_probes(const NodalVectors& u, const Field& field) {
+  const PreparedCase& prepared = moving_.prepared;
+  const std::vector<Probe>& probes = prepared.experiment.probes;
+  const NodalVectors at_points = cut_ ? displacement_at(*moving_.lattice.cut, u, measured_points(prepared))
+                                      : at_measured_points(prepared, moving_.lattice, field.displacement);
+  for (std::size_t p = 0; p < probes.size(); ++p)
+    add_vector("displacement." + probes[p].name, "m", at_points.row(static_cast<Eigen::Index>(p)).transpose());
+}
+
+void MotionRecorder::add(const std::string& name, const char* unit, double value) {
+  HistoryRecord& h = record_.history;
+  if (next_ == h.names.size()) {
+    h.names.push_back(name);
+    h.units.emplace_back(unit);
+    h.values.emplace_back();
+  }
+  h.values[next_++].push_back(value);
+}
+
+void MotionRecorder::add_vector(const std::string& name, const char* unit, const Vec3& v) {
+  for (int axis = 0; axis < 3; ++axis) add(fmt::format("{}.{}", name, "xyz"[axis]), unit, v[axis]);
+}
+
+void MotionRecorder::add_impulse(const ContactImpulse& further) {
+  add_vector("contact_impulse", "N s", impulse_.linear += further.linear);
+  add_vector("contact_angular_impulse", "N m s", impulse_.angular += further.angular);
+}
+
+}  // namespace springproof

@@ -1,0 +1,21 @@
+#include "comparisons/prepare/input_checksum.h"
+
+#include "meshes/mesher/mesher.h"
+#include "meshes/mesher/script_files.h"
+#include "problem/system/checksum.h"
+#include "problem/system/files.h"
+
+namespace springproof {
+
+std::string input_checksum(const Experiment& e) {
+  std::string all = checksum(e.text);
+  const auto add = [&](const std::filesystem::path& file) {
+    all += file.filename().string() + checksum(text_of_file(file));
+  };
+  for (const auto& file : files_behind(find_geo(e.body, e.file))) add(file);
+  for (const ModelChoice& model : e.models)
+    if (!model.file.empty()) add(model.file);
+  return checksum(all);
+}
+
+}  // namespace springproof

@@ -1,0 +1,141 @@
+#include "comparisons/prepare/prepared_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "msm/exchange/anchored_springs.h"
+#include "msm/vertex_models.h"
+
+namespace springproof {
+
+namespace {
+
+/// Whether the loads prescribe all components on a patch.
+bool holds_wholly(const std::vector<Load>& loads, const std::string& patch) {
+  std::array<bool, 3> held{};
+  for (const Load& load : loads)
+    if (prescribes_displacement(load) && *patch_of(load) == patch) {
+      const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
+      for (int d = 0; d < 3; ++d) held[d] = held[d] || value[d];
+    }
+  return held[0] && held[1] && held[2];
+}
+
+/// In motion every free node has a mass: a patch that is held in some components only has no anchors, but nodes at it.
+/// Anchors of cells that are filled in part are as much softer, which leaves them a time step.
+EmbeddedModel build_cut_in_motion(const PreparedCase& prepared, const ModelParameters& parameters,
+                                  const Lattice& lattice, const std::set<std::string>& held,
+                                  const IsotropicMaterial& material) {
+  const CutBody& body = *lattice.cut;
+  std::vector<std::string> anchored;
+  for (const std::string& name : held)
+    if (holds_wholly(prepared.loads, name)) anchored.push_back(name);
+  EmbeddedModel built = build_cut(parameters, body, anchored, *lattice.mesh, material);
+  auto anchor = built.model.network.anchors.begin();
+  for (const std::string& name : anchored)
+    for (const PatchInCell& p : body.patches.at(name)) anchor++->stiffness *= body.cells[p.cell].filled.fraction;
+  for (const std::string& name : held)
+    if (!built.embedding.held.contains(name)) built.embedding.held[name] = nodes_at_patch(body, name);
+  return built;
+}
+
+/// @throws InputError unless the file has, of each patch of the loads, what the case needs.
+EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelParameters& parameters,
+                                     const Lattice& lattice, const std::set<std::string>& held, bool in_motion) try {
+  const SpringsFile& file = *parameters.springs;
+  for (const Load& load : prepared.loads)
+    if (const std::string* on = patch_of(load);
+        on && !(file.loads.contains(*on) && file.patches.contains(*on) && file.anchors.contains(*on)))
+      throw InputError(
+          fmt::format("/loads, /patches or /anchors: has no patch '{}', on which the case has a load", *on));
+  auto [model, embedding] = anchored(file, in_motion ? std::set<std::string>{} : held, *lattice.mesh);
+  if (in_motion) {
+    embedding.held = file.patches;
+    embedding.surface = file.surface.weights;
+  }
+  return {std::move(model), std::move(embedding)};
+} catch (const InputError& e) {
+  throw InputError(fmt::format("{}: {}", parameters.row.name, e.what()));
+}
+
+/// On the vertices of the lattice's tetrahedra, with results at the nodes of its cubes.
+EmbeddedModel build_on_tetrahedra(const Lattice& lattice, const ModelParameters& parameters,
+                                  const IsotropicMaterial& material) {
+  const Mesh& tetrahedra = *lattice.tetrahedra;
+  EmbeddedModel built = build_on_vertices(parameters, tetrahedra, material, lattice.fits->of(parameters, tetrahedra));
+  built.embedding.weights = embed(*lattice.mesh, built.model.network, 0).weights;
+  return built;
+}
+
+/// On the lattice as the model takes it.
+EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                       const std::set<std::string>& held, const IsotropicMaterial& material, bool in_motion) {
+  if (parameters.springs && !parameters.springs->model.network.filled.empty()) {
+    require_material(parameters, material);
+    return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
+  }
+  if (passes_patch_test(parameters.row) && lattice.tetrahedra)
+    return build_on_tetrahedra(lattice, parameters, material);
+  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
+  if (in_motion) return build_cut_in_motion(prepared, parameters, lattice, held, material);
+  return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
+}
+
+}  // namespace
+
+const Network& FittedNetworks::of(const ModelParameters& parameters, const Mesh& tetrahedra) {
+  const std::scoped_lock lock(one_at_a_time_);
+  const double key = parameters.random.springs_per_node;
+  const auto known = by_springs_per_node_.find(key);
+  if (known != by_springs_per_node_.end()) return known->second;
+  return by_springs_per_node_.emplace(key, fitted_on_vertices(parameters, tetrahedra)).first->second;
+}
+
+EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
+                       const IsotropicMaterial& material, bool in_motion) {
+  std::set<std::string> held;
+  for (const Load& load : prepared.loads)
+    if (prescribes_displacement(load)) held.insert(*patch_of(load));
+  EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
+  if (in_motion && held.empty()) {  // in flight all nodes fall alike
+    built.embedding.free_fall = true;
+    if (!built.embedding.patches.empty()) built.embedding.volumes = built.model.network.volume;
+  }
+  return built;
+}
+
+void add_lattice(Lattice lattice, PreparedCase& prepared) {
+  lattice.first_node = prepared.nodes();
+  prepared.lattices.push_back(std::move(lattice));
+}
+
+std::vector<Load> lattice_loads(const PreparedCase& prepared) {
+  std::vector<Load> loads = prepared.loads;
+  std::erase_if(loads, [](const Load& load) { return std::holds_alternative<FieldBodyForce>(load); });
+  return loads;
+}
+
+std::size_t finest_lattice(const PreparedCase& prepared) {
+  const auto& all = prepared.lattices;
+  const auto finer = [](const Lattice& a, const Lattice& b) {
+    return a.mesh->hexahedra.size() < b.mesh->hexahedra.size();
+  };
+  return static_cast<std::size_t>(std::max_element(all.begin(), all.end(), finer) - all.begin());
+}
+
+std::vector<std::string> elements_of(const Experiment& e, char shape) {
+  std::vector<std::string> elements;
+  if (!e.models.empty())
+    std::copy_if(e.elements.begin(), e.elements.end(), std::back_inserter(elements),
+                 [&](const std::string& name) { return name[0] == shape; });
+  return elements;
+}
+
+bool small_enough(const Experiment& experiment, const Mesh& mesh, int degree) {
+  const double unknowns = 3.0 * static_cast<double>(mesh.nodes.rows()) * degree * degree * degree;
+  return experiment.max_unknowns == 0 || unknowns <= experiment.max_unknowns;
+}
+
+}  // namespace springproof

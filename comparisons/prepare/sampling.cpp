@@ -1,0 +1,95 @@
+#include "comparisons/prepare/sampling.h"
+
+#include "comparisons/judge/measures.h"
+#include "comparisons/results/picture.h"
+#include "meshes/locate/locate.h"
+
+namespace springproof {
+
+NodalVectors probe_points(const Experiment& e) {
+  NodalVectors points(static_cast<Eigen::Index>(e.probes.size()), 3);
+  for (std::size_t i = 0; i < e.probes.size(); ++i)
+    points.row(static_cast<Eigen::Index>(i)) = e.probes[i].at.transpose();
+  return points;
+}
+
+NodalVectors measured_points(const PreparedCase& prepared) {
+  NodalVectors points = probe_points(prepared.experiment);
+  for (const PatchSamples& p : prepared.samples.of_patches) {
+    points.conservativeResize(points.rows() + p.points.rows(), 3);
+    points.bottomRows(p.points.rows()) = p.points;
+  }
+  return points;
+}
+
+NodalVectors lattice_points(const PreparedCase& prepared) {
+  NodalVectors points(prepared.nodes(), 3);
+  for (const Lattice& lattice : prepared.lattices)
+    points.middleRows(lattice.first_node, lattice.mesh->nodes.rows()) = lattice.mesh->nodes;
+  return points;
+}
+
+NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
+  NodalVectors both(a.rows() + b.rows(), 3);
+  both << a, b;
+  return both;
+}
+
+NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples) {
+  return samples.middleRows(lattice.first_node, lattice.mesh->nodes.rows());
+}
+
+NodalVectors at_measured(const PreparedCase& prepared, const NodalVectors& samples) {
+  return samples.bottomRows(samples.rows() - prepared.nodes());
+}
+
+NodalVectors known_at(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& at_nodes,
+                      const NodalVectors& at_measured) {
+  NodalVectors of_lattices = NodalVectors::Zero(prepared.nodes(), 3);
+  of_lattices.middleRows(lattice.first_node, at_nodes.rows()) = at_nodes;
+  return stacked(of_lattices, at_measured);
+}
+
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {
+  NodalVectors out(static_cast<Eigen::Index>(prepared.samples.of_nodes.size()), 3);
+  for (std::size_t n = 0; n < prepared.samples.of_nodes.size(); ++n) {
+    const NodeSample& s = prepared.samples.of_nodes[n];
+    const auto row = static_cast<Eigen::Index>(n);
+    out.row(row) = s.within < 0 ? Eigen::RowVector3d(u.row(s.at)) : 2 * u.row(s.at) - u.row(s.within);
+  }
+  return out;
+}
+
+NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice,
+                                const NodalVectors& displacement) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *lattice.mesh;
+  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // throws for a probe outside
+  const NodalVectors points = measured_points(prepared);
+  const Locator locator(mesh);
+  NodalVectors out = NodalVectors::Zero(points.rows(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Location at = locator(points.row(i).transpose());
+    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * displacement.row(mesh.hexahedra[at.cell][n]);
+  }
+  return out;
+}
+
+Eigen::Index first_pictured_stress(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  return wanted("stress", e.measures) ? static_cast<Eigen::Index>(e.probes.size()) : 0;
+}
+
+NodalVectors stress_points(const PreparedCase& prepared) {
+  const Eigen::Index probes = first_pictured_stress(prepared);
+  const bool pictured = !prepared.lattices.empty() && !prepared.experiment.models.empty();
+  const NodalVectors surface =
+      pictured ? pictured_points(prepared.experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
+                                                                      : *prepared.lattices.front().mesh)
+               : NodalVectors(0, 3);
+  NodalVectors all(probes + surface.rows(), 3);
+  all << probe_points(prepared.experiment).topRows(probes), surface;
+  return all;
+}
+
+}  // namespace springproof

@@ -1,0 +1,45 @@
+// The points at which displacements are requested: the nodes of the lattices, then the measured points.
+#pragma once
+
+#include "comparisons/prepare/prepared_case.h"
+
+namespace springproof {
+
+/// Rest positions of the probes, n x 3 [m].
+NodalVectors probe_points(const Experiment& experiment);
+
+/// The probes, then the points of the patches whose mean displacement is measured.
+NodalVectors measured_points(const PreparedCase& prepared);
+
+/// Rest positions of the nodes of every lattice, one after the other.
+NodalVectors lattice_points(const PreparedCase& prepared);
+
+/// One after the other.
+NodalVectors stacked(const NodalVectors& a, const NodalVectors& b);
+
+/// The part of Solution::displacement that belongs to the nodes of one lattice.
+NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples);
+
+/// The part of it that belongs to the measured points.
+NodalVectors at_measured(const PreparedCase& prepared, const NodalVectors& samples);
+
+/// A Solution::displacement that is known at one lattice and at the measured points, and 0 elsewhere.
+NodalVectors known_at(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& at_nodes,
+                      const NodalVectors& at_measured);
+
+/// Displacement at the nodes of every lattice, one after the other, from that at Samples::points.
+NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& at_points);
+
+/// Displacement at the measured points from that of a lattice's nodes.  A point of a patch, and in a body of voxels a
+/// probe, may lie outside the cells: the nearest one is extrapolated.
+/// @throws InputError naming a probe outside the body.
+NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
+
+/// Rest positions at which the reference's stress is requested: the probes, if the case measures it there, then the
+/// surface that is pictured.
+NodalVectors stress_points(const PreparedCase& prepared);
+
+/// The rows of the surface among those.
+Eigen::Index first_pictured_stress(const PreparedCase& prepared);
+
+}  // namespace springproof

@@ -1,0 +1,97 @@
+#include "comparisons/prepare/springs_of_case.h"
+
+#include "comparisons/prepare/input_checksum.h"
+#include "msm/measure/moduli.h"
+#include "msm/models.h"
+#include "msm/springs_of_model.h"
+
+namespace springproof {
+namespace {
+
+EmbeddedSurface carried_surface(const PreparedCase& prepared, const EmbeddedModel& built) {
+  const Mesh& cells = *prepared.lattices.front().mesh;
+  return carried_surface(prepared.body.tetrahedra.empty() ? cells : *prepared.body.tetrahedra.back(), cells,
+                         built.model.network, built.embedding);
+}
+
+EmbeddedSurface carried_surface(const PreparedCase& prepared, const CutBody& body) {
+  EmbeddedSurface surface = surface_of_mesh(*prepared.body.tetrahedra.back());
+  const Carriers carriers = carriers_of(static_cast<int>(body.points.rows()), body.carried);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int v = 0; v < surface.vertices.rows(); ++v) {
+    const CutBody::Place at = body.place(surface.vertices.row(v).transpose());
+    for (int n = 0; n < 8; ++n)
+      if (at.weights[n] != 0)
+        for_each_carrier(carriers, body.cells[at.cell].corners[n],
+                         [&](int node, double share) { entries.emplace_back(v, node, share * at.weights[n]); });
+  }
+  surface.weights.resize(surface.vertices.rows(), body.points.rows());
+  surface.weights.setFromTriplets(entries.begin(), entries.end());
+  return surface;
+}
+
+/// Whole cells, or a network without cells.
+void add_network(const PreparedCase& prepared, SpringsFile& file) {
+  const Lattice& lattice = prepared.lattices.front();
+  const ModelParameters& parameters = prepared.models.front();
+  EmbeddedModel built = build_on(prepared, lattice, parameters, *file.material, false);
+  file.grip = parameters.springs ? parameters.springs->grip : grip_of(parameters, *lattice.mesh);
+  file.grip_from_cells =
+      parameters.springs ? parameters.springs->grip_from_cells : parameters.row.topology != Topology::random;
+  file.patches = built.embedding.held;
+  file.surface = carried_surface(prepared, built);
+  file.model = std::move(built.model);
+}
+
+/// Cut cells.  Every node that nothing carries has a mass: anchors are kept apart, each patch has beside them the nodes
+/// at it.  Loads and weights of carried nodes are handed to those that carry them.
+void add_cut_network(const PreparedCase& prepared, SpringsFile& file) {
+  const Lattice& lattice = prepared.lattices.front();
+  const CutBody& body = *lattice.cut;
+  file.model = build_cut(prepared.models.front(), body, {}, *lattice.mesh, *file.material).model;
+  std::erase_if(file.model.laws, [](const ForceLaw& law) { return std::holds_alternative<Anchors>(law); });
+  Embedding loads = embed(body, {}, file.model.network, Mesh{});
+  file.loads = std::move(loads.patches);
+  file.volumes = std::move(loads.volumes);
+  hand_back(body.carried, file.volumes, 1);
+  for (auto& [name, shares] : file.loads) {
+    hand_back(body.carried, shares.area, 1);
+    hand_back(body.carried, shares.normal);
+  }
+  for (const auto& [name, parts] : body.patches) {
+    file.patches[name] = nodes_at_patch(body, name);
+    file.anchors[name] = cut_lattice(body, {name}, file.material->youngs_modulus).anchors;
+  }
+  file.surface = carried_surface(prepared, body);
+}
+
+std::map<std::string, double> derived_of(const SpringsFile& file, const ModelParameters& parameters) {
+  std::map<std::string, double> derived = springproof::derived_of(file);
+  if (!parameters.springs) {
+    const MeasuredModuli m = measure_moduli(parameters, *file.material);
+    derived.merge(std::map<std::string, double>{{"measured_youngs_modulus_Pa", m.youngs_modulus},
+                                                {"measured_poisson_ratio", m.poisson_ratio},
+                                                {"measured_shear_modulus_Pa", m.shear_modulus}});
+  }
+  return derived;
+}
+
+}  // namespace
+
+SpringsFile springs_of(const PreparedCase& prepared) {
+  const ModelParameters& parameters = prepared.models.front();
+  const ModelChoice& choice = prepared.experiment.models.front();
+  SpringsFile file;
+  file.material = prepared.experiment.materials.front();
+  file.density = file.material->density;
+  parameters.cut.value_or(false) ? add_cut_network(prepared, file) : add_network(prepared, file);
+  file.origin = {"springproof " SPRINGPROOF_VERSION, choice.name, choice.options,
+                 prepared.experiment.text.empty() ? prepared.body.geo.filename().string()
+                                                  : prepared.experiment.file.filename().string(),
+                 input_checksum(prepared.experiment)};
+  if (parameters.cut.value_or(false)) file.origin.options["cut"] = true;  // not what the name says: averaged springs
+  file.derived = derived_of(file, parameters);
+  return file;
+}
+
+}  // namespace springproof

@@ -1,0 +1,372 @@
+#include "comparisons/prepare/voxel_body.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "comparisons/judge/measures.h"
+#include "comparisons/prepare/refined_lattice.h"
+#include "comparisons/prepare/sampling.h"
+#include "meshes/locate/facet_tree.h"
+#include "meshes/locate/locate.h"
+#include "meshes/mesher/mesher.h"
+#include "meshes/patches/rule_region.h"
+#include "meshes/patches/select_patches.h"
+#include "meshes/volume.h"
+#include "meshes/voxels/voxelise.h"
+#include "problem/system/progress.h"
+#include "problem/system/streams.h"
+
+namespace springproof {
+namespace {
+
+// Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.
+constexpr int finest_tetrahedra = 20000;
+constexpr double least_spread = 1e-6;  // of an area or a volume between the meshes, above which it is reported
+constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
+
+MeshRequest body_request(const PreparedCase& prepared) {
+  MeshRequest request;
+  request.file = prepared.body.geo;
+  request.size = prepared.experiment.body.size;
+  request.scale = prepared.experiment.body.scale;
+  return request;
+}
+
+/// Hint for files in millimetres that are read as metres; empty if the size is plausible.
+std::string scale_hint(const Mesh& mesh, const Body& body) {
+  constexpr double large = 10;  // [m]
+  const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
+  if (body.is_script() || body.scale != 1 || !(span > large)) return {};
+  return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+}
+
+/// Edges of a mesh over those of the finest one.
+double coarseness(const Mesh& mesh, const PreparedCase& prepared) {
+  return std::cbrt(prepared.body.uncut.back() / static_cast<double>(mesh.tetrahedra.size()));
+}
+
+void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
+  const Experiment& e = prepared.experiment;
+  request.edge = e.reference.edge;
+  request.tetrahedra = finest_tetrahedra;
+  if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
+  MeshedBody body = mesh_body(request);
+  prepared.body.notes = body.notes;
+  hint = scale_hint(body.mesh, e.body);
+  if (!hint.empty()) prepared.body.notes.push_back(hint);
+  body.coarser.push_back(std::move(body.mesh));
+  for (const Mesh& mesh : body.coarser) prepared.body.uncut.push_back(static_cast<int>(mesh.tetrahedra.size()));
+  for (Mesh& mesh : body.coarser) {
+    const std::vector<std::string> cuts = select_patches(e.patches, mesh, coarseness(mesh, prepared));
+    if (&mesh == &body.coarser.back()) prepared.body.notes.insert(prepared.body.notes.end(), cuts.begin(), cuts.end());
+    prepared.body.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
+  }
+}
+
+std::vector<double> voxel_edges(const Body& body, double volume) {
+  if (!body.voxel_edges.empty()) return body.voxel_edges;
+  std::vector<double> edges;
+  for (const int count : body.voxel_counts) edges.push_back(std::cbrt(volume / count));
+  return edges;
+}
+
+/// @throws std::invalid_argument, before the work, if more cubes fill the body than a lattice may have.
+void check_counts(const std::vector<double>& edges, double volume) {
+  constexpr double most_cubes = 4e6;
+  for (const double edge : edges)
+    if (const double cubes = volume / std::pow(edge, 3); !(cubes < 1.1 * most_cubes))
+      throw std::invalid_argument(
+          fmt::format("voxels: about {:.3g} cubes of {:.3g} m fill the body (allowed: up to {:.0g}; a lattice takes "
+                      "some 3 kB per cube); "
+                      "take larger voxels",
+                      cubes, edge, most_cubes));
+}
+
+/// @throws std::invalid_argument if the cubes fill more than twice or less than half of the body's volume.
+void compare_volumes(double cubes, double edge, double body, std::vector<std::string>& notes) {
+  const double share = cubes * std::pow(edge, 3) / body;
+  const std::string says =
+      fmt::format("{} cubes of {:.6g} m fill {:.4g} times the volume of the body", cubes, edge, share);
+  if (share > 2 || share < 0.5)
+    throw std::invalid_argument("voxels: " + says + " (allowed: 0.5 to 2); take smaller voxels");
+  if (std::abs(share - 1) > 0.1) notes.push_back(says + ": its thin parts are not resolved");
+}
+
+/// Tetrahedral meshes as fine as the lattices, for elements compared with the models and networks on their vertices.
+void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  const auto on_vertices = [](const ModelParameters& p) { return passes_patch_test(p.row); };
+  if (elements_of(e, 'p').empty() && std::none_of(prepared.models.begin(), prepared.models.end(), on_vertices)) return;
+  for (Lattice& lattice : prepared.lattices) {
+    request.edge = lattice.voxel_edge;
+    Mesh mesh = mesh_body(request).mesh;
+    select_patches(e.patches, mesh, coarseness(mesh, prepared));
+    lattice.tetrahedra = std::make_shared<Mesh>(std::move(mesh));
+  }
+}
+
+/// Which models take the cut cells.
+std::string cut_cells_note(const PreparedCase& prepared, const CutBody& cut) {
+  std::vector<std::string> cut_models, others;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    (*prepared.models[m].cut ? cut_models : others).push_back(prepared.experiment.models[m].label);
+  int largest = 1;
+  for (const CutCell& c : cut.cells) largest = std::max(largest, c.size);
+  const std::string sizes = largest > 1 ? fmt::format("{:.4g} to {:.4g}", cut.grid.edge, largest * cut.grid.edge)
+                                        : fmt::format("{:.6g}", cut.grid.edge);
+  std::string note = fmt::format("{} cells of {} m, cut along the true surface: {}", cut.cells.size(), sizes,
+                                 fmt::join(cut_models, ", "));
+  if (!others.empty()) note += fmt::format("; whole cubes: {}", fmt::join(others, ", "));
+  return note;
+}
+
+/// What was promised for what was asked.
+std::string refinement_note(const RefinedBody& refined, double accuracy) {
+  return fmt::format(
+      "{} cells, refined where the stress is least certain, promise a displacement error of {:.2g} %; {:.3g} % "
+      "were asked for{}",
+      refined.cut.cells.size(), 100 * refined.promised, 100 * accuracy,
+      refined.reached ? "" : ", which smaller cells than these would take");
+}
+
+void cut_lattices(PreparedCase& prepared) {
+  const Mesh& true_body = *prepared.body.tetrahedra.back();
+  const auto region = std::make_shared<Region>(region_of(true_body));
+  prepared.body.size = region->upper - region->lower;
+  const std::vector<double> edges = voxel_edges(prepared.experiment.body, region->volume);
+  check_counts(edges, region->volume);
+  const auto add_cubes = [&](const VoxelGrid& grid) {
+    Voxels voxels = voxelise(grid, true_body);
+    for (const std::string& note : voxels.notes) prepared.body.notes.push_back(note);
+    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), grid.edge, region->volume, prepared.body.notes);
+    add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), grid.edge, region}, prepared);
+  };
+  for (const double accuracy : prepared.experiment.body.accuracies) {
+    RefinedBody refined = refine_until(prepared, voxel_grid(true_body, edges.front()), true_body, accuracy);
+    const auto cells = static_cast<double>(refined.cut.cells.size());
+    const VoxelGrid cubes = voxel_grid(true_body, std::cbrt(region->volume / cells));  // for results, and whole cubes
+    if (!prepared.lattices.empty() && prepared.lattices.back().cells == cubes.cells) prepared.lattices.pop_back();
+    add_cubes(cubes);
+    prepared.body.notes.push_back(refinement_note(refined, accuracy));
+    prepared.body.notes.push_back(cut_cells_note(prepared, refined.cut));
+    prepared.body.notes.insert(prepared.body.notes.end(), refined.cut.notes.begin(), refined.cut.notes.end());
+    prepared.lattices.back().promised = refined.promised;
+    prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(refined.cut));
+  }
+  if (!prepared.experiment.body.accuracies.empty()) return;
+  for (const double edge : edges) {
+    const VoxelGrid grid = voxel_grid(true_body, edge);
+    progress::detail(fmt::format("voxels of {:.4g} m", edge));
+    add_cubes(grid);
+    const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
+    if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
+    CutBody cut = cut_body(grid, true_body);
+    prepared.body.notes.push_back(cut_cells_note(prepared, cut));
+    prepared.body.notes.insert(prepared.body.notes.end(), cut.notes.begin(), cut.notes.end());
+    prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
+  }
+}
+
+/// The facets of a patch: for a patch by a rule its part of each facet, cut at the border; for others whole facets.
+std::vector<FacetPart> parts_of(const Experiment& e, const Mesh& mesh, const std::string& name) {
+  const auto rule =
+      std::find_if(e.patches.begin(), e.patches.end(), [&](const PatchRule& r) { return r.name == name; });
+  if (rule != e.patches.end()) return parts_of(*rule, mesh);
+  const auto X = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
+  std::vector<FacetPart> parts;
+  for (const auto& f : patch(mesh, name).facets) {
+    const Vec3 a = X(f[0]), b = X(f[1]), c = X(f[2]);
+    parts.push_back({(b - a).cross(c - a) / 2, (a + b + c) / 3, {}});
+  }
+  return parts;
+}
+
+double area(const std::vector<FacetPart>& parts) {
+  double sum = 0;
+  for (const FacetPart& p : parts) sum += p.area.norm();
+  return sum;
+}
+
+Vec3 centroid(const std::vector<FacetPart>& parts) {
+  Vec3 sum = Vec3::Zero();
+  for (const FacetPart& p : parts) sum += p.area.norm() * p.centroid;
+  return sum / area(parts);
+}
+
+Wrench of_pressure(const std::vector<FacetPart>& parts, double pressure) {
+  Wrench wrench{Vec3::Zero(), Vec3::Zero(), centroid(parts)};
+  for (const FacetPart& p : parts) {
+    wrench.force -= pressure * p.area;
+    wrench.moment -= pressure * (p.centroid - wrench.about).cross(p.area);
+  }
+  return wrench;
+}
+
+Vec3 centroid(const Mesh& mesh) {
+  const Eigen::VectorXd volumes = nodal_volumes(mesh);
+  return mesh.nodes.transpose() * volumes / volumes.sum();
+}
+
+void set_wrenches(PreparedCase& prepared) {
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
+  const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
+  for (Load& load : prepared.loads) {
+    if (auto* t = std::get_if<Traction>(&load)) {
+      t->wrench = at_centroid(area(parts(t->on)) * t->traction, centroid(parts(t->on)));
+    } else if (auto* q = std::get_if<Pressure>(&load)) {
+      q->wrench = of_pressure(parts(q->on), q->pressure);
+    } else if (auto* f = std::get_if<PatchForce>(&load)) {
+      f->wrench = at_centroid(f->force, centroid(parts(f->on)));
+    } else if (auto* g = std::get_if<Gravity>(&load); g && !flies(prepared.experiment)) {
+      const double mass = prepared.experiment.materials.front().density * volume(body, body.nodes);
+      g->wrench = at_centroid(mass * g->acceleration, centroid(body));
+    }
+  }
+}
+
+/// Relative difference of a quantity between the two finest meshes; 0: there is one.
+double spread(const PreparedCase& prepared, const std::function<double(const Mesh&)>& quantity) {
+  const auto& meshes = prepared.body.tetrahedra;
+  return meshes.size() < 2 ? 0 : std::abs(quantity(*meshes[meshes.size() - 2]) / quantity(*meshes.back()) - 1);
+}
+
+/// Sets the uncertainty of loads proportional to an area or a volume, as every mesh carries the resultants of the
+/// finest.
+void set_load_spread(PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  for (const Load& load : e.loads) {
+    const std::string* on = patch_of(load);
+    const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load);
+    if (!by_area && (!std::holds_alternative<Gravity>(load) || flies(e))) continue;
+    const double off =
+        spread(prepared, [&](const Mesh& m) { return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes); });
+    if (off <= least_spread) continue;
+    prepared.body.load_spread = std::max(prepared.body.load_spread, off);
+    prepared.body.notes.push_back(
+        fmt::format("the meshes differ by {:.2g} % in {}: so much is added to the uncertainties", 100 * off,
+                    on ? "the area of patch '" + *on + "'" : "their volume, and so the weight"));
+  }
+}
+
+/// Requests displacements at lattice nodes in the body; for those outside at the nearest surface point and at the
+/// mirror image.
+void place_samples(PreparedCase& prepared) {
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  const std::vector<OuterFacet> facets = outer_facets(body);
+  const FacetTree tree(body, facets);
+  const Region& region = *prepared.lattices.front().region;
+  std::vector<Vec3> points;
+  const auto ask = [&](const Vec3& p) {
+    points.push_back(p);
+    return static_cast<int>(points.size()) - 1;
+  };
+  for (const Lattice& lattice : prepared.lattices)
+    for (const auto& row : lattice.mesh->nodes.rowwise()) {
+      const Vec3 X = row.transpose();
+      if (region.inside(X)) {
+        prepared.samples.of_nodes.push_back({ask(X)});
+        continue;
+      }
+      const Vec3 nearest = tree.nearest(X).point, mirrored = 2 * nearest - X;
+      const int at = ask(nearest);
+      prepared.samples.of_nodes.push_back({at, region.inside(mirrored) ? ask(mirrored) : at});
+    }
+  prepared.samples.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    prepared.samples.points.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+}
+
+/// How far a curved surface may lie above a facet of it [m]: half of how far the corners of the facets beside it lie
+/// below its plane, unless there is an edge of the body between them.
+double bulge(const Mesh& body, const std::vector<OuterFacet>& facets, std::size_t of) {
+  constexpr double edge = 0.7;  // cosine between normals
+  const auto corners = [&](const OuterFacet& f) {
+    return std::array<Vec3, 3>{body.nodes.row(f.nodes[0]), body.nodes.row(f.nodes[1]), body.nodes.row(f.nodes[2])};
+  };
+  const auto normal = [&](const OuterFacet& f) -> Vec3 {
+    const auto [a, b, c] = corners(f);
+    const Vec3 n = (b - a).cross(c - a).normalized();
+    return n.dot(f.cell_centre - a) > 0 ? Vec3(-n) : n;
+  };
+  const Vec3 n = normal(facets[of]), at = corners(facets[of])[0];
+  double below = 0;
+  for (const OuterFacet& f : facets)
+    if (std::find_first_of(f.nodes.begin(), f.nodes.begin() + 3, facets[of].nodes.begin(),
+                           facets[of].nodes.begin() + 3) != f.nodes.begin() + 3 &&
+        normal(f).dot(n) > edge)
+      for (const Vec3& corner : corners(f)) below = std::max(below, n.dot(at - corner));
+  return below / 2;
+}
+
+/// Notes probes outside the body: beyond its facets by more than round-off and than its surface may bulge over them.
+/// @throws InputError naming a probe that is further outside than half a cube.
+void check_probes(PreparedCase& prepared) {
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  const std::vector<OuterFacet> facets = outer_facets(body);
+  const FacetTree tree(body, facets);
+  const auto finer = [](const Lattice& a, const Lattice& b) { return a.voxel_edge < b.voxel_edge; };
+  const double slack = std::min_element(prepared.lattices.begin(), prepared.lattices.end(), finer)->voxel_edge / 2;
+  for (const Probe& p : prepared.experiment.probes) {
+    if (prepared.lattices.front().region->inside(p.at)) continue;
+    const auto [facet, point, distance] = tree.nearest(p.at);
+    if (distance > 1e-6 * prepared.body.size.norm() + bulge(body, facets, facet))
+      prepared.body.notes.push_back(
+          fmt::format("probe '{}' lies {:.3g} m outside the body: its displacement is extrapolated", p.name, distance));
+    if (distance > slack)
+      throw InputError(fmt::format(
+          "probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface",
+          p.name, p.at[0], p.at[1], p.at[2], distance));
+  }
+}
+
+void prepare_body(PreparedCase& prepared, std::string& hint) {
+  const Experiment& e = prepared.experiment;
+  const MeshRequest request = body_request(prepared);
+  mesh_the_body(request, prepared, hint);
+  std::vector<std::string> patches;
+  for (const Patch& p : prepared.body.tetrahedra.back()->patches) patches.push_back(p.name);
+  check_patches(e, patches);
+  cut_lattices(prepared);
+  mesh_like_lattices(request, prepared);
+  set_wrenches(prepared);
+  set_load_spread(prepared);
+  check_probes(prepared);
+  if (!e.reference.elements.empty()) place_samples(prepared);
+}
+
+}  // namespace
+
+bool flies(const Experiment& e) {
+  return e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement);
+}
+
+void prepare_voxel_body(PreparedCase& prepared) {
+  std::string hint;
+  const auto with_hint = [&](const std::exception& e) {
+    return hint.empty() ? std::string(e.what()) : fmt::format("{}; {}", e.what(), hint);
+  };
+  try {
+    prepare_body(prepared, hint);
+    if (!hint.empty()) to_stderr("note: {}: {}\n", prepared.experiment.file.string(), hint);
+  } catch (const InputError& e) {
+    if (hint.empty()) throw;
+    throw InputError(with_hint(e));
+  } catch (const std::invalid_argument& e) {
+    throw InputError(prepared.experiment.body.where, with_hint(e));
+  }
+}
+
+std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
+                                              std::vector<PatchReaction> reactions) {
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  for (PatchReaction& r : reactions)
+    r.torque += (centroid(own, patch(own, r.patch)) - centroid(body, patch(body, r.patch))).cross(r.force);
+  return reactions;
+}
+
+}  // namespace springproof

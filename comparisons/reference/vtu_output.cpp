@@ -1,0 +1,68 @@
+#include "comparisons/reference/vtu_output.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "meshes/field.h"
+#include "problem/system/file_name.h"
+
+namespace springproof {
+
+std::string vtu_stem(const RunKey& key) {
+  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
+}
+
+static std::string reference_name(const std::string& element, double poisson_ratio) {
+  return fmt::format("reference_{}_nu{}.vtu", element, poisson_ratio);
+}
+
+std::string reference_file(const VtuOutput& vtu, const std::string& element, double poisson_ratio) {
+  if (vtu.folder.empty()) return "";
+  return std::filesystem::absolute(vtu.folder / reference_name(element, poisson_ratio)).string();
+}
+
+VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double youngs_modulus, bool single) {
+  return {{{"case", case_name}, {"model", key.model}, {"cells", cells_text(key.cells)}},
+          {{"poisson_ratio", key.poisson_ratio}, {"youngs_modulus_Pa", youngs_modulus}},
+          single};
+}
+
+void write_cells(const std::filesystem::path& file, const CutBody& cut, const NodalVectors& displacement,
+                 const VtuNotes& notes) {
+  const auto mesh = std::make_shared<Mesh>();
+  mesh->nodes = cut.points;
+  std::vector<double> filled, edge;
+  for (const CutCell& cell : cut.cells) {
+    mesh->hexahedra.push_back(cell.corners);
+    filled.push_back(cell.filled.fraction);
+    edge.push_back(cell.size * cut.grid.edge);
+  }
+  Field field;
+  field.mesh = mesh;
+  field.displacement = displacement.topRows(cut.points.rows());
+  write_vtu(file, field, {}, notes, {{"filled_fraction", filled}, {"edge_m", edge}});
+}
+
+void write_series(const CaseResult& result, const std::filesystem::path& folder) {
+  std::map<std::string, std::map<double, std::string>> series;
+  std::vector<RunKey> keys(result.runs.begin(), result.runs.end());
+  for (const IsotropicMaterial& m : result.experiment.materials)
+    for (const Cells& cells : result.cells) keys.push_back({"fem", m.poisson_ratio, cells});
+  for (const RunKey& key : keys) {
+    const std::string file = vtu_stem(key) + ".vtu";
+    if (std::filesystem::exists(folder / file))
+      series[fmt::format("{}_{}", file_name(key.model), fmt::join(key.cells, "x"))][key.poisson_ratio] = file;
+  }
+  for (const std::string& element : result.experiment.reference.elements)
+    for (const IsotropicMaterial& m : result.experiment.materials)
+      if (const std::string file = reference_name(element, m.poisson_ratio); std::filesystem::exists(folder / file))
+        series["reference_" + element][m.poisson_ratio] = file;
+  for (const auto& [name, files] : series)
+    if (files.size() > 1) write_pvd(folder / (name + ".pvd"), {files.begin(), files.end()});
+}
+
+}  // namespace springproof

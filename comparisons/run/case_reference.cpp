@@ -1,0 +1,163 @@
+#include "comparisons/run/case_reference.h"
+
+#include <numbers>
+
+#include "comparisons/judge/deformation.h"
+#include "comparisons/judge/measures.h"
+#include "comparisons/models/motion_reference.h"
+#include "comparisons/reference/convergence_cause.h"
+#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/voxel_reference.h"
+#include "comparisons/run/case_motion.h"
+#include "comparisons/run/case_rows.h"
+#include "comparisons/run/first_verdict.h"
+
+namespace springproof {
+namespace {
+
+/// The first element of [reference], where the program failed.
+Run failed_run(const PartRun& run) {
+  Run record = of_run<Run>(run.key("fem_" + run.experiment().reference.elements.front(), run.prepared.reference_cells));
+  record.kind = "fem";
+  record.kinematics = run.experiment().kinematics;
+  record.message = run.grids.failure;
+  return record;
+}
+
+/// Runs the finite elements.
+void run_fem(PartRun& run) {
+  const auto solve = run.experiment().body.is_voxels() ? solve_body_grids : solve_grids;
+  // Of runs that nobody keeps the models are not solved yet.
+  const auto say_first_verdict = [&run](const NodalVectors& u) {
+    if (run.keeper.keeps()) run.keeper.say([&] { return first_verdict(run, u); });
+  };
+  run.grids = solve(run.prepared, run.material, run.vtu, run.keeper, say_first_verdict);
+  if (run.grids.elements.empty()) run.part.runs.push_back(failed_run(run));
+  for (const ElementGrids& e : run.grids.elements)
+    for (const fem::Solution& s : e.grids) run.part.runs.push_back(fem_run(run, s, "fem_" + e.element));
+  for (const auto& on_cubes : run.grids.refined)
+    for (const fem::Solution& s : on_cubes) run.part.runs.push_back(fem_run(run, s, "fem_q2"));
+}
+
+/// Stresses of the reference as rows of its own: springs have none.
+void add_stress_rows(PartRun& run) {
+  for (const ReferenceRecord& r : run.part.references)
+    if (r.measure.starts_with("stress.")) {
+      Row row = blank_row(run, run.key("fem_" + r.element, r.cells.back()), run.experiment().kinematics);
+      row.measure = r.measure;
+      row.value = r.value;
+      row.unit = r.unit;
+      row.reference_uncertainty = r.uncertainty;
+      run.part.rows.push_back(row);
+    }
+}
+
+void record_elements(PartRun& run) {
+  for (const ElementGrids& e : run.grids.elements) {
+    if (!complete(e)) continue;
+    const std::vector<ReferenceRecord> records = records_of(run.prepared, run.material, e);
+    run.part.references.insert(run.part.references.end(), records.begin(), records.end());
+  }
+  if (run.experiment().models.empty())
+    run.part.rows = rows_of(run.prepared, run.part.references);
+  else
+    add_stress_rows(run);
+}
+
+/// The reference at the nodes of one lattice, from the fields on the three grids.
+Reference reference_at(const PartRun& run, const Lattice& lattice, const std::vector<NodalVectors>& fields,
+                       const std::map<std::string, ReferenceValue>& scalars) {
+  const double share = scale_of_errors(run.prepared, lattice, fields.back()).share;
+  ReferenceField field = extrapolate(fields, nodal_volumes(*lattice.mesh), ratios_of(run.grids.elements.front()),
+                                     share * doubt_of(scalars));
+  widen(share * run.prepared.body.load_spread, field);
+  field.uncertainty /= share;
+  const DisplacementScale scale = scale_of_errors(run.prepared, lattice, field.displacement);
+  return {std::move(field), scalars, scale};
+}
+
+/// displacement_error of the reference itself, on a lattice.
+ReferenceRecord field_record(const PartRun& run, const Lattice& lattice, const std::vector<NodalVectors>& fields,
+                             const Reference& reference) {
+  const ElementGrids& first = run.grids.elements.front();
+  const ReferenceField& f = reference.field;
+  ReferenceRecord record{.poisson_ratio = run.material.poisson_ratio,
+                         .measure = "displacement_error",
+                         .unit = "1",
+                         .cells = {},
+                         .values = {},
+                         .observed_order = f.observed_order,
+                         .uncertainty = f.uncertainty,
+                         .note = with_note(first, f.note),
+                         .element = first.element,
+                         .converging = f.sequence != Sequence::not_converging,
+                         .correlation = f.correlation};
+  if (!record.converging) record.note += "; " + cause_and_remedy(run.prepared, run.material, first, record.measure);
+  const Eigen::VectorXd volumes = nodal_volumes(*lattice.mesh);
+  for (std::size_t g = 0; g < fields.size(); ++g) {
+    record.cells.push_back(first.grids[g].grid.cells);
+    record.values.push_back(weighted_norm(fields[g] - f.displacement, volumes) / reference.scale.mean);
+  }
+  return record;
+}
+
+/// The first element's fields as the reference of the lattices; with an exact field, that field.
+void build_reference(PartRun& run) {
+  run.reference.assign(run.prepared.lattices.size(), {});
+  run.voxels.assign(run.prepared.lattices.size(), {});
+  if (run.grids.elements.empty() || !complete(run.grids.elements.front())) return;
+  const ElementGrids& first = run.grids.elements.front();
+  const std::map<std::string, ReferenceValue> scalars = limits_of(run.prepared, first);
+  for (std::size_t i = 0; i < run.prepared.lattices.size(); ++i) {
+    const Lattice& lattice = run.prepared.lattices[i];
+    std::vector<NodalVectors> fields;
+    for (const fem::Solution& s : first.grids) fields.push_back(at_nodes(lattice, s.displacement));
+    run.reference[i] = reference_at(run, lattice, fields, scalars);
+    if (run.experiment().body.is_voxels()) run.voxels[i] = voxel_limit(run.prepared, i, run.grids);
+    if (i == 0 && run.experiment().exact.empty())
+      run.part.references.push_back(field_record(run, lattice, fields, *run.reference[i]));
+  }
+}
+
+/// Size of the deformation of the reference, on the finest lattice.
+void measure_deformation(PartRun& run) {
+  const std::size_t finest = finest_lattice(run.prepared);
+  if (!run.reference[finest]) return;
+  const NodalVectors& u = run.reference[finest]->field.displacement;
+  const DeformationSize size = deformation_size(run.mesh(finest), u, run.experiment().model_kinematics());
+  Deformation record{.poisson_ratio = run.material.poisson_ratio,
+                     .principal_strain = size.principal_strain,
+                     .rotation_deg = size.rotation * 180 / std::numbers::pi,
+                     .strained_share = run.reference[finest]->scale.share,
+                     .applied_N = sum_of_loads(run.prepared)};
+  for (const PatchReaction& r : run.grids.elements.front().grids.back().reactions) record.reacted_N += r.force;
+  run.part.deformations.push_back(record);
+}
+
+}  // namespace
+
+Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
+  Run record = of_run<Run>(run.key(model, s.grid.cells));
+  record.kind = "fem";
+  record.kinematics = s.law.empty() ? run.experiment().kinematics : s.law;
+  record.ok = s.ok;
+  record.message = s.message;
+  record.solver = s.form;
+  record.iterations = s.iterations;
+  record.residual = s.residual;
+  record.seconds = s.times.solve;
+  record.unknowns = s.unknowns;
+  record.memory_MiB = s.memory_MiB;
+  record.set_up_seconds = s.times.set_up;
+  return record;
+}
+
+void run_reference(PartRun& run) {
+  if (!run.experiment().reference.elements.empty()) run_fem(run);
+  if (run.experiment().reference.in_time) run_motion_reference(run);
+  record_elements(run);
+  build_reference(run);
+  measure_deformation(run);
+}
+
+}  // namespace springproof

@@ -1,0 +1,81 @@
+#include "comparisons/sweep/find_cases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "meshes/mesher/mesher.h"
+#include "meshes/mesher/mesher_exchange.h"
+#include "problem/system/child.h"
+#include "problem/system/files.h"
+#include "problem/system/input_error.h"
+#include "problem/system/shortened.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Iterator>
+std::vector<fs::path> toml_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".toml") files.push_back(entry->path());
+  if (error) throw InputError(shortened(fmt::format("{}: cannot be read: {}", folder.string(), error.message())));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// @throws InputError for a body, which has no loads.
+const fs::path& no_body(const fs::path& file) {
+  const auto& bodies = mesh_file_extensions();
+  if (std::find(bodies.begin(), bodies.end(), extension_of(file)) == bodies.end()) return file;
+  throw InputError(shortened(fmt::format("{} is a body (allowed: a case, NAME.toml, in which [body] has geo = \"{}\")",
+                                         file.string(), file.filename().string())));
+}
+
+fs::path experiments_folder() { return data_folder("experiments", SPRINGPROOF_EXPERIMENTS_DIR); }
+
+}  // namespace
+
+std::string case_name(const fs::path& file) {
+  const fs::path relative = fs::proximate(fs::absolute(file), experiments_folder());
+  return *relative.begin() == ".." ? file.stem().string() : (relative.parent_path() / relative.stem()).string();
+}
+
+std::vector<fs::path> built_in_cases() { return toml_files<fs::recursive_directory_iterator>(experiments_folder()); }
+
+std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
+  std::vector<fs::path> cases;
+  for (const std::string& name : names) {
+    const fs::path built_in = experiments_folder() / name;
+    std::vector<fs::path> found;
+    std::string why;
+    for (const fs::path& path : {fs::path(name), built_in, fs::path(built_in.string() + ".toml")}) {
+      std::error_code error;
+      const fs::file_status status = fs::status(path, error);
+      if (fs::is_directory(status))
+        found = toml_files<fs::directory_iterator>(path);
+      else if (fs::exists(status))
+        found = {no_body(path)};
+      else if (error && status.type() != fs::file_type::not_found && why.empty())
+        why = error.message() + "; ";  // a loop of links, too long a name
+      if (!found.empty()) break;
+    }
+    if (found.empty())
+      throw InputError(
+          shortened(fmt::format("{}: {}no such case file, and no folder with case files (*.toml); `springproof list` "
+                                "shows the built-in ones",
+                                name, why)));
+    for (const fs::path& file : found) {
+      std::error_code ignored;
+      if (std::none_of(cases.begin(), cases.end(),
+                       [&](const fs::path& c) { return c == file || fs::equivalent(c, file, ignored); }))
+        cases.push_back(file);
+    }
+  }
+  return cases;
+}
+
+}  // namespace springproof

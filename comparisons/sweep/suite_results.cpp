@@ -1,0 +1,140 @@
+#include "comparisons/sweep/suite_results.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include "comparisons/judge/calibration.h"
+#include "comparisons/judge/judge.h"
+#include "comparisons/reference/vtu_output.h"
+#include "comparisons/report/headline.h"
+#include "comparisons/report/report.h"
+#include "comparisons/results/crack_picture.h"
+#include "comparisons/sweep/find_cases.h"
+#include "msm/parameters/made_of.h"
+#include "problem/case_file/external.h"
+#include "problem/system/file_name.h"
+#include "problem/system/files.h"
+#include "problem/system/streams.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+nlohmann::json host() {
+  utsname u{};
+  uname(&u);
+  std::string processor, line;
+  for (std::ifstream in("/proc/cpuinfo"); std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  return {{"system", fmt::format("{} {}", u.sysname, u.machine)},
+          {"processor", processor},
+          {"cores", std::thread::hardware_concurrency()}};
+}
+
+std::vector<KnownQuantity> known_quantities(const std::vector<CaseResult>& results) {
+  std::vector<KnownQuantity> all;
+  for (const CaseResult& r : results) append(known_quantities(r), all);
+  return all;
+}
+
+nlohmann::json document(const std::vector<CaseResult>& results, const std::vector<KnownQuantity>& known,
+                        const std::string& libraries) {
+  nlohmann::json cases = nlohmann::json::array();
+  for (const CaseResult& r : results) cases.push_back(to_json(r));
+  return {{"program", {{"name", "springproof"}, {"version", SPRINGPROOF_VERSION}, {"libraries", libraries}}},
+          {"generated", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
+          {"host", host()},
+          {"cases", cases},
+          {"calibration", calibration_json(known)}};
+}
+
+/// What a model of the case is made of.
+std::string made_of(const PreparedCase& p, std::size_t model) {
+  const ModelChoice& choice = p.experiment.models[model];
+  if (!is_external(choice)) return made_of(p.models[model]);
+  return is_own_model(choice) ? "springs of another program" : "another program's, for comparison";
+}
+
+/// The law, as `kinematics` names it, that a curve follows or is tuned to.
+const char* law_of(StrainCurve curve) {
+  return name_of(curve == StrainCurve::springs_hencky      ? StrainCurve::hencky
+                 : curve == StrainCurve::springs_neo_hooke ? StrainCurve::neo_hooke_isochoric
+                                                           : curve);
+}
+
+}  // namespace
+
+std::string key_of(const fs::path& file) {
+  std::string key = case_name(file);
+  std::replace(key.begin(), key.end(), '/', '-');
+  return file_name(key);
+}
+
+CaseResult case_of(const PreparedCase& p) {
+  CaseResult result;
+  result.experiment = p.experiment;
+  result.size = p.body.size;
+  for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
+  result.notes = p.body.notes;
+  for (std::size_t m = 0; m < p.models.size(); ++m) {
+    const std::string& label = p.experiment.models[m].label;
+    result.made_of[label] = made_of(p, m);
+    if (const auto own = own_poisson_ratio(p.models[m].row)) result.own_poisson_ratios[label] = *own;
+    if (p.models[m].curve && p.experiment.model_kinematics() == Kinematics::finite)
+      result.laws[label] = law_of(*p.models[m].curve);
+  }
+  return result;
+}
+
+void append(const Part& from, Part& to) {
+  append(from.runs, to.runs);
+  append(from.rows, to.rows);
+  append(from.references, to.references);
+  append(from.pictures, to.pictures);
+  append(from.lines, to.lines);
+  append(from.histories, to.histories);
+  append(from.splits, to.splits);
+  append(from.deformations, to.deformations);
+  append(from.cracks, to.cracks);
+  append(from.limits, to.limits);
+}
+
+bool write_results(std::vector<CaseResult> results, const std::string& libraries, const ResultsChoice& choice) {
+  const fs::path& out = choice.out;
+  if (!choice.live_page.empty()) write_file(out / "live.html", text_of_file(choice.live_page));
+  for (CaseResult& r : results) {
+    judge(r);
+    if (choice.vtu) write_series(r, out / "vtu" / key_of(r.experiment.file));
+  }
+  const std::vector<KnownQuantity> known = known_quantities(results);
+  const nlohmann::json doc = document(results, known, libraries);
+  nlohmann::json pictures = nlohmann::json::array();
+  for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));
+  write_file(out / "results.json", doc.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+  write_file(out / "results.csv", to_csv(results));
+  write_crack_pictures(results, out);
+  const Headline h = headline(results);
+  write_report(out / "report.html", h, doc, pictures);
+  to_stdout("{}{}report: {}\n", terminal_text(h, choice.verbose), calibration_table(known),
+            (out / "report.html").string());
+  return success(h);
+}
+
+}  // namespace springproof

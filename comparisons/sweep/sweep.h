@@ -1,0 +1,57 @@
+// The plan of a comparison whose parts several machines compute into one folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "comparisons/results/records.h"
+
+namespace springproof {
+
+/// One case at one Poisson's ratio.
+struct PlannedPart {
+  double poisson_ratio = 0;
+  std::string file;   ///< in the folder's parts/
+  std::string stamp;  ///< identifies its inputs (comparisons/sweep/part_file.h)
+  int shard = 0;      ///< that computes it
+};
+
+struct PlannedCase {
+  std::string file, text;
+  std::string name;  ///< "golec_2019/bending"
+  std::string key;   ///< the same as the name of files
+  std::vector<PlannedPart> parts;
+};
+
+struct Sweep {
+  std::string version, libraries;  ///< of the program, of the reference
+  int shards = 1;
+  int finer = 1;  ///< SuiteOptions::finer
+  bool vtu = false;
+  std::vector<PlannedCase> cases;
+};
+
+/// The file of the plan.  Shard k holds a lock of its byte k, a report one of byte 0.
+std::filesystem::path sweep_file(const std::filesystem::path& folder);
+
+/// The plan that all shards in the folder follow: that of the first of them, which may be this one.
+/// @throws InputError if it differs from `own` in anything but which shard computes what.
+Sweep common_plan(const std::filesystem::path& folder, const Sweep& own);
+
+/// @throws InputError if the folder holds no plan, or one by another version of the program.
+Sweep read_plan(const std::filesystem::path& folder);
+
+/// @throws InputError if there is none.
+const PlannedCase& case_of_key(const Sweep& sweep, const std::string& key);
+
+/// Keeps in the folder what was known of a case when it was meshed: with the plan and the parts enough for a report.
+void save_meshed(const std::filesystem::path& folder, const std::string& key, const CaseResult& meshed);
+
+/// @return whether it is there, and whole.
+bool load_meshed(const std::filesystem::path& folder, const std::string& key, CaseResult& result);
+
+/// "golec_2019/bending  nu0.3"
+std::string title_of(const PlannedCase& planned, const PlannedPart& part);
+
+}  // namespace springproof

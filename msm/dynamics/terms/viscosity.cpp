@@ -1,0 +1,45 @@
+#include "msm/dynamics/terms/viscosity.h"
+
+#include "problem/system/input_error.h"
+
+namespace springproof {
+
+std::string Viscosity::lacks(const MassSpringModel& model) {
+  return model.network.cells.empty() && !of_springs_alone(model)
+             ? "its network has no cells, and more than springs between nodes"
+             : "";
+}
+
+Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& material, double time) {
+  if (!(time >= 0)) throw InputError("viscosity: its time must be >= 0");
+  Viscosity viscosity;
+  if (time == 0) return viscosity;
+  if (const std::string why = lacks(model); !why.empty())
+    throw InputError("viscosity does not suit this model: " + why);
+  viscosity.time_ = time;
+  viscosity.along_springs_ = of_springs_alone(model);
+  if (const AveragedSprings* own = averaged_springs_of(model))
+    viscosity.cells_ = *own;
+  else if (!model.network.cells.empty()) {
+    viscosity.cells_.shear_modulus = shear_modulus(material);
+    viscosity.cells_.lame_lambda = lame_lambda(material);
+    viscosity.cells_.hourglass = HourglassStiffness::of_pattern(2, material.poisson_ratio, true, true);
+  }
+  return viscosity;
+}
+
+void Viscosity::add_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
+                           NodalVectors& f) const {
+  if (!along_springs_) {
+    cells_.add_viscous_forces(network, x, v, time_, f);
+    return hand_back(network.carried, f);
+  }
+  for (const Spring& s : network.springs) {
+    const Eigen::RowVector3d along = (x.row(s.j) - x.row(s.i)).normalized();
+    const Eigen::RowVector3d pull = time_ * s.stiffness * (v.row(s.j) - v.row(s.i)).dot(along) * along;
+    f.row(s.i) += pull;
+    f.row(s.j) -= pull;
+  }
+}
+
+}  // namespace springproof

@@ -1,0 +1,206 @@
+// Averaged springs of a list of cells.  The signed sums of the corners' displacements give F, whatever part of a cell
+// is filled, by four products per entry: mean_gradients() has the same signs.
+#include "msm/kernels/compiled/all_kernels.h"
+
+#include "msm/kernels/compiled/averaged_cells.h"
+#include "msm/kernels/compiled/padded_nodes.h"
+
+namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
+namespace {
+
+template <class Real>
+constexpr int cells = 4 * group<Real>;  // of a block
+
+/// Displacements of the corners of a block of cells, which become the forces on them; the fourth component is
+/// velocity / s.
+template <class Real>
+using Corners = Real[8][4][cells<Real>];
+
+/// What is stored of a vector of cells.
+template <class Real>
+struct Cells {
+  Lanes<Real> area, mean[3], mixed[3], variance[3], per_edge;
+
+  SPRINGPROOF_INLINE explicit Cells(const Real* numbers)
+      : area(load(numbers)), per_edge(load(numbers + cell_number::per_edge * cells<Real>)) {
+    for (int i = 0; i < 3; ++i) {
+      mean[i] = load(numbers + (cell_number::mean + i) * cells<Real>);
+      mixed[i] = load(numbers + (cell_number::mixed + i) * cells<Real>);
+      variance[i] = load(numbers + (cell_number::variance + i) * cells<Real>);
+    }
+  }
+};
+
+/// D, the mean gradient, and the patterns S (yz, zx, xy, xyz) of the field at the corners, over the edge.
+template <class Real>
+SPRINGPROOF_INLINE void patterns_of_cells(const Corners<Real>& u, int at, const Cells<Real>& c, Lanes<Real> (&D)[3][3],
+                                          Lanes<Real> (&S)[3][4]) {
+  using V = Lanes<Real>;
+  const V quarter = Real(0.25) * c.per_edge;
+  for (int i = 0; i < 3; ++i) {
+    V d[4], m[4], along[3];
+    for (int k = 0; k < 4; ++k) {
+      const V low = load(&u[2 * k][i][at]), high = load(&u[2 * k + 1][i][at]);
+      d[k] = high - low;
+      m[k] = high + low;
+    }
+    signed_sums(d, m, along, S[i]);
+    for (V& pattern : S[i]) pattern *= c.per_edge;
+    for (int x = 0; x < 3; ++x) {
+      const int y = (x + 1) % 3, z = (x + 2) % 3;
+      D[i][x] = quarter * along[x] + c.mean[y] * S[i][z] + c.mean[z] * S[i][y] + c.mixed[x] * S[i][3];
+    }
+  }
+}
+
+/// From a cube of the same volume to a box: D per length along its edges, S as H_pq / (p_p p_q) (AveragedSprings).
+template <class Real>
+SPRINGPROOF_INLINE void stretch(const CellList<Real>& list, Lanes<Real> (&D)[3][3], Lanes<Real> (&S)[3][4]) {
+  for (int i = 0; i < 3; ++i)
+    for (int a = 0; a < 3; ++a) {
+      D[i][a] *= list.per_proportion[a];
+      S[i][a] *= list.proportions[a];
+    }
+}
+
+/// Those of a law times the volume over the edge of each cell.
+template <class Real>
+SPRINGPROOF_INLINE LatticeAveraged<Lanes<Real>> times_area(const LatticeAveraged<Real>& law, const Lanes<Real>& a) {
+  return {law.curve,        a * law.shear,   a * law.lambda, a * law.bulk,   a * law.bending,
+          a * law.coupling, a * law.torsion, a * law.twist,  a * law.warping};
+}
+
+/// w += (hourglass springs) v, in the centroid of the filled part: AveragedSprings::add_forces() in sums over the
+/// corners.
+template <class Real>
+SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
+                                             const Lanes<Real> (&v)[4][3], Lanes<Real> (&w)[4][3]) {
+  using V = Lanes<Real>;
+  const V* const rho = c.variance;
+  V H[3][3], added[3][3];
+  constexpr Real shift = 4;  // mean / 2 to the centroid, of twice the second differences
+  for (int j = 0; j < 3; ++j) {
+    const V third = shift * v[3][j];
+    for (int m = 0; m < 3; ++m) H[m][j] = v[m][j] + c.mean[m] * third;
+  }
+  for (int y = 0; y < 3; ++y) {
+    const int z = (y + 1) % 3, x = (y + 2) % 3;
+    const V bending = rho[y] * law.bending, coupling = rho[y] * law.coupling, sides = rho[z] + rho[x];
+    added[z][x] = bending * H[z][x] + coupling * H[x][z];
+    added[x][z] = bending * H[x][z] + coupling * H[z][x];
+    added[y][y] = law.torsion * (sides * H[y][y] + rho[z] * H[x][x] + rho[x] * H[z][z]) +
+                  (Real(0.5) * law.twist) * sides * H[y][y];
+    const V warping = Real(0.3 / 2.3) * rho[z] * rho[x] + Real(1 / 2.3) * rho[y] * sides;
+    w[3][y] += law.warping * warping * v[3][y];
+  }
+  for (int j = 0; j < 3; ++j) {
+    V turned = 0;
+    for (int m = 0; m < 3; ++m) {
+      w[m][j] += added[m][j];
+      turned += c.mean[m] * added[m][j];
+    }
+    w[3][j] += shift * turned;
+  }
+}
+
+/// Forces of a vector of cells, the lanes from `at` of their block; `rates`: velocities of the corners.
+template <LatticeCurve curve, bool viscous, class Real>
+SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* numbers, int at, Corners<Real>& u,
+                                        const Corners<Real>& rates) {
+  using V = Lanes<Real>;
+  const Cells<Real> c(numbers + at);
+  V D[3][3], S[3][4], F[3][3], inverse_transposed[3][3], dilatation, P[3][3], v[4][3], w[4][3];
+  patterns_of_cells<Real>(u, at, c, D, S);
+  if (list.boxes) stretch(list, D, S);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
+  invert(D, F, inverse_transposed, dilatation);
+  if constexpr (curve == LatticeCurve::neo_hooke_isochoric)  // the others have the logarithm of J
+    stdx::where(dilatation < Real(-1), dilatation) = Real(__builtin_nan(""));
+  for (auto& of_pattern : w)
+    for (V& entry : of_pattern) entry = 0;
+  const LatticeAveraged<V> springs = times_area(list.springs, c.area);
+  turned_back(F, S, v);
+  add_hourglass_forces(springs, c, v, w);
+  first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
+  if constexpr (viscous) {
+    const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
+    V rate[3][3], S_rate[3][4];
+    patterns_of_cells<Real>(rates, at, c, rate, S_rate);
+    if (list.boxes) stretch(list, rate, S_rate);
+    add_viscous_stress(dashpots, F, inverse_transposed, S, rate, S_rate, P, v);
+    add_hourglass_forces(dashpots, c, v, w);
+  }
+  constexpr Real quarter = 0.25;
+  for (int i = 0; i < 3; ++i) {
+    V A[3], B[4], even[4], odd[4];
+    for (int j = 0; j < 3; ++j)
+      A[j] = P[i][j] + (S[i][0] * w[0][j] + S[i][1] * w[1][j]) + (S[i][2] * w[2][j] + S[i][3] * w[3][j]);
+    for (int m = 0; m < 4; ++m) B[m] = F[i][0] * w[m][0] + F[i][1] * w[m][1] + F[i][2] * w[m][2];
+    if (list.boxes)
+      for (int a = 0; a < 3; ++a) {
+        A[a] *= list.per_proportion[a];
+        B[a] *= list.proportions[a];
+      }
+    for (int x = 0; x < 3; ++x) {
+      const int y = (x + 1) % 3, z = (x + 2) % 3;
+      B[x] += c.mean[y] * A[z] + c.mean[z] * A[y];
+      B[3] += c.mixed[x] * A[x];
+    }
+    for (V& along : A) along *= quarter;
+    at_corners(A, B, even, odd);
+    for (int k = 0; k < 4; ++k) {
+      store<Real>(odd[k] - even[k], &u[2 * k][i][at]);
+      store<Real>(-(even[k] + odd[k]), &u[2 * k + 1][i][at]);
+    }
+  }
+}
+
+template <LatticeCurve curve, bool viscous, class Real>
+void forces_of_list(const CellList<Real>& list, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f) {
+  alignas(64) Corners<Real> at, rates;
+  for (long b = 0; b < list.blocks; ++b) {
+    const int* places = list.corners + 8 * cells<Real> * b;
+    for (int n = 0; n < 8; ++n) {
+      gather<viscous ? 4 : 3>(u, places + n * cells<Real>, at[n]);
+      if constexpr (viscous) {
+        gather<3>(s, places + n * cells<Real>, rates[n]);
+        for (int i = 0; i < 3; ++i) wide(rates[n][i]) *= wide(at[n][3]);
+      }
+    }
+    for (int lane = 0; lane < cells<Real>; lane += lanes<Real>)
+      forces_of_cells<curve, viscous>(list, list.numbers + cell_number::count * cells<Real> * b, lane, at, rates);
+    for (int n = 0; n < 8; ++n) scatter(at[n], places + n * cells<Real>, f);
+  }
+}
+
+template <bool viscous, class Real>
+void forces_of_curve(const CellList<Real>& list, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f) {
+  switch (list.springs.curve) {
+    case LatticeCurve::hencky:
+      return forces_of_list<LatticeCurve::hencky, viscous>(list, u, s, f);
+    case LatticeCurve::neo_hooke:
+      return forces_of_list<LatticeCurve::neo_hooke, viscous>(list, u, s, f);
+    case LatticeCurve::neo_hooke_isochoric:
+      return forces_of_list<LatticeCurve::neo_hooke_isochoric, viscous>(list, u, s, f);
+    case LatticeCurve::none:
+      return;
+  }
+}
+
+template <class Real>
+void forces(const CellList<Real>& list, const Padded<Real>* u, Padded<Real>* f) {
+  forces_of_curve<false>(list, u, static_cast<const Padded<Real>*>(nullptr), f);
+}
+
+}  // namespace
+
+template <class Real>
+CellListKernels<Real> cell_list_kernels() {
+  return {.cells = cells<Real>, .forces = forces<Real>, .viscous_forces = forces_of_curve<true, Real>};
+}
+
+template CellListKernels<double> cell_list_kernels();
+template CellListKernels<float> cell_list_kernels();
+
+}  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

@@ -1,0 +1,296 @@
+#include "problem/case_file/keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace springproof {
+namespace {
+
+constexpr const char* required = nullptr;
+constexpr const char* a_vector = "[x, y, z], each a finite number";
+constexpr const char* a_flag = "true or false";
+constexpr const char* above_0 = "a finite number > 0";
+constexpr const char* from_0 = "a finite number >= 0";
+
+// clang-format off
+constexpr Key file_keys[] = {
+  {"what",       "what the case shows, a sentence",                 "a string",                                    "none", "\"A clamped bar.\""},
+  {"cite",       "the paper that it is taken from",                 "a string",                                    "none", "\"Golec et al. (2019)\""},
+  {"kinematics", "small displacements, or the law of large strain", "linear, hencky, log_cauchy, neo_hooke, neo_hooke_isochoric, st_venant_kirchhoff", "linear", "\"hencky\""},
+  {"body",       "the body and its lattices",                       "a table [body] with geo, size_m, cells",      required, ""},
+  {"patch",      "parts of its surface",                            "tables headed [[patch]]",                     "those of the body", ""},
+  {"material",   "elastic moduli and density",                      "a table [material] with two moduli",          required, ""},
+  {"load",       "supports and loads",                              "tables headed [[load]]",                      "required, but beside [dynamics]", ""},
+  {"compare",    "models and measures",                             "a table",                                     "hybmss, with three measures", ""},
+  {"external",   "displacements that another program computed",     "tables headed [[external]]",                  "none", ""},
+  {"section",    "a plane on which two deformed states are compared", "a table",                                   "none", ""},
+  {"line",       "a line along which Kelvin's solution is known",   "a table",                                     "none", ""},
+  {"dynamics",   "the models move in time",                         "a table",                                     "equilibria alone", ""},
+  {"fracture",   "the models dry and crack",                        "a table",                                     "none", ""},
+  {"probe",      "points whose displacement is compared",           "tables headed [[probe]]",                     "none", ""},
+  {"reference",  "how finite elements compute the reference",       "a table",                                     "three grids of q2, of voxels p2", ""},
+  {"expect",     "values that decide the exit status",              "tables headed [[expect]]",                    "none", ""},
+  {"published",  "values printed beside ours",                      "tables headed [[published]]",                 "none", ""},
+};
+
+constexpr Key body_keys[] = {
+  {"geo",          "a built-in body, or a file beside the case", "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .msh, .step or .brep file", required, "\"beam.geo\""},
+  {"size_m",       "size_x, size_y, size_z of a script",         "[x, y, z], each a finite number > 0, from 1e-6 to 1e9 [m]", "required by scripts", "[0.06, 0.01, 0.01]"},
+  {"scale",        "multiplies the coordinates of any other file", above_0,                                          "1",               "0.001"},
+  {"cells",        "cells of a body of hexahedra; several: resolutions", "[nx, ny, nz] or a list of such, integers from 1 to 1000", "one of cells, voxels, voxel_edge_m is required", "[[12, 2, 2], [24, 4, 4]]"},
+  {"voxels",       "about so many cells, cut out along the surface of any body", "a whole number from 1 to 4e6, or a list of such", "one of cells, voxels, voxel_edge_m is required", "[1500, 5000]"},
+  {"voxel_edge_m", "edge of such cells",                         "a finite number > 0, or a list of such",           "one of cells, voxels, voxel_edge_m is required", "[0.01, 0.005]"},
+  {"cut",          "with voxels; false: whole cubes whose centres lie in the body", a_flag,                          "true, for models that take cut cells", "false"},
+  {"accuracy",     "with one voxels or voxel_edge_m: cells are halved until this error is promised", "a number from 0.001 to 0.5, or a list of such", "cells of one size", "0.05"},
+};
+
+constexpr Key patch_keys[] = {
+  {"name",   "its name, for `on`",                             "a name",                                  required,       "\"wrist\""},
+  {"box_m",  "inside the box of two corners, the lower first", "two corners, [[x, y, z], [x, y, z]]",     "no condition", "[[0, 0, 0], [0.1, 0.1, 0.02]]"},
+  {"beyond", "on one side of a plane",                         "a table",                                 "no condition", "{ point_m = [0, 0, 0.01], normal = [0, 0, -1] }"},
+  {"facing", "whose outward normals are within an angle",      "a table",                                 "no condition", "{ direction = [0, 0, -1], within_deg = 30 }"},
+  {"near",   "the connected surface nearest to a point",       "a table",                                 "no condition", "{ point_m = [0.05, 0.05, 0], radius_m = 0.03 }"},
+};
+
+constexpr Key beyond_keys[] = {
+  {"point_m", "a point of the plane",                 a_vector, required, "[0, 0, 0.01]"},
+  {"normal",  "points to the facets that are meant",  a_vector, required, "[0, 0, -1]"},
+};
+
+constexpr Key facing_keys[] = {
+  {"direction",  "compared with the outward normals", a_vector,                   required, "[0, 0, -1]"},
+  {"within_deg", "the angle to it",                   "an angle > 0 and <= 180",  required, "30"},
+};
+
+constexpr Key near_keys[] = {
+  {"point_m",  "to which the surface is the nearest", a_vector, required, "[0.05, 0.05, 0]"},
+  {"radius_m", "up to this distance",                 above_0,  required, "0.03"},
+};
+
+constexpr Key material_keys[] = {
+  {"youngs_modulus_Pa", "Young's modulus",        "a finite number > 0, or a list of such",      "two moduli are required", "1e6"},
+  {"poisson_ratio",     "Poisson's ratio",        "-1 < poisson_ratio < 0.5, or a list of such", "two moduli are required", "[0.25, 0.45, 0.49]"},
+  {"shear_modulus_Pa",  "shear modulus",          "a finite number > 0, or a list of such",      "two moduli are required", "4e5"},
+  {"bulk_modulus_Pa",   "bulk modulus",           "a finite number > 0, or a list of such",      "two moduli are required", "1e6"},
+  {"lame_lambda_Pa",    "Lame's first parameter", "a finite number, or a list of such",          "two moduli are required", "4e5"},
+  {"density_kg_m3",     "density",                above_0,                                       "1000; required by gravity", "1100"},
+};
+
+constexpr Key on = {"on", "where it acts", "a patch name or a list of them", required, "\"x_min\""};
+
+constexpr Key displacement_keys[] = {on,
+  {"displacement_m", "of every point", "[x, y, z], each a finite number or \"free\"", required, "[0, \"free\", 0]"},
+};
+constexpr Key affine_keys[] = {on,
+  {"displacement_gradient", "H of u = H X + displacement_m", "3 rows of 3 finite numbers", required, "[[0.1, 0, 0], [0, 0, 0], [0, 0, 0]]"},
+  {"displacement_m",        "at the origin",                 a_vector,                     "0",      "[0, 0, 0.001]"},
+};
+constexpr Key rotation_keys[] = {on,
+  {"rotation_deg", "the angle",           "a finite number", required, "30"},
+  {"axis",         "its direction",       a_vector,          required, "[1, 0, 0]"},
+  {"about_m",      "a point of the axis", a_vector,          required, "[0, 0.005, 0.005]"},
+};
+constexpr Key field_keys[] = {on,
+  {"field", "an exact field, or \"kelvin\": of the case's point force in an infinite solid", "the name of an exact field", required, "\"trigonometric\""},
+};
+constexpr Key traction_keys[] = {on, {"traction_Pa", "per area at rest, in a direction that stays", a_vector, required, "[0, 0, -100]"}};
+constexpr Key pressure_keys[] = {on, {"pressure_Pa", "per area at rest, against the outward normal at rest", "a finite number", required, "100"}};
+constexpr Key patch_force_keys[] = {on, {"force_N", "in total, spread evenly", a_vector, required, "[0, 0, -0.005]"}};
+constexpr Key point_force_keys[] = {
+  {"force_N", "at a point",      a_vector, required, "[0, 0, -1]"},
+  {"at_m",    "a rest position", a_vector, required, "[0.03, 0.005, 0.005]"},
+};
+constexpr Key gravity_keys[] = {{"gravity_m_s2", "acceleration of the whole body", a_vector, required, "[0, 0, -9.81]"}};
+constexpr Key body_force_keys[] = {{"body_force_of", "that keeps this exact field in equilibrium; finite elements alone", "the name of an exact field", required, "\"trigonometric\""}};
+
+constexpr Key compare_keys[] = {
+  {"models",       "rows of `springproof list`, with options ([models](models.md)), a `label`; or springs files", "a list of model names and { model = \"...\" } tables", "[\"hybmss\"]", "[\"hybmss_avg\", { model = \"hybmss\", face_to_cube = 1 }, \"msm_18\"]"},
+  {"measures",     "what is compared, of `springproof list`",                  "a list of measures",                  "displacement_error, volume_change, reaction", "[\"displacement_error\", \"reaction\"]"},
+  {"elements",     "finite elements run beside the models on their cells",     "a list of elements: q1, q2, p1, p2",  "[\"q1\"] up to 20000 cells, else none", "[\"q1\", \"q2\"]"},
+  {"max_unknowns", "larger runs are left out",                                 above_0,                               "no limit", "1e5"},
+  {"cost",         "every error against time, unknowns and memory; short runs are repeated", a_flag,                  "false",    "true"},
+  {"parts",        "of voxels: the parts of each error, of springs, resolution, staircase", a_flag,                   "false",    "true"},
+  {"exact",        "the exact field that is the solution; with models = []",   "the name of an exact field",          "none",     "\"trigonometric\""},
+};
+
+constexpr Key external_keys[] = {
+  {"name",          "label of its results",                                   "a name for its results",                                            required,      "\"abaqus\""},
+  {"file",          "points and displacements, beside the case",              "the name of a CSV file of points and displacements",                "files",       "\"abaqus.csv\""},
+  {"files",         "a file for each Poisson's ratio, with its keys",         "a list of { poisson_ratio = 0.3, file = \"...\" }",                 "file",        "[{ poisson_ratio = 0.25, file = \"abaqus.csv\" }]"},
+  {"poisson_ratio", "of the solid that was computed",                         "a finite number, one of the case's",                                "the case's, if it has one", "0.25"},
+  {"scale",         "multiplies coordinates and displacements",               above_0,                                                             "1",           "0.001"},
+  {"up_axis",       "which axis of the file is the case's z",                 "y, z",                                                              "z",           "\"y\""},
+  {"springs",       "its results are of springs, ranked among the models",    a_flag,                                                              "true",        "false"},
+  {"reaction_N",    "forces of supports on the body",                         "{ x_min = [x, y, z] }, the force of each support on the body [N]",  "not compared", "{ x_min = [0, 0, 0.005] }"},
+};
+
+constexpr Key external_file_keys[] = {
+  {"file",          "points and displacements",       "the name of a CSV file of points and displacements",               required,                    "\"abaqus.csv\""},
+  {"poisson_ratio", "of the solid that was computed", "a finite number, one of the case's",                               "the case's, if it has one", "0.25"},
+  {"reaction_N",    "forces of supports on the body", "{ x_min = [x, y, z] }, the force of each support on the body [N]", "not compared",              "{ x_min = [0, 0, 0.005] }"},
+};
+
+constexpr Key section_keys[] = {
+  {"point_m", "a point of the plane", a_vector, required, "[0.03, 0, 0]"},
+  {"normal",  "its normal",           a_vector, required, "[1, 0, 0]"},
+};
+
+constexpr Key line_keys[] = {
+  {"from_m", "its first end, no point of comparison", a_vector,                            required,     "[0.03, 0.005, 0.005]"},
+  {"to_m",   "its last point",                        a_vector,                            required,     "[0.06, 0.005, 0.005]"},
+  {"points", "evenly spaced",                         "an integer from 2 to 10000",        "100",        "50"},
+  {"middle", "points over which deviations are averaged", "[first, last], numbers of points", "15 to 80 % of them", "[8, 40]"},
+};
+
+constexpr Key dynamics_keys[] = {
+  {"duration_s",       "of the motion",                                           above_0,                                         required,   "10"},
+  {"integrator",       "of the models' steps",                                    "explicit, energy_momentum, implicit_euler, auto", "explicit", "\"auto\""},
+  {"start",            "equilibrium: from that under the loads, which are then removed", "rest, equilibrium",                      "rest",     "\"equilibrium\""},
+  {"time_step_s",      "of the models",                                           "a finite number > 0, up to duration_s",         "safe for each model; implicit: that of the samples, up to 10 safe ones", "1e-3"},
+  {"damping_1_s",      "Rayleigh's damping, of the mass",                         from_0,                                          "0",        "0.5"},
+  {"viscosity_s",      "Rayleigh's damping, of the strain",                       from_0,                                          "0",        "1e-3"},
+  {"loss_factor",      "of the material at both ends of band_Hz, instead of the two", "a finite number >= 0, up to 1",              "0",        "0.1"},
+  {"band_Hz",          "with loss_factor, the lower frequency first",             "two frequencies [Hz]",                          "none",     "[1, 3]"},
+  {"mass_consistency", "share of consistent mass of explicit steps ([motion](motion.md))", "a share of consistent mass, 0 to 1",   "0: corner masses", "0.5"},
+  {"ramp_s",           "loads grow linearly over this time",                      "a finite number >= 0, up to duration_s",        "0, at once", "2"},
+  {"pulse_s",          "instead: loads last for this time, as half a sine wave",  "a finite number > 0, up to duration_s",         "none",     "0.01"},
+  {"shake_Hz",         "instead: loads and moved supports are a sine wave",       above_0,                                         "none",     "3"},
+  {"plane",            "which the body may fall on; of models alone",             "a table",                                       "none",     "{ point_m = [0, 0, -0.1], normal = [0, 0, 1], friction = 0.3 }"},
+  {"velocity_m_s",     "of the whole body at the start",                          a_vector,                                        "0",        "[0, 0, -1]"},
+  {"spin_rad_s",       "about its centre of mass at the start",                   a_vector,                                        "0",        "[0, 0, 20]"},
+  {"equilibrium",      "each model is also solved for its equilibrium",           a_flag,                                          "true",     "false"},
+  {"samples",          "of each history",                                         "an integer from 2 to 100000",                   "200",      "400"},
+  {"frames",           "of the animation",                                        "an integer from 0 to 1000",                     "40",       "80"},
+};
+
+constexpr Key plane_keys[] = {
+  {"point_m",  "a point of the plane",                                a_vector, required, "[0, 0, -0.1]"},
+  {"normal",   "towards the body",                                    a_vector, required, "[0, 0, 1]"},
+  {"friction", "Coulomb's coefficient, of integrator explicit and auto", from_0, "0",     "0.3"},
+};
+
+constexpr Key fracture_keys[] = {
+  {"shrinkage", "of the rest lengths at the top at the end",            "a number from 0 to 0.5",            required,               "0.1"},
+  {"threshold", "the mean stretch at which springs break",              "a number > 0, up to 1",             required,               "0.02"},
+  {"steps",     "from rest to that shrinkage",                          "a whole number from 1 to 100000",   "100",                  "200"},
+  {"depth_m",   "below the top at which the shrinkage has fallen to 1/e", above_0,                           "the same everywhere",  "0.01"},
+  {"scatter",   "relative standard deviation of the thresholds",        "a number from 0 to 0.5",            "0",                    "0.1"},
+  {"apart",     "springs farther apart, in mean spring lengths, break together", from_0,                     "5",                    "3"},
+  {"seed",      "of the first sample",                                  "a whole number from 1 to 1e+09",    "1",                    "7"},
+  {"seeds",     "number of samples",                                    "a whole number from 1 to 1000",     "1",                    "5"},
+};
+
+constexpr Key probe_keys[] = {
+  {"name", "part of the names of its rows", "a name",  required, "\"tip\""},
+  {"at_m", "a rest position",               a_vector,  required, "[0.06, 0.005, 0.005]"},
+};
+
+constexpr Key reference_keys[] = {
+  {"cells",      "of the finest of three grids, of hexahedra",               "[nx, ny, nz], integers from 1 to 1000", "from those of the body", "[48, 8, 8]"},
+  {"elements",   "each on three grids or meshes; the first is the reference; []: none", "a list of elements: q1, q2, p1, p2", "[\"q2\"]; of voxels [\"p2\"]", "[\"q2\", \"q1\"]"},
+  {"grading",    "draws elements towards the faces of a block; 1: even",     "a number from 1 to 3",                  "1.5",    "1"},
+  {"edge_m",     "of the tetrahedra of the finest of three meshes, of voxels", above_0,                               "from the body", "0.01"},
+  {"smooth",     "the solution is smooth: the elements' order in theory is assumed", a_flag,                          "false",  "true"},
+  {"in_time",    "finite elements move too, minutes for each Poisson's ratio; with [dynamics] and [[probe]]",  a_flag,                                  "false",  "true"},
+  {"integrator", "of their steps, with in_time",                             "midpoint, energy_momentum",             "midpoint", "\"energy_momentum\""},
+};
+
+constexpr Key expect_keys[] = {
+  {"model",           "whose value is judged",                          "a model of [compare], or fem, fem_q1, ...",          required,               "\"hybmss\""},
+  {"measure",         "a name of results.csv",                          "the name of a row",                                  required,               "\"displacement_error\""},
+  {"source",          "where the expected value is from",               "analytic, extrapolated FEM, published, regression",  required,               "\"analytic\""},
+  {"poisson_ratio",   "at which it is judged",                          "a finite number, one of the case's",                 "at each of the case's", "0.25"},
+  {"cells",           "at which it is judged",                          "[nx, ny, nz], integers from 1 to 1000",              "at each of the case's", "[12, 2, 2]"},
+  {"value",           "the expected value, in the unit of the measure", "a finite number",                                    "that of the reference; required but by extrapolated FEM", "0"},
+  {"within",          "tolerance, in the unit of the measure",          from_0,                                               "one of within, within_relative, at_least is required", "0.04"},
+  {"within_relative", "tolerance, as a part of the value",              from_0,                                               "one of within, within_relative, at_least is required", "0.01"},
+  {"at_least",        "no value: what it must reach",                   "a finite number",                                    "one of within, within_relative, at_least is required", "0.9"},
+  {"where",           "of the source",                                  "a string",                                           "none",                 "\"Table 3\""},
+};
+
+constexpr Key published_keys[] = {
+  {"model",         "a name, of the report",                  "the name of a model",                   required,  "\"hybmss\""},
+  {"poisson_ratio", "at which it was computed",               "a finite number, one of the case's",  required,  "0.25"},
+  {"measure",       "a name of results.csv",                  "the name of a row",                     required,  "\"displacement_error\""},
+  {"value",         "as printed",                             "a finite number",                       required,  "0.031"},
+  {"where",         "where it is printed",                    "table or figure",                       required,  "\"Table 3\""},
+  {"cells",         "with which it was computed",             "[nx, ny, nz], integers from 1 to 1000", "none",    "[10, 10, 10]"},
+  {"remark",        "why ours differs",                       "a string",                              "none",    "\"The reference was coarser.\""},
+};
+
+constexpr KeyTable tables[] = {
+  {"",                           "The file",                         "Every table of a case.",                                      file_keys},
+  {"body",                       "[body]",                           "",                                                            body_keys},
+  {"patch",                      "[[patch]]",                        "A part of the surface of a body of voxels, where all its conditions hold. Facets are cut along its border (with `facing`, they are taken whole). A box that reaches a little below the edge of a face also takes that strip of the side faces.", patch_keys},
+  {"patch.beyond",               "beyond of [[patch]]",              "",                                                            beyond_keys},
+  {"patch.facing",               "facing of [[patch]]",              "",                                                            facing_keys},
+  {"patch.near",                 "near of [[patch]]",                "",                                                            near_keys},
+  {"material",                   "[material]",                       "Two moduli. A single number goes with each of a list; two lists are read in pairs.", material_keys},
+  {"load.displacement_m",        "[[load]] a displacement",          "",                                                            displacement_keys},
+  {"load.displacement_gradient", "[[load]] an affine displacement",  "",                                                            affine_keys},
+  {"load.rotation_deg",          "[[load]] a rotation",              "",                                                            rotation_keys},
+  {"load.field",                 "[[load]] an exact displacement",   "",                                                            field_keys},
+  {"load.traction_Pa",           "[[load]] a traction",              "",                                                            traction_keys},
+  {"load.pressure_Pa",           "[[load]] a pressure",              "",                                                            pressure_keys},
+  {"load.force_N",               "[[load]] a force on a patch",      "",                                                            patch_force_keys},
+  {"load.at_m",                  "[[load]] a force at a point",      "",                                                            point_force_keys},
+  {"load.gravity_m_s2",          "[[load]] gravity",                 "",                                                            gravity_keys},
+  {"load.body_force_of",         "[[load]] the force of an exact field", "Under kinematics = \"linear\", with models = [].",        body_force_keys},
+  {"compare",                    "[compare]",                        "",                                                            compare_keys},
+  {"reference",                  "[reference]",                      "",                                                            reference_keys},
+  {"probe",                      "[[probe]]",                        "",                                                            probe_keys},
+  {"section",                    "[section]",                        "",                                                            section_keys},
+  {"line",                       "[line]",                           "In a case of one material and one point force, under kinematics = \"linear\".", line_keys},
+  {"expect",                     "[[expect]]",                       "",                                                            expect_keys},
+  {"published",                  "[[published]]",                    "",                                                            published_keys},
+  {"external",                   "[[external]]",                     "Displacements by any program ([engines](engines.md#any-program-beside-the-models)).", external_keys},
+  {"external.files",             "files of [[external]]",            "",                                                            external_file_keys},
+  {"dynamics",                   "[dynamics]",                       "Under any kinematics but \"linear\" ([motion](motion.md)). Each model is computed twice: its equilibrium, and its state after `duration_s`, labelled `NAME in motion`.",  dynamics_keys},
+  {"dynamics.plane",             "plane of [dynamics]",              "",                                                            plane_keys},
+  {"fracture",                   "[fracture]",                       "Under kinematics = \"linear\", on supports at rest ([fracture](fracture.md)).", fracture_keys},
+};
+
+// Longer ones first.
+constexpr std::pair<std::string_view, const char*> units[] = {
+  {"_kg_m3", "kg/m³"}, {"_m_s2", "m/s²"}, {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_s", "1/s"},
+  {"_Pa", "Pa"}, {"_Hz", "Hz"}, {"_deg", "°"}, {"_N", "N"}, {"_m", "m"}, {"_s", "s"},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const KeyTable> key_tables() { return tables; }
+
+std::span<const Key> keys_of(std::string_view table) {
+  for (const KeyTable& t : tables)
+    if (t.name == table) return t.keys;
+  throw std::logic_error(fmt::format("case files have no table '{}'", table));
+}
+
+std::string unit_of(const Key& key) {
+  for (const auto& [suffix, unit] : units)
+    if (std::string_view(key.name).ends_with(suffix)) return unit;
+  return "";
+}
+
+std::string keys_page() {
+  std::string page =
+      "# Keys of a case file\n\n"
+      "Printed by `springproof describe keys`. A case is a file in TOML; the [tutorial](tutorial.md) has a first one. "
+      "Any other key, type or number is refused with its line, what is allowed and the nearest key.\n";
+  for (const KeyTable& table : tables) {
+    page += fmt::format("\n## {}\n\n", table.heading);
+    if (*table.what) page += fmt::format("{}\n\n", table.what);
+    page += "| key | what it is | value | unit | without it | example |\n|---|---|---|---|---|---|\n";
+    for (const Key& key : table.keys)
+      page += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.name, key.what, key.allowed, unit_of(key),
+                          key.otherwise ? key.otherwise : "required",
+                          *key.example ? fmt::format("`{}`", key.example) : "below");
+  }
+  return page;
+}
+
+}  // namespace springproof
