@@ -144,7 +144,7 @@ class MidpointRule {
   void prescribe(double factor, VectorXd& u) const {
     const Kinematics kinematics = law_named(problem_.law) ? Kinematics::finite : Kinematics::linear;
     for (const Prescribed& h : held_)
-      u[h.dof] = *prescribed_displacement(problem_.loads[h.load], h.X, kinematics, factor)[h.component];
+      u[h.dof] = *prescribed_displacement(problem_.loads[h.load()], h.X, kinematics, factor)[h.component];
   }
 
   /// Solves M (inertia x + offset) + internal and viscous force = factor * load for the free entries of x.

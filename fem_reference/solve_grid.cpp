@@ -138,7 +138,7 @@ void prescribe(const GridProblem& problem, const Discrete& discrete, Kinematics 
                DofVector& u) {
   u = 0;
   for (const Prescribed& p : discrete.held)
-    u[p.dof] = *prescribed_displacement(problem.loads[p.load], p.X, kinematics, factor)[p.component];
+    u[p.dof] = *prescribed_displacement(problem.loads[p.load()], p.X, kinematics, factor)[p.component];
 }
 
 ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete, DofVector& u, Solution& solution) {

@@ -9,7 +9,7 @@
 #include "comparisons/calculix/run.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
-#include "comparisons/run/find_cases.h"
+#include "comparisons/sweep/find_cases.h"
 #include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"

@@ -195,20 +195,20 @@ std::vector<Prescribed> prescribed(const dealii::DoFHandler<3>& dof_handler, con
   const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
   const double size = dealii::Utilities::MPI::max(low.distance(high), dof_handler.get_communicator());
   const auto value = [&](const Prescribed& p) {
-    return *prescribed_displacement(loads[p.load], p.X, Kinematics::linear)[p.component];
+    return *prescribed_displacement(loads[p.load()], p.X, Kinematics::linear)[p.component];
   };
   const auto add = [&](const auto& cell, int l, unsigned int i, int component, const Vec3& X) {
     cell->get_dof_indices(dofs);
-    const Prescribed p{unsigned(dofs[i]), component, l, X};
+    const Prescribed p{unsigned(dofs[i]), component, {l}, X};
     const auto [at, is_new] = by_dof.try_emplace(p.dof, p);
     Prescribed& first = at->second;
     if (std::abs(value(p) - value(first)) > 1e-9 * size)
       throw InputError(
           fmt::format("patches \"{}\" and \"{}\" prescribe different {}-displacements, {:.6g} m "
                       "and {:.6g} m, at ({:.6g}, {:.6g}, {:.6g})",
-                      *patch_of(loads[first.load]), *patch_of(loads[l]), "xyz"[component], value(first), value(p), X[0],
-                      X[1], X[2]));
-    first.load = std::min(first.load, l);
+                      *patch_of(loads[first.load()]), *patch_of(loads[l]), "xyz"[component], value(first), value(p),
+                      X[0], X[1], X[2]));
+    first.loads.insert(l);
   };
   together([&] { for_each_prescribed(dof_handler.active_cell_iterators(), body, loads, add); });
   std::vector<Prescribed> all;
@@ -320,6 +320,36 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
   return load;
 }
 
+namespace {
+
+// Integrals of the shape functions over the patches; empty if no degree of freedom is prescribed by two loads.
+std::vector<DofVector> areas_of_patches(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
+                                        const std::vector<PatchReaction>& patches,
+                                        const std::vector<Prescribed>& prescribed) {
+  std::vector<DofVector> areas;
+  const bool shared =
+      std::any_of(prescribed.begin(), prescribed.end(), [](const auto& p) { return p.loads.size() > 1; });
+  if (!dealii::Utilities::MPI::max(int(shared), dof_handler.get_communicator())) return areas;
+  for (const PatchReaction& of : patches) {
+    areas.push_back(zero_vector(dof_handler));
+    add_force([&](const auto& visit) { for_each_face(dof_handler, body, of.patch, visit); },
+              [](const auto&, unsigned int) -> Vec3 { return Vec3::Ones(); }, areas.back());
+    areas.back().compress(dealii::VectorOperation::add);
+    const double round_off = 1e-12 * areas.back().linfty_norm();
+    for (double& area : areas.back()) area = std::abs(area) > round_off ? std::abs(area) : 0;
+  }
+  return areas;
+}
+
+// Quadratic triangles have none at their vertices.
+void divide_by_areas(const std::vector<DofVector>& areas, unsigned int dof, std::map<int, double>& share) {
+  double all = 0;
+  for (const auto& [r, part] : share) all += areas[r][dof];
+  for (auto& [r, part] : share) part = all > 0 ? areas[r][dof] / all : 1.0 / static_cast<double>(share.size());
+}
+
+}  // namespace
+
 std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                                      const std::vector<Load>& loads, const std::vector<Prescribed>& prescribed,
                                      const DofVector& imbalance, const DofVector* arm) {
@@ -335,15 +365,20 @@ std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, c
     all.push_back({patch, Vec3::Zero(), Vec3::Zero()});
     centroids.push_back(patch_geometry(dof_handler, body, patch).centroid);
   }
+  const std::vector<DofVector> areas = areas_of_patches(dof_handler, body, all, prescribed);
   for (const Prescribed& p : prescribed) {
-    const int r = reaction_of_load[p.load];
     const Vec3 force = imbalance[p.dof] * Vec3::Unit(p.component);
-    all[r].force += force;
     Vec3 x = p.X;
     // FE_Q systems number the three components of a support point one after the other.
     if (arm)
       for (int c = 0; c < 3; ++c) x[c] += (*arm)[p.dof - p.component + c];
-    all[r].torque += (x - centroids[r]).cross(force);
+    std::map<int, double> share;  // of a reaction
+    for (const int l : p.loads) share[reaction_of_load[l]] = 1;
+    if (share.size() > 1) divide_by_areas(areas, p.dof, share);
+    for (const auto& [r, part] : share) {
+      all[r].force += part * force;
+      all[r].torque += part * (x - centroids[r]).cross(force);
+    }
   }
   for (PatchReaction& r : all) {
     sum_over_processes(r.force, dof_handler.get_communicator());

@@ -4,6 +4,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "fem_reference/grid/triangulate.h"
@@ -14,12 +15,14 @@
 
 namespace springproof::fem {
 
-/// A degree of freedom with prescribed value.  Where several loads prescribe it, it belongs to the first.
+/// A degree of freedom with prescribed value.
 struct Prescribed {
   unsigned int dof;
   int component;
-  int load;  ///< index into the loads
-  Vec3 X;    ///< rest position [m]
+  std::set<int> loads;  ///< that prescribe it, by index
+  Vec3 X;               ///< rest position [m]
+
+  int load() const { return *loads.begin(); }
 };
 
 /// @throws InputError naming the load's patch and those of the body, if the body has no such patch.
@@ -43,8 +46,9 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
                       const IsotropicMaterial& material, const std::function<Vec3(const Vec3&)>& body_force);
 
 /// One per patch with prescribed displacement, in the order of the loads; `imbalance` is internal force -
-/// load [N]. Lever arms run from the patch's rest centroid to the rest positions plus `arm` (the displacement, or
-/// null).
+/// load [N].  Patches that prescribe one degree of freedom share its force by the integrals of its shape function,
+/// equally where these are zero.  Lever arms run from the patch's rest centroid to the rest positions plus `arm` (the
+/// displacement, or null).
 std::vector<PatchReaction> reactions(const dealii::DoFHandler<3>& dof_handler, const Body3& body,
                                      const std::vector<Load>& loads, const std::vector<Prescribed>& prescribed,
                                      const DofVector& imbalance, const DofVector* arm);

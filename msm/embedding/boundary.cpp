@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "meshes/locate/locate.h"
 #include "msm/embedding/rigid_motions.h"
@@ -29,10 +30,34 @@ void prescribe(const Load& load, int number, const std::vector<int>& held, const
             "load {}: patch '{}' prescribes displacement {} = {:.6g} m at a node where load {} already prescribes "
             "{:.6g} m",
             number + 1, *patch_of(load), "xyz"[d], *value[d], bc.owner[unknown] + 1, bc.prescribed(node, d)));
-      if (!bc.fixed[unknown]) bc.owner[unknown] = number;
+      if (!bc.fixed[unknown])
+        bc.owner[unknown] = number;
+      else
+        bc.shared.push_back({unknown, number, 0});
       bc.fixed[unknown] = 1;
       bc.prescribed(node, d) = *value[d];
     }
+  }
+}
+
+/// Divides the unknowns that loads on several patches prescribe; area_at(patch): of the nodes [m^2].
+template <class AreaAt>
+void divide_shared(const std::vector<Load>& loads, const AreaAt& area_at, BoundaryConditions& bc) {
+  const auto on = [&](int load) -> const std::string& { return *patch_of(loads[load]); };
+  std::map<int, std::set<std::string>> patches;  // of an unknown
+  std::erase_if(bc.shared, [&](const SharedUnknown& s) {
+    std::set<std::string>& of = patches.try_emplace(s.unknown, std::set{on(bc.owner[s.unknown])}).first->second;
+    return !of.insert(on(s.load)).second;
+  });
+  std::map<std::string, Eigen::VectorXd> areas;
+  for (const auto& [unknown, names] : patches)
+    for (const std::string& name : names)
+      if (!areas.contains(name)) areas[name] = area_at(name).cwiseAbs();
+  for (SharedUnknown& s : bc.shared) {
+    const std::set<std::string>& of = patches.at(s.unknown);
+    double all = 0;
+    for (const std::string& name : of) all += areas.at(name)[s.unknown / 3];
+    s.share = all > 0 ? areas.at(on(s.load))[s.unknown / 3] / all : 1.0 / static_cast<double>(of.size());
   }
 }
 
@@ -183,6 +208,8 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, do
     if (prescribes_displacement(load))
       prescribe(load, number, nodes_of(patch(mesh, *patch_of(load))), mesh.nodes, kinematics, factor, bc);
   });
+  divide_shared(
+      loads, [&](const std::string& name) { return nodal_areas(mesh, patch(mesh, name)); }, bc);
   bc.external = mesh_forces(loads, mesh, density, factor);
   return bc;
 }
@@ -198,6 +225,12 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
           "no node of the network is near enough to patch '{}' to be held; choose a larger grip", *patch_of(load)));
     prescribe(load, number, held, network.X, kinematics, factor, bc);
   });
+  const auto area_at = [&](const std::string& name) -> Eigen::VectorXd {
+    const auto known = embedding.patches.find(name);
+    if (known != embedding.patches.end()) return known->second.area;
+    return embedding.weights.transpose() * nodal_areas(mesh, patch(mesh, name));
+  };
+  divide_shared(loads, area_at, bc);
   bc.external = network_forces(loads, mesh, embedding, network, density, factor);
   hand_back(network.carried, bc.external);
   if (!network.triangles.empty())
@@ -268,27 +301,33 @@ std::vector<PatchReaction> patch_reactions(const std::vector<Load>& loads, const
                                            const BoundaryConditions& bc, const NodalVectors& support,
                                            const NodalVectors& displacement, Kinematics kinematics) {
   std::vector<PatchReaction> reactions;
+  std::vector<Vec3> centres;
+  std::vector<std::size_t> of_load(loads.size());
   for (std::size_t i = 0; i < loads.size(); ++i) {
     if (!prescribes_displacement(loads[i])) continue;
     const Patch& p = patch(mesh, *patch_of(loads[i]));
-    auto reaction =
+    const auto known =
         std::find_if(reactions.begin(), reactions.end(), [&](const PatchReaction& r) { return r.patch == p.name; });
-    if (reaction == reactions.end()) {
-      reactions.push_back({p.name, Vec3::Zero(), Vec3::Zero()});
-      reaction = reactions.end() - 1;
-    }
-    const Vec3 centre = centroid(mesh, p);
-    for (int node = 0; node < X.rows(); ++node) {
-      Vec3 force = Vec3::Zero();
-      for (int d = 0; d < 3; ++d)
-        if (bc.owner[3 * node + d] == static_cast<int>(i)) force[d] = support(node, d);
-      if (force.isZero(0)) continue;
-      Vec3 arm = X.row(node).transpose() - centre;
-      if (kinematics == Kinematics::finite) arm += displacement.row(node).transpose();
-      reaction->force += force;
-      reaction->torque += arm.cross(force);
-    }
+    of_load[i] = static_cast<std::size_t>(known - reactions.begin());
+    if (known != reactions.end()) continue;
+    reactions.push_back({p.name, Vec3::Zero(), Vec3::Zero()});
+    centres.push_back(centroid(mesh, p));
   }
+  std::vector<double> of_owner(bc.fixed.size(), 1);
+  const auto add = [&](int load, int unknown, double share) {
+    const int node = unknown / 3, d = unknown % 3;
+    const Vec3 force = share * support(node, d) * Vec3::Unit(d);
+    Vec3 arm = X.row(node).transpose() - centres[of_load[load]];
+    if (kinematics == Kinematics::finite) arm += displacement.row(node).transpose();
+    reactions[of_load[load]].force += force;
+    reactions[of_load[load]].torque += arm.cross(force);
+  };
+  for (const SharedUnknown& s : bc.shared) {
+    add(s.load, s.unknown, s.share);
+    of_owner[s.unknown] -= s.share;
+  }
+  for (int i = 0; i < static_cast<int>(bc.owner.size()); ++i)
+    if (const int load = bc.owner[i]; load >= 0 && load < static_cast<int>(loads.size())) add(load, i, of_owner[i]);
   return reactions;
 }
 

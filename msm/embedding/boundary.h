@@ -12,13 +12,21 @@
 
 namespace springproof {
 
+/// An unknown that a further patch prescribes, the same as the patch of its owner.
+struct SharedUnknown {
+  int unknown;   ///< 3 * node + axis
+  int load;      ///< number of the load that prescribes it too
+  double share;  ///< of the reaction, by the areas of the patches at the node
+};
+
 /// Supports and loads of nodes, as solvers take them; carried nodes (Network::carried) have neither: hand_back() passes
 /// forces on them on.  A program may fill it itself (examples/own_model.cpp).
 struct BoundaryConditions {
-  std::vector<char> fixed;  ///< per unknown 3 * node + axis: displacement prescribed
-  std::vector<int> owner;   ///< per unknown: number of the load that prescribes it, -1 = free
-  NodalVectors prescribed;  ///< prescribed displacement, zero where free [m]
-  NodalVectors external;    ///< nodal forces [N]
+  std::vector<char> fixed;                 ///< per unknown 3 * node + axis: displacement prescribed
+  std::vector<int> owner;                  ///< per unknown: number of the load that prescribes it, -1 = free
+  NodalVectors prescribed;                 ///< prescribed displacement, zero where free [m]
+  NodalVectors external;                   ///< nodal forces [N]
+  std::vector<SharedUnknown> shared = {};  ///< each further patch of an unknown once
 };
 
 /// Transfers the loads at load factor `factor` to the mesh's nodes.  Tractions and pressure by the facets' shape
@@ -66,7 +74,7 @@ void hold_free_motions(const NodalVectors& X, BoundaryConditions& conditions,
                        const std::vector<CarriedPoint>& carried = {});
 
 /// Support forces and torques per patch with prescribed displacement, from the support force of each node at X [N].
-/// An unknown that two patches prescribe counts for the load named first.
+/// Patches that prescribe one unknown share its force by their areas at the node, equally where they have none.
 /// @param loads those of the conditions
 /// @param mesh with the patches
 /// @param X positions of the nodes at rest [m], n x 3

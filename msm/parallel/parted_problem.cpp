@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "msm/distribution/pressure_form.h"
-#include "msm/parameters/calibrate.h"
 #include "msm/parallel/partition.h"
+#include "msm/parameters/calibrate.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
