@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
@@ -46,6 +48,96 @@ void check_mean_displacements(const Experiment& e, const std::vector<std::string
   };
   for (const Expectation& x : e.expectations) check(x.measure, x.location);
   for (const PublishedValue& v : e.published) check(v.measure, v.location);
+}
+
+namespace {
+
+using FacetKey = std::array<int, 4>;
+
+FacetKey key_of(FacetKey facet) {
+  std::sort(facet.begin(), facet.end());
+  return facet;
+}
+
+SourceLocation where(const Experiment& e, std::size_t load) {
+  return load < e.load_locations.size() ? e.load_locations[load] : SourceLocation{e.file.string()};
+}
+
+/// What holds a node or a facet of the surface, along each axis: the number of a load, -1: none.
+using Holders = std::array<int, 3>;
+
+/// The loads that hold facets of the surface.
+std::map<FacetKey, Holders> held_facets(const Experiment& e, const Mesh& surface) {
+  std::map<FacetKey, Holders> held;
+  for (std::size_t i = 0; i < e.loads.size(); ++i) {
+    if (!prescribes_displacement(e.loads[i])) continue;
+    const PrescribedValue value = prescribed_displacement(e.loads[i], Vec3::Zero(), Kinematics::linear);
+    for (const FacetKey& facet : patch(surface, *patch_of(e.loads[i])).facets) {
+      Holders& at = held.try_emplace(key_of(facet), Holders{-1, -1, -1}).first->second;
+      for (int d = 0; d < 3; ++d)
+        if (value[d]) at[d] = static_cast<int>(i);
+    }
+  }
+  return held;
+}
+
+/// Axes along which a load pulls or presses its patch.
+std::array<bool, 3> pulled_axes(const Load& load) {
+  Vec3 pull = Vec3::Zero();
+  if (const auto* t = std::get_if<Traction>(&load)) pull = t->traction;
+  if (const auto* f = std::get_if<PatchForce>(&load)) pull = f->force;
+  if (const auto* p = std::get_if<Pressure>(&load); p && p->pressure != 0) pull = Vec3::Ones();
+  return {pull[0] != 0, pull[1] != 0, pull[2] != 0};
+}
+
+/// The load that holds all of the patch of load number `i` along the axes of its force, or the last of these; -1: none.
+int holder_of_all(const Experiment& e, std::size_t i, const Mesh& surface, const std::map<FacetKey, Holders>& held) {
+  const std::array<bool, 3> axes = pulled_axes(e.loads[i]);
+  int holder = -1;
+  if (!axes[0] && !axes[1] && !axes[2]) return -1;
+  for (const FacetKey& facet : patch(surface, *patch_of(e.loads[i])).facets) {
+    const auto at = held.find(key_of(facet));
+    for (int d = 0; d < 3; ++d) {
+      if (!axes[d]) continue;
+      if (at == held.end() || at->second[d] < 0) return -1;
+      holder = at->second[d];
+    }
+  }
+  return holder;
+}
+
+}  // namespace
+
+void check_supports(const Experiment& e, const Mesh& surface) {
+  std::map<int, std::pair<int, double>> moved;  // unknown -> load and displacement [m]
+  const double size = (surface.nodes.colwise().maxCoeff() - surface.nodes.colwise().minCoeff()).norm();
+  for (std::size_t i = 0; i < e.loads.size(); ++i) {
+    if (!prescribes_displacement(e.loads[i])) continue;
+    const std::string& name = *patch_of(e.loads[i]);
+    for (const int node : nodes_of(patch(surface, name))) {
+      const Vec3 X = surface.nodes.row(node).transpose();
+      const PrescribedValue value = prescribed_displacement(e.loads[i], X, e.model_kinematics());
+      for (int d = 0; d < 3; ++d) {
+        if (!value[d]) continue;
+        const auto [load, u] = moved.try_emplace(3 * node + d, static_cast<int>(i), *value[d]).first->second;
+        if (std::abs(u - *value[d]) <= 1e-9 * size) continue;
+        throw InputError(
+            where(e, i),
+            fmt::format(
+                "load: '{}' has the displacement {} = {:.6g} m at ({:.6g}, {:.6g}, {:.6g}) m, where '{}' of the "
+                "load in line {} has {:.6g} m (allowed: one displacement at each place of the surface)",
+                name, "xyz"[d], *value[d], X[0], X[1], X[2], *patch_of(e.loads[load]), where(e, load).line, u));
+      }
+    }
+  }
+  const std::map<FacetKey, Holders> held = held_facets(e, surface);
+  for (std::size_t i = 0; i < e.loads.size(); ++i)
+    if (const int holder = patch_of(e.loads[i]) ? holder_of_all(e, i, surface, held) : -1; holder >= 0)
+      throw InputError(
+          where(e, i),
+          fmt::format("load: the force on '{}' acts where the load in line {} holds '{}': it would only add "
+                      "to the reaction there (allowed: a force on a part of the surface that is free)",
+                      *patch_of(e.loads[i]), where(e, holder).line, *patch_of(e.loads[holder])));
 }
 
 }  // namespace springproof

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "meshes/mesh.h"
 #include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
 
@@ -17,5 +18,9 @@ void check_kinematics(const Experiment& experiment, const std::vector<ModelParam
 
 /// @throws InputError at an expectation or a published value of the mean displacement of a patch that the body lacks.
 void check_mean_displacements(const Experiment& experiment, const std::vector<std::string>& patches);
+
+/// @throws InputError naming both loads if two of them move one place of the surface differently, or if a force acts
+///   only where others hold the body; `surface`: mesh of the body with its patches.
+void check_supports(const Experiment& experiment, const Mesh& surface);
 
 }  // namespace springproof

@@ -249,6 +249,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
     for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);
+    if (experiment.body.is_voxels()) check_supports(experiment, *prepared.body.tetrahedra.back());
     return prepared;
   });
 }

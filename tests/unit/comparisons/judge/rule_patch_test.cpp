@@ -58,7 +58,7 @@ name = "spot"
 {}
 [[patch]]
 name = "foot"
-beyond = {{ point_m = [0.5, 0.5, 0.23], normal = [0, 0, -1] }}
+beyond = {{ point_m = [0.5, 0.5, {}], normal = [0, 0, -1] }}
 [material]
 youngs_modulus_Pa = 1e6
 poisson_ratio = 0.3
@@ -75,7 +75,7 @@ elements = ["q1", "p1"]
 edge_m = {}
 {}
 )",
-                                      c.body, c.rule, c.load, edge, reference),
+                                      c.body, c.rule, c.body == bracket ? 0.1 : 0.23, c.load, edge, reference),
                           "rule.toml");
 }
 
