@@ -10,6 +10,9 @@
 
 namespace springproof {
 
+/// Endings of the files that a body can be, in small letters: a script's ".geo" first.
+const std::vector<std::string>& body_file_endings();
+
 /// A block is divided into `cells`; any other body into those cubes of a lattice whose centres lie inside it.
 struct Body {
   std::string geo;           ///< file name: one of meshes/geo/, or a path relative to the case file

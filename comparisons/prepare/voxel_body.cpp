@@ -13,6 +13,7 @@
 #include "meshes/locate/facet_tree.h"
 #include "meshes/locate/locate.h"
 #include "meshes/mesher/mesher.h"
+#include "meshes/mesher/mesher_exchange.h"
 #include "meshes/patches/rule_region.h"
 #include "meshes/patches/select_patches.h"
 #include "meshes/volume.h"
@@ -36,12 +37,30 @@ MeshRequest body_request(const PreparedCase& prepared) {
   return request;
 }
 
-/// Hint for files in millimetres that are read as metres; empty if the size is plausible.
+/// Hint for files in millimetres that are read as metres, or converted twice; empty if the size is plausible.
 std::string scale_hint(const Mesh& mesh, const Body& body) {
-  constexpr double large = 10;  // [m]
+  constexpr double large = 10, small = 1e-3;  // [m]
   const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
-  if (body.is_script() || body.scale != 1 || !(span > large)) return {};
-  return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+  if (body.is_script()) return {};
+  const std::string ending = extension_of(body.geo);
+  if (body.scale != 1 && (ending == ".step" || ending == ".stp") && (span > large || span < small))
+    return fmt::format(
+        "the body spans {:.3g} m: a STEP file states its unit, and scale = {:g} multiplies that; is scale "
+        "one too many?",
+        span, body.scale);
+  if (body.scale == 1 && span > large)
+    return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+  return span < small ? fmt::format("the body spans {:.3g} m; is it so small?", span) : "";
+}
+
+/// Where the body is, and how large.
+std::string size_note(const Mesh& body) {
+  const Vec3 low = body.nodes.colwise().minCoeff().transpose(), high = body.nodes.colwise().maxCoeff().transpose(),
+             size = high - low;
+  return fmt::format(
+      "the body is {:.4g} x {:.4g} x {:.4g} m, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) "
+      "m, and of {:.6g} m³",
+      size[0], size[1], size[2], low[0], low[1], low[2], high[0], high[1], high[2], volume(body, body.nodes));
 }
 
 /// Edges of a mesh over those of the finest one.
@@ -55,7 +74,8 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   request.tetrahedra = finest_tetrahedra;
   if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
   MeshedBody body = mesh_body(request);
-  prepared.body.notes = body.notes;
+  prepared.body.notes = {size_note(body.mesh)};
+  prepared.body.notes.insert(prepared.body.notes.end(), body.notes.begin(), body.notes.end());
   hint = scale_hint(body.mesh, e.body);
   if (!hint.empty()) prepared.body.notes.push_back(hint);
   body.coarser.push_back(std::move(body.mesh));
@@ -84,6 +104,12 @@ void check_counts(const std::vector<double>& edges, double volume) {
                       "some 3 kB per cube); "
                       "take larger voxels",
                       cubes, edge, most_cubes));
+}
+
+/// Whether some model takes whole cubes.
+bool takes_whole_cubes(const PreparedCase& prepared) {
+  return std::any_of(prepared.models.begin(), prepared.models.end(),
+                     [](const auto& p) { return !p.cut.value_or(false); });
 }
 
 /// @throws std::invalid_argument if the cubes fill more than twice or less than half of the body's volume.
@@ -142,7 +168,8 @@ void cut_lattices(PreparedCase& prepared) {
   const auto add_cubes = [&](const VoxelGrid& grid) {
     Voxels voxels = voxelise(grid, true_body);
     for (const std::string& note : voxels.notes) prepared.body.notes.push_back(note);
-    compare_volumes(static_cast<double>(voxels.mesh.hexahedra.size()), grid.edge, region->volume, prepared.body.notes);
+    const auto cubes = static_cast<double>(voxels.mesh.hexahedra.size());
+    if (takes_whole_cubes(prepared)) compare_volumes(cubes, grid.edge, region->volume, prepared.body.notes);
     add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), grid.edge, region}, prepared);
   };
   for (const double accuracy : prepared.experiment.body.accuracies) {
@@ -319,8 +346,8 @@ void check_probes(PreparedCase& prepared) {
           fmt::format("probe '{}' lies {:.3g} m outside the body: its displacement is extrapolated", p.name, distance));
     if (distance > slack)
       throw InputError(fmt::format(
-          "probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface",
-          p.name, p.at[0], p.at[1], p.at[2], distance));
+          "probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface; {}",
+          p.name, p.at[0], p.at[1], p.at[2], distance, size_note(body)));
   }
 }
 

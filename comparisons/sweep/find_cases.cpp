@@ -1,6 +1,7 @@
 #include "comparisons/sweep/find_cases.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -29,8 +30,16 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
 
 /// @throws InputError for a body, which has no loads.
 const fs::path& no_body(const fs::path& file) {
-  const auto& bodies = mesh_file_extensions();
-  if (std::find(bodies.begin(), bodies.end(), extension_of(file)) == bodies.end()) return file;
+  static const std::vector<std::string> unread = {".3mf", ".off",  ".vtk", ".vtu",    ".igs",   ".iges", ".fbx",
+                                                  ".dae", ".gltf", ".glb", ".sldprt", ".blend", ".inp",  ".nas"};
+  const auto& bodies = body_file_endings();
+  const std::string ending = extension_of(file);
+  if (std::find(unread.begin(), unread.end(), ending) != unread.end())
+    throw InputError(shortened(
+        fmt::format("{} is no case (allowed: NAME.toml); as bodies of cases {} files are read, and programs such as "
+                    "MeshLab, Blender or FreeCAD convert to one of these",
+                    file.string(), fmt::join(bodies, ", "))));
+  if (std::find(bodies.begin(), bodies.end(), ending) == bodies.end()) return file;
   throw InputError(shortened(fmt::format("{} is a body (allowed: a case, NAME.toml, in which [body] has geo = \"{}\")",
                                          file.string(), file.filename().string())));
 }

@@ -49,7 +49,7 @@ void scale(Mesh& mesh, double factor) {
 }
 
 /// A script cut along its own lines, as mesh_geo says.
-Mesh mesh_structured(const MeshRequest& r, const GmshSession& session) {
+Mesh mesh_structured(const MeshRequest& r, const GmshSession& session, std::vector<std::string>& notes) {
   generate(r.file, session);
   if (r.kind.second_order) {
     gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 0);
@@ -57,8 +57,8 @@ Mesh mesh_structured(const MeshRequest& r, const GmshSession& session) {
     session.stop_on_error(r.file);
   }
   const int type = r.kind.tetrahedra ? tetrahedron : r.kind.second_order ? hexahedron_27 : hexahedron;
-  const auto blocks = volume_elements();
-  return read_mesh(r.file, only_block(r.file, blocks, type, r.kind.tetrahedra ? "tetrahedra" : "hexahedra"));
+  const auto blocks = volume_elements(r.file, notes);
+  return read_mesh(r.file, only_block(r.file, blocks, type, r.kind.tetrahedra ? "tetrahedra" : "hexahedra"), notes);
 }
 
 std::vector<std::pair<std::string, double>> parameters_of(const MeshRequest& r) {
@@ -93,11 +93,12 @@ void want_edge(double edge) {
   gmsh::option::setNumber("Mesh.MeshSizeMax", edge);
 }
 
-Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session) {
+Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session, std::vector<std::string>& notes) {
   generate(file, session);
   const auto read = [&] {
-    const auto blocks = volume_elements();
-    return read_mesh(file, only_block(file, blocks, tetrahedron, "tetrahedra"));
+    notes.clear();
+    const auto blocks = volume_elements(file, notes);
+    return read_mesh(file, only_block(file, blocks, tetrahedron, "tetrahedra"), notes);
   };
   const Mesh mesh = read();
   if (quality_of(mesh).worst > sliver) return mesh;
@@ -127,7 +128,9 @@ MeshAt model_at(const MeshRequest& r, const GmshSession& session, double drawn) 
   return [&r, &session, drawn](double edge, double) {
     gmsh::model::mesh::clear();
     gmsh::option::setNumber("Mesh.MeshSizeFactor", edge / drawn);
-    return OneMesh{fill_with_tetrahedra(r.file, session), {}, edge};
+    OneMesh made{{}, {}, edge};
+    made.mesh = fill_with_tetrahedra(r.file, session, made.notes);
+    return made;
   };
 }
 
@@ -144,7 +147,9 @@ MeshAt script_at(const MeshRequest& r) {
     own.edge = edge;
     GmshSession session(parameters_of(own));
     open_script(own, session);
-    return OneMesh{fill_with_tetrahedra(r.file, session), {}, edge};
+    OneMesh made{{}, {}, edge};
+    made.mesh = fill_with_tetrahedra(r.file, session, made.notes);
+    return made;
   };
 }
 
@@ -179,7 +184,9 @@ MeshedBody mesh_script(const MeshRequest& request) {
     GmshSession session(parameters_of(r));
     gmsh::open(r.file.string());
     session.stop_on_error(r.file);
-    return {mesh_structured(r, session), {}, 0, {}};
+    MeshedBody body;
+    body.mesh = mesh_structured(r, session, body.notes);
+    return body;
   }
   const double box = r.size.prod() * std::pow(r.scale, 3);
   if (r.edge == 0 && box == 0) refuse(r.file, "size: needed to choose the length of the tetrahedra's edges");
@@ -224,10 +231,11 @@ MeshedBody mesh_solid(const MeshRequest& request) {
 MeshedBody mesh_file(const MeshRequest& r) try {
   require_kind(r.file);
   const std::string extension = extension_of(r.file);
-  MeshedBody body = extension == ".geo"   ? mesh_script(r)
-                    : extension == ".stl" ? mesh_stl(r)
-                    : extension == ".msh" ? mesh_msh(r)
-                                          : mesh_solid(r);
+  MeshedBody body = r.kind.vertices              ? vertices_of(r)
+                    : extension == ".geo"        ? mesh_script(r)
+                    : extension == ".msh"        ? mesh_msh(r)
+                    : is_surface_file(extension) ? mesh_surface(r)
+                                                 : mesh_solid(r);
   if (r.scale != 1) scale(body.mesh, r.scale);
   for (Mesh& mesh : body.coarser)
     if (r.scale != 1) scale(mesh, r.scale);

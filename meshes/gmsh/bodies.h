@@ -20,14 +20,22 @@ MeshedBody mesh_msh(const MeshRequest& request);
 /// STEP or BREP by OpenCASCADE.
 MeshedBody mesh_solid(const MeshRequest& request);
 
-/// A closed surface.
-MeshedBody mesh_stl(const MeshRequest& request);
+/// A closed surface: STL, OBJ or PLY.
+MeshedBody mesh_surface(const MeshRequest& request);
 
-/// Fills a surface, as read, with tetrahedra: checked, remeshed if its facets do not suit the edge.
+/// The vertices of an STL, OBJ, PLY or mesh file, as MeshKind::vertices says.
+MeshedBody vertices_of(const MeshRequest& request);
+
+/// The vertices of a mesh file, by ascending number, and its triangles.
+Surface vertices_of_msh(const MeshRequest& request);
+
+/// Fills a surface, as read, with tetrahedra: checked, remeshed if its facets do not suit the edge.  Its parts are
+/// patches beside "surface".
 MeshedBody fill_surface(const MeshRequest& request, const Surface& raw);
 
-/// Meshes the model's volumes with tetrahedra and reads them.
-Mesh fill_with_tetrahedra(const std::filesystem::path& file, const GmshSession& session);
+/// Meshes the model's volumes with tetrahedra and reads them, with the notes of read_mesh().
+Mesh fill_with_tetrahedra(const std::filesystem::path& file, const GmshSession& session,
+                          std::vector<std::string>& notes);
 
 /// Edge with which a body of this volume has about so many tetrahedra.
 double edge_for(int tetrahedra, double volume);

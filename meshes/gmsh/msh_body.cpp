@@ -9,6 +9,7 @@
 
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/read_mesh.h"
+#include "meshes/gmsh/split_cells.h"
 #include "meshes/patches/transfer_patches.h"
 #include "problem/system/child.h"
 
@@ -47,17 +48,20 @@ std::vector<int> entities(int dimension) {
   return tags;
 }
 
-MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blocks) {
+MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blocks, std::vector<std::string> notes) {
   const std::size_t corners = blocks[0].corners;
-  for (const ElementBlock& b : blocks)
-    if (b.corners != corners || (corners != 4 && corners != 8))
-      refuse(r.file,
-             fmt::format("mixed or unknown cells: {} (allowed: only tetrahedra or only hexahedra)", counts(blocks)));
-  MeshedBody body;
+  const bool alike = (corners == 4 || corners == 8) &&
+                     std::all_of(blocks.begin(), blocks.end(), [&](const auto& b) { return b.corners == corners; });
+  const bool filled_anew = r.edge > 0 || r.tetrahedra > 0;
+  if (!alike && !filled_anew)
+    refuse(r.file, fmt::format("mixed or unknown cells: {} (allowed: only tetrahedra or only hexahedra; others with "
+                               "voxels or voxel_edge_m, which take the surface alone)",
+                               counts(blocks)));
+  MeshedBody body{{}, std::move(notes), 0, {}};
   if (std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.order > 1; }))
     body.notes.push_back(
         fmt::format("the cells of higher order ({}) are taken by their corners, with straight edges", counts(blocks)));
-  body.mesh = read_mesh(r.file, corners_of(blocks));
+  body.mesh = read_mesh(r.file, alike ? corners_of(blocks) : split_into_tetrahedra(r.file, blocks), body.notes);
   return body;
 }
 
@@ -114,19 +118,52 @@ Surface surface_of(const MeshRequest& r) {
 
 }  // namespace
 
+namespace {
+
+/// gmsh, with the file's mesh.
+class MshSession : public GmshSession {
+ public:
+  explicit MshSession(const std::filesystem::path& file) : GmshSession({}) {
+    const TemporaryFolder alone;  // gmsh would also run FILE.opt beside it
+    std::filesystem::create_symlink(std::filesystem::absolute(file), alone.path / "body.msh");
+    gmsh::merge((alone.path / "body.msh").string());
+    stop_on_error(file);
+  }
+};
+
+}  // namespace
+
+Surface vertices_of_msh(const MeshRequest& r) {
+  const MshSession session(r.file);
+  std::vector<std::size_t> tags;
+  std::vector<double> coordinates, parametric;
+  gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
+  std::map<std::size_t, Vec3> nodes;
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    nodes[tags[i]] = Vec3(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
+  Surface surface;
+  std::map<std::size_t, int> number;
+  for (const auto& [tag, at] : nodes) {
+    number[tag] = static_cast<int>(surface.points.size());
+    surface.points.push_back(at);
+  }
+  for (const ElementBlock& b : elements(2, entities(2)))
+    for (std::size_t i = 0; i < b.node_tags.size(); i += b.nodes)
+      for (std::size_t c = 2; c < std::min<std::size_t>(b.corners, 4); ++c)
+        surface.triangles.push_back(
+            {number.at(b.node_tags[i]), number.at(b.node_tags[i + c - 1]), number.at(b.node_tags[i + c])});
+  return surface;
+}
+
 MeshedBody mesh_msh(const MeshRequest& r) {
   Surface surface;
   std::vector<std::string> notes;
   std::optional<MeshedBody> own;
   {
-    GmshSession session({});
-    const TemporaryFolder alone;  // gmsh would also run FILE.opt beside it
-    std::filesystem::create_symlink(std::filesystem::absolute(r.file), alone.path / "body.msh");
-    gmsh::merge((alone.path / "body.msh").string());
-    session.stop_on_error(r.file);
+    const MshSession session(r.file);
     gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
-    if (const auto blocks = volume_elements(); !blocks.empty()) {
-      own = read_cells(r, blocks);
+    if (const auto blocks = volume_elements(r.file, notes); !blocks.empty()) {
+      own = read_cells(r, blocks, std::move(notes));
       if (r.edge == 0 && r.tetrahedra == 0) return *own;
     } else {
       surface = surface_of(r);

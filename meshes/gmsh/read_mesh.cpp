@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 #include <tuple>
 
+#include "meshes/connected_parts.h"
+#include "meshes/gmsh/split_cells.h"
+#include "meshes/mesher/mesher_exchange.h"
 #include "meshes/volume.h"
 
 namespace springproof {
@@ -146,6 +150,43 @@ void use_grid(Mesh& mesh, std::vector<int>& new_number) {
   mesh.grid = std::move(grid);
 }
 
+/// Joins nodes at one place, to round-off of the file; nodes of the mesh are numbered anew.
+void join_coincident_nodes(Mesh& mesh, Nodes& nodes, std::vector<std::string>& notes) {
+  constexpr double tolerance = 1e-6;  // of the body's size
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  const std::vector<int> same = coincident_nodes(mesh.nodes, tolerance * size);
+  std::vector<int> number(same.size(), -1);
+  int kept = 0;
+  for (std::size_t n = 0; n < same.size(); ++n)
+    if (same[n] == static_cast<int>(n)) {
+      mesh.nodes.row(kept) = mesh.nodes.row(static_cast<Eigen::Index>(n)).eval();
+      number[n] = kept++;
+    }
+  if (kept == mesh.nodes.rows()) return;
+  notes.push_back(fmt::format("{} nodes were at the places of others, to {:.2g} m, and are one with them",
+                              mesh.nodes.rows() - kept, tolerance * size));
+  mesh.nodes.conservativeResize(kept, 3);
+  const auto renumber = [&](int n) { return number[same[n]]; };
+  for (Hexahedron& cell : mesh.hexahedra) std::transform(cell.begin(), cell.end(), cell.begin(), renumber);
+  for (Tetrahedron& cell : mesh.tetrahedra) std::transform(cell.begin(), cell.end(), cell.begin(), renumber);
+  for (int& n : nodes.number)
+    if (n >= 0) n = renumber(n);
+}
+
+/// @throws InputError if the cells are several parts, or parts without a common facet.
+void refuse_parts(const fs::path& file, const Mesh& mesh) {
+  const std::string remedy = extension_of(file) == ".geo"
+                                 ? "join them with BooleanUnion or BooleanFragments, or Coherence"
+                                 : "join them in the program that wrote the file, so that they share their nodes";
+  if (const int parts = separate_parts(mesh); parts > 1)
+    refuse(file, fmt::format("the mesh has {} parts that share no node (allowed: one body; {})", parts, remedy));
+  const PartsByFacets parts = parts_by_facets(mesh);
+  if (parts.count == 1) return;
+  refuse(file, fmt::format("the mesh has {} parts that meet in edges or points only, as at ({:.6g}, {:.6g}, {:.6g}): "
+                           "nothing there resists turning (allowed: one body, connected through facets; {})",
+                           parts.count, parts.hinge[0], parts.hinge[1], parts.hinge[2], remedy));
+}
+
 std::array<int, 4> sorted(std::array<int, 4> facet) {
   std::sort(facet.begin(), facet.end());
   return facet;
@@ -153,31 +194,55 @@ std::array<int, 4> sorted(std::array<int, 4> facet) {
 
 using FacetPatches = std::map<std::array<int, 4>, std::vector<int>>;  ///< patches by the facet's nodes, sorted
 
+/// A facet of a physical surface as those of the cells: quadrilaterals before tetrahedra as two triangles.
+std::vector<std::array<std::size_t, 4>> facets_of(const std::size_t* tags, std::size_t corners, bool tetrahedra) {
+  if (corners < 4) return {{tags[0], tags[1], tags[2], 0}};
+  if (!tetrahedra) return {{tags[0], tags[1], tags[2], tags[3]}};
+  std::vector<std::array<std::size_t, 4>> facets;
+  for (const auto& [a, b, c] : triangles_of({tags[0], tags[1], tags[2], tags[3]})) facets.push_back({a, b, c, 0});
+  return facets;
+}
+
 /// The physical surfaces' names as patches without facets, and where their facets are wanted.
-FacetPatches wanted_facets(const fs::path& file, const Nodes& nodes, std::vector<Patch>& patches) {
+FacetPatches wanted_facets(const Nodes& nodes, bool tetrahedra, std::vector<Patch>& patches) {
   FacetPatches wanted;
   for (const PhysicalSurface& surface : physical_surfaces()) {
     for (const ElementBlock& block : surface.facets)
-      for (std::size_t i = 0; i < block.node_tags.size(); i += block.nodes) {
-        std::array<int, 4> facet = {-1, -1, -1, -1};
-        for (std::size_t c = 0; c < std::min<std::size_t>(block.corners, 4); ++c) {
-          facet[c] = nodes.number.at(block.node_tags[i + c]);
-          if (facet[c] < 0)
-            refuse(file, fmt::format("physical surface '{}' is not on the surface of the body", surface.name));
+      for (std::size_t i = 0; i < block.node_tags.size(); i += block.nodes)
+        for (const auto& tags : facets_of(&block.node_tags[i], block.corners, tetrahedra)) {
+          std::array<int, 4> facet = {-1, -1, -1, -1};
+          for (int c = 0; c < 4; ++c)
+            if (tags[c] > 0) facet[c] = nodes.number.at(tags[c]);
+          std::vector<int>& names = wanted[sorted(facet)];
+          if (names.empty() || names.back() != static_cast<int>(patches.size()))
+            names.push_back(static_cast<int>(patches.size()));
         }
-        std::vector<int>& names = wanted[sorted(facet)];
-        if (names.empty() || names.back() != static_cast<int>(patches.size()))
-          names.push_back(static_cast<int>(patches.size()));
-      }
     patches.push_back({surface.name, {}});
   }
   return wanted;
 }
 
+/// Leaves out facets that are not on the surface, and patches without others.
+/// @param inside patches of such facets
+void leave_out(const std::vector<std::array<int, 4>>& facets, const std::set<int>& inside, std::vector<Patch>& patches,
+               std::vector<std::string>& notes) {
+  std::set<std::array<int, 4>> keys(facets.begin(), facets.end());
+  for (const int p : inside) {
+    Patch& patch = patches[p];
+    std::erase_if(patch.facets, [&](const std::array<int, 4>& f) { return keys.contains(sorted(f)); });
+    notes.push_back(patch.facets.empty()
+                        ? fmt::format("the physical surface '{}' lies inside of the body: it is no patch", patch.name)
+                        : fmt::format("the physical surface '{}' lies inside of the body in part: the patch is the "
+                                      "rest of it, {} facets",
+                                      patch.name, patch.facets.size()));
+  }
+  std::erase_if(patches, [](const Patch& p) { return p.facets.empty(); });
+}
+
 /// The physical surfaces as faces of the cells, which makes every facet outward whatever gmsh's orientation is.
-std::vector<Patch> read_patches(const fs::path& file, const Mesh& mesh, const Nodes& nodes) {
+std::vector<Patch> read_patches(const Mesh& mesh, const Nodes& nodes, std::vector<std::string>& notes) {
   std::vector<Patch> patches;
-  const FacetPatches wanted = wanted_facets(file, nodes, patches);
+  const FacetPatches wanted = wanted_facets(nodes, !mesh.tetrahedra.empty(), patches);
   std::vector<bool> on_patch(mesh.nodes.rows(), false);  // most facets are off: no search for them
   for (const auto& [facet, names] : wanted)
     for (const int n : facet)
@@ -197,29 +262,31 @@ std::vector<Patch> read_patches(const fs::path& file, const Mesh& mesh, const No
   for (const auto& [a, b, c, d] : mesh.tetrahedra)
     for (const std::array<int, 4>& facet : {std::array{a, c, b, -1}, {a, b, d, -1}, {b, c, d, -1}, {a, d, c, -1}})
       visit(facet);
+  std::vector<std::array<int, 4>> off;
+  std::set<int> inside;
   for (const auto& [facet, names] : wanted)
-    if (const auto it = times_seen.find(facet); it == times_seen.end() || it->second != 1)
-      refuse(file, fmt::format("physical surface '{}' is not on the surface of the body", patches[names[0]].name));
+    if (const auto it = times_seen.find(facet); it == times_seen.end() || it->second != 1) {
+      off.push_back(facet);
+      inside.insert(names.begin(), names.end());
+    }
+  leave_out(off, inside, patches, notes);
   return patches;
 }
 
 }  // namespace
 
-Mesh read_mesh(const fs::path& file, const ElementBlock& cells) {
+Mesh read_mesh(const fs::path& file, const ElementBlock& cells, std::vector<std::string>& notes) {
   Nodes nodes = read_nodes();
   Mesh mesh = read_cells(cells, nodes);
   refuse_inverted_cells(file, mesh);
-  if (const int parts = separate_parts(mesh); parts > 1)
-    refuse(file,
-           fmt::format("the mesh has {} parts that share no node (allowed: one body; join them with BooleanUnion or "
-                       "BooleanFragments, or Coherence)",
-                       parts));
   std::vector<int> new_number(mesh.nodes.rows());
   std::iota(new_number.begin(), new_number.end(), 0);
+  if (separate_parts(mesh) > 1) join_coincident_nodes(mesh, nodes, notes);
+  refuse_parts(file, mesh);
   use_grid(mesh, new_number);
   for (int& number : nodes.number)
     if (number >= 0) number = new_number[number];
-  mesh.patches = read_patches(file, mesh, nodes);
+  mesh.patches = read_patches(mesh, nodes, notes);
   return mesh;
 }
 

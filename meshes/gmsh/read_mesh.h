@@ -10,8 +10,10 @@ namespace springproof {
 
 /// The cells of a block of tetrahedra or hexahedra (their corners; hexahedra of 27 nodes keep them as Mesh::curved),
 /// with the physical surfaces as patches, facets outward.  The grid is detected: then nodes and cells are numbered x
-/// fastest and the nodes lie on the lattice.
-/// @throws InputError if a cell is inverted, the cells are several parts or a physical surface is not on the surface.
-Mesh read_mesh(const std::filesystem::path& file, const ElementBlock& cells);
+/// fastest and the nodes lie on the lattice.  Parts that share no node, but meet in nodes at one place, are joined
+/// there; facets of physical surfaces that are not on the surface of the body are left out; both are noted.
+/// @throws InputError if a cell is inverted, or the cells are several parts, or parts that meet in edges or points
+/// only.
+Mesh read_mesh(const std::filesystem::path& file, const ElementBlock& cells, std::vector<std::string>& notes);
 
 }  // namespace springproof

@@ -1,9 +1,11 @@
 #include "meshes/gmsh/session.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmsh.h>
 
 #include <algorithm>
+#include <set>
 
 #ifdef __SANITIZE_ADDRESS__
 // gmsh 4.8 leaks a few hundred bytes per extruded mesh, OpenCASCADE (libTK...) in STEP files and B-splines; what we
@@ -76,22 +78,53 @@ std::vector<ElementBlock> elements(int dimension, const std::vector<int>& entiti
   return blocks;
 }
 
-std::vector<ElementBlock> volume_elements() {
-  gmsh::vectorpair groups, all;
-  gmsh::model::getPhysicalGroups(groups, 3);
+namespace {
+
+std::string name_of_group(int dimension, int tag) {
+  std::string name;
+  gmsh::model::getPhysicalName(dimension, tag, name);
+  return name.empty() ? std::to_string(tag) : name;
+}
+
+std::size_t count_of(const std::vector<ElementBlock>& blocks) {
+  std::size_t count = 0;
+  for (const ElementBlock& b : blocks) count += b.count();
+  return count;
+}
+
+std::vector<int> volumes() {
+  gmsh::vectorpair all;
+  gmsh::model::getEntities(all, 3);
   std::vector<int> entities;
+  for (const auto& [dimension, tag] : all) entities.push_back(tag);
+  return entities;
+}
+
+}  // namespace
+
+std::vector<ElementBlock> volume_elements(const std::filesystem::path& file, std::vector<std::string>& notes) {
+  gmsh::vectorpair groups;
+  gmsh::model::getPhysicalGroups(groups, 3);
+  std::set<int> all;
+  std::vector<std::string> names;
+  std::size_t largest = 0;  // entities of one group
   for (const auto& [dimension, tag] : groups) {
     std::vector<int> members;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, members);
-    for (const int e : members)
-      if (std::find(entities.begin(), entities.end(), e) == entities.end()) entities.push_back(e);
+    all.insert(members.begin(), members.end());
+    names.push_back(fmt::format("'{}'", name_of_group(dimension, tag)));
+    largest = std::max(largest, std::set<int>(members.begin(), members.end()).size());
   }
-  auto blocks = elements(3, entities);
-  if (!blocks.empty()) return blocks;
-  gmsh::model::getEntities(all, 3);
-  entities.clear();
-  for (const auto& [dimension, tag] : all) entities.push_back(tag);
-  return elements(3, entities);
+  if (largest < all.size())
+    refuse(file, fmt::format("the physical volumes {} are parts of the body, and a body has one material (allowed: one "
+                             "physical volume that holds all of it, or none)",
+                             fmt::join(names, ", ")));
+  const auto blocks = elements(3, {all.begin(), all.end()}), whole = elements(3, volumes());
+  if (blocks.empty()) return whole;
+  if (const std::size_t left_out = count_of(whole) - count_of(blocks); left_out > 0)
+    notes.push_back(fmt::format("{} of the file's {} cells are in no physical volume and are no part of the body",
+                                left_out, count_of(whole)));
+  return blocks;
 }
 
 std::vector<PhysicalSurface> physical_surfaces() {
@@ -100,8 +133,7 @@ std::vector<PhysicalSurface> physical_surfaces() {
   std::vector<PhysicalSurface> found;
   for (const auto& [dimension, tag] : groups) {
     PhysicalSurface surface;
-    gmsh::model::getPhysicalName(dimension, tag, surface.name);
-    if (surface.name.empty()) surface.name = std::to_string(tag);
+    surface.name = name_of_group(dimension, tag);
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
     surface.facets = elements(dimension, entities);

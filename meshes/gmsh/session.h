@@ -38,8 +38,9 @@ struct ElementBlock {
 /// The elements of one dimension in these entities, by type.
 std::vector<ElementBlock> elements(int dimension, const std::vector<int>& entities);
 
-/// Elements of the physical volumes, each once; of the whole model if there are none.
-std::vector<ElementBlock> volume_elements();
+/// Elements of the physical volumes, each once; of the whole model if there are none.  Notes what is left out.
+/// @throws InputError if physical volumes are parts of the body, which would be several materials.
+std::vector<ElementBlock> volume_elements(const std::filesystem::path& file, std::vector<std::string>& notes);
 
 struct PhysicalSurface {
   std::string name;  ///< its number if it has none

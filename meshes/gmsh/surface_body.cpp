@@ -4,12 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "meshes/gmsh/bodies.h"
+#include "meshes/mesher/mesher_exchange.h"
 #include "meshes/mesher/refined_meshes.h"
+#include "meshes/patches/transfer_patches.h"
+#include "meshes/surface/obj.h"
+#include "meshes/surface/ply.h"
 #include "meshes/surface/stl.h"
 #include "meshes/surface/surface_check.h"
+#include "meshes/united_numbers.h"
 
 namespace springproof {
 namespace {
@@ -31,25 +37,54 @@ bool suits(const Surface& surface, double edge) {
   return mean < 1.5 * edge && mean > edge / 1.5 && double(far_off) < 0.05 * double(surface.triangles.size());
 }
 
+/// Its shells: the outer one and those of cavities, each with points of its own.
+std::vector<Surface> shells_of(const Surface& surface) {
+  UnitedNumbers shell(surface.points.size());
+  for (const auto& [a, b, c] : surface.triangles) {
+    shell.unite(a, b);
+    shell.unite(a, c);
+  }
+  std::map<int, Surface> shells;
+  std::vector<int> number(surface.points.size());
+  for (std::size_t n = 0; n < number.size(); ++n) {
+    std::vector<Vec3>& points = shells[shell.of(static_cast<int>(n))].points;
+    number[n] = static_cast<int>(points.size());
+    points.push_back(surface.points[n]);
+  }
+  for (const auto& [a, b, c] : surface.triangles)
+    shells.at(shell.of(a)).triangles.push_back({number[a], number[b], number[c]});
+  std::vector<Surface> all;
+  for (auto& [head, s] : shells)
+    if (!s.triangles.empty()) all.push_back(std::move(s));
+  return all;
+}
+
 Mesh fill(const MeshRequest& r, const Surface& surface) {
   GmshSession session({});
   want_edge(r.edge / r.scale);
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);  // the inside follows `edge`, not the facets
-  gmsh::model::addDiscreteEntity(2, 1);
-  std::vector<std::size_t> node_tags(surface.points.size()), corners;
-  std::iota(node_tags.begin(), node_tags.end(), 1);
-  std::vector<double> coordinates;
-  for (const Vec3& p : surface.points) coordinates.insert(coordinates.end(), p.begin(), p.end());
-  for (const auto& t : surface.triangles)
-    for (const int n : t) corners.push_back(n + 1);
-  gmsh::model::mesh::addNodes(2, 1, node_tags, coordinates);
-  gmsh::model::mesh::addElementsByType(1, 2, {}, corners);
-  gmsh::model::geo::addSurfaceLoop({1}, 1);
-  gmsh::model::geo::addVolume({1}, 1);
+  std::vector<int> entities;
+  std::size_t nodes = 0;
+  for (const Surface& shell : shells_of(surface)) {
+    const int entity = static_cast<int>(entities.size()) + 1;
+    gmsh::model::addDiscreteEntity(2, entity);
+    std::vector<std::size_t> node_tags(shell.points.size()), corners;
+    std::iota(node_tags.begin(), node_tags.end(), nodes + 1);
+    std::vector<double> coordinates;
+    for (const Vec3& p : shell.points) coordinates.insert(coordinates.end(), p.begin(), p.end());
+    for (const auto& t : shell.triangles)
+      for (const int n : t) corners.push_back(nodes + static_cast<std::size_t>(n) + 1);
+    gmsh::model::mesh::addNodes(2, entity, node_tags, coordinates);
+    gmsh::model::mesh::addElementsByType(entity, 2, {}, corners);
+    nodes += shell.points.size();
+    entities.push_back(entity);
+  }
+  gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(entities)}, 1);
   gmsh::model::geo::synchronize();
-  gmsh::model::setPhysicalName(2, gmsh::model::addPhysicalGroup(2, {1}), "surface");
+  gmsh::model::setPhysicalName(2, gmsh::model::addPhysicalGroup(2, entities), "surface");
   session.stop_on_error(r.file);
-  return fill_with_tetrahedra(r.file, session);
+  std::vector<std::string> none;  // a surface and the volume in it
+  return fill_with_tetrahedra(r.file, session, none);
 }
 
 }  // namespace
@@ -126,6 +161,25 @@ MeshedBody filled_alone(const MeshRequest& r, FileSurface& source) {
 
 }  // namespace
 
+/// Adds the parts that the file names as patches.
+void add_parts(const Surface& raw, Mesh& mesh) {
+  Mesh from;
+  from.nodes.resize(static_cast<Eigen::Index>(raw.points.size()), 3);
+  for (std::size_t n = 0; n < raw.points.size(); ++n)
+    from.nodes.row(static_cast<Eigen::Index>(n)) = raw.points[n].transpose();
+  std::vector<OuterFacet> facets;
+  for (const auto& [a, b, c] : raw.triangles) {
+    std::array<int, 4> key = {-1, a, b, c};
+    std::sort(key.begin(), key.end());
+    facets.push_back({key, {a, b, c, -1}, Vec3::Zero()});
+  }
+  for (const auto& [name, triangles] : raw.parts) {
+    Patch& patch = from.patches.emplace_back(Patch{name, {}});
+    for (const int t : triangles) patch.facets.push_back(facets[t].nodes);
+  }
+  transfer_patches(from, facets, mesh);
+}
+
 MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   auto [surface, notes] = check_surface(raw, request.file.string());
   const double inside = volume(surface);
@@ -136,9 +190,32 @@ MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   MeshedBody body = r.coarser.empty() ? filled_alone(r, source) : mesh_refined(r, surface_at(r, source));
   if (const std::string note = source.note(); !note.empty()) notes.push_back(note);
   body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  if (raw.parts.empty()) return body;
+  add_parts(raw, body.mesh);
+  for (Mesh& mesh : body.coarser) add_parts(raw, mesh);
   return body;
 }
 
-MeshedBody mesh_stl(const MeshRequest& r) { return fill_surface(r, read_stl(r.file)); }
+namespace {
+
+Surface read_surface(const std::filesystem::path& file) {
+  const std::string ending = extension_of(file);
+  return ending == ".obj" ? read_obj(file) : ending == ".ply" ? read_ply(file) : read_stl(file);
+}
+
+}  // namespace
+
+MeshedBody mesh_surface(const MeshRequest& r) { return fill_surface(r, read_surface(r.file)); }
+
+MeshedBody vertices_of(const MeshRequest& r) {
+  const Surface surface = extension_of(r.file) == ".msh" ? vertices_of_msh(r) : read_surface(r.file);
+  MeshedBody body;
+  body.mesh.nodes.resize(static_cast<Eigen::Index>(surface.points.size()), 3);
+  for (std::size_t n = 0; n < surface.points.size(); ++n)
+    body.mesh.nodes.row(static_cast<Eigen::Index>(n)) = surface.points[n].transpose();
+  Patch& triangles = body.mesh.patches.emplace_back(Patch{"triangles", {}});
+  for (const auto& [a, b, c] : surface.triangles) triangles.facets.push_back({a, b, c, -1});
+  return body;
+}
 
 }  // namespace springproof

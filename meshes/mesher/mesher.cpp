@@ -1,6 +1,7 @@
 #include "meshes/mesher/mesher.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <ranges>
 
 #include "meshes/mesher/mesh_cache.h"
 #include "meshes/mesher/mesher_exchange.h"
@@ -87,11 +89,13 @@ MeshedBody of_sound_size(const fs::path& file, MeshedBody body) {
 }
 
 void check(const MeshRequest& r) {
-  const auto& extensions = mesh_file_extensions();
+  const auto& extensions = body_file_endings();
   const std::string extension = extension_of(r.file);
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
     refuse(r.file,
-           fmt::format("cannot read a body from a '{}' file (allowed: {})", extension, fmt::join(extensions, ", ")));
+           fmt::format("cannot read a body from a '{}' file (allowed: {}; programs such as MeshLab, Blender or FreeCAD "
+                       "convert others to one of these)",
+                       extension, fmt::join(extensions, ", ")));
   require_file(r.file, fmt::format("a body: {}", fmt::join(extensions, ", ")));
   if (extension == ".stl") check_facets(r.file);
   if (!r.size.isZero() && !(r.size.allFinite() && r.size.minCoeff() > 0))
@@ -108,7 +112,9 @@ void check(const MeshRequest& r) {
     refuse(r.file,
            fmt::format("scale: {} is no factor (allowed: {:g} to {:g})", r.scale, smallest_scale, largest_scale));
   if (!r.size.isZero()) require_size(r.file, r.size, r.size.maxCoeff());
-  if (r.edge == 0 && r.tetrahedra == 0 && extension != ".geo" && extension != ".msh")
+  if (r.kind.vertices && extension != ".msh" && !is_surface_file(extension))
+    refuse(r.file, "has no vertices of its own (allowed: .stl, .obj, .ply, .msh)");
+  if (r.edge == 0 && r.tetrahedra == 0 && !r.kind.vertices && extension != ".geo" && extension != ".msh")
     refuse(r.file, "edge: the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
 }
 
@@ -127,9 +133,9 @@ fs::path built_in_bodies() { return data_folder("geo", SPRINGPROOF_GEO_DIR); }
 void refuse_own_script(const Body& body, const fs::path& file) {
   if (!std::getenv("SPRINGPROOF_NO_SCRIPTS") || !body.is_script() || is_built_in(file)) return;
   throw InputError(body.where, fmt::format("body.geo: '{}' is a script, which may run any command, and --no-scripts is "
-                                           "set (allowed: .stl, .msh, .step, .stp, "
-                                           ".brep files, and the built-in {})",
-                                           body.geo, list_of_bodies(built_in_bodies())));
+                                           "set (allowed: {} files, and the built-in {})",
+                                           body.geo, fmt::join(body_file_endings() | std::views::drop(1), ", "),
+                                           list_of_bodies(built_in_bodies())));
 }
 
 }  // namespace
@@ -154,11 +160,6 @@ fs::path find_geo(const Body& body, const fs::path& case_file) {
   throw InputError(body.where, fmt::format("body.geo: no file '{}' beside the case file or among the built-in "
                                            "bodies (allowed: {})",
                                            body.geo, list_of_bodies(built_in)));
-}
-
-const std::vector<std::string>& mesh_file_extensions() {
-  static const std::vector<std::string> extensions = {".geo", ".stl", ".msh", ".step", ".stp", ".brep"};
-  return extensions;
 }
 
 double size_ratio(const Mesh& coarse, const Mesh& fine) {

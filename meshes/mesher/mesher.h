@@ -24,13 +24,17 @@ bool is_built_in(const std::filesystem::path& file);
 struct MeshKind {
   bool tetrahedra = false;    ///< else hexahedra
   bool second_order = false;  ///< hexahedra whose edges follow a curved surface (Mesh::curved)
+  bool vertices = false;      ///< of an .stl, .obj, .ply or .msh: its vertices in its order, and its triangles as the
+                              ///< patch "triangles", without cells
 };
 
 /// A body in a file:
 ///   .geo                gmsh script with the parameters size_x size_y size_z [m] and `edge` [m] (tetrahedra), or nx ny
 ///   nz
 ///                       and tetrahedra = 0 or 1; physical surfaces name the patches
-///   .stl                closed surface; one patch, "surface"
+///   .stl .obj .ply      closed surface; patch "surface", and those of the solids of an ASCII STL file, the groups of
+///   an
+///                       OBJ file, where there are several
 ///   .msh                gmsh 2.2 or 4.1: hexahedra or tetrahedra, physical surfaces = patches (one without a name: its
 ///                       number); as they are, or filled anew within their surface where tetrahedra are asked for;
 ///                       without cells a closed surface, as .stl
@@ -59,9 +63,6 @@ inline constexpr double least_ratio = 1.2;
 
 /// Cell size of one mesh of a body over that of a finer one: the cube root of how many times more cells there are.
 double size_ratio(const Mesh& coarse, const Mesh& fine);
-
-/// Extensions of the files that can be read: ".geo", ...
-const std::vector<std::string>& mesh_file_extensions();
 
 /// Meshes a body under a time limit: 300 s, or $SPRINGPROOF_MESH_SECONDS; or finds the mesh that an earlier run kept
 /// (mesh_cache.h).  Thread-safe.

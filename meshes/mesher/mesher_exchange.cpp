@@ -44,8 +44,8 @@ Mesh sound(Mesh mesh) {
   const std::size_t cells = mesh.hexahedra.size();
   const bool facets_fit =
       std::all_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch& p) { return within(p, nodes); });
-  if (cells + mesh.tetrahedra.size() == 0 || !mesh.nodes.allFinite() || !within(mesh.hexahedra, nodes) ||
-      !within(mesh.tetrahedra, nodes) || !facets_fit ||
+  if ((cells + mesh.tetrahedra.size() == 0 && mesh.patches.empty()) || !mesh.nodes.allFinite() ||
+      !within(mesh.hexahedra, nodes) || !within(mesh.tetrahedra, nodes) || !facets_fit ||
       (mesh.curved.rows() > 0 && static_cast<std::size_t>(mesh.curved.rows()) != 27 * cells) ||
       (mesh.grid && !fits(*mesh.grid, cells)))
     throw std::runtime_error("a mesh that does not hold together");
@@ -60,6 +60,7 @@ std::string to_cbor(const MeshRequest& r) {
                {"cells", r.cells},
                {"tetrahedra", r.kind.tetrahedra},
                {"second_order", r.kind.second_order},
+               {"vertices", r.kind.vertices},
                {"edge", r.edge},
                {"about", r.tetrahedra},
                {"coarser", r.coarser},
@@ -72,7 +73,7 @@ MeshRequest mesh_request_from_cbor(const std::string& bytes) {
   r.file = std::string(j.at("file"));
   r.size = j.at("size").get<Vec3>();
   r.cells = j.at("cells");
-  r.kind = {j.at("tetrahedra"), j.at("second_order")};
+  r.kind = {j.at("tetrahedra"), j.at("second_order"), j.at("vertices")};
   r.edge = j.at("edge");
   r.tetrahedra = j.at("about");
   r.coarser = j.at("coarser").get<std::vector<double>>();
@@ -99,6 +100,10 @@ MeshedBody answer_from_cbor(const std::string& bytes) try {
 } catch (const std::exception&) {  // the words of a JSON library are no help
   throw std::runtime_error(
       "the answer of springproof-mesh cannot be used (build springproof and springproof-mesh together)");
+}
+
+bool is_surface_file(const std::string& extension) {
+  return extension == ".stl" || extension == ".obj" || extension == ".ply";
 }
 
 std::string extension_of(const std::filesystem::path& file) {

@@ -25,4 +25,7 @@ MeshedBody answer_from_cbor(const std::string& bytes);
 /// ".stl" of "Part.STL".
 std::string extension_of(const std::filesystem::path& file);
 
+/// Whether files of this extension hold a surface alone.
+bool is_surface_file(const std::string& extension);
+
 }  // namespace springproof

@@ -39,6 +39,19 @@ std::uint32_t facet_count(std::string_view bytes) {
   return count;
 }
 
+/// @throws InputError if the body is so far from the origin that coordinates of 32 bits do not resolve it.
+void require_resolution(const fs::path& file, const Surface& surface) {
+  constexpr double coarsest = 1e-3;  // steps of coordinates over the body's size
+  const Box box = bounding_box(surface);
+  const double farthest = std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff());
+  const auto f = static_cast<float>(farthest);
+  const double step = std::nextafter(f, INFINITY) - f, size = (box.high - box.low).maxCoeff();
+  if (step <= coarsest * size) return;
+  refuse(file, fmt::format("coordinates near {:.9g} have steps of {:.2g} in a binary STL file, and the body is {:.3g} "
+                           "long (allowed: {:g} of that; move the body to the origin before it is written)",
+                           farthest, step, size, coarsest));
+}
+
 Surface read_binary(const fs::path& file, std::string_view bytes) {
   const std::size_t count = facet_count(bytes);
   if (count == 0) refuse(file, "has no facets");
@@ -56,6 +69,7 @@ Surface read_binary(const fs::path& file, std::string_view bytes) {
     const auto corner = [&](int c) { return Vec3(numbers[3 * c + 3], numbers[3 * c + 4], numbers[3 * c + 5]); };
     add_facet(surface, {corner(0), corner(1), corner(2)});
   }
+  require_resolution(file, surface);
   return surface;
 }
 
@@ -80,8 +94,14 @@ class Words {
     while (at_ != end_ && !is_space(*at_)) ++at_;
     return {word_, static_cast<std::size_t>(at_ - word_)};
   }
-  void skip_line() {
+  /// Without spaces at its ends.
+  std::string_view rest_of_line() {
+    const char* begin = at_;
     while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
+    const char* end = at_;
+    while (begin != end && is_space(*begin)) ++begin;
+    while (begin != end && is_space(end[-1])) --end;
+    return {begin, static_cast<std::size_t>(end - begin)};
   }
   int line() const { return line_; }  ///< of the last word, from 1
   int column() const { return static_cast<int>(word_ - line_begin_) + 1; }
@@ -106,20 +126,31 @@ class AsciiReader {
   Surface read() {
     for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) read_solid(word);
     if (surface_.triangles.empty()) refuse(file_, "has no facets");
+    if (surface_.parts.size() < 2) surface_.parts.clear();
     return std::move(surface_);
   }
 
  private:
   void read_solid(std::string_view word) {
     if (!same_word(word, "solid")) wrong("solid", word);
-    words_.skip_line();  // its name
+    const std::string name(words_.rest_of_line());
+    const std::size_t first = surface_.triangles.size();
     while (true) {
       word = words_.next();
-      if (same_word(word, "endsolid")) return words_.skip_line();
+      if (same_word(word, "endsolid")) {
+        words_.rest_of_line();
+        return name_part(name, first);
+      }
       if (word.empty()) refuse_here(fmt::format("cut off after facet {}: no 'endsolid'", surface_.triangles.size()));
       if (!same_word(word, "facet")) wrong("facet' or 'endsolid", word);
       read_facet();
     }
+  }
+
+  /// The facets from `first` on are a part of the surface, if its solid has a name.
+  void name_part(const std::string& name, std::size_t first) {
+    if (name.empty()) return;
+    for (std::size_t t = first; t < surface_.triangles.size(); ++t) surface_.parts[name].push_back(static_cast<int>(t));
   }
 
   void read_facet() {

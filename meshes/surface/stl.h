@@ -9,11 +9,12 @@
 namespace springproof {
 
 /// The facets of an STL file as they stand in it: three points each, not welded (check_surface does), normals ignored,
-/// coordinates in the units of the file.  Several solids in one ASCII file are read as one surface.
+/// coordinates in the units of the file.  Several solids in one ASCII file are one surface, those with names its parts.
 /// A file whose size is that of the count in bytes 80 to 83 is binary, whatever it begins with.
 /// @throws InputError with the file and the line and column (ASCII) or facet (binary, from 1): no file, empty, no STL,
 /// cut off, a count that
-///         is not that of the file's size, coordinates that are no finite numbers.
+///         is not that of the file's size, coordinates that are no finite numbers, or, of 32 bits, too far from the
+///         origin for the size of the body.
 Surface read_stl(const std::filesystem::path& file);
 
 /// As read_stl, from the file's bytes; `file` is used for messages.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "problem/vector.h"
@@ -10,8 +12,9 @@ namespace springproof {
 
 /// Facets are outward by the right-hand rule where the surface is that of a body (surface_check.h).
 struct Surface {
-  std::vector<Vec3> points;                   ///< [m], or in the units of the file it was read from
-  std::vector<std::array<int, 3>> triangles;  ///< numbers of points
+  std::vector<Vec3> points;                            ///< [m], or in the units of the file it was read from
+  std::vector<std::array<int, 3>> triangles;           ///< numbers of points
+  std::map<std::string, std::vector<int>> parts = {};  ///< that the file names: numbers of triangles
 };
 
 /// Box with edges along the axes.

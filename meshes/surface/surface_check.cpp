@@ -214,21 +214,38 @@ std::vector<Surface> parts(const Surface& surface, const std::vector<int>& shell
   return result;
 }
 
-void check_shells(const Check& check, const std::vector<int>& shell) {
+/// Shells within the largest one are cavities, and point inwards.
+void check_shells(Check& check, const std::vector<int>& shell) {
   if (*std::max_element(shell.begin(), shell.end()) == 0) return;
   const std::vector<Surface> all = parts(check.surface, shell);
-  const auto is_inside = [&](const Surface& part) { return std::abs(winding_number(all[0], part.points[0])) > 0.5; };
-  if (std::all_of(all.begin() + 1, all.end(), is_inside))
+  const auto is_inside = [](const Surface& part, const Surface& of) {
+    return std::abs(winding_number(of, part.points[0])) > 0.5;
+  };
+  const auto outside =
+      std::find_if(all.begin() + 1, all.end(), [&](const Surface& part) { return !is_inside(part, all[0]); });
+  if (outside != all.end())
     check.refuse(
-        fmt::format("{} inside the body, the first at {} with {}: bodies with cavities are not meshed; remove the "
-                    "inner shells or open them to the outside",
-                    count_of(all.size() - 1, "closed shell lies", "closed shells lie"), at(all[1].points[0]),
-                    facets(all[1].triangles.size())));
-  check.refuse(
-      fmt::format("{} shells that do not touch (allowed: one body): the largest has {} of {}, the next, at {}, has "
-                  "{}: keep one, or join them with a Boolean union",
-                  all.size(), all[0].triangles.size(), facets(check.surface.triangles.size()), at(all[1].points[0]),
-                  all[1].triangles.size()));
+        fmt::format("{} shells that do not touch (allowed: one body): the largest has {} of {}, another, at {}, has "
+                    "{}: keep one, or join them with a Boolean union",
+                    all.size(), all[0].triangles.size(), facets(check.surface.triangles.size()), at(outside->points[0]),
+                    outside->triangles.size()));
+  for (auto inner = all.begin() + 1; inner != all.end(); ++inner)
+    for (auto other = all.begin() + 1; other != all.end(); ++other)
+      if (inner != other && is_inside(*inner, *other))
+        check.refuse(fmt::format("a shell at {} is in the cavity of another one: a body of its own (allowed: one body)",
+                                 at(inner->points[0])));
+  Surface whole;
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    Surface part = all[s];
+    if ((volume(part) > 0) != (s == 0)) turn_inside_out(part);
+    const auto first = static_cast<int>(whole.points.size());
+    whole.points.insert(whole.points.end(), part.points.begin(), part.points.end());
+    for (const auto& [a, b, c] : part.triangles) whole.triangles.push_back({a + first, b + first, c + first});
+  }
+  check.surface = std::move(whole);
+  check.notes.push_back(fmt::format("{} inside of the body, of {:.3g} % of the volume within its outer surface",
+                                    count_of(all.size() - 1, "cavity", "cavities"),
+                                    100 * (1 - volume(check.surface) / std::abs(volume(all[0])))));
 }
 
 void check_volume(Check& check) {

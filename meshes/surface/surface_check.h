@@ -21,7 +21,8 @@ struct CheckedSurface {
 /// @throws InputError that begins with `name` and says how many, where the first one is (in the units of the surface)
 /// and what
 ///         to do: no facets, coordinates that are no numbers, open edges, edges of more than two facets, a surface with
-///         one side, points where parts only touch, facets that cut each other, several shells, cavities, no volume.
+///         one side, points where parts only touch, facets that cut each other, several shells but for those of
+///         cavities, no volume.
 CheckedSurface check_surface(const Surface& raw, const std::string& name);
 
 /// The same body (surface as of check_surface) with no more facets than triangles of this edge would be, where it has

@@ -171,12 +171,16 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
                             if (is_new) {
                               at->second.cell = cell;
                               at->second.normal.fill(Vec3::Zero());
+                              at->second.moment.fill(Vec3::Zero());
                             }
                             for (const TrianglePoint& q : rule) {
-                              const std::array<double, 8> N = out.weights(cell, position(q.at));
+                              const Vec3 x = position(q.at), from_centre = x - out.centre(cell);
+                              const std::array<double, 8> N = out.weights(cell, x);
                               for (int n = 0; n < 8; ++n) {
-                                at->second.area[n] += q.weight * N[n] * normal.norm();
+                                const double area = q.weight * N[n] * normal.norm();
+                                at->second.area[n] += area;
                                 at->second.normal[n] += q.weight * N[n] * normal;
+                                at->second.moment[n] += area * from_centre;
                               }
                             }
                           });

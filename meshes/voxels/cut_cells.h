@@ -29,6 +29,7 @@ struct PatchInCell {
   int cell;                      ///< its number
   std::array<double, 8> area{};  ///< integral of N_a [m^2]
   std::array<Vec3, 8> normal;    ///< integral of N_a n, n the outward unit normal [m^2]
+  std::array<Vec3, 8> moment;    ///< integral of N_a (x - c), c the centre of the cell's cube [m^3]
 
   double total_area() const;  ///< [m^2]
 };

@@ -191,7 +191,7 @@ facing: a direction and the largest angle to it [degrees]; near: a point [m] and
   m.def(
       "voxels", &voxels_of, "file"_a, "cubes"_a = 2000, py::kw_only(), "edge"_a = py::none(), "scale"_a = 1.0,
       "size"_a = py::none(), "patches"_a = std::vector<PatchRule>(),
-      R"(A closed body (.stl, .msh, .step, .stp, .brep, .geo, or a built-in one as "rabbit.stl") in about `cubes` cubes,
+      R"(A closed body (.stl, .obj, .ply, .msh, .step, .stp, .brep, .geo, or a built-in one as "rabbit.stl") in about `cubes` cubes,
 or in cubes of `edge` [m]; `scale` multiplies its coordinates, `size` [m] is that of a script for gmsh.
 
 Runs the program springproof-mesh.  Raises InputError for a body that cannot be meshed.)");

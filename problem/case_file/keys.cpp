@@ -37,7 +37,7 @@ constexpr Key file_keys[] = {
 };
 
 constexpr Key body_keys[] = {
-  {"geo",          "a built-in body, or a file beside the case", "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .msh, .step or .brep file", required, "\"beam.geo\""},
+  {"geo",          "a built-in body, or a file beside the case", "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .obj, .ply, .msh, .step or .brep file", required, "\"beam.geo\""},
   {"size_m",       "size_x, size_y, size_z of a script",         "[x, y, z], each a finite number > 0, from 1e-6 to 1e9 [m]", "required by scripts", "[0.06, 0.01, 0.01]"},
   {"scale",        "multiplies the coordinates of any other file", above_0,                                          "1",               "0.001"},
   {"cells",        "cells of a body of hexahedra; several: resolutions", "[nx, ny, nz] or a list of such, integers from 1 to 1000", "one of cells, voxels, voxel_edge_m is required", "[[12, 2, 2], [24, 4, 4]]"},
@@ -253,6 +253,35 @@ constexpr KeyTable tables[] = {
   {"fracture",                   "[fracture]",                       "Under kinematics = \"linear\", on supports at rest ([fracture](fracture.md)).", fracture_keys},
 };
 
+constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
+  {"damping_ratio",   "loss_factor with band_Hz is twice the damping ratio"},
+  {"damping",         "damping_1_s is a rate, loss_factor with band_Hz twice the damping ratio"},
+  {"E",               "youngs_modulus_Pa is Young's modulus"},
+  {"youngs_modulus",  "youngs_modulus_Pa is Young's modulus"},
+  {"nu",              "poisson_ratio is Poisson's ratio"},
+  {"poissons_ratio",  "poisson_ratio is Poisson's ratio"},
+  {"rho",             "density_kg_m3 is the density"},
+  {"density",         "density_kg_m3 is the density"},
+  {"fixed",           "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
+  {"fix",             "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
+  {"support",         "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
+  {"gravity",         "gravity_m_s2 = [0, 0, -9.81] in a [[load]] is gravity"},
+  {"force",           "force_N in a [[load]] is a force"},
+  {"pressure",        "pressure_Pa in a [[load]] is a pressure"},
+  {"thickness",       "there are no shells: a body is a solid, and a thin one has cells that are smaller than it is thick"},
+  {"shell",           "there are no shells: a body is a solid, and a thin one has cells that are smaller than it is thick"},
+  {"cloth",           "there is no cloth: a body is a solid"},
+  {"contact",         "there is no contact but with a plane: plane of [dynamics]"},
+  {"self_contact",    "there is no contact but with a plane: plane of [dynamics]"},
+  {"sphere",          "there is no contact but with a plane: plane of [dynamics]"},
+  {"region",          "a body has one material"},
+  {"regions",         "a body has one material"},
+  {"materials",       "a body has one material: [material]"},
+  {"fibres",          "materials are isotropic: there are no fibres"},
+  {"fibers",          "materials are isotropic: there are no fibres"},
+  {"units",           "lengths are in metres; scale of [body] multiplies the coordinates of a file"},
+};
+
 // Longer ones first.
 constexpr std::pair<std::string_view, const char*> units[] = {
   {"_kg_m3", "kg/m³"}, {"_m_s2", "m/s²"}, {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_s", "1/s"},
@@ -268,6 +297,12 @@ std::span<const Key> keys_of(std::string_view table) {
   for (const KeyTable& t : tables)
     if (t.name == table) return t.keys;
   throw std::logic_error(fmt::format("case files have no table '{}'", table));
+}
+
+std::string_view usual_name(std::string_view name) {
+  const auto* known = std::find_if(std::begin(usual_names), std::end(usual_names),
+                                   [&](const auto& entry) { return entry.first == name; });
+  return known == std::end(usual_names) ? std::string_view{} : known->second;
 }
 
 std::string unit_of(const Key& key) {

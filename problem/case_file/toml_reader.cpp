@@ -44,9 +44,10 @@ void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::
     const std::string name(key.str());
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     const auto begin = key.source().begin;
+    const std::string_view usual = usual_name(name);
     throw InputError(SourceLocation{value.file, static_cast<int>(begin.line), static_cast<int>(begin.column)},
                      fmt::format("{}: unknown key (allowed: {}){}", join_key(value.key, name), fmt::join(names, ", "),
-                                 did_you_mean(name, names)));
+                                 usual.empty() ? did_you_mean(name, names) : fmt::format("; {}", usual)));
   }
 }
 

@@ -1,6 +1,7 @@
 // Any file a user brings through springproof-mesh.  Files are written by gmsh itself where it can write them.
 #include "meshes/mesher/mesher.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -145,6 +146,120 @@ TEST_F(Mesher, MixedCellsAreRefusedWithTheirCounts) {
   EXPECT_SAYS(message, "1 'Hexahedron 8'");
 }
 
+/// A bar of two bricks, 2 x 1 x 1, and a layer of four prisms on them, as an extrusion gives it; `more` elements.
+std::string bricks_and_prisms(const std::string& more, int elements) {
+  std::string nodes;
+  int number = 0;
+  for (const double z : {0.0, 1.0, 1.5})
+    for (const double y : {0.0, 1.0})
+      for (const double x : {0.0, 1.0, 2.0}) nodes += fmt::format("{} {} {} {}\n", ++number, x, y, z);
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 7 \"left\"\n2 8 \"between\"\n3 1 \"all\"\n"
+         "$EndPhysicalNames\n$Nodes\n18\n" +
+         nodes + fmt::format("$EndNodes\n$Elements\n{}\n", 6 + elements) +
+         "1 5 2 1 1 1 2 5 4 7 8 11 10\n2 5 2 1 1 2 3 6 5 8 9 12 11\n"
+         "3 6 2 1 1 7 8 10 13 14 16\n4 6 2 1 1 8 11 10 14 17 16\n"
+         "5 6 2 1 1 8 9 11 14 15 17\n6 6 2 1 1 9 12 11 15 18 17\n" +
+         more + "$EndElements\n";
+}
+
+TEST_F(Mesher, MixedCellsAreFilledAnew) {
+  const fs::path file = write("bricks.msh", bricks_and_prisms("7 3 2 7 7 1 4 10 7\n8 3 2 7 7 7 10 16 13\n", 2));
+  const MeshedBody body = mesh_body({.file = file, .edge = 0.4});
+  EXPECT_NEAR(volume_of(body.mesh), 3, 1e-9);
+  EXPECT_NEAR(nodal_areas(body.mesh, patch(body.mesh, "left")).sum(), 1.5, 1e-9);
+  EXPECT_SAYS(message_of({.file = file}), "others with voxels or voxel_edge_m");
+}
+
+TEST_F(Mesher, ASurfaceInsideOfTheBodyIsNoPatch) {
+  const fs::path file = write("bricks.msh", bricks_and_prisms("7 3 2 7 7 1 4 10 7\n8 3 2 8 8 2 5 11 8\n", 2));
+  const MeshedBody body = mesh_body({.file = file, .edge = 0.4});
+  ASSERT_EQ(body.mesh.patches.size(), 1u);
+  EXPECT_EQ(body.mesh.patches[0].name, "left");
+  EXPECT_SAYS(body.notes[0], "the physical surface 'between' lies inside of the body");
+}
+
+/// Two tetrahedra of volume 1/6 beside each other on the plane x = 0, with nodes of their own there; `second` is the
+/// physical volume of the other one, 0: none.
+std::string two_tetrahedra(double gap, int second) {
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"soft\"\n3 2 \"stiff\"\n$EndPhysicalNames\n"
+         "$Nodes\n8\n1 0 0 0\n2 0 1 0\n3 0 0 1\n4 1 0 0\n" +
+         fmt::format("5 {0} 0 0\n6 {0} 1 0\n7 {0} 0 1\n8 -1 0 0\n", -gap) +
+         fmt::format("$EndNodes\n$Elements\n2\n1 4 2 1 1 1 4 2 3\n2 4 2 {} 2 5 6 8 7\n$EndElements\n", second);
+}
+
+TEST_F(Mesher, CoincidentNodesOfPartsAreJoined) {
+  const MeshedBody body = mesh_body({.file = write("two.msh", two_tetrahedra(1e-7, 1))});
+  EXPECT_EQ(body.mesh.nodes.rows(), 5);
+  EXPECT_SAYS(body.notes[0], "3 nodes were at the places of others");
+  const std::string apart = message_of({.file = write("apart.msh", two_tetrahedra(1e-3, 1))});
+  EXPECT_SAYS(apart, "2 parts that share no node (allowed: one body; join them in the program that wrote the file");
+}
+
+TEST_F(Mesher, PartsOfTheBodyAreNoMaterials) {
+  EXPECT_SAYS(message_of({.file = write("two.msh", two_tetrahedra(0, 2))}),
+              "the physical volumes 'soft', 'stiff' are parts of the body, and a body has one material");
+  const MeshedBody body = mesh_body({.file = write("one.msh", two_tetrahedra(0, 0))});
+  EXPECT_EQ(body.mesh.tetrahedra.size(), 1u);
+  EXPECT_SAYS(body.notes[0], "1 of the file's 2 cells are in no physical volume");
+}
+
+TEST_F(Mesher, CellsThatMeetInAnEdgeAreNoBody) {
+  const fs::path file = write("hinge.msh",
+                              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 0 0 1\n3 1 0 0\n4 0 1 0\n"
+                              "5 -1 0 0\n6 0 -1 0\n$EndNodes\n$Elements\n2\n1 4 2 1 1 1 3 4 2\n2 4 2 1 1 1 5 6 2\n"
+                              "$EndElements\n");
+  EXPECT_SAYS(message_of({.file = file}), "2 parts that meet in edges or points only, as at (0, 0, ");
+}
+
+TEST_F(Mesher, AShellInTheBodyIsACavity) {
+  const fs::path file = saved("hollow.stl",
+                              "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\nSphere(2) = {0, 0, 0.2, 0.5};\n"
+                              "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n"
+                              "Mesh.MeshSizeMax = 0.15; Mesh 2;");
+  const MeshedBody body = mesh_body({.file = file, .edge = 0.15});
+  EXPECT_NEAR(volume_of(body.mesh), 7.0 / 8 * 4 / 3 * std::numbers::pi, 0.05);
+}
+
+/// The corners of a cube, and its sides as quadrilaterals.
+constexpr const char* cube_points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+
+TEST_F(Mesher, GroupsOfAnObjFileArePatches) {
+  const fs::path file = write("cube.obj", std::string("# a cube\n") + cube_points +
+                                              "g bottom\nf 1/1 4/2 3 2\ng top\nf 5 6 7 8\ng sides\nf 1 2 6 5\n"
+                                              "f 2//1 3//1 7//1 6//1\nf -5 -1 -2 -6\nf 4 1 5 8\n");
+  const Mesh mesh = mesh_body({.file = file, .edge = 0.4}).mesh;
+  EXPECT_NEAR(volume_of(mesh), 1, 1e-9);
+  for (const char* end : {"bottom", "top"}) EXPECT_NEAR(nodal_areas(mesh, patch(mesh, end)).sum(), 1, 1e-9) << end;
+  EXPECT_NEAR(nodal_areas(mesh, patch(mesh, "sides")).sum(), 4, 1e-9);
+  EXPECT_SAYS(message_of({.file = write("bad.obj", "v 0 0 0\nv 1 0\n"), .edge = 1}), "bad.obj:2:1: vertex 2: ''");
+  EXPECT_SAYS(message_of({.file = write("far.obj", std::string(cube_points) + "f 1 2 9\n"), .edge = 1}),
+              "far.obj:9:1: facet: '9' names none of the 8 vertices");
+}
+
+TEST_F(Mesher, SolidsOfAnStlFileArePatches) {
+  const auto facet = [](const char* a, const char* b, const char* c) {
+    return fmt::format("facet normal 0 0 0\nouter loop\nvertex {}\nvertex {}\nvertex {}\nendloop\nendfacet\n", a, b, c);
+  };
+  const fs::path file =
+      write("parts.stl", "solid lower face\n" + facet("0 0 0", "0 1 0", "1 0 0") + "endsolid\nsolid others\n" +
+                             facet("0 0 0", "1 0 0", "0 0 1") + facet("0 0 0", "0 0 1", "0 1 0") +
+                             facet("1 0 0", "0 1 0", "0 0 1") + "endsolid others\n");
+  const Mesh mesh = mesh_body({.file = file, .edge = 0.3}).mesh;
+  EXPECT_NEAR(nodal_areas(mesh, patch(mesh, "lower face")).sum(), 0.5, 1e-9);
+  EXPECT_NEAR(nodal_areas(mesh, patch(mesh, "surface")).sum(), 1.5 + std::sqrt(3) / 2, 1e-9);
+}
+
+TEST_F(Mesher, PlyIsReadAsStlIs) {
+  const fs::path file =
+      write("cube.ply",
+            "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n"
+            "4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  EXPECT_NEAR(volume_of(mesh_body({.file = file, .edge = 0.4}).mesh), 1, 1e-9);
+  EXPECT_SAYS(message_of({.file = write("bad.ply", "ply\nformat ascii 1.0\n"), .edge = 1}), "bad.ply: ");
+}
+
 TEST_F(Mesher, ASurfaceMeshIsFilled) {
   const fs::path file = saved("skin.msh", std::string(box_solid) + "Mesh.MeshSizeMax = 0.5; Mesh 2;");
   const MeshedBody body = mesh_body({.file = file, .edge = 0.5});
@@ -245,8 +360,11 @@ TEST_F(Mesher, BodiesHaveOneRangeOfSizes) {
 }
 
 TEST_F(Mesher, RefusesWhatItCannotRead) {
-  const std::string message = message_of({.file = write("body.obj", "v 0 0 0\n"), .edge = 0.1});
-  EXPECT_SAYS(message, "cannot read a body from a '.obj' file (allowed: .geo, .stl, .msh, .step, .stp, .brep)");
+  const std::string message = message_of({.file = write("body.3mf", "PK"), .edge = 0.1});
+  EXPECT_SAYS(
+      message,
+      "cannot read a body from a '.3mf' file (allowed: .geo, .stl, .obj, .ply, .msh, .step, .stp, .brep; programs "
+      "such as MeshLab, Blender or FreeCAD convert others to one of these)");
   const fs::path geo = write("box.geo", box_solid), stl = write("body.stl", "");
   EXPECT_SAYS(message_of({.file = geo, .edge = -1}), "edge: -1 m is no length");
   EXPECT_SAYS(message_of({.file = geo, .edge = std::nan("")}), "is no length");

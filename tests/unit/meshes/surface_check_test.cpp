@@ -241,15 +241,19 @@ TEST(CheckSurface, ManyIntersectionsEndTheSearch) {
 TEST(CheckSurface, ShellsAndCavities) {
   const Surface ball = sphere(1, 2);
   EXPECT_NE(outcome(both(ball, moved(ball, 1, {2.5, 0, 0}))).find("2 shells that do not touch"), std::string::npos);
-  const std::string cavity = "1 closed shell lies inside the body, the first at";
-  EXPECT_NE(outcome(both(ball, moved(turned(ball), 0.5, {0, 0, 0}))).find(cavity), std::string::npos);
-  EXPECT_NE(outcome(both(moved(ball, 0.5, {0.1, 0, 0}), ball)).find(cavity), std::string::npos)
-      << "whichever way it is turned";
+  for (const Surface& s :
+       {both(ball, moved(turned(ball), 0.5, {0, 0, 0})), both(moved(ball, 0.5, {0.1, 0, 0}), ball)}) {
+    const CheckedSurface checked = check_surface(s, "ball");  // whichever way it is turned
+    EXPECT_NEAR(volume(checked.surface), 7.0 / 8 * volume(ball), 1e-9);
+    EXPECT_NE(checked.notes.back().find("1 cavity inside of the body, of 12.5 %"), std::string::npos);
+  }
   // In the box around the ring, but not in the ring.
   EXPECT_NE(outcome(both(torus(2, 0.5, 40, 20), moved(ball, 0.5, {0, 0, 0}))).find("2 shells that do not touch"),
             std::string::npos);
-  EXPECT_NE(outcome(both(both(ball, moved(ball, 0.1, {0.5, 0, 0})), moved(ball, 0.1, {-0.5, 0, 0})))
-                .find("2 closed shells lie inside"),
+  const Surface two = both(both(ball, moved(ball, 0.1, {0.5, 0, 0})), moved(ball, 0.1, {-0.5, 0, 0}));
+  EXPECT_NEAR(volume(check_surface(two, "ball").surface), (1 - 2e-3) * volume(ball), 1e-9);
+  EXPECT_NE(outcome(both(both(ball, moved(ball, 0.5, {0, 0, 0})), moved(ball, 0.1, {0, 0, 0})))
+                .find("is in the cavity of another one"),
             std::string::npos);
 }
 
