@@ -48,9 +48,8 @@ EmbeddedSurface surface_of_mesh(const Mesh& mesh) {
   return surface;
 }
 
-EmbeddedSurface carried_surface(const Mesh& body, const Mesh& cells, const Network& network,
+EmbeddedSurface carried_surface(EmbeddedSurface surface, const Mesh& cells, const Network& network,
                                 const Embedding& embedding) {
-  EmbeddedSurface surface = surface_of_mesh(body);
   if (network.cells.empty()) {
     Mesh vertices;
     vertices.nodes = surface.vertices;

@@ -9,9 +9,9 @@ namespace springproof {
 /// The surface of a mesh as triangles, its vertices in the order of the mesh's nodes; without weights.
 EmbeddedSurface surface_of_mesh(const Mesh& mesh);
 
-/// The surface of `body`, carried by a network embedded in the mesh `cells`: by the shape functions of the cells that
-/// hold its vertices, or are nearest; in networks without cells by the nodes near them.
-EmbeddedSurface carried_surface(const Mesh& body, const Mesh& cells, const Network& network,
+/// A surface with the weights by which a network embedded in the mesh `cells` carries it: by the shape functions of the
+/// cells that hold its vertices, or are nearest; in networks without cells by the nodes near them.
+EmbeddedSurface carried_surface(EmbeddedSurface surface, const Mesh& cells, const Network& network,
                                 const Embedding& embedding);
 
 /// Safe time step, mass, and constants of the hourglass correction: SpringsFile::derived.

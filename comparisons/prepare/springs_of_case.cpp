@@ -1,6 +1,7 @@
 #include "comparisons/prepare/springs_of_case.h"
 
 #include "comparisons/prepare/input_checksum.h"
+#include "msm/embedding/supports.h"
 #include "msm/measure/moduli.h"
 #include "msm/models.h"
 #include "msm/springs_of_model.h"
@@ -8,14 +9,19 @@
 namespace springproof {
 namespace {
 
-EmbeddedSurface carried_surface(const PreparedCase& prepared, const EmbeddedModel& built) {
-  const Mesh& cells = *prepared.lattices.front().mesh;
-  return carried_surface(prepared.body.tetrahedra.empty() ? cells : *prepared.body.tetrahedra.back(), cells,
-                         built.model.network, built.embedding);
+/// The surface that is to be carried, without weights.
+EmbeddedSurface surface_of(const PreparedCase& prepared, const Mesh* carried) {
+  if (!carried)
+    return surface_of_mesh(prepared.body.tetrahedra.empty() ? *prepared.lattices.front().mesh
+                                                            : *prepared.body.tetrahedra.back());
+  EmbeddedSurface surface;
+  surface.vertices = carried->nodes;
+  for (const auto& [a, b, c, none] : carried->patches.front().facets) surface.facets.push_back({a, b, c});
+  return surface;
 }
 
-EmbeddedSurface carried_surface(const PreparedCase& prepared, const CutBody& body) {
-  EmbeddedSurface surface = surface_of_mesh(*prepared.body.tetrahedra.back());
+/// With the weights of cut cells.
+EmbeddedSurface carried_surface(EmbeddedSurface surface, const CutBody& body) {
   const Carriers carriers = carriers_of(static_cast<int>(body.points.rows()), body.carried);
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < surface.vertices.rows(); ++v) {
@@ -31,7 +37,7 @@ EmbeddedSurface carried_surface(const PreparedCase& prepared, const CutBody& bod
 }
 
 /// Whole cells, or a network without cells.
-void add_network(const PreparedCase& prepared, SpringsFile& file) {
+void add_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile& file) {
   const Lattice& lattice = prepared.lattices.front();
   const ModelParameters& parameters = prepared.models.front();
   EmbeddedModel built = build_on(prepared, lattice, parameters, *file.material, false);
@@ -39,13 +45,13 @@ void add_network(const PreparedCase& prepared, SpringsFile& file) {
   file.grip_from_cells =
       parameters.springs ? parameters.springs->grip_from_cells : parameters.row.topology != Topology::random;
   file.patches = built.embedding.held;
-  file.surface = carried_surface(prepared, built);
+  file.surface = carried_surface(surface_of(prepared, carried), *lattice.mesh, built.model.network, built.embedding);
   file.model = std::move(built.model);
 }
 
-/// Cut cells.  Every node that nothing carries has a mass: anchors are kept apart, each patch has beside them the nodes
-/// at it.  Loads and weights of carried nodes are handed to those that carry them.
-void add_cut_network(const PreparedCase& prepared, SpringsFile& file) {
+/// Cut cells.  Every node that nothing carries has a mass: anchors are kept apart.  Loads and weights of carried nodes
+/// are handed to those that carry them.
+void add_cut_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile& file) {
   const Lattice& lattice = prepared.lattices.front();
   const CutBody& body = *lattice.cut;
   file.model = build_cut(prepared.models.front(), body, {}, *lattice.mesh, *file.material).model;
@@ -58,11 +64,9 @@ void add_cut_network(const PreparedCase& prepared, SpringsFile& file) {
     hand_back(body.carried, shares.area, 1);
     hand_back(body.carried, shares.normal);
   }
-  for (const auto& [name, parts] : body.patches) {
-    file.patches[name] = nodes_at_patch(body, name);
-    file.anchors[name] = cut_lattice(body, {name}, file.material->youngs_modulus).anchors;
-  }
-  file.surface = carried_surface(prepared, body);
+  for (const auto& [name, parts] : body.patches)
+    file.anchors[name] = anchors_of_patch(body, name, file.material->youngs_modulus);
+  file.surface = carried_surface(surface_of(prepared, carried), body);
 }
 
 std::map<std::string, double> derived_of(const SpringsFile& file, const ModelParameters& parameters) {
@@ -78,13 +82,13 @@ std::map<std::string, double> derived_of(const SpringsFile& file, const ModelPar
 
 }  // namespace
 
-SpringsFile springs_of(const PreparedCase& prepared) {
+SpringsFile springs_of(const PreparedCase& prepared, const Mesh* carried) {
   const ModelParameters& parameters = prepared.models.front();
   const ModelChoice& choice = prepared.experiment.models.front();
   SpringsFile file;
   file.material = prepared.experiment.materials.front();
   file.density = file.material->density;
-  parameters.cut.value_or(false) ? add_cut_network(prepared, file) : add_network(prepared, file);
+  parameters.cut.value_or(false) ? add_cut_network(prepared, carried, file) : add_network(prepared, carried, file);
   file.origin = {"springproof " SPRINGPROOF_VERSION, choice.name, choice.options,
                  prepared.experiment.text.empty() ? prepared.body.geo.filename().string()
                                                   : prepared.experiment.file.filename().string(),

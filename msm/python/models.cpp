@@ -74,8 +74,9 @@ void write(const BodyModel& model, const fs::path& file) {
   long_call([&] {
     SpringsFile springs = model.springs;
     if (model.body)
-      springs.surface = carried_surface(model.body->tetrahedra ? *model.body->tetrahedra : *model.body->mesh,
-                                        *model.body->mesh, springs.model.network, model.embedding);
+      springs.surface =
+          carried_surface(surface_of_mesh(model.body->tetrahedra ? *model.body->tetrahedra : *model.body->mesh),
+                          *model.body->mesh, springs.model.network, model.embedding);
     springs.derived = derived_of(springs);
     write_springs(file, springs);
     return 0;

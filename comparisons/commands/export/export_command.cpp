@@ -38,7 +38,7 @@ Cells cells_of_option(const std::vector<int>& cells) {
 }
 
 bool is_body(const std::string& name) {
-  const auto& endings = mesh_file_extensions();
+  const auto& endings = body_file_endings();
   return std::find(endings.begin(), endings.end(), extension_of(name)) != endings.end();
 }
 
@@ -174,6 +174,25 @@ void require_cubes(const ExportRequest& request, const Mesh& mesh) {
       request.what, edge[0], edge[1], edge[2], request.to));
 }
 
+/// The vertices of --carry, in the body's lengths.
+/// @throws InputError if they are not where the body is.
+Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared) {
+  const Body& of = prepared.experiment.body;
+  Mesh vertices =
+      mesh_body({.file = request.carry, .kind = {.vertices = true}, .scale = of.is_script() ? 1 : of.scale}).mesh;
+  const NodalVectors& body = prepared.lattices.front().mesh->nodes;
+  const Eigen::RowVector3d low = body.colwise().minCoeff(), high = body.colwise().maxCoeff(), size = high - low,
+                           least = vertices.nodes.colwise().minCoeff(), most = vertices.nodes.colwise().maxCoeff();
+  const double outside = std::max((low - least).maxCoeff(), (most - high).maxCoeff());
+  if (outside > 0.1 * size.norm())
+    throw InputError(fmt::format(
+        "--carry: {} lies from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m, the body from ({:.4g}, {:.4g}, "
+        "{:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m (allowed: vertices of the body, in its units)",
+        request.carry, least[0], least[1], least[2], most[0], most[1], most[2], low[0], low[1], low[2], high[0],
+        high[1], high[2]));
+  return vertices;
+}
+
 /// `cut`: of cut cells where the model has them and the case does not say otherwise.
 SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(read_case(request.what), request);
@@ -196,7 +215,10 @@ SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   const Topology of = prepared.models.front().row.topology;
   if (request.to != "springs" && (of == Topology::cells || of == Topology::centres))
     require_cubes(request, *prepared.lattices.front().mesh);
-  return springs_of(prepared);
+  if (request.carry.empty()) return springs_of(prepared);
+  if (request.to != "springs") throw InputError(fmt::format("--carry: is for --to springs, not {}", request.to));
+  const Mesh vertices = carried_vertices(request, prepared);
+  return springs_of(prepared, &vertices);
 }
 
 fs::path out_or(const ExportRequest& request, const std::string& ending) {
@@ -326,6 +348,10 @@ void ExportCommand::add_options(CLI::App& command) {
       ->check(CLI::Range(1, 4000000));
   command.add_flag("--whole-cubes", r.whole_cubes,
                    "springs: whole cubes of a body that is no block (default: cells cut along its surface)");
+  command.add_option(
+      "--carry", r.carry,
+      "springs: an .stl, .obj, .ply or .msh file whose vertices the springs carry, in its order, in place "
+      "of the body's surface");
   command.add_option("--youngs-modulus,-E", r.moduli.youngs_modulus, "of a body alone: Young's modulus [Pa]");
   command.add_option("--density", r.density, "of a body alone [kg/m^3]")->check(positive())->capture_default_str();
   command.add_option("--scale", r.scale, "of a body alone: its coordinates are multiplied by it")
