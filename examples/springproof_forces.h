@@ -295,6 +295,25 @@ static double sp_anchors(size_t count, const int* nodes, const double* weights, 
   return energy;
 }
 
+/* Adds to `mass` what the anchors of a support have of it in steps of dt: sp_step divides by it, gravity does not act
+ * on it.  Of a support that moves, its acceleration times this is one more force. */
+static void sp_support_mass(size_t count, const int* nodes, const double* weights, const double* k, double dt,
+                            double* mass) {
+  for (size_t a = 0; a < count; ++a) {
+    double sum = 0;
+    for (size_t n = 8 * a; n < 8 * a + 8; ++n) sum += fabs(weights[n]);
+    for (size_t n = 8 * a; n < 8 * a + 8; ++n) mass[nodes[n]] += dt * dt / 4 * k[a] * fabs(weights[n]) * sum;
+  }
+}
+
+/* The same of the masses at nodes. */
+static void sp_hand_back_mass(size_t count, const int* nodes, const int* by, double* mass) {
+  for (size_t k = count; k-- > 0;) {
+    for (size_t n = 4 * k; n < 4 * k + 4; ++n) mass[by[n]] += mass[nodes[k]] / 4;
+    mass[nodes[k]] = 0;
+  }
+}
+
 /* One step of semi-implicit Euler, v += dt f / m, x += dt v, with damping in proportion to the mass [1/s], implicit.
  * Stable at rest for dt up to derived.safe_time_step_s.  Carried nodes, of no mass, stay: sp_carry. */
 static void sp_step(size_t nodes, const double* mass, const double* f, double dt, double damping, double* x,

@@ -1,6 +1,7 @@
 # The forces of every law of a springs file, and explicit steps, with NumPy alone: docs/springs_file.md says what the fields are.
 #   python3 springs.py FILE     prints how far these forces are from those that the file gives
-# As a module: s = load("body.json"); f = forces(s, x) [N]; step(...) moves the body by one step.
+# As a module: s = load("body.json"); f = forces(s, x) [N]; step(...) moves the body by one step; a point follows the nodes and
+# weights that embed(s, points) gives it: np.einsum("pn,pni->pi", weights, x[nodes]).
 import json, sys
 import numpy as np
 
@@ -154,6 +155,16 @@ def anchor(s, name, x, displacement=0):
     np.add.at(f, a["nodes"], -(a["stiffness_N_m"][:, None] * a["weights"])[:, :, None] * d[:, None, :])
     return hand_back(s, f)
 
+def time_step(s): return 0.95 * s["derived"]["safe_time_step_s"]
+
+def support_mass(s, name):
+    """By what explicit steps divide the forces on the nodes at a support beside their mass [kg], n: it has no weight and
+    no damping.  Of a support that moves, its acceleration times this is one more force."""
+    a, mu = s["anchors"][name], np.zeros(len(s["nodes"]["mass_kg"]))
+    w = abs(a["weights"])
+    np.add.at(mu, a["nodes"], time_step(s)**2 / 4 * a["stiffness_N_m"][:, None] * w * w.sum(axis=1, keepdims=True))
+    return hand_back(s, mu)
+
 def carry(s, x):  # carried nodes into their places
     if "carried" in s:
         for node, by in zip(s["carried"]["nodes"], s["carried"]["by"]): x[node] = x[by].mean(axis=0)
@@ -165,6 +176,14 @@ def hand_back(s, f):  # the forces on them, to those that carry them
             np.add.at(f, by, f[node] / 4)
             f[node] = 0
     return f
+
+def embed(s, points):
+    """The nodes and weights of the cell that carries each point [m], p x 3: both p x 8; points outside by the nearest cell."""
+    corners = s["nodes"]["position_m"][s["cells"]["nodes"]]
+    low, size = corners[:, 0], corners[:, 6] - corners[:, 0]
+    cell = np.concatenate([abs((p[:, None] - low) / size - 0.5).max(axis=2).argmin(axis=1) for p in np.array_split(points, len(points) // 500 + 1)])
+    xi = ((points - low[cell]) / size[cell])[:, None, :]
+    return s["cells"]["nodes"][cell], np.where(SIGN > 0, xi, 1 - xi).prod(axis=2)
 
 def forces(s, x):
     """Internal forces at positions x [N], n x 3."""
@@ -187,11 +206,11 @@ def forces(s, x):
     if law := laws.get("angular_springs"): angles(law, s["triangles"], x, X, f)
     return hand_back(s, f)
 
-def step(s, x, v, external):  # semi-implicit Euler; external: gravity, contact [N]
-    dt = 0.95 * s["derived"]["safe_time_step_s"]
-    m = s["nodes"]["mass_kg"][:, None]
-    v += dt * np.divide(forces(s, x) + hand_back(s, external.copy()), m, out=np.zeros(x.shape), where=m > 0)
-    x += dt * v
+def step(s, x, v, external, of_supports=0):
+    """Semi-implicit Euler.  external: gravity, contact, anchor() of the supports [N]; of_supports: the sum of support_mass()."""
+    m = (s["nodes"]["mass_kg"] + of_supports)[:, None]
+    v += time_step(s) * np.divide(forces(s, x) + hand_back(s, external.copy()), m, out=np.zeros(x.shape), where=m > 0)
+    x += time_step(s) * v
     carry(s, x)
 
 if __name__ == "__main__":

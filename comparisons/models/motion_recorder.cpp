@@ -4,17 +4,18 @@
 
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
+#include "msm/dynamics/inertia.h"
 
 namespace springproof {
 
 MotionRecorder::MotionRecorder(const MovingNetwork& moving, const MotionOptions& options, MotionRecord& record)
     : moving_(moving),
       mass_(moving.masses()),
-      per_mass_(inverse_masses(moving.network(), moving.material.density)),
+      per_mass_(inverse_inertia(moving.network(), moving.material.density, options)),
       behind_(options.integrator == Integrator::explicit_euler ? options.time_step.value() / 2 : 0),
       damping_(options.damping),
       viscosity_(options.viscosity),
-      average_(moving.network(), options.mass_consistency),
+      average_(mass_average(moving.network(), moving.material.density, options)),
       contact_(options.contact),
       cut_(moving.lattice.cut && !moving.network().filled.empty()),
       record_(record) {}
@@ -47,7 +48,7 @@ NodalVectors MotionRecorder::at_positions(const NodalVectors& x, NodalVectors v,
   const NodalVectors f = forces(moving_.built.model, x) + viscous_forces(x, average_.velocities(v, conditions.fixed)) +
                          conditions.external;
   for (Eigen::Index i = 0; i < v.size(); ++i)
-    if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_[i / 3] - damping_ * v.data()[i]);
+    if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_.data()[i] - damping_ * v.data()[i]);
   if (contact_) v = contact_->stopped(conditions.fixed, v);
   carry(moving_.network().carried, v);
   return v;

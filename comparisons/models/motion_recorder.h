@@ -52,9 +52,10 @@ class MotionRecorder {
   void add_impulse(const ContactImpulse& further);
 
   MovingNetwork moving_;
-  Eigen::VectorXd mass_, per_mass_;
-  double behind_;   ///< the velocities of a step [s]
-  double damping_;  ///< [1/s]
+  Eigen::VectorXd mass_;
+  NodalVectors per_mass_;  ///< of masses and support masses
+  double behind_;          ///< the velocities of a step [s]
+  double damping_;         ///< [1/s]
   Viscosity viscosity_;
   MassAverage average_;
   PlaneContact* contact_;   ///< nullptr: there is no plane

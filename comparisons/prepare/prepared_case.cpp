@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 #include "msm/exchange/anchored_springs.h"
 #include "msm/vertex_models.h"
@@ -12,33 +13,18 @@ namespace springproof {
 
 namespace {
 
-/// Whether the loads prescribe all components on a patch.
-bool holds_wholly(const std::vector<Load>& loads, const std::string& patch) {
-  std::array<bool, 3> held{};
-  for (const Load& load : loads)
-    if (prescribes_displacement(load) && *patch_of(load) == patch) {
-      const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
-      for (int d = 0; d < 3; ++d) held[d] = held[d] || value[d];
-    }
-  return held[0] && held[1] && held[2];
-}
-
-/// In motion every free node has a mass: a patch that is held in some components only has no anchors, but nodes at it.
-/// Anchors of cells that are filled in part are as much softer, which leaves them a time step.
-EmbeddedModel build_cut_in_motion(const PreparedCase& prepared, const ModelParameters& parameters,
-                                  const Lattice& lattice, const std::set<std::string>& held,
-                                  const IsotropicMaterial& material) {
-  const CutBody& body = *lattice.cut;
-  std::vector<std::string> anchored;
-  for (const std::string& name : held)
-    if (holds_wholly(prepared.loads, name)) anchored.push_back(name);
-  EmbeddedModel built = build_cut(parameters, body, anchored, *lattice.mesh, material);
-  auto anchor = built.model.network.anchors.begin();
-  for (const std::string& name : anchored)
-    for (const PatchInCell& p : body.patches.at(name)) anchor++->stiffness *= body.cells[p.cell].filled.fraction;
-  for (const std::string& name : held)
-    if (!built.embedding.held.contains(name)) built.embedding.held[name] = nodes_at_patch(body, name);
-  return built;
+/// Lets anchors act along the axes along which the loads hold their patch.
+void choose_axes(const std::vector<Load>& loads, const std::map<std::string, std::vector<int>>& held,
+                 Network& network) {
+  if (network.anchors.empty()) return;
+  std::map<int, int> axes;  // of a node
+  for (const Load& load : loads) {
+    if (!prescribes_displacement(load)) continue;
+    const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
+    for (const int node : held.at(*patch_of(load)))
+      for (int d = 0; d < 3; ++d) axes[node] |= int(value[d].has_value()) << d;
+  }
+  for (Anchor& a : network.anchors) a.axes = axes.at(a.node);
 }
 
 /// @throws InputError unless the file has, of each patch of the loads, what the case needs.
@@ -46,15 +32,10 @@ EmbeddedModel from_file_of_cut_cells(const PreparedCase& prepared, const ModelPa
                                      const Lattice& lattice, const std::set<std::string>& held, bool in_motion) try {
   const SpringsFile& file = *parameters.springs;
   for (const Load& load : prepared.loads)
-    if (const std::string* on = patch_of(load);
-        on && !(file.loads.contains(*on) && file.patches.contains(*on) && file.anchors.contains(*on)))
-      throw InputError(
-          fmt::format("/loads, /patches or /anchors: has no patch '{}', on which the case has a load", *on));
-  auto [model, embedding] = anchored(file, in_motion ? std::set<std::string>{} : held, *lattice.mesh);
-  if (in_motion) {
-    embedding.held = file.patches;
-    embedding.surface = file.surface.weights;
-  }
+    if (const std::string* on = patch_of(load); on && !(file.loads.contains(*on) && file.anchors.contains(*on)))
+      throw InputError(fmt::format("/loads or /anchors: has no patch '{}', on which the case has a load", *on));
+  auto [model, embedding] = anchored(file, held, *lattice.mesh);
+  if (in_motion) embedding.surface = file.surface.weights;
   return {std::move(model), std::move(embedding)};
 } catch (const InputError& e) {
   throw InputError(fmt::format("{}: {}", parameters.row.name, e.what()));
@@ -79,7 +60,6 @@ EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, con
   if (passes_patch_test(parameters.row) && lattice.tetrahedra)
     return build_on_tetrahedra(lattice, parameters, material);
   if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
-  if (in_motion) return build_cut_in_motion(prepared, parameters, lattice, held, material);
   return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
 }
 
@@ -99,6 +79,7 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
   EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
+  choose_axes(prepared.loads, built.embedding.held, built.model.network);
   if (in_motion && held.empty()) {  // in flight all nodes fall alike
     built.embedding.free_fall = true;
     if (!built.embedding.patches.empty()) built.embedding.volumes = built.model.network.volume;

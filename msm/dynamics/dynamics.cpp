@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "msm/dynamics/implicit_motion.h"
+#include "msm/dynamics/inertia.h"
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/plain_motion.h"
-#include "msm/dynamics/terms/mass_average.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {
@@ -27,7 +27,7 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
                              const BoundaryConditions& bc, const DynamicsOptions& options) {
   NodalVectors v = options.velocity;
   if (v.size() == 0) return NodalVectors::Zero(x.rows(), 3);
-  const Eigen::VectorXd per_mass = inverse_masses(model.network, density);
+  const NodalVectors per_mass = inverse_inertia(model.network, density, options);
   NodalVectors there = x;  // where supports are from the start
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (bc.fixed[i]) there.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i];
@@ -37,10 +37,10 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   const double dt = options.time_step.value();
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (bc.fixed[i]) v.data()[i] = 0;
-  v = MassAverage(model.network, options.mass_consistency).momenta(v, bc.fixed);
+  v = mass_average(model.network, density, options).momenta(v, bc.fixed);
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (!bc.fixed[i] && explicit_steps)
-      v.data()[i] -= dt / 2 * (f.data()[i] * per_mass[i / 3] - options.damping * v.data()[i]);
+      v.data()[i] -= dt / 2 * (f.data()[i] * per_mass.data()[i] - options.damping * v.data()[i]);
   return v;
 }
 
@@ -60,6 +60,7 @@ class MotionUnderLoads {
         options_(options),
         dt_(options.time_step.value()),
         motion_(make_motion(model, density, options)),
+        of_supports_(model.network, options),
         ahead_(options.integrator == Integrator::explicit_euler ? 0 : 1),
         changing_(options.course.settled() > 0),
         bc_(load_path(options.course.factor(0))) {
@@ -89,8 +90,9 @@ class MotionUnderLoads {
     if (!changing_) return;
     const double time = static_cast<double>(result_.steps + ahead_) * dt_;
     bc_ = load_path_(options_.course.factor(time));
+    of_supports_.add(bc_);
     motion_->set_conditions(bc_);
-    changing_ = time < options_.course.settled();
+    changing_ = time < options_.course.settled() + (of_supports_.acts() ? 2 * dt_ : 0);  // two steps, until they rest
   }
 
   /// Steps until something looks at them; false: they failed.
@@ -136,7 +138,7 @@ class MotionUnderLoads {
 
   void finish() {
     const NodalVectors x = motion_->positions(), s = motion_->velocities();
-    const NodalVectors v = MassAverage(model_.network, options_.mass_consistency).velocities(s);
+    const NodalVectors v = mass_average(model_.network, density_, options_).velocities(s);
     result_.time = result_.steps * dt_;
     result_.kinetic_energy =
         0.5 * (v.cwiseProduct(s).rowwise().sum().array() * masses(model_.network, density_).array()).sum();
@@ -159,6 +161,7 @@ class MotionUnderLoads {
   const DynamicsOptions& options_;
   double dt_;  ///< [s]
   std::unique_ptr<Motion> motion_;
+  SupportInertia of_supports_;
   long ahead_;  ///< steps: the explicit method takes loads and supports of the beginning of a step, implicit ones those
                 ///< of its end
   bool changing_, at_rest_ = false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msm/dynamics/inertia.h"
 #include "msm/kernels/cell_forces.h"
 #include "msm/kernels/list_forces.h"
 
@@ -34,15 +35,15 @@ ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const Ma
       time_step_(options.time_step.value()),
       decay_(1 / (1 + time_step_ * options.damping)),
       lagged_(options.lagged) {
-  const Eigen::VectorXd inverse_mass = inverse_masses(network_, density);
+  const Eigen::VectorXd per_mass = inverse_inertia(network_, density, options).col(0);
   x_ = s_ = f_ = external_ = std::vector<Padded<Real>>(order_.size(), Padded<Real>{});
   for (std::size_t p = 0; p < order_.size(); ++p) {
     const int n = order_[p];
     for (int d = 0; d < 3; ++d) x_[p].v[d] = static_cast<Real>(network_.X(n, d) - origin_(n, d));
-    if (std::isfinite(inverse_mass[n])) external_[p].v[gain] = static_cast<Real>(time_step_ * inverse_mass[n] * decay_);
+    external_[p].v[gain] = static_cast<Real>(time_step_ * per_mass[n] * decay_);
     if (forces_->viscous()) x_[p].v[3] = external_[p].v[gain] / static_cast<Real>(decay_);
   }
-  if (options.mass_consistency > 0) set_up(MassAverage(network_, options.mass_consistency));
+  if (options.mass_consistency > 0) set_up(mass_average(network_, density, options));
 }
 
 template <class Real>
@@ -231,6 +232,8 @@ namespace {
 template <class Real>
 std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, const MotionOptions& options) {
   if (options.mass_consistency > 0 && options.viscosity.acts()) return nullptr;
+  const std::vector<Anchor>& anchors = model.network.anchors;  // one support mass for all axes of a node
+  if (std::any_of(anchors.begin(), anchors.end(), [](const Anchor& a) { return a.axes != 7; })) return nullptr;
   const AveragedSprings& dashpots = options.viscosity.cells();
   if (CellForces<Real>::covers(model) && !options.viscosity.along_springs() && dashpots.shift == 0)
     return std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());

@@ -2,16 +2,18 @@
 
 #include <cmath>
 
+#include "msm/dynamics/inertia.h"
+
 namespace springproof {
 
 PlainMotion::PlainMotion(const MassSpringModel& model, double density, const MotionOptions& options)
     : model_(model),
       dispersion_(options.lagged ? dispersion_of(model) : nullptr),
-      inverse_mass_(inverse_masses(model.network, density)),
+      inverse_inertia_(inverse_inertia(model.network, density, options)),
       dt_(options.time_step.value()),
       damping_(options.damping),
       viscosity_(options.viscosity),
-      average_(model.network, options.mass_consistency),
+      average_(mass_average(model.network, density, options)),
       x_(model.network.X),
       v_(NodalVectors::Zero(x_.rows(), 3)),
       of_supports_(v_) {}
@@ -42,7 +44,7 @@ ForceNorms PlainMotion::step() {
     const double force = f.data()[i] + conditions_.external.data()[i];
     (conditions_.fixed[i] ? support : unbalanced) += force * force;
     double& speed = v_.data()[i];
-    speed = conditions_.fixed[i] ? 0 : (speed + dt_ * force * inverse_mass_[i / 3]) / (1 + dt_ * damping_);
+    speed = conditions_.fixed[i] ? 0 : (speed + dt_ * force * inverse_inertia_.data()[i]) / (1 + dt_ * damping_);
   }
   if (viscosity_.acts() || average_.acts())
     for (Eigen::Index i = 0; i < x_.size(); ++i)

@@ -29,7 +29,8 @@ class PlainMotion : public Motion {
 
   const MassSpringModel& model_;
   const MomentumDispersion* dispersion_;  ///< nullptr: dispersion is not lagged
-  Eigen::VectorXd inverse_mass_, J_;
+  NodalVectors inverse_inertia_;          ///< [1/kg]
+  Eigen::VectorXd J_;
   double dt_, damping_;
   Viscosity viscosity_;
   MassAverage average_;

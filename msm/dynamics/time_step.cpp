@@ -107,11 +107,6 @@ class CellFrequencies {
  public:
   CellFrequencies(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass)
       : law_(law), network_(network), mass_(mass), nodes_(network.cells.size()), weight_(network.cells.size()) {
-    std::map<Hexahedron, int> number;
-    for (const Anchor& a : network.anchors) number[a.corners] = -1;
-    for (std::size_t c = 0; c < weight_.size(); ++c)
-      if (const auto at = number.find(network.cells[c]); at != number.end()) at->second = static_cast<int>(c);
-    for (const Anchor& a : network.anchors) anchors_.emplace(number.at(a.corners), &a);
     const Carriers carriers = carriers_of(network.nodes(), network.carried);
     for (std::size_t c = 0; c < weight_.size(); ++c) {
       find_nodes(c, carriers);
@@ -137,8 +132,7 @@ class CellFrequencies {
         share.push_back(mass_[nodes_[c][n]] * weight_[c][n] / total[nodes_[c][n]]);
         key.push_back(static_cast<float>(share.back()));
       }
-      const bool full = (network_.filled.empty() || network_.filled[c].fraction == 1) &&
-                        !anchors_.contains(static_cast<int>(c)) && !through_.contains(c);
+      const bool full = (network_.filled.empty() || network_.filled[c].fraction == 1) && !through_.contains(c);
       const auto known = full ? of_full.find(key) : of_full.end();
       const double own = known != of_full.end() ? known->second : alone(c, share);
       if (full) of_full[key] = own;
@@ -172,15 +166,9 @@ class CellFrequencies {
     through_[cell] = std::move(W);
   }
 
-  /// Between the nodes of the cell, with its anchors, to points that are held.
+  /// Between the nodes of the cell.
   Eigen::MatrixXd stiffness(std::size_t cell) const {
-    CellMatrix K = law_.cell_matrix(network_.edge(cell), filled_part(network_, cell), network_.proportions);
-    const auto [first, last] = anchors_.equal_range(static_cast<int>(cell));
-    for (auto a = first; a != last; ++a)
-      for (int m = 0; m < 8; ++m)
-        for (int n = 0; n < 8; ++n)
-          K.block<3, 3>(3 * m, 3 * n).diagonal().array() +=
-              a->second->stiffness * a->second->weights[m] * a->second->weights[n];
+    const CellMatrix K = law_.cell_matrix(network_.edge(cell), filled_part(network_, cell), network_.proportions);
     const auto at = through_.find(cell);
     if (at == through_.end()) return K;
     return at->second.transpose() * K * at->second;
@@ -200,7 +188,6 @@ class CellFrequencies {
   std::vector<std::vector<int>> nodes_;             ///< of each cell
   std::vector<std::vector<double>> weight_;         ///< of a cell in the mass of its nodes
   std::map<std::size_t, Eigen::MatrixXd> through_;  ///< corners from nodes, 24 x 3 nodes; cells with carried corners
-  std::multimap<int, const Anchor*> anchors_;       ///< by the number of their cell
 };
 
 double averaged_frequency_squared(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass) {
@@ -224,7 +211,9 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
       add_volumes(NodalGradients(*dispersion, network), mass, blocks);
     else if (dispersion)
       add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
-    else if (averaged && (std::holds_alternative<AveragedSprings>(law) || std::holds_alternative<Anchors>(law)))
+    else if (std::holds_alternative<Anchors>(law))
+      continue;  // their nodes have a support mass
+    else if (averaged && std::holds_alternative<AveragedSprings>(law))
       continue;  // below
     else if (cells && (belongs_to_cells(law) || std::holds_alternative<Springs>(law)))
       continue;  // part of the cell's stiffness
@@ -242,12 +231,11 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
     largest += cell_frequency_squared(cell.total, density * cell.volume, theta);
   }
   if (averaged) {  // the smaller of two bounds
-    const bool full = theta > 0 && network.filled.empty() && network.anchors.empty();
+    const bool full = theta > 0 && network.filled.empty();
     largest += full
                    ? cell_frequency_squared(averaged->cell_matrix(network.cell_edge, FilledPart{}, network.proportions),
                                             density * network.cell_volume(), theta)
                    : gain * averaged_frequency_squared(*averaged, network, mass);
-    if (!network.anchors.empty()) return 2 / std::sqrt(largest);
     add_norms(network, mass, *averaged, blocks);
     largest = std::min(largest, gain * largest_eigenvalue(blocks));
   }

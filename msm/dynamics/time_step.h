@@ -15,8 +15,7 @@ namespace springproof {
 ///  - volume and hourglass corrections of a lattice of equal cells: with the springs, the stiffest single cell (Irons
 ///    and Treharne);
 ///  - averaged springs, in whole or cut cells: the stiffest cell alone, or the norms of the blocks, whichever is less;
-///  with the anchors
-///    of a cell, whose nodes are taken as held;
+///  - anchors: nothing, as the nodes at them have a support mass (inertia.h);
 ///  - any other law: the norms of the 3x3 blocks of its stiffness.
 /// With a share theta of consistent mass (MassAverage) all of it grows by its largest gain, or for full cells the
 /// stiffest one has the mass alpha L - beta theta (L - C), alpha = (1 + 2 a) / (1 + a)^2, beta = 1 / (1 + a)^2,

@@ -1,7 +1,8 @@
 #include "msm/embedding/cut_lattice.h"
 
 #include <cmath>
-#include <set>
+
+#include "msm/embedding/supports.h"
 
 namespace springproof {
 namespace {
@@ -46,26 +47,16 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
   Network network;
   const double l = body.grid.edge;
   network.cell_edge = l;
-  std::vector<Vec3> anchored;
-  const int corners = static_cast<int>(body.points.rows());
+  const auto corners = body.points.rows();
   for (const std::string& name : held)
-    for (const PatchInCell& p : body.patches.at(name)) {
-      const double area = p.total_area();
-      Anchor anchor{body.cells[p.cell].corners,
-                    {},
-                    corners + static_cast<int>(anchored.size()),
-                    anchor_stiffness * youngs_modulus * area / (l * body.cells[p.cell].size)};
-      Vec3 centroid = Vec3::Zero();
-      for (int n = 0; n < 8; ++n) {
-        anchor.weights[n] = p.area[n] / area;
-        centroid += anchor.weights[n] * body.points.row(anchor.corners[n]).transpose();
-      }
-      anchored.push_back(centroid);
+    for (Anchor& anchor : anchors_of_patch(body, name, youngs_modulus)) {
+      anchor.node = static_cast<int>(corners) + static_cast<int>(network.anchors.size());
       network.anchors.push_back(anchor);
     }
-  network.X.resize(corners + static_cast<Eigen::Index>(anchored.size()), 3);
+  network.X.resize(corners + static_cast<Eigen::Index>(network.anchors.size()), 3);
   network.X.topRows(corners) = body.points;
-  for (const Anchor& anchor : network.anchors) network.X.row(anchor.node) = anchored[anchor.node - corners].transpose();
+  for (const Anchor& anchor : network.anchors)
+    network.X.row(anchor.node) = anchored_point(anchor, body.points).transpose();
   network.volume = Eigen::VectorXd::Zero(network.X.rows());
   for (const CutCell& cell : body.cells) {
     network.cells.push_back(cell.corners);
@@ -126,17 +117,8 @@ Embedding embed(const CutBody& body, const std::vector<std::string>& held, const
   // The anchored nodes follow the others, patch by patch.
   int node = static_cast<int>(body.points.rows());
   for (const std::string& name : held)
-    for (std::size_t p = 0; p < body.patches.at(name).size(); ++p) e.held[name].push_back(node++);
+    for (std::size_t a = 0; a < anchors_of_part * body.patches.at(name).size(); ++a) e.held[name].push_back(node++);
   return e;
-}
-
-std::vector<int> nodes_at_patch(const CutBody& body, const std::string& patch) {
-  std::set<int> nodes;
-  for (const PatchInCell& p : body.patches.at(patch))
-    for (int n = 0; n < 8; ++n)
-      if (p.area[n] >= p.total_area() / 8) nodes.insert(body.cells[p.cell].corners[n]);
-  for (const CarriedPoint& c : body.carried) nodes.erase(c.point);
-  return {nodes.begin(), nodes.end()};
 }
 
 NodalVectors displacement_at(const CutBody& body, const NodalVectors& u, const NodalVectors& points) {

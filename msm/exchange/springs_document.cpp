@@ -234,12 +234,6 @@ void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
 
 }  // namespace
 
-Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X) {
-  Vec3 point = Vec3::Zero();
-  for (int n = 0; n < 8; ++n) point += anchor.weights[n] * X.row(anchor.corners[n]).transpose();
-  return point;
-}
-
 std::string key_of_law(const LawTraits& traits) {
   std::string key = traits.name;
   std::replace(key.begin(), key.end(), ' ', '_');

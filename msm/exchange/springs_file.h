@@ -52,12 +52,6 @@ struct SpringsFile {
   std::map<std::string, double> derived;     ///< what follows from the rest, as "safe_time_step_s".  Not read back.
 };
 
-/// The point that an anchor of a springs file is held in at rest: the mean of its corners.
-/// @param anchor an anchor of the file
-/// @param X rest positions [m], n x 3
-/// @return the point [m]
-Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X);
-
 /// Reads a springs file (JSON).  Checked: the schema, that every number is finite and in range, every index a node,
 /// every mass positive, every pair of nodes connected once, and that the network is in equilibrium at rest.  A network
 /// of equal cells whose springs are superposed from them is recognised and gets the kernels and solvers of lattices.

@@ -98,8 +98,10 @@ void CellForces<Real>::store_anchors(const Network& network) {
       stretch += a.weights[n] * network.X.row(a.corners[n]);
     }
     held.node = order_.place[a.node];
-    held.stiffness = static_cast<Real>(a.stiffness);
-    for (int d = 0; d < 3; ++d) held.stretch[d] = static_cast<Real>(stretch[d]);
+    for (int d = 0; d < 3; ++d) {
+      held.stiffness[d] = a.acts(d) ? static_cast<Real>(a.stiffness) : Real(0);
+      held.stretch[d] = static_cast<Real>(stretch[d]);
+    }
     anchors_.push_back(held);
   }
 }
@@ -121,7 +123,7 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
     for (int d = 0; d < 3; ++d) {
       Real stretch = a.stretch[d] - x[a.node].v[d];
       for (int n = 0; n < 8; ++n) stretch += a.weights[n] * x[a.corners[n]].v[d];
-      const Real force = a.stiffness * stretch;
+      const Real force = a.stiffness[d] * stretch;
       f[a.node].v[d] += force;
       for (int n = 0; n < 8; ++n) f[a.corners[n]].v[d] -= a.weights[n] * force;
     }

@@ -6,6 +6,8 @@ namespace {
 Vec3 stretch(const Anchor& a, const NodalVectors& x) {
   Vec3 d = -x.row(a.node).transpose();
   for (int n = 0; n < 8; ++n) d += a.weights[n] * x.row(a.corners[n]).transpose();
+  for (int axis = 0; axis < 3; ++axis)
+    if (!a.acts(axis)) d[axis] = 0;
   return d;
 }
 
@@ -26,8 +28,9 @@ void Anchors::add_forces(const Network& network, const NodalVectors& x, NodalVec
 }
 
 void Anchors::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
-  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   for (const Anchor& a : network.anchors) {
+    Eigen::Matrix3d I = Eigen::Matrix3d::Zero();
+    for (int axis = 0; axis < 3; ++axis) I(axis, axis) = a.acts(axis);
     K.add(a.node, a.node, a.stiffness * I);
     for (int m = 0; m < 8; ++m) {
       K.add(a.node, a.corners[m], -a.stiffness * a.weights[m] * I);

@@ -67,7 +67,8 @@ std::vector<double> anchor_energies(const Network& network, const NodalVectors& 
   for (const Anchor& anchor : network.anchors) {
     Eigen::RowVector3d gap = -u.row(anchor.node);
     for (int n = 0; n < 8; ++n) gap += anchor.weights[n] * u.row(anchor.corners[n]);
-    energies[cell_of.at(anchor.corners)] += anchor.stiffness / 2 * gap.squaredNorm();
+    for (int axis = 0; axis < 3; ++axis)
+      if (anchor.acts(axis)) energies[cell_of.at(anchor.corners)] += anchor.stiffness / 2 * gap[axis] * gap[axis];
   }
   return energies;
 }

@@ -122,7 +122,7 @@ CutLevel coarsen(CutLevel& fine) {
     for (const int c : at_point[a.corners[0]])
       if (fine.corners[c] == a.corners) cell = c;
     const int up = parent[cell];
-    Anchor above{coarse.corners[up], {}, a.node, a.stiffness};
+    Anchor above{coarse.corners[up], {}, a.node, a.stiffness, a.axes};
     for (int n = 0; n < 8; ++n)
       for (int m = 0; m < 8; ++m)
         above.weights[m] += a.weights[n] * weight_at(coarse.cubes[up], m, fine.point[a.corners[n]]);
@@ -222,7 +222,7 @@ void AnchoredNodes::multiply(const CutMatrix<double>& of_cells, double unit, con
   for (const Anchor& a : anchors) {
     Vec3 force = -u.segment<3>(3 * a.node);
     for (int n = 0; n < 8; ++n) force += a.weights[n] * u.segment<3>(3 * a.corners[n]);
-    force *= a.stiffness;
+    for (int d = 0; d < 3; ++d) force[d] *= a.acts(d) ? a.stiffness : 0;
     y.segment<3>(3 * a.node) -= force;
     for (int n = 0; n < 8; ++n) on_corners.segment<3>(3 * a.corners[n]) += a.weights[n] * force;
   }
@@ -263,9 +263,9 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
         {finest.point[network.cells[c][0]], static_cast<int>(std::lround(network.edge(c) / network.cell_edge))});
   finest.carried = network.carried;
   for (const Anchor& a : nodes.anchors) {
-    int held = 0;
-    for (int d = 0; d < 3; ++d) held |= int(nodes.fixed[3 * a.node + d] != 0) << d;
-    finest.anchors.push_back({a.corners, a.weights, held, a.stiffness});
+    int axes = 0;
+    for (int d = 0; d < 3; ++d) axes |= int(a.acts(d) && nodes.fixed[3 * a.node + d] != 0) << d;
+    finest.anchors.push_back({a.corners, a.weights, a.node, a.stiffness, axes});
   }
   std::vector<CutLevel> levels = {std::move(finest)};
   while (levels.back().point.size() > smallest_cut_level && levels.back().cubes.size() > 8) {

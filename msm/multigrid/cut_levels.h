@@ -18,7 +18,7 @@ struct CutLevel {
   std::vector<FilledPart> filled;         ///< of the cells
   std::vector<std::array<int, 3>> point;  ///< in edges
   std::vector<CarriedPoint> carried;      ///< points without rows and columns in A
-  std::vector<Anchor> anchors;            ///< on the corners of a cell; `node`: bits of the directions that are held
+  std::vector<Anchor> anchors;            ///< on the corners of a cell, along the axes that are held
 
   // Transfer to the coarser level; empty on the coarsest.
   std::vector<int> parent;                      ///< cell of the coarser level that contains each cell

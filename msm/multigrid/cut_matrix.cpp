@@ -152,7 +152,7 @@ void CutMatrix<Real>::add_anchors(const CutLevel& level, double unit) {
           for_each_carrier(carriers, anchor.corners[n], [&](int q, double w) {
             const double k = anchor.stiffness / unit * anchor.weights[m] * anchor.weights[n] * v * w;
             for (int a = 0; a < 3; ++a)
-              if (anchor.node >> a & 1) own_block(p, q)[4 * a] += static_cast<Real>(k);
+              if (anchor.acts(a)) own_block(p, q)[4 * a] += static_cast<Real>(k);
           });
         });
 }

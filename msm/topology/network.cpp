@@ -6,6 +6,12 @@
 
 namespace springproof {
 
+Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X) {
+  Vec3 point = Vec3::Zero();
+  for (int n = 0; n < 8; ++n) point += anchor.weights[n] * X.row(anchor.corners[n]).transpose();
+  return point;
+}
+
 std::vector<Spring> merge_springs(std::vector<Spring> springs) {
   int nodes = 0;
   for (Spring& s : springs) {
@@ -46,6 +52,9 @@ Eigen::VectorXd inverse_masses(const Network& network, double density) {
 
 std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fixed) {
   for (const CarriedPoint& c : network.carried) std::fill_n(fixed.begin() + 3 * c.point, 3, 1);
+  for (const Anchor& a : network.anchors)
+    for (int d = 0; d < 3; ++d)
+      if (!a.acts(d)) fixed[3 * a.node + d] = 1;
   return fixed;
 }
 

@@ -27,7 +27,15 @@ struct Anchor {
   std::array<double, 8> weights;  ///< they sum to 1
   int node;                       ///< held by the support
   double stiffness;               ///< k [N/m]
+  int axes = 7;                   ///< bits of the axes along which it acts; along others its node is fixed at rest
+
+  bool acts(int axis) const { return axes >> axis & 1; }
 };
+
+/// The point that an anchor is held in at rest [m]: the mean of its corners by its weights.
+/// @param anchor an anchor
+/// @param X rest positions of the nodes [m], n x 3
+Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X);
 
 /// Nodes, springs and cells of a body; laws (msm/laws/laws.h) say what forces they have.
 struct Network {
@@ -69,10 +77,11 @@ struct Network {
 /// @throws std::invalid_argument if merged springs differ in rest length.
 std::vector<Spring> merge_springs(std::vector<Spring> springs);
 
-/// Per unknown whether it is prescribed or that of a carried node, which solvers have no equation for.
+/// Per unknown whether it is prescribed, that of a carried node, or that of an anchored node along an axis on which the
+/// anchor does not act: solvers have no equation for these.
 /// @param network with carried nodes or without
 /// @param fixed prescribed unknowns, 3 * node + axis
-/// @return the same, with the carried nodes'
+/// @return the same, with the others
 std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fixed);
 
 /// Displacement of the corners of a cell.

@@ -63,6 +63,35 @@ grep -q '"model": "hybmss_avg"' cut.json || fail "a body alone gets another mode
 grep -q '"version": 2' cut.json && grep -q '"fraction": ' cut.json && grep -q '"anchors": ' cut.json || fail "a body has no cut cells"
 grep -qE 'nodes, a term per cell \(no springs, [0-9]+ cut cells\)' log && ! grep -q '^note:' log || fail "what cut cells are: $(cat log)"
 export_to "${body[@]}" --out cut.npz
+# The vertices of another file, in its order, inside of the body too: a mesh of 10^5 vertices follows the springs by the file alone.
+if [ -n "$numpy" ]; then
+  "$numpy" - <<'END'
+import numpy as np
+points = np.random.default_rng(1).normal(size=(100000, 3))
+points *= np.linspace(0.1, 0.75, len(points))[:, None] / np.linalg.norm(points, axis=1)[:, None]
+with open("many.obj", "w") as out:
+    for p in points: out.write("v %.9g %.9g %.9g\n" % tuple(p))
+    for i in range(1, len(points), 3): out.write(f"f {i} {i + 1} {i + 2}\n")
+END
+  export_to "${body[@]}" --carry many.obj --out many.npz
+  "$numpy" - <<'END' || fail "the vertices of a file are not carried"
+import numpy as np
+from springs import load, embed
+s, points = load("many.npz"), 0.01 * np.loadtxt((line[2:] for line in open("many.obj") if line[0] == "v"))
+surface, X = s["surface"], s["nodes"]["position_m"]
+assert surface["facets"].shape == (33333, 3) and abs(surface["position_m"] - points).max() < 1e-12
+entries = np.repeat(np.arange(len(points)), np.diff(surface["first"]))
+x = X @ np.array([[1.1, 0.2, 0], [0, 0.9, 0.1], [0.3, 0, 1]])  # every affine motion is exact
+moved = np.zeros(points.shape)
+np.add.at(moved, entries, surface["weights"][:, None] * x[surface["nodes"]])
+nodes, weights = embed(s, points)
+for there in moved, np.einsum("pn,pni->pi", weights, x[nodes]):
+    assert abs(there - points @ np.array([[1.1, 0.2, 0], [0, 0.9, 0.1], [0.3, 0, 1]])).max() < 1e-9
+END
+  awk '$1 == "v" { $2 += 100 } 1' many.obj >far.obj
+  "$program" export "${body[@]}" --carry far.obj --out far.json >log 2>&1 && fail "vertices far from the body are carried"
+  grep -q -- "--carry: far.obj lies from" log || fail "vertices far from the body: $(cat log)"
+fi
 export_to "${body[@]}" --model hybmss_bt --out cut_bt.json
 grep -qE '^note: hybmss_bt is springs \+ a term per cell on whole cubes; cut cells hold its springs averaged' log && grep -q '"cut": true' cut_bt.json ||
   fail "averaged cells under the name of springs: $(cat log)"
@@ -185,7 +214,7 @@ if [ -n "$numpy" ]; then
 import csv, sys
 import numpy as np
 sys.argv = ["", "hang.json"]
-from springs import load, averaged
+from springs import load, averaged, anchor, step, support_mass, time_step
 s = load("hang.json")
 X, cells, a = s["nodes"]["position_m"], s["cells"]["nodes"], s["anchors"]["low"]
 n, h = X.size, 1e-5 * s["cells"]["edge_m"]
@@ -214,6 +243,15 @@ for name, at in ("a", (0.31, 0.2, 0.4)), ("b", (-0.2, 0.1, 0.05)):
     assert abs(ours - theirs).max() < 1e-6 * abs(theirs).max(), (ours, theirs)
     checked += 1
 assert checked == 2
+# In explicit steps, damped, it comes to rest there.
+small = 1e-5 * s["nodes"]["weight_kg"][:, None] * np.array([1, 2, -9.81])
+damping = np.sqrt(9.81 / abs(u).max())
+x, v, mu = X.copy(), np.zeros(X.shape), support_mass(s, "low")
+for _ in range(int(24 / (damping * time_step(s)))):
+    step(s, x, v, small + anchor(s, "low", x), mu)
+    v /= 1 + damping * time_step(s)
+assert abs(x - X - 1e-5 * u).max() < 1e-3 * abs(1e-5 * u).max(), abs(x - X - 1e-5 * u).max() / abs(1e-5 * u).max()
+assert abs(anchor(s, "low", x).sum(axis=0) + small.sum(axis=0)).max() < 1e-3 * abs(small.sum())
 END
 fi
 
@@ -243,7 +281,7 @@ carried '/carried: node [0-9]+ has a mass' "d['nodes']['mass_kg'][d['carried']['
 carried '/carried/nodes: node [0-9]+ is carried twice' "d['carried']['nodes'][1] = d['carried']['nodes'][0]"
 carried '/nodes/mass_kg: has nodes of 0 kg that nothing carries' "d['carried'] = {'nodes': d['carried']['nodes'][:-1], 'by': d['carried']['by'][:-1]}"
 carried '/cells/edge_m: ' "d['version'] = 2"
-carried '/patches/low: node [0-9]+ follows others' "d['patches']['low'].append(d['carried']['nodes'][0])"
+carried '/patches/low: node [0-9]+ follows others' "d['patches'] = {'low': [d['carried']['nodes'][0]]}"
 carried '/cells/nodes: cell [0-9]+ is no cube' "d['cells']['edge_m'] = d['cells']['edge_m'][0]"
 carried '/carried: is beside cells of one size' "d = json.load(open('cut.json')); d['carried'] = {'nodes': [0], 'by': [[1, 2, 3, 4]]}"
 carried '/cells/edge_m: has [0-9]+ numbers' "d['cells']['edge_m'] = d['cells']['edge_m'][:-1]"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -23,7 +24,8 @@ Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full)
   return C;
 }
 
-MassAverage::MassAverage(const Network& network, double theta) : theta_(theta), network_(&network) {
+MassAverage::MassAverage(const Network& network, double theta, const Eigen::VectorXd& volumes)
+    : theta_(theta), network_(&network) {
   if (!(theta >= 0 && theta <= 1))
     throw std::invalid_argument(fmt::format("share of consistent mass {:g} (allowed: 0 to 1)", theta));
   if (!acts()) return;
@@ -31,12 +33,14 @@ MassAverage::MassAverage(const Network& network, double theta) : theta_(theta), 
     throw std::invalid_argument("a share of consistent mass does not suit this model: " + why);
   share_ = Eigen::VectorXd::Zero(network.nodes());
   for (int n = 0; n < network.nodes(); ++n)
-    if (network.volume[n] > 0) share_[n] = network.cell_volume() / 8 / network.volume[n];
+    if (volumes[n] > 0) share_[n] = network.cell_volume() / 8 / volumes[n];
 }
 
 std::string MassAverage::lacks(const Network& network) {
   if (network.cells.empty()) return "its network has no cells";
   if (!network.cell_edges.empty()) return "its cells are of several sizes";
+  if (std::any_of(network.anchors.begin(), network.anchors.end(), [](const Anchor& a) { return a.axes != 7; }))
+    return "supports hold its cut cells along some axes only";
   return network.image_of.empty() ? "" : "its network is periodic";
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/inertia.h"
 #include "support/refined_cells.h"
 #include "support/solids.h"
 #include "support/zoo.h"
@@ -26,15 +27,15 @@ MassSpringModel small_model(const std::string& name, double nu, Dispersion form 
 }
 
 /// Largest |eigenvalue| of M^-1/2 K M^-1/2, or of its dispersive part, by power iteration: below it, not above.
-/// Nodes without a mass are held.
+/// M: with the support masses of the safe step; nodes without a mass are held.
 double spectral_radius(const MassSpringModel& model, bool dispersion_alone = false) {
   MassSpringModel part = model;
   if (dispersion_alone)
     std::erase_if(part.laws, [](const ForceLaw& law) { return !std::holds_alternative<MomentumDispersion>(law); });
   const Tangent K = tangent(part, model.network.X);
-  const Eigen::VectorXd mass = masses(model.network, density);
-  Eigen::VectorXd scale(3 * model.network.nodes()), y;
-  for (Eigen::Index i = 0; i < scale.size(); ++i) scale[i] = mass[i / 3] > 0 ? 1 / std::sqrt(mass[i / 3]) : 0;
+  const NodalVectors per_mass = inverse_inertia(model.network, density, {.time_step = safe_time_step(model, density)});
+  const Eigen::VectorXd scale = flat(per_mass).cwiseSqrt();
+  Eigen::VectorXd y;
   const NodalVectors start = test::noise(model.network.nodes(), 1);
   Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(start.data(), start.size()).normalized();
   for (int i = 0; i < 1000; ++i) {

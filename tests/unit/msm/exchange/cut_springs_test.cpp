@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "msm/dynamics/time_step.h"
+#include "msm/embedding/supports.h"
 #include "msm/exchange/anchored_springs.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
@@ -38,10 +39,8 @@ SpringsFile file_of(const std::string& name) {
   const Embedding embedding = embed(bar().cut, {}, file.model.network, Mesh{});
   file.loads = embedding.patches;
   file.volumes = embedding.volumes;
-  for (const char* patch : {"z_min", "z_max"}) {
-    file.patches[patch] = nodes_at_patch(bar().cut, patch);
-    file.anchors[patch] = cut_lattice(bar().cut, {patch}, material.youngs_modulus).anchors;
-  }
+  for (const char* patch : {"z_min", "z_max"})
+    file.anchors[patch] = anchors_of_patch(bar().cut, patch, material.youngs_modulus);
   return file;
 }
 
@@ -95,25 +94,6 @@ TEST(CutSprings, BendLikeTheModelTheyCameFrom) {
   EXPECT_LT((theirs.support - ours.support).norm(), 1e-8 * ours.support.norm());
   const NodalVectors of_mesh = built.embedding.weights * ours.displacement;
   EXPECT_LT((embedding.weights * theirs.displacement - of_mesh).norm(), 1e-9 * of_mesh.norm());
-}
-
-/// In motion a patch is held by nodes at it: about the layer of corners nearest to it, on either side.
-TEST(CutSprings, NodesAtAPatchAreTheNearestCorners) {
-  const CutBody& cut = bar().cut;
-  const auto& parts = cut.patches.at("z_min");
-  double area = 0;
-  Vec3 centroid = Vec3::Zero(), normal = Vec3::Zero();
-  for (const PatchInCell& p : parts)
-    for (int n = 0; n < 8; ++n) {
-      area += p.area[n];
-      centroid += p.area[n] * cut.points.row(cut.cells[p.cell].corners[n]).transpose();
-      normal += p.normal[n];
-    }
-  centroid /= area;
-  const std::vector<int> nodes = nodes_at_patch(cut, "z_min");
-  EXPECT_GT(nodes.size(), parts.size() / 2);
-  for (const int n : nodes)
-    EXPECT_LE(std::abs((cut.points.row(n).transpose() - centroid).dot(normal.normalized())), cut.grid.edge) << n;
 }
 
 TEST(CutSprings, AreRefusedWithTheirPlace) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/inertia.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/plain_motion.h"
 #include "msm/dynamics/time_step.h"
@@ -168,8 +169,8 @@ struct State {
 /// The steps of run_dynamics(), written out; supports move at the end of the first.
 State plain_steps(const MassSpringModel& model, const BoundaryConditions& bc, double dt, double damping, double time,
                   int steps) {
-  const Eigen::VectorXd mass = masses(model.network, 1000), per_mass = inverse_masses(model.network, 1000);
-  State s{model.network.X, NodalVectors::Zero(mass.size(), 3), NodalVectors::Zero(mass.size(), 3), {}};
+  const NodalVectors per_mass = inverse_inertia(model.network, 1000, {.time_step = dt}), zero = 0 * per_mass;
+  State s{model.network.X, zero, zero, {}};
   for (; steps > 0; --steps) {
     NodalVectors f = forces(model, s.x);
     averaged_springs_of(model)->add_viscous_forces(model.network, s.x, s.v + s.of_supports, time, f);
@@ -184,7 +185,7 @@ State plain_steps(const MassSpringModel& model, const BoundaryConditions& bc, do
         s.of_supports.data()[i] = (to - s.x.data()[i]) / dt;
         s.x.data()[i] = to;
       } else {
-        s.v.data()[i] = (s.v.data()[i] + dt * force * per_mass[i / 3]) / (1 + dt * damping);
+        s.v.data()[i] = (s.v.data()[i] + dt * force * per_mass.data()[i]) / (1 + dt * damping);
         s.x.data()[i] += dt * s.v.data()[i];
       }
     }
