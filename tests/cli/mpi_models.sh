@@ -63,8 +63,8 @@ check() {
   echo "same: $case"
 }
 check bar 1e-9 1000 2
-check fine 1e-8 20 1 2 3 4  # with smoothed aggregation 60 to 116
-check block 1e-8 40 1 3
+check fine 1e-8 40 1 2 3 4  # 13 to 15, or twice that where a residual of 1e-12 takes a second start; smoothed aggregation: 60 to 116
+check block 1e-8 60 1 3
 check boxes 1e-8 40 2
 
 # A built-in case, which is judged as without mpirun.
