@@ -18,6 +18,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "meshes/surface/balanced.h"
 #include "meshes/surface/surface_check.h"
 
 namespace springproof {
@@ -197,7 +198,8 @@ Surface remesh(const Surface& surface, double edge, double most_change) {
   if (!result)
     throw std::runtime_error(fmt::format("remeshing with edges of {:.3g} makes facets that cut each other", edge));
   check_volume(*result);
-  return std::move(*result);
+  Surface even = balanced(*result, surface);
+  return intersecting_facets(even, 1).empty() ? even : std::move(*result);
 }
 
 }  // namespace springproof
