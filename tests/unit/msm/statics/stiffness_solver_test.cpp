@@ -18,6 +18,8 @@ struct Kind {
   long direct_limit = 0;
 };
 
+void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.solver; }
+
 MassSpringModel emsm(const std::string& name, Dispersion form) {
   ModelParameters p = test::model(name);
   p.dispersion = form;
@@ -79,7 +81,8 @@ TEST_P(Solvers, HaveTheTangentOfTheState) {
     solver->multiply(u, Ku);
     K.multiply(u, expected);
     EXPECT_LE((Ku - expected).norm(), 1e-12 * expected.norm());
-    if (network.anchors.empty()) EXPECT_LE((solver->diagonal() - K.diagonal()).norm(), 1e-12 * K.diagonal().norm());
+    if (!network.anchors.empty()) continue;  // of which CutMultigrid::diagonal() has the nodes alone
+    EXPECT_LE((solver->diagonal() - K.diagonal()).norm(), 1e-12 * K.diagonal().norm());
   }
 }
 
