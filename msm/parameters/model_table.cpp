@@ -44,15 +44,14 @@ std::string joined(bool springs, const std::string& terms) {
   return !springs ? terms : terms.empty() ? "springs" : "springs + " + terms;
 }
 
-/// What each law adds to springs; none of springs themselves and of anchors, which are supports.
+/// What each law adds to springs, by its reach; none of anchors, which are supports.
 struct TermOf {
-  const char* operator()(const Springs&) const { return ""; }
   const char* operator()(const Anchors&) const { return ""; }
   const char* operator()(const AngularSprings&) const { return per_angle; }
-  const char* operator()(const MomentumDispersion&) const { return per_node; }
-  const char* operator()(const VolumeCorrection&) const { return per_cell; }
-  const char* operator()(const HourglassCorrection&) const { return per_cell; }
-  const char* operator()(const AveragedSprings&) const { return per_cell; }
+  template <class Law>
+  const char* operator()(const Law&) const {
+    return Law::traits.reach == Reach::springs ? "" : Law::traits.reach == Reach::cells ? per_cell : per_node;
+  }
 };
 
 }  // namespace
@@ -72,8 +71,6 @@ double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& m
 
 std::string made_of(const ModelRow& row) {
   switch (row.extension) {
-    case none:
-      return joined(true, row.bending_correction ? per_cell : "");
     case volume_correction:
       return joined(true, per_cell);
     case momentum_dispersion:
@@ -82,8 +79,9 @@ std::string made_of(const ModelRow& row) {
       return joined(true, per_angle);
     case averaging:
       return joined(false, per_cell);
+    default:  // springs alone, of whatever force
+      return joined(true, row.bending_correction ? per_cell : "");
   }
-  throw std::invalid_argument("no such extension");
 }
 
 std::string made_of(const ModelParameters& parameters) {
