@@ -31,8 +31,8 @@ int main(int count, char** arguments) try {
       v(n, 2) = std::max(v(n, 2), 0.0);
       if (touched == 0) touched = time;
     }
-    carry(network.carried, x);  // of cells of several sizes: nodes that follow others
-    carry(network.carried, v);
+    carry(network.cells.carried, x);  // of cells of several sizes: nodes that follow others
+    carry(network.cells.carried, v);
     time += dt;
     if (height(x) < lowest) {
       lowest = height(x);

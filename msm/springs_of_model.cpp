@@ -65,7 +65,7 @@ std::map<std::string, double> derived_of(const SpringsFile& file) {
                                            {"mass_kg", masses(file.model.network, file.density).sum()}};
   for (const ForceLaw& law : file.model.laws)
     if (const auto* hourglass = std::get_if<HourglassCorrection>(&law)) {
-      const HourglassCorrection::Stiffness k = hourglass->stiffness(file.model.network.cell_edge);
+      const HourglassCorrection::Stiffness k = hourglass->stiffness(file.model.network.cells.edge);
       derived.merge(std::map<std::string, double>{{"hourglass_bending_N_m", k.bending},
                                                   {"hourglass_coupling_N_m", k.coupling},
                                                   {"hourglass_torsion_N_m", k.torsion},

@@ -20,7 +20,7 @@ constexpr double standard_gravity = 9.81, slowest_frame = 1.0 / 60;
 
 void require_cubes(const SpringsFile& springs, const char* engine) {
   const Network& network = springs.model.network;
-  if (network.cells.empty() || !network.filled.empty())
+  if (network.cells.empty() || network.cells.cut())
     throw InputError(
         fmt::format("--model: {}: its nodes are not the corners of whole cubes, which {} gets (allowed: a "
                     "lattice of cells, as msm_18, on whole cubes)",
@@ -128,11 +128,11 @@ void add_body(const EngineBody& body, const std::vector<Spring>& springs, Engine
   out.array("edges", "rest_length_m", std::move(length));
   out.array("edges", "stiffness_N_m", std::move(stiffness));
   out.array("edges", "compliance_m_N", std::move(compliance));
-  const std::vector<Tetrahedron> tetrahedra = five_tetrahedra(network.X, network.cells, network.cell_edge);
+  const std::vector<Tetrahedron> tetrahedra = five_tetrahedra(network.X, network.cells.corners, network.cells.edge);
   out.nodes("tetrahedra", "nodes", tetrahedra);
   out.nodes("surface", "facets", surface_of(network.X, tetrahedra));
-  out.nodes("cells", "nodes", network.cells);
-  out.head()["cells"]["edge_m"] = network.cell_edge;
+  out.nodes("cells", "nodes", network.cells.corners);
+  out.head()["cells"]["edge_m"] = network.cells.edge;
   add_patches("pins", body.pinned, body.springs, out);
   std::vector<std::string> all;
   for (const auto& [name, nodes] : body.springs.patches) all.push_back(name);
@@ -173,7 +173,7 @@ std::string bullet_json(const EngineBody& body) {
   require_cubes(springs, "Bullet");
   const IsotropicMaterial& m = *springs.material;
   const BulletNeoHooke neo_hooke = bullet_neo_hooke(m);
-  const double safe = safe_time_step_of_tetrahedra(m, springs.model.network.cell_edge);
+  const double safe = safe_time_step_of_tetrahedra(m, springs.model.network.cells.edge);
   EngineDocument out(head_of(springs, "bullet", "linear tetrahedra", m.poisson_ratio, safe));
   out.head()["substeps"] = {
       {"least_s", least_step(springs)},
@@ -195,7 +195,7 @@ std::string mujoco_mjcf(const EngineBody& body) {
   require_cubes(springs, "MuJoCo");
   const Network& network = springs.model.network;
   const IsotropicMaterial& m = *springs.material;
-  const double step = 1.0 / 240, edge = network.cell_edge;
+  const double step = 1.0 / 240, edge = network.cells.edge;
   const Eigen::VectorXd mass = masses(network, springs.density);
   std::vector<char> fixed(network.nodes(), 0);
   for (const std::string& name : body.pinned)
@@ -228,7 +228,7 @@ std::string mujoco_mjcf(const EngineBody& body) {
   for (int n = 0; n < network.nodes(); ++n) put("{}n{}", n > 0 ? " " : "", n);
   out += "\"\n   element=\"";
   const char* space = "";
-  for (const Tetrahedron& t : five_tetrahedra(network.X, network.cells, edge)) {
+  for (const Tetrahedron& t : five_tetrahedra(network.X, network.cells.corners, edge)) {
     put("{}{} {} {} {}", space, t[0], t[1], t[2], t[3]);
     space = " ";
   }

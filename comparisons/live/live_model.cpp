@@ -95,7 +95,7 @@ void LiveModel::build(const IsotropicMaterial& material) {
   mass_ = masses(model_.network, material.density);
   safe_step_ = safe_time_step(model_, material.density);
   motion_ = lattice_on_processor(model_, material.density, {.time_step = safe_step_, .precision = precision_});
-  const double edge = model_.network.cell_edge;
+  const double edge = model_.network.cells.edge;
   grip_stiffness_ = 4 * material.youngs_modulus * edge;
   grip_limit_ = 6 * material.youngs_modulus * edge * edge;
   set_conditions();
@@ -136,7 +136,7 @@ void LiveModel::grab(int point) {
   const LivePoint& place = body_.places[point];
   const Hexahedron& cell = body_.mesh.hexahedra[place.cell];
   const Vec3 centre = at(place, cell, model_.network.X);
-  const double radius = grip_reach * model_.network.cell_edge;
+  const double radius = grip_reach * model_.network.cells.edge;
   std::vector<char> held(model_.network.nodes(), 0);
   for (const int n : body_.held) held[n] = 1;
   double sum = 0;
@@ -229,19 +229,19 @@ bool LiveModel::measure() {
   const double moved = (mass_.array() * u.rowwise().squaredNorm().array()).sum();
   frequency_ = work > 0 && moved > 0 ? std::sqrt(work / moved) : 0;
 
-  const double rest = 64 * network.cell_volume();
+  const double rest = 64 * network.cells.volume();
   Eigen::VectorXd dilatation = Eigen::VectorXd::Zero(network.nodes()), count = dilatation;
   double sum = 0;
   least_volume_ = least_stretch_ = 1e9;
   largest_area_ = 1;
   const bool corrected = std::any_of(model_.laws.begin(), model_.laws.end(),
                                      [](const ForceLaw& l) { return std::holds_alternative<VolumeCorrection>(l); });
-  for (const Hexahedron& cell : network.cells) {
+  for (const Hexahedron& cell : network.cells.corners) {
     const Eigen::Matrix3d A = edges_of(cell, x_);
     const double J = A.determinant() / rest;
     sum += J - 1;
     least_volume_ = std::min(least_volume_, J);
-    const Eigen::Vector3d stretch = A.colwise().norm().transpose() / (4 * network.cell_edge);
+    const Eigen::Vector3d stretch = A.colwise().norm().transpose() / (4 * network.cells.edge);
     if (stretch.maxCoeff() > widest) return false;
     least_stretch_ = std::min({least_stretch_, J, stretch.minCoeff()});
     if (corrected)

@@ -123,7 +123,7 @@ BoundaryConditions conditions_of(const PreparedCase& prepared, const Lattice& la
   const Network& network = built.model.network;
   BoundaryConditions bc = transfer(prepared.loads, *lattice.mesh, built.embedding, network, density,
                                    prepared.experiment.model_kinematics(), factor);
-  if (parameters.hold_rigid_motions) hold_free_motions(network.X, bc, network.carried);
+  if (parameters.hold_rigid_motions) hold_free_motions(network.X, bc, network.cells.carried);
   return bc;
 }
 
@@ -137,13 +137,13 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
   sample.state = state;
   sample.times = times;
   sample.motion = std::move(motion);
-  if (sample.state.displacement.rows() == mesh->nodes.rows() && !network.cells.empty() && network.filled.empty())
+  if (sample.state.displacement.rows() == mesh->nodes.rows() && !network.cells.empty() && !network.cells.cut())
     sample.stability = stability_of(sample.state, *mesh, sample.motion, e.model_kinematics());
   if (!sample.state.ok) return sample;
   sample.field =
       to_field(sample.state, mesh, built.embedding, network, prepared.loads, conditions, e.model_kinematics());
   if (e.body.is_voxels()) sample.field.reactions = about_true_patches(prepared, *mesh, sample.field.reactions);
-  if (!network.filled.empty()) {  // of its own field
+  if (network.cells.cut()) {  // of its own field
     const VolumeChange change = volume_change(network, sample.state.displacement);
     sample.field.volume_change = change.exact;
     sample.field.volume_change_first_order = change.first_order;

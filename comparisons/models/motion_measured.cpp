@@ -60,7 +60,7 @@ double inertia_excess(const Network& network, const Eigen::VectorXd& mass, doubl
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const double V = filled_volume(network, c);
     volume += V;
-    own += V * (network.edge(c) * network.proportions).array().square().matrix() / 6;
+    own += V * (network.cells.edge_of(c) * network.cells.proportions).array().square().matrix() / 6;
   }
   own *= mass.sum() / volume;
   const Eigen::RowVector3d centre = mass.transpose() * network.X / mass.sum();

@@ -17,7 +17,7 @@ MotionRecorder::MotionRecorder(const MovingNetwork& moving, const MotionOptions&
       viscosity_(options.viscosity),
       average_(mass_average(moving.network(), moving.material.density, options)),
       contact_(options.contact),
-      cut_(moving.lattice.cut && !moving.network().filled.empty()),
+      cut_(moving.lattice.cut && moving.network().cells.cut()),
       record_(record) {}
 
 void MotionRecorder::operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
@@ -50,7 +50,7 @@ NodalVectors MotionRecorder::at_positions(const NodalVectors& x, NodalVectors v,
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_.data()[i] - damping_ * v.data()[i]);
   if (contact_) v = contact_->stopped(conditions.fixed, v);
-  carry(moving_.network().carried, v);
+  carry(moving_.network().cells.carried, v);
   return v;
 }
 

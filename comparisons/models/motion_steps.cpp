@@ -58,7 +58,7 @@ bool large_steps_pay(const MotionChoice& motion, const MassSpringModel& model, d
 }  // namespace
 
 MotionSteps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material) {
-  const bool only_explicit = motion.plane && (!model.network.filled.empty() || motion.plane->friction > 0),
+  const bool only_explicit = motion.plane && (model.network.cells.cut() || motion.plane->friction > 0),
              automatic = motion.integrator == "auto";
   MotionOptions options = {.integrator = integrator_of(motion, only_explicit),
                            .damping = motion.damping,

@@ -53,7 +53,7 @@ EmbeddedModel build_on_tetrahedra(const Lattice& lattice, const ModelParameters&
 /// On the lattice as the model takes it.
 EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const std::set<std::string>& held, const IsotropicMaterial& material, bool in_motion) {
-  if (parameters.springs && !parameters.springs->model.network.filled.empty()) {
+  if (parameters.springs && parameters.springs->model.network.cells.cut()) {
     require_material(parameters, material);
     return from_file_of_cut_cells(prepared, parameters, lattice, held, in_motion);
   }

@@ -28,7 +28,7 @@ CellEnergies worst_energies(const PreparedCase& prepared, const CutBody& cut, co
     BoundaryConditions conditions =
         transfer(prepared.loads, body, built.embedding, built.model.network, material.density, Kinematics::linear);
     if (parameters->hold_rigid_motions)
-      hold_free_motions(built.model.network.X, conditions, built.model.network.carried);
+      hold_free_motions(built.model.network.X, conditions, built.model.network.cells.carried);
     require_supported(conditions, built.model.network.X);
     if (children_interrupted()) throw std::runtime_error("interrupted");
     const Equilibrium state = solve_linear(built.model, conditions);

@@ -19,8 +19,8 @@ BlockMatrix::BlockMatrix(const std::vector<std::vector<int>>& coupled, Carriers 
 }
 
 BlockMatrix::BlockMatrix(const Network& network)
-    : BlockMatrix(coupled_through(carriers_of(network.nodes(), network.carried), coupled_nodes(network)),
-                  carriers_of(network.nodes(), network.carried)) {}
+    : BlockMatrix(coupled_through(carriers_of(network.nodes(), network.cells.carried), coupled_nodes(network)),
+                  carriers_of(network.nodes(), network.cells.carried)) {}
 
 void BlockMatrix::hand_on(int i, int j, const Eigen::Matrix3d& block) {
   for_each_carrier(carriers_, i, [&](int p, double v) {
@@ -119,7 +119,7 @@ std::vector<std::vector<int>> coupled_nodes(int nodes, const std::vector<Hexahed
 }
 
 std::vector<std::vector<int>> coupled_nodes(const Network& network) {
-  auto coupled = coupled_nodes(network.nodes(), network.cells);
+  auto coupled = coupled_nodes(network.nodes(), network.cells.corners);
   for (const Spring& s : network.springs) {
     coupled[s.i].push_back(s.j);
     coupled[s.j].push_back(s.i);

@@ -10,8 +10,8 @@ using Marks = std::vector<char>;
 
 /// Marks a carried node if one that carries it is marked, as what acts on it acts on those.
 Marks with_carried(const Network& network, Marks marked) {
-  const Carriers carriers = carriers_of(network.nodes(), network.carried);
-  for (const CarriedPoint& c : network.carried)
+  const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
+  for (const CarriedPoint& c : network.cells.carried)
     marked[c.point] = std::any_of(carriers[c.point].begin(), carriers[c.point].end(),
                                   [&](const auto& carrier) { return marked[carrier.first]; });
   return marked;
@@ -49,7 +49,7 @@ std::vector<int> acting(const std::vector<Element>& elements, const Marks& marke
 template <class Element>
 std::vector<Element> of_numbers(const std::vector<Element>& all, const std::vector<int>& numbers) {
   std::vector<Element> some;
-  for (std::size_t i = 0; !all.empty() && i < numbers.size(); ++i) some.push_back(all[numbers[i]]);
+  for (const int number : numbers) some.push_back(all[number]);
   return some;
 }
 
@@ -75,18 +75,12 @@ ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nod
       acting(all.springs, with_carried(all, nodes_with_springs(whole, own_nodes)), [](const Spring& s) {
         return std::array{s.i, s.j};
       });
-  ModelPart part{{{}, whole.laws, whole.small_displacements_only}, acting(all.cells, own, themselves)};
+  ModelPart part{{{}, whole.laws, whole.small_displacements_only}, acting(all.cells.corners, own, themselves)};
   Network& network = part.model.network;
   network.X = all.X;
   network.volume = all.volume;
-  network.cell_edge = all.cell_edge;
-  network.proportions = all.proportions;
-  network.cell_springs = all.cell_springs;
-  network.carried = all.carried;
   network.springs = of_numbers(all.springs, springs);
-  network.cells = of_numbers(all.cells, part.cells);
-  network.cell_edges = of_numbers(all.cell_edges, part.cells);
-  network.filled = of_numbers(all.filled, part.cells);
+  network.cells = all.cells.of(part.cells);
   network.triangles = of_numbers(all.triangles, acting(all.triangles, own, themselves));
   network.anchors = of_numbers(all.anchors, acting(all.anchors, own, nodes_of_anchor));
   for (ForceLaw& law : part.model.laws)

@@ -20,7 +20,7 @@ Eigen::Matrix<double, 24, 1> volume_gradient(const MassSpringModel& model, std::
   const Network& network = model.network;
   if (averaged_springs_of(model)) return cell_volume(network, cell, network.X).gradient;
   Eigen::Matrix<double, 24, 1> gradient;
-  const MeanEdgeVolume volume = mean_edge_volume(network.cells[cell], network.X);
+  const MeanEdgeVolume volume = mean_edge_volume(network.cells.corners[cell], network.X);
   for (int n = 0; n < 8; ++n) gradient.segment<3>(3 * n) = volume.gradient.row(n).transpose();
   return gradient;
 }
@@ -30,7 +30,7 @@ void set_pressures_of_cells(const MassSpringModel& model, PressureForm& form) {
   const AveragedSprings* averaged = averaged_springs_of(model);
   const double kappa =
       averaged ? averaged->lame_lambda - averaged->shear_modulus : law_of<VolumeCorrection>(model)->kappa;
-  const Carriers carriers = carriers_of(network.nodes(), network.carried);
+  const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(24 * network.cells.size());
   form.C.resize(static_cast<Eigen::Index>(network.cells.size()));
@@ -38,12 +38,11 @@ void set_pressures_of_cells(const MassSpringModel& model, PressureForm& form) {
     const int row = static_cast<int>(c);
     const Eigen::Matrix<double, 24, 1> gradient = volume_gradient(model, c);
     for (int n = 0; n < 8; ++n) {
-      for_each_carrier(carriers, network.cells[c][n], [&](int node, double weight) {
+      for_each_carrier(carriers, network.cells.corners[c][n], [&](int node, double weight) {
         for (int d = 0; d < 3; ++d) entries.emplace_back(row, 3 * node + d, weight * gradient[3 * n + d]);
       });
     }
-    const double filled = network.filled.empty() ? 1 : network.filled[c].fraction;
-    form.C[row] = filled * std::pow(network.edge(c), 3) / kappa;
+    form.C[row] = filled_volume(network, c) / kappa;
   }
   form.B.resize(form.C.size(), 3 * network.nodes());
   form.B.setFromTriplets(entries.begin(), entries.end());

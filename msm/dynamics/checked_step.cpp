@@ -35,7 +35,7 @@ void check_integrator(const MassSpringModel& model, const MotionOptions& options
   if (!options.contact) return;
   if (options.contact->plane().friction > 0)
     refuse("large steps have a plane without friction (allowed: friction = 0, or explicit)");
-  if (!options.contact->of_nodes() || !model.network.carried.empty())
+  if (!options.contact->of_nodes() || !model.network.cells.carried.empty())
     refuse(
         "large steps have contact of nodes, not of the surface of cut cells (allowed: cut = false, or "
         "explicit)");

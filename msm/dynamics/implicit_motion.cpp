@@ -85,8 +85,8 @@ void ImplicitMotion::move_supports() {
 void ImplicitMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
   x_ = x;
   v_ = v;
-  carry(model_.network.carried, x_);
-  carry(model_.network.carried, v_);
+  carry(model_.network.cells.carried, x_);
+  carry(model_.network.cells.carried, v_);
 }
 
 ImplicitMotion::Formula ImplicitMotion::formula() const {
@@ -99,7 +99,7 @@ ImplicitMotion::Formula ImplicitMotion::formula() const {
 /// Internal, viscous and external.  Over an energy-momentum step dashpots are those of its middle, where they have no
 /// torque, and take the energy f . (x1 - x0) <= 0.
 NodalVectors ImplicitMotion::force(const Formula& step, NodalVectors x1) const {
-  carry(model_.network.carried, x1);
+  carry(model_.network.cells.carried, x1);
   NodalVectors f = secant_ ? NodalVectors(secant_->forces(x_, x1) + (external_before_ + conditions_.external) / 2)
                            : NodalVectors(springproof::forces(model_, x1) + conditions_.external);
   if (options_.viscosity.acts())
@@ -117,10 +117,10 @@ void ImplicitMotion::prepare(const Formula& step) {
   cycle_.reset();
   const Network& network = model_.network;
   const long unknowns = std::count(conditions_.fixed.begin(), conditions_.fixed.end(), 0);
-  if (unknowns > cholesky_limit && consists_of_cells(model_) && network.filled.empty())
+  if (unknowns > cholesky_limit && consists_of_cells(model_) && !network.cells.cut())
     cycle_ = std::make_unique<Multigrid>(lattice_levels(network, conditions_.fixed),
                                          step.of_stiffness * cell_stiffness(model_).total, true,
-                                         a * density_ * network.cell_volume() / 8);
+                                         a * density_ * network.cells.volume() / 8);
 }
 
 void ImplicitMotion::renew(const Formula& step, const NodalVectors& x1) {
@@ -160,7 +160,7 @@ NodalVectors ImplicitMotion::with_supports(NodalVectors x) const {
   for (Eigen::Index i = 0; i < x.size(); ++i)
     if (conditions_.fixed[i]) x.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
   if (plane_) plane_->put(x);
-  carry(model_.network.carried, x);
+  carry(model_.network.cells.carried, x);
   return x;
 }
 
@@ -330,7 +330,7 @@ bool ImplicitMotion::solve_step() {
       return false;
     }
   }
-  carry(model_.network.carried, x1);
+  carry(model_.network.cells.carried, x1);
   double unbalanced = 0, support = 0;
   for (Eigen::Index i = 0; i < x1.size(); ++i)
     (conditions_.fixed[i] ? support : unbalanced) += b.force.data()[i] * b.force.data()[i];

@@ -26,7 +26,7 @@ NodalVectors support_masses(const Network& network, const MotionOptions& options
   NodalVectors mass = NodalVectors::Zero(network.nodes(), 3);
   for_each_support_mass(network, options,
                         [&](const Anchor& a, int n, int axis, double m) { mass(a.corners[n], axis) += m; });
-  hand_back(network.carried, mass);
+  hand_back(network.cells.carried, mass);
   return mass;
 }
 
@@ -55,7 +55,7 @@ void SupportInertia::add(BoundaryConditions& conditions) {
   NodalVectors force = NodalVectors::Zero(network_.nodes(), 3);
   for (const Share& s : shares_)
     force(s.corner, s.axis) += s.mass * (acceleration(s.node, s.axis) + damping_ * speed(s.node, s.axis));
-  hand_back(network_.carried, force);
+  hand_back(network_.cells.carried, force);
   conditions.external += force;
   before_ = std::move(here_);
   here_ = next;

@@ -9,8 +9,9 @@ namespace springproof {
 namespace {
 
 bool is_box_of_full_cells(const Network& network) {
-  if (network.cells.empty() || !network.filled.empty()) return false;
-  const Eigen::RowVector3d size = (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()) / network.cell_edge;
+  if (network.cells.empty() || network.cells.cut()) return false;
+  const Eigen::RowVector3d size =
+      (network.X.colwise().maxCoeff() - network.X.colwise().minCoeff()) / network.cells.edge;
   const Eigen::Array3d cells = size.array().round();
   return static_cast<double>(network.cells.size()) == cells.prod() &&
          static_cast<double>(network.nodes()) == (cells + 1).prod();
@@ -20,7 +21,7 @@ bool is_box_of_full_cells(const Network& network) {
 
 bool LatticeMotion::suits(const MassSpringModel& model, const MotionOptions& options) {
   const Viscosity& viscosity = options.viscosity;
-  const bool of_cells = !viscosity.along_springs() && viscosity.cells().shift == 0 && model.network.filled.empty() &&
+  const bool of_cells = !viscosity.along_springs() && viscosity.cells().shift == 0 && !model.network.cells.cut() &&
                         !model.network.cells.empty();
   const bool averages = !viscosity.acts() && is_box_of_full_cells(model.network);
   return !options.lagged && is_lattice_of_springs(model) && (!viscosity.acts() || of_cells) &&

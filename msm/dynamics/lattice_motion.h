@@ -38,7 +38,7 @@ class LatticeMotion : public Motion {
   /// Nodes of this density [kg/m^3], with the step and the damping of the options.
   LatticeMotion(const MassSpringModel& model, double density, const MotionOptions& options)
       : network_(model.network),
-        edge_(model.network.cell_edge),
+        edge_(model.network.cells.edge),
         density_(density),
         time_step_(options.time_step.value()),
         damping_(options.damping) {}

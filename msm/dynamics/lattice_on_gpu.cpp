@@ -167,7 +167,7 @@ void LatticeOnGpu<Real>::add_springs(std::vector<double>& kinds, int& reach) con
 
 template <class Real>
 void LatticeOnGpu<Real>::add_cells(const VolumeCorrection* volume, std::vector<double>& kinds) const {
-  for (const Hexahedron& corners : network_.cells) {
+  for (const Hexahedron& corners : network_.cells.corners) {
     const int lowest =
         *std::min_element(corners.begin(), corners.end(), [&](int a, int b) { return place_[a] < place_[b]; });
     double* entry = &kinds[std::size_t(lowest) * gpu::values_of_kind];

@@ -48,7 +48,7 @@ ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const Ma
 
 template <class Real>
 void ListMotion<Real>::set_up(const MassAverage& average) {
-  const std::vector<Hexahedron>& cells = average.network().cells;
+  const std::vector<Hexahedron>& cells = average.network().cells.corners;
   std::vector<int> place(order_.size());
   for (std::size_t p = 0; p < order_.size(); ++p) place[order_[p]] = static_cast<int>(p);
   for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -203,7 +203,7 @@ NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>&
 template <class Real>
 NodalVectors ListMotion<Real>::positions() const {
   NodalVectors x = origin_ + in_network_order(x_);
-  carry(network_.carried, x);
+  carry(network_.cells.carried, x);
   return x;
 }
 
@@ -214,7 +214,7 @@ NodalVectors ListMotion<Real>::velocities() const {
   for (std::size_t p = 0; p < v.size(); ++p)
     for (int d = 0; d < 3; ++d) v[p].v[d] *= external_[p].v[gain] / static_cast<Real>(decay_);
   NodalVectors of_nodes = in_network_order(v);
-  carry(network_.carried, of_nodes);
+  carry(network_.cells.carried, of_nodes);
   return of_nodes;
 }
 

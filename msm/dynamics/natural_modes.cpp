@@ -57,7 +57,7 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
   // Residuals are in equilibrium with themselves: held at just enough unknowns, a body answers them without reactions.
   BoundaryConditions held;
   held.fixed = supported;
-  hold_free_motions(network.X, held, network.carried);
+  hold_free_motions(network.X, held, network.cells.carried);
   const auto stiffness = solver_for(model, fixed_or_carried(network, held.fixed), modes_direct_limit);
   modes.solver = "LOBPCG + " + stiffness->name();
   if (!stiffness->take(network.X)) {
@@ -99,7 +99,7 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
         fmt::format("{}: residual {:.2e} after {} iterations", modes.solver, found.residual, found.iterations);
   for (int j = 0; modes.ok && j < wanted; ++j) {
     modes.frequencies.push_back(std::sqrt(found.values[j]) / (2 * std::numbers::pi));
-    carry(network.carried, modes.shapes.emplace_back(NodalMap(found.vectors.col(j).data(), network.X.rows(), 3)));
+    carry(network.cells.carried, modes.shapes.emplace_back(NodalMap(found.vectors.col(j).data(), network.X.rows(), 3)));
   }
 }
 
@@ -109,11 +109,10 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
   if (!(theta >= 0 && theta <= 1))
     throw std::invalid_argument(fmt::format("share of consistent mass {:g} (allowed: 0 to 1)", theta));
   std::vector<Eigen::Triplet<double>> entries;
-  const Carriers carriers = carriers_of(network.nodes(), network.carried);
+  const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const Hexahedron& cell = network.cells[c];
-    const auto C = consistent_mass(network.filled.empty() ? FilledPart{} : network.filled[c],
-                                   density * std::pow(network.edge(c), 3));
+    const Hexahedron& cell = network.cells.corners[c];
+    const auto C = consistent_mass(network.cells.part(c), density * std::pow(network.cells.edge_of(c), 3));
     for (int a = 0; a < 8; ++a)
       for_each_carrier(carriers, cell[a], [&](int i, double v) {
         entries.emplace_back(i, i, (1 - theta) * v * C.row(a).sum());

@@ -26,8 +26,8 @@ void PlainMotion::move_supports() {
 void PlainMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
   x_ = x;
   v_ = v;
-  carry(model_.network.carried, x_);
-  carry(model_.network.carried, v_);
+  carry(model_.network.cells.carried, x_);
+  carry(model_.network.cells.carried, v_);
 }
 
 ForceNorms PlainMotion::advance(long steps) {
@@ -50,14 +50,14 @@ ForceNorms PlainMotion::step() {
     for (Eigen::Index i = 0; i < x_.size(); ++i)
       if (conditions_.fixed[i])
         of_supports_.data()[i] = (model_.network.X.data()[i] + conditions_.prescribed.data()[i] - x_.data()[i]) / dt_;
-  carry(model_.network.carried, of_supports_);
+  carry(model_.network.cells.carried, of_supports_);
   const NodalVectors averaged = average_.acts() ? moving() : NodalVectors();
   const NodalVectors& v = average_.acts() ? averaged : v_;
   for (Eigen::Index i = 0; i < x_.size(); ++i)
     if (!conditions_.fixed[i]) x_.data()[i] += dt_ * v.data()[i];
   move_supports();
-  carry(model_.network.carried, x_);
-  carry(model_.network.carried, v_);
+  carry(model_.network.cells.carried, x_);
+  carry(model_.network.cells.carried, v_);
   return {std::sqrt(unbalanced), std::sqrt(support)};
 }
 

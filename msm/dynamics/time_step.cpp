@@ -59,7 +59,7 @@ void add_volumes(const NodalGradients& nodes, const Eigen::VectorXd& mass, NodeB
 /// The same for any law, from the norms of the blocks of its stiffness at rest.
 template <class Law>
 void add_norms(const Network& network, const Eigen::VectorXd& mass, const Law& law, NodeBlocks& blocks) {
-  Carriers carriers = carriers_of(network.nodes(), network.carried);
+  Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
   const auto coupled = coupled_through(carriers, coupled_nodes(network));
   BlockMatrix K(coupled, std::move(carriers));
   law.add_tangent(network, network.X, K);
@@ -75,7 +75,7 @@ Eigen::VectorXd checked_masses(const Network& network, double density) {
   const Eigen::VectorXd mass = masses(network, density);
   std::vector<char> massless(static_cast<std::size_t>(network.nodes()), 0);
   for (const Anchor& a : network.anchors) massless[a.node] = 1;
-  for (const CarriedPoint& c : network.carried) massless[c.point] = 1;
+  for (const CarriedPoint& c : network.cells.carried) massless[c.point] = 1;
   for (int n = 0; n < network.nodes(); ++n)
     if (network.master(n) == n && !massless[n] && !(mass[n] > 0))
       throw std::invalid_argument("a node has no mass: explicit dynamics cannot move it");
@@ -107,7 +107,7 @@ class CellFrequencies {
  public:
   CellFrequencies(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass)
       : law_(law), network_(network), mass_(mass), nodes_(network.cells.size()), weight_(network.cells.size()) {
-    const Carriers carriers = carriers_of(network.nodes(), network.carried);
+    const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
     for (std::size_t c = 0; c < weight_.size(); ++c) {
       find_nodes(c, carriers);
       const Eigen::MatrixXd K = stiffness(c);
@@ -127,12 +127,12 @@ class CellFrequencies {
     double largest = 0;
     for (std::size_t c = 0; c < weight_.size(); ++c) {
       std::vector<double> share;
-      std::vector<float> key = {static_cast<float>(network_.edge(c))};
+      std::vector<float> key = {static_cast<float>(network_.cells.edge_of(c))};
       for (std::size_t n = 0; n < nodes_[c].size(); ++n) {
         share.push_back(mass_[nodes_[c][n]] * weight_[c][n] / total[nodes_[c][n]]);
         key.push_back(static_cast<float>(share.back()));
       }
-      const bool full = (network_.filled.empty() || network_.filled[c].fraction == 1) && !through_.contains(c);
+      const bool full = network_.cells.is_full(c) && !through_.contains(c);
       const auto known = full ? of_full.find(key) : of_full.end();
       const double own = known != of_full.end() ? known->second : alone(c, share);
       if (full) of_full[key] = own;
@@ -146,7 +146,7 @@ class CellFrequencies {
   static constexpr double rounding = 1e-6;  // of the keys
 
   void find_nodes(std::size_t cell, const Carriers& carriers) {
-    const Hexahedron& corners = network_.cells[cell];
+    const Hexahedron& corners = network_.cells.corners[cell];
     const auto is_carried = [&](int corner) { return !carriers.empty() && !carriers[corner].empty(); };
     if (std::none_of(corners.begin(), corners.end(), is_carried)) {
       for (const int corner : corners) nodes_[cell].push_back(network_.master(corner));
@@ -168,7 +168,7 @@ class CellFrequencies {
 
   /// Between the nodes of the cell.
   Eigen::MatrixXd stiffness(std::size_t cell) const {
-    const CellMatrix K = law_.cell_matrix(network_.edge(cell), filled_part(network_, cell), network_.proportions);
+    const CellMatrix K = law_.cell_matrix(network_.cells.shape(cell));
     const auto at = through_.find(cell);
     if (at == through_.end()) return K;
     return at->second.transpose() * K * at->second;
@@ -202,7 +202,7 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
   const Network& network = model.network;
   const Eigen::VectorXd mass = checked_masses(network, density);
   const bool cells =
-      !network.cell_springs.empty() && std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);
+      !network.cells.springs.empty() && std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);
   NodeBlocks blocks(network.nodes(), Eigen::Matrix3d::Zero());
   const AveragedSprings* averaged = cells ? nullptr : averaged_springs_of(model);
   for (const ForceLaw& law : model.laws) {
@@ -231,11 +231,10 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
     largest += cell_frequency_squared(cell.total, density * cell.volume, theta);
   }
   if (averaged) {  // the smaller of two bounds
-    const bool full = theta > 0 && network.filled.empty();
-    largest += full
-                   ? cell_frequency_squared(averaged->cell_matrix(network.cell_edge, FilledPart{}, network.proportions),
-                                            density * network.cell_volume(), theta)
-                   : gain * averaged_frequency_squared(*averaged, network, mass);
+    const bool full = theta > 0 && !network.cells.cut();
+    largest += full ? cell_frequency_squared(averaged->cell_matrix(network.cells.full()),
+                                             density * network.cells.volume(), theta)
+                    : gain * averaged_frequency_squared(*averaged, network, mass);
     add_norms(network, mass, *averaged, blocks);
     largest = std::min(largest, gain * largest_eigenvalue(blocks));
   }

@@ -232,7 +232,7 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, co
   };
   divide_shared(loads, area_at, bc);
   bc.external = network_forces(loads, mesh, embedding, network, density, factor);
-  hand_back(network.carried, bc.external);
+  hand_back(network.cells.carried, bc.external);
   if (!network.triangles.empty())
     for (int n = 0; n < network.nodes(); ++n) bc.fixed[3 * n + 2] = 1;
   return bc;

@@ -19,7 +19,7 @@ struct SharedUnknown {
   double share;  ///< of the reaction, by the areas of the patches at the node
 };
 
-/// Supports and loads of nodes, as solvers take them; carried nodes (Network::carried) have neither: hand_back() passes
+/// Supports and loads of nodes, as solvers take them; carried nodes (CellSet::carried) have neither: hand_back() passes
 /// forces on them on.  A program may fill it itself (examples/own_model.cpp).
 struct BoundaryConditions {
   std::vector<char> fixed;                 ///< per unknown 3 * node + axis: displacement prescribed
@@ -69,7 +69,7 @@ void require_supported(const BoundaryConditions& conditions, const NodalVectors&
 /// and no reaction if the loads are in equilibrium.
 /// @param X positions of the nodes at rest [m], n x 3
 /// @param conditions that get the additional supports
-/// @param carried nodes that follow others and cannot be held: Network::carried
+/// @param carried nodes that follow others and cannot be held: CellSet::carried
 void hold_free_motions(const NodalVectors& X, BoundaryConditions& conditions,
                        const std::vector<CarriedPoint>& carried = {});
 

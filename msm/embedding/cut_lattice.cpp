@@ -46,7 +46,7 @@ double weight_of_corner(const FilledPart& part, int corner) {
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus) {
   Network network;
   const double l = body.grid.edge;
-  network.cell_edge = l;
+  network.cells.edge = l;
   const auto corners = body.points.rows();
   for (const std::string& name : held)
     for (Anchor& anchor : anchors_of_patch(body, name, youngs_modulus)) {
@@ -59,14 +59,14 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
     network.X.row(anchor.node) = anchored_point(anchor, body.points).transpose();
   network.volume = Eigen::VectorXd::Zero(network.X.rows());
   for (const CutCell& cell : body.cells) {
-    network.cells.push_back(cell.corners);
-    network.filled.push_back(cell.filled);
-    network.cell_edges.push_back(l * cell.size);
+    network.cells.corners.push_back(cell.corners);
+    network.cells.filled.push_back(cell.filled);
+    network.cells.edges.push_back(l * cell.size);
     for (const int n : cell.corners) network.volume[n] += cell.filled.fraction * std::pow(l * cell.size, 3) / 8;
   }
-  network.carried = body.carried;
-  hand_back(network.carried, network.volume, 1);
-  if (body.grid.doubled.empty()) network.cell_edges.clear();
+  network.cells.carried = body.carried;
+  hand_back(network.cells.carried, network.volume, 1);
+  if (body.grid.doubled.empty()) network.cells.edges.clear();
   return network;
 }
 

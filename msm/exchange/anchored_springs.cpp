@@ -28,7 +28,7 @@ void add_anchors(const SpringsFile& file, const std::set<std::string>& held, Net
 void embed_mesh(const Mesh& mesh, const Network& network, Embedding& embedding) {
   Mesh cells;
   cells.nodes = network.X;
-  cells.hexahedra = network.cells;
+  cells.hexahedra = network.cells.corners;
   const Locator locator(cells);
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<char> done(static_cast<std::size_t>(mesh.nodes.rows()), 0);
@@ -40,12 +40,12 @@ void embed_mesh(const Mesh& mesh, const Network& network, Embedding& embedding) 
       done[n] = 1;
       const Vec3 at = mesh.nodes.row(n).transpose();
       const auto position = [&](std::size_t c) -> Vec3 {
-        return (at - network.X.row(network.cells[c][0]).transpose()) / network.edge(c);
+        return (at - network.X.row(network.cells.corners[c][0]).transpose()) / network.cells.edge_of(c);
       };
       std::size_t c = of_cube;  // of one size, cells continue to the nodes of their cube
-      if (!network.cell_edges.empty() && (position(c).array() - 0.5).abs().maxCoeff() > 0.5 + 1e-9)
+      if (network.cells.kind() == CellKind::sizes && (position(c).array() - 0.5).abs().maxCoeff() > 0.5 + 1e-9)
         c = static_cast<std::size_t>(locator(at).cell);
-      const Hexahedron& cell = network.cells[c];
+      const Hexahedron& cell = network.cells.corners[c];
       const Vec3 xi = position(c);
       for (int k = 0; k < 8; ++k) {
         double weight = 1;

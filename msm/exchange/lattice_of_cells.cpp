@@ -37,11 +37,11 @@ bool power_of_two(int n) { return (n & (n - 1)) == 0; }
 std::optional<std::vector<Spring>> springs_of_cell(const Network& network) {
   std::vector<CornerPair> pairs = corner_pairs();
   std::vector<int> sharing(network.springs.size(), 0);  // cells that a spring belongs to
-  for (const Hexahedron& cell : network.cells)
+  for (const Hexahedron& cell : network.cells.corners)
     for (const CornerPair& p : pairs)
       if (const int s = find_spring(network, cell[p.a], cell[p.b]); s >= 0) ++sharing[s];
   if (std::count(sharing.begin(), sharing.end(), 0) > 0) return {};
-  for (const Hexahedron& cell : network.cells)
+  for (const Hexahedron& cell : network.cells.corners)
     for (CornerPair& p : pairs) {
       const int s = find_spring(network, cell[p.a], cell[p.b]);
       // A quotient by 1, 2 or 4 is exact.
@@ -49,7 +49,7 @@ std::optional<std::vector<Spring>> springs_of_cell(const Network& network) {
       if (const Spring& whole = network.springs[s]; !p.spring || power_of_two(sharing[s]))
         p.spring = {p.a, p.b, whole.stiffness / sharing[s], whole.rest_length};
     }
-  for (const Hexahedron& cell : network.cells)
+  for (const Hexahedron& cell : network.cells.corners)
     for (const CornerPair& p : pairs) {
       const int s = find_spring(network, cell[p.a], cell[p.b]);
       if ((s >= 0) != p.spring.has_value()) return {};
@@ -67,13 +67,13 @@ std::optional<std::vector<Spring>> springs_of_cell(const Network& network) {
 }  // namespace
 
 void recognise_lattice(Network& network) {
-  network.grid.reset();
-  network.cell_springs.clear();
+  network.cells.grid.reset();
+  network.cells.springs.clear();
   Mesh mesh;
   mesh.nodes = network.X;
-  mesh.hexahedra = network.cells;
+  mesh.hexahedra = network.cells.corners;
   const std::optional<Grid> grid = detect_grid(mesh);
-  const Vec3 edges = network.cell_edge * network.proportions;
+  const Vec3 edges = network.cells.edge * network.cells.proportions;
   if (!grid || ((grid->spacing - edges).array().abs() > 1e-6 * edges.array()).any()) return;
   double points = 1;  // kernels of lattices have a place for each
   for (const int n : grid->cells) points *= n + 1;
@@ -82,8 +82,8 @@ void recognise_lattice(Network& network) {
   if (((network.volume - volume).array().abs() > equal * volume.array()).any()) return;
   auto springs = springs_of_cell(network);
   if (!springs) return;
-  network.grid = grid;
-  network.cell_springs = std::move(*springs);
+  network.cells.grid = grid;
+  network.cells.springs = std::move(*springs);
 }
 
 }  // namespace springproof

@@ -5,7 +5,7 @@
 
 namespace springproof {
 
-/// Sets Network::grid and cell_springs of a network with cells if its springs are those of its equal cells superposed,
+/// Sets CellSet::grid and springs of a network with cells if its springs are those of its equal cells superposed,
 /// and its volume shares the cells': then it has the kernels and solvers of lattices.  Else it has neither.
 void recognise_lattice(Network& network);
 

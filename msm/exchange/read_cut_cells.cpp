@@ -26,7 +26,7 @@ std::vector<Anchor> read_anchors(const JsonPlace& place, const Network& network)
     anchors[a].node = -1;
     anchors[a].stiffness = stiffness[a];
     const Vec3 off = anchored_point(anchors[a], network.X) - Eigen::Map<const Vec3>(&position[3 * a]);
-    if (!(off.cwiseAbs().maxCoeff() <= at_rest * network.cell_edge))
+    if (!(off.cwiseAbs().maxCoeff() <= at_rest * network.cells.edge))
       place.at("position_m")
           .refuse(fmt::format("anchor {} is {:.3g} m from the mean of its nodes", a, off.norm()),
                   "the mean of the nodes by the weights, where it is at rest");
@@ -52,12 +52,12 @@ PatchShares read_load(const JsonPlace& place, int nodes_of_network) {
 void read_edges(const JsonPlace& cells, double version, Network& network) {
   const JsonPlace place = cells.at("edge_m");
   if (version < springs_version_of_several_sizes || !place.is_list()) {
-    network.cell_edge = place.number(smallest_of_file, farthest_node);
+    network.cells.edge = place.number(smallest_of_file, farthest_node);
     return;
   }
-  network.cell_edges = place.numbers(1, network.cells.size(), "cells", smallest_of_file, farthest_node);
-  if (network.cell_edges.empty()) place.refuse("is empty", "an edge for each cell");
-  network.cell_edge = *std::min_element(network.cell_edges.begin(), network.cell_edges.end());
+  network.cells.edges = place.numbers(1, network.cells.size(), "cells", smallest_of_file, farthest_node);
+  if (network.cells.edges.empty()) place.refuse("is empty", "an edge for each cell");
+  network.cells.edge = *std::min_element(network.cells.edges.begin(), network.cells.edges.end());
 }
 
 void read_proportions(const JsonPlace& cells, double version, Network& network) {
@@ -65,11 +65,11 @@ void read_proportions(const JsonPlace& cells, double version, Network& network) 
   if (!place) return;
   if (version < springs_version_of_boxes) place->refuse("is of boxes", "version 4");
   const std::vector<double> p = place->numbers(1, 3, "axes", smallest_of_file, largest_number_of_file);
-  network.proportions = Vec3(p[0], p[1], p[2]);
-  if (!(std::abs(network.proportions.prod() - 1) <= 1e-9))
-    place->refuse(fmt::format("has the product {:.10g}", network.proportions.prod()),
+  network.cells.proportions = Vec3(p[0], p[1], p[2]);
+  if (!(std::abs(network.cells.proportions.prod() - 1) <= 1e-9))
+    place->refuse(fmt::format("has the product {:.10g}", network.cells.proportions.prod()),
                   "three edges over that of the cube of their volume: a product of 1");
-  if (!network.cell_edges.empty() || cells.find("fraction"))
+  if (network.cells.kind() == CellKind::sizes || cells.find("fraction"))
     place->refuse("is beside cut cells", "boxes that are full, of one edge_m");
 }
 
@@ -83,14 +83,15 @@ void read_filled(const JsonPlace& cells, Network& network) {
                             mixed = cells.at("mixed").numbers(3, count, "cells", -0.25, 0.25),
                             variance = cells.at("variance").numbers(3, count, "cells", 0, 0.25);
   for (std::size_t c = 0; c < count; ++c)
-    network.filled.push_back({alpha[c], Eigen::Map<const Vec3>(&mean[3 * c]), Eigen::Map<const Vec3>(&mixed[3 * c]),
-                              Eigen::Map<const Vec3>(&variance[3 * c])});
+    network.cells.filled.push_back({alpha[c], Eigen::Map<const Vec3>(&mean[3 * c]),
+                                    Eigen::Map<const Vec3>(&mixed[3 * c]), Eigen::Map<const Vec3>(&variance[3 * c])});
 }
 
 void read_carried(const JsonPlace& document, Network& network) {
   const auto place = document.find("carried");
   if (!place) return;
-  if (network.cell_edges.empty()) place->refuse("is beside cells of one size", "version 3 with a list edge_m");
+  if (network.cells.kind() != CellKind::sizes)
+    place->refuse("is beside cells of one size", "version 3 with a list edge_m");
   place->require_known({"nodes", "by"});
   const std::vector<int> nodes = place->at("nodes").integers(1, network.nodes() - 1),
                          by = place->at("by").integers(4, network.nodes() - 1, nodes.size(), "nodes");
@@ -109,12 +110,12 @@ void read_carried(const JsonPlace& document, Network& network) {
       mean += network.X.row(by[n]) / 4;
     }
     later[nodes[c]] = 0;
-    if (!((mean - network.X.row(nodes[c])).cwiseAbs().maxCoeff() <= 1e-6 * network.cell_edge))
+    if (!((mean - network.X.row(nodes[c])).cwiseAbs().maxCoeff() <= 1e-6 * network.cells.edge))
       place->at("by").refuse(fmt::format("node {} is not in the mean of its four", nodes[c]),
                              "four nodes, or two of them twice, whose mean it is at rest");
     if (network.volume[nodes[c]] != 0)
       place->refuse(fmt::format("node {} has a mass", nodes[c]), "0 kg; the nodes that carry it have its share");
-    network.carried.push_back(std::move(carried));
+    network.cells.carried.push_back(std::move(carried));
   }
   if ((network.volume.array() == 0).count() != static_cast<Eigen::Index>(nodes.size()))
     document.at("nodes").at("mass_kg").refuse("has nodes of 0 kg that nothing carries", "a mass, or a row in /carried");

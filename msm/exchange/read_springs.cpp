@@ -168,28 +168,29 @@ void read_cells(const JsonPlace& document, Network& network) {
     network.triangles = rows<3>(*triangles, last);
     require_each_once(network.triangles, "triangle", *triangles);
   }
-  const auto cells = document.find("cells");
-  if (!cells) return;
-  cells->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance"});
-  network.cells = rows<8>(cells->at("nodes"), last);
-  require_each_once(network.cells, "cell", cells->at("nodes"));
-  read_edges(*cells, version_of(document), network);
-  read_proportions(*cells, version_of(document), network);
-  for (std::size_t c = 0; c < network.cells.size(); ++c)
+  const auto place = document.find("cells");
+  if (!place) return;
+  CellSet& cells = network.cells;
+  place->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance"});
+  cells.corners = rows<8>(place->at("nodes"), last);
+  require_each_once(cells.corners, "cell", place->at("nodes"));
+  read_edges(*place, version_of(document), network);
+  read_proportions(*place, version_of(document), network);
+  for (std::size_t c = 0; c < cells.size(); ++c)
     for (int n = 0; n < 8; ++n) {
       const Vec3 corner(hexahedron_corners[n][0], hexahedron_corners[n][1], hexahedron_corners[n][2]);
-      const Vec3 at = (network.X.row(network.cells[c][n]) - network.X.row(network.cells[c][0])).transpose();
-      const Vec3 expected = network.edge(c) * network.proportions.cwiseProduct(corner);
-      if ((at - expected).cwiseAbs().maxCoeff() > 1e-6 * network.cell_edge * network.proportions.minCoeff())
-        cells->at("nodes").refuse(fmt::format("cell {} is no cube of edge_m in the order of corners", c),
+      const Vec3 at = (network.X.row(cells.corners[c][n]) - network.X.row(cells.corners[c][0])).transpose();
+      const Vec3 expected = cells.edge_of(c) * cells.proportions.cwiseProduct(corner);
+      if ((at - expected).cwiseAbs().maxCoeff() > 1e-6 * cells.edge * cells.proportions.minCoeff())
+        place->at("nodes").refuse(fmt::format("cell {} is no cube of edge_m in the order of corners", c),
                                   "axis-aligned cubes, or boxes of proportions, corners (0,0,0) (1,0,0) (1,1,0) "
                                   "(0,1,0) (0,0,1) (1,0,1) (1,1,1) "
                                   "(0,1,1)");
     }
-  read_filled(*cells, network);
-  if (!network.cell_edges.empty() && network.filled.empty())
-    cells->at("edge_m").refuse("is a list, of whole cells", "one edge; or with fraction, mean, mixed and variance");
-  if (!network.cells.empty() && network.filled.empty() && network.cell_edges.empty()) recognise_lattice(network);
+  read_filled(*place, network);
+  if (cells.kind() == CellKind::sizes && !cells.cut())
+    place->at("edge_m").refuse("is a list, of whole cells", "one edge; or with fraction, mean, mixed and variance");
+  if (!cells.empty() && !cells.cut()) recognise_lattice(network);
 }
 
 /// Calls `act` with a default value of each law of the list.
@@ -201,12 +202,12 @@ void for_each_law(std::variant<Laws...>*, const Act& act) {
 void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
   if (traits(law).reach == Reach::cells && network.cells.empty())
     place.refuse("has no cells to act on", "beside cells");
-  const bool several = !network.cell_edges.empty() || !network.carried.empty();
-  if (traits(law).reach == Reach::cells && !network.filled.empty() && !std::holds_alternative<AveragedSprings>(law))
+  if (traits(law).reach == Reach::cells && network.cells.cut() && !std::holds_alternative<AveragedSprings>(law))
     place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
-  if (several && !std::holds_alternative<AveragedSprings>(law))
+  if (network.cells.kind() == CellKind::sizes && !std::holds_alternative<AveragedSprings>(law))
     place.refuse("is beside cells of several sizes", "averaged_springs alone");
-  if (network.has_boxes() && traits(law).reach == Reach::cells && !std::holds_alternative<AveragedSprings>(law))
+  if (network.cells.kind() == CellKind::boxes && traits(law).reach == Reach::cells &&
+      !std::holds_alternative<AveragedSprings>(law))
     place.refuse("acts on cubes, the cells are boxes", "averaged_springs in boxes");
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
@@ -248,7 +249,8 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
   }
   if (const AveragedSprings* averaged = averaged_springs_of(model))
     for (std::size_t c = 0; c < network.cells.size(); ++c)
-      for (const int n : network.cells[c]) scale[n] += averaged->shear_modulus * network.edge(c) * network.edge(c);
+      for (const int n : network.cells.corners[c])
+        scale[n] += averaged->shear_modulus * std::pow(network.cells.edge_of(c), 2);
   const NodalVectors f = forces(model, network.X);
   for (int n = 0; n < network.nodes(); ++n)
     if (const double force = f.row(n).norm(); !(force <= unbalanced * scale[n]))
@@ -267,7 +269,7 @@ void read_patches(const JsonPlace& document, SpringsFile& file) {
     std::vector<int> nodes = patches->at(name).integers(1, file.model.network.nodes() - 1);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    for (const CarriedPoint& c : file.model.network.carried)
+    for (const CarriedPoint& c : file.model.network.cells.carried)
       if (std::binary_search(nodes.begin(), nodes.end(), c.point))
         patches->at(name).refuse(fmt::format("node {} follows others and cannot be held", c.point),
                                  "nodes that are not carried");

@@ -133,10 +133,31 @@ void add_filled(const std::vector<FilledPart>& filled, DocumentWriter& out) {
   out.vectors({"cells", "variance"}, variance);
 }
 
+void add_cells(const CellSet& cells, DocumentWriter& out) {
+  if (cells.kind() == CellKind::sizes)
+    out.numbers({"cells", "edge_m"}, cells.edges);
+  else
+    out.at({"cells", "edge_m"}) = cells.edge;
+  if (cells.kind() == CellKind::boxes)
+    out.at({"cells", "proportions"}) = {cells.proportions[0], cells.proportions[1], cells.proportions[2]};
+  out.rows({"cells", "nodes"}, cells.corners);
+  if (cells.cut()) add_filled(cells.filled, out);
+  if (cells.carried.empty()) return;
+  std::vector<int> nodes;
+  std::vector<std::array<int, 4>> by;
+  for (const CarriedPoint& c : cells.carried) {
+    nodes.push_back(c.point);
+    for (std::array<int, 4>& of = by.emplace_back(); int& node : of) node = c.by[(&node - of.data()) % c.by.size()];
+  }
+  out.indices({"carried", "nodes"}, nodes);
+  out.rows({"carried", "by"}, by);
+}
+
 void add_network(const Network& network, double density, DocumentWriter& out) {
   out.vectors({"nodes", "position_m"}, network.X);
   const Eigen::VectorXd mass = masses(network, density);
-  const double least_mass = network.carried.empty() ? smallest_of_file : 0;  // what is carried has its mass elsewhere
+  const double least_mass =
+      network.cells.carried.empty() ? smallest_of_file : 0;  // what is carried has its mass elsewhere
   out.numbers({"nodes", "mass_kg"}, {mass.begin(), mass.end()}, least_mass);
   std::vector<std::array<int, 2>> ends;
   std::vector<double> stiffness, rest_length;
@@ -148,26 +169,7 @@ void add_network(const Network& network, double density, DocumentWriter& out) {
   out.rows({"springs", "nodes"}, ends);
   out.numbers({"springs", "stiffness_N_m"}, std::move(stiffness), smallest_of_file);
   out.numbers({"springs", "rest_length_m"}, std::move(rest_length), smallest_of_file);
-  if (!network.cells.empty()) {
-    if (network.cell_edges.empty())
-      out.at({"cells", "edge_m"}) = network.cell_edge;
-    else
-      out.numbers({"cells", "edge_m"}, network.cell_edges);
-    if (network.has_boxes())
-      out.at({"cells", "proportions"}) = {network.proportions[0], network.proportions[1], network.proportions[2]};
-    out.rows({"cells", "nodes"}, network.cells);
-    if (!network.filled.empty()) add_filled(network.filled, out);
-  }
-  if (!network.carried.empty()) {
-    std::vector<int> nodes;
-    std::vector<std::array<int, 4>> by;
-    for (const CarriedPoint& c : network.carried) {
-      nodes.push_back(c.point);
-      for (std::array<int, 4>& of = by.emplace_back(); int& node : of) node = c.by[(&node - of.data()) % c.by.size()];
-    }
-    out.indices({"carried", "nodes"}, nodes);
-    out.rows({"carried", "by"}, by);
-  }
+  if (!network.cells.empty()) add_cells(network.cells, out);
   if (!network.triangles.empty()) out.rows({"triangles"}, network.triangles);
 }
 
@@ -232,6 +234,21 @@ void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
   out.numbers({"surface", "weights"}, std::move(weights));
 }
 
+int version_of(CellKind cells) {
+  switch (cells) {
+    case CellKind::none:
+    case CellKind::cubes:
+      return springs_version;
+    case CellKind::cut:
+      return springs_version_of_cut_cells;
+    case CellKind::sizes:
+      return springs_version_of_several_sizes;
+    case CellKind::boxes:
+      break;
+  }
+  return springs_version_of_boxes;
+}
+
 }  // namespace
 
 std::string key_of_law(const LawTraits& traits) {
@@ -256,11 +273,7 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
-  out.document.head = {{"format", springs_format},
-                       {"version", network.has_boxes()           ? springs_version_of_boxes
-                                   : !network.cell_edges.empty() ? springs_version_of_several_sizes
-                                   : !network.filled.empty()     ? springs_version_of_cut_cells
-                                                                 : springs_version}};
+  out.document.head = {{"format", springs_format}, {"version", version_of(network.cells.kind())}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material)
     out.at({"material"}) = {{"youngs_modulus_Pa", springs.material->youngs_modulus},

@@ -85,8 +85,8 @@ std::string springs_as_vtu(const SpringsFile& springs) {
   if (!network.springs.empty()) return text_of(vtu);
   VtuArray fraction{"fraction", 1, {}};
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    vtu.add_cell(network.cells[c], hexahedron);
-    fraction.values.push_back(network.filled.empty() ? 1 : network.filled[c].fraction);
+    vtu.add_cell(network.cells.corners[c], hexahedron);
+    fraction.values.push_back(network.cells.part(c).fraction);
   }
   vtu.cell_data = {std::move(fraction)};
   return text_of(vtu);

@@ -28,7 +28,6 @@ bool CellForces<Real>::covers(const MassSpringModel& model) {
   const Network& network = model.network;
   if (averaged != 1 || anchors > 1 || averaged + anchors != static_cast<int>(model.laws.size())) return false;
   const AveragedSprings& law = *averaged_springs_of(model);
-  if (network.has_boxes() && !network.filled.empty()) return false;
   return !network.cells.empty() && network.image_of.empty() && law.shift == 0 &&
          lattice_curve(law.curve) != LatticeCurve::none;
 }
@@ -40,7 +39,7 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
       X_(model.network.X),
       viscous_(time > 0),
       order_(model.network, kernels_->cell_list.cells),
-      carried_(model.network.carried) {
+      carried_(model.network.cells.carried) {
   for (CarriedPoint& c : carried_) {
     c.point = order_.place[c.point];
     for (int& by : c.by) by = order_.place[by];
@@ -49,10 +48,10 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
     throw std::invalid_argument("cell forces are of averaged springs, without shift");
   list_.springs = averaged_constants<Real>(*averaged_springs_of(model), 1);
   list_.dashpots = averaged_constants<Real>(dashpots, time);
-  list_.boxes = model.network.has_boxes();
+  list_.boxes = model.network.cells.kind() == CellKind::boxes;
   for (int i = 0; i < 3; ++i) {
-    list_.proportions[i] = static_cast<Real>(model.network.proportions[i]);
-    list_.per_proportion[i] = static_cast<Real>(1 / model.network.proportions[i]);
+    list_.proportions[i] = static_cast<Real>(model.network.cells.proportions[i]);
+    list_.per_proportion[i] = static_cast<Real>(1 / model.network.cells.proportions[i]);
   }
   store_cells(model.network);
   if (std::any_of(model.laws.begin(), model.laws.end(),
@@ -68,20 +67,20 @@ void CellForces<Real>::store_cells(const Network& network) {
   numbers_.resize(cell_number::count * cells * list_.blocks);
   for (long at = 0; at < cells * list_.blocks; ++at) {
     const int cell = order_.cells[std::min(at, count - 1)];
-    const FilledPart& part = filled_part(network, cell);
+    const auto [l, part, proportions] = network.cells.shape(cell);
     for (int n = 0; n < 8; ++n)
-      corners_[8 * cells * (at / cells) + n * cells + at % cells] = order_.place[network.cells[cell][corner_at(n)]];
+      corners_[8 * cells * (at / cells) + n * cells + at % cells] =
+          order_.place[network.cells.corners[cell][corner_at(n)]];
     const auto set = [&](int number, double value) {
       numbers_[cell_number::count * cells * (at / cells) + number * cells + at % cells] = static_cast<Real>(value);
     };
-    const double l = network.edge(static_cast<std::size_t>(cell));
     set(cell_number::area, at < count ? part.fraction * l * l : 0);
     set(cell_number::per_edge, 1 / l);
     for (int i = 0; i < 3; ++i) {
       set(cell_number::mean + i, part.mean[i] / 2);
       set(cell_number::mixed + i, part.mixed[i]);
       set(cell_number::variance + i,
-          std::max(12 * part.variance[i], AveragedSprings::least_variance) * std::pow(network.proportions[i], 2));
+          std::max(12 * part.variance[i], AveragedSprings::least_variance) * std::pow(proportions[i], 2));
     }
   }
 }

@@ -23,8 +23,8 @@ std::vector<int> rows_of_layers(const Network& network) {
   std::vector<std::array<long, 3>> key(network.cells.size());
   for (std::size_t c = 0; c < key.size(); ++c)
     for (int d = 0; d < 3; ++d)
-      key[c][d] = std::lround((network.X(network.cells[c][0], axes[d]) - lower[axes[d]]) /
-                              (network.cell_edge * network.proportions[axes[d]]));
+      key[c][d] = std::lround((network.X(network.cells.corners[c][0], axes[d]) - lower[axes[d]]) /
+                              (network.cells.edge * network.cells.proportions[axes[d]]));
   std::vector<int> cells = one_by_one(key.size());
   std::stable_sort(cells.begin(), cells.end(), [&](int a, int b) { return key[a] < key[b]; });
   return cells;
@@ -42,7 +42,7 @@ CellOrder::CellOrder(const Network& network, int cells_of_block) : cells(rows_of
     touched[node].last = std::max(touched[node].last, cell / cells_of_block);
   };
   for (std::size_t c = 0; c < cells.size(); ++c)
-    for (const int node : network.cells[cells[c]]) touch(node, static_cast<long>(c));
+    for (const int node : network.cells.corners[cells[c]]) touch(node, static_cast<long>(c));
 
   std::vector<long> cell_of(network.anchors.size());
   for (std::size_t a = 0; a < cell_of.size(); ++a) cell_of[a] = std::max(last_cell[network.anchors[a].corners[0]], 0L);

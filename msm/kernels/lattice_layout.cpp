@@ -13,7 +13,7 @@ using Place = std::array<int, 3>;
 
 /// Integer coordinates of the nodes, counted from the lowest corner; empty if they are not on a lattice.
 std::vector<Place> places_of(const Network& network) {
-  const double edge = network.cell_edge;
+  const double edge = network.cells.edge;
   if (!(edge > 0) || network.nodes() == 0) return {};
   const Eigen::RowVector3d origin = network.X.colwise().minCoeff();
   std::vector<Place> places(network.nodes());
@@ -41,14 +41,14 @@ bool springs_fit(const Network& network, const std::vector<Place>& places) {
       if (step > 1) return false;
       square += step;
     }
-    if (square == 0 || std::abs(s.rest_length - network.cell_edge * std::sqrt(double(square))) > 1e-9 * s.rest_length)
+    if (square == 0 || std::abs(s.rest_length - network.cells.edge * std::sqrt(double(square))) > 1e-9 * s.rest_length)
       return false;
   }
   return true;
 }
 
 bool cells_fit(const Network& network, const std::vector<Place>& places) {
-  for (const Hexahedron& cell : network.cells)
+  for (const Hexahedron& cell : network.cells.corners)
     for (int n = 0; n < 8; ++n)
       for (int d = 0; d < 3; ++d)
         if (places[cell[n]][d] - places[cell[0]][d] != hexahedron_corners[n][d] - hexahedron_corners[0][d])
@@ -70,7 +70,7 @@ bool laws_fit(const MassSpringModel& model) {
     kinds.push_back(law.index());
   }
   if (const auto* averaged = law_of<AveragedSprings>(model))
-    return model.laws.size() == 1 && model.network.filled.empty() && averaged->shift == 0 &&
+    return model.laws.size() == 1 && !model.network.cells.cut() && averaged->shift == 0 &&
            lattice_curve(averaged->curve) != LatticeCurve::none;
   const MomentumDispersion* dispersion = dispersion_of(model);
   if (!dispersion) return true;
@@ -157,15 +157,15 @@ BlockCoefficients spring_coefficients(const MassSpringModel& model, const Lattic
   const bool has_springs = law_of<Springs>(model) != nullptr;
   for (const Spring& s : network.springs) {
     const PlaceOfSpring p = place_of(s, l);
-    if (has_springs) c.at(p.slot, p.direction) += s.stiffness * network.cell_edge;
+    if (has_springs) c.at(p.slot, p.direction) += s.stiffness * network.cells.edge;
   }
   const auto* volume = law_of<VolumeCorrection>(model);
   const bool hourglass = viscous || law_of<HourglassCorrection>(model) || law_of<AveragedSprings>(model);
   if (!volume && !hourglass) return c;
-  for (const Hexahedron& cell : network.cells) {
+  for (const Hexahedron& cell : network.cells.corners) {
     int low = l.slot[cell[0]];
     for (int n : cell) low = std::min(low, l.slot[n]);
-    if (volume) c.at(low, kappa_coefficient) += volume->kappa * network.cell_edge * network.cell_edge;
+    if (volume) c.at(low, kappa_coefficient) += volume->kappa * network.cells.edge * network.cells.edge;
     if (hourglass) c.at(low, hourglass_coefficient) = 1;
   }
   return c;
@@ -188,7 +188,7 @@ BlockCoefficients flow_coefficients_of(const std::vector<std::array<double, 2>>&
 void add_flows(const MomentumDispersion& law, const Network& network, LatticeLayout& l) {
   MomentumDispersion::Coefficients c = law.coefficients(network);
   for (auto& ends : c.in)
-    for (double& in : ends) in *= network.cell_edge;  // of elongations in edges
+    for (double& in : ends) in *= network.cells.edge;  // of elongations in edges
   if (law.conservative()) {
     for (std::size_t n = 0; n < c.in.size(); ++n)
       for (int end = 0; end < 2; ++end)
@@ -287,7 +287,9 @@ LatticeCurve lattice_curve(StrainCurve curve) {
 
 bool is_lattice_of_springs(const MassSpringModel& model) {
   const Network& network = model.network;
-  if (!network.image_of.empty() || !network.triangles.empty() || network.has_boxes() || !laws_fit(model)) return false;
+  if (!network.image_of.empty() || !network.triangles.empty() || network.cells.kind() == CellKind::boxes ||
+      !laws_fit(model))
+    return false;
   const std::vector<Place> places = places_of(network);
   if (places.empty() || !springs_fit(network, places) || !cells_fit(network, places) || !one_node_per_place(places))
     return false;

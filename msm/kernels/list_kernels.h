@@ -118,7 +118,7 @@ struct CellList {
   LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
   bool boxes = false;                   ///< full cells that are no cubes: l that of the cube of their volume, rho p_i^2
-  Real proportions[3] = {1, 1, 1};      ///< Network::proportions
+  Real proportions[3] = {1, 1, 1};      ///< CellSet::proportions
   Real per_proportion[3] = {1, 1, 1};
 };
 

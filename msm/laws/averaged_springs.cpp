@@ -42,22 +42,21 @@ const Pattern& patterns() {
 }
 
 /// 12 S_i, in the square of the cell's edge.
-Vec3 second_moments(const FilledPart& part, const Vec3& proportions) {
-  const Vec3 rho = (12 * part.variance).cwiseMax(AveragedSprings::least_variance);
-  return rho.cwiseProduct(proportions.cwiseAbs2());
+Vec3 second_moments(const CellShape& cell) {
+  const Vec3 rho = (12 * cell.part.variance).cwiseMax(AveragedSprings::least_variance);
+  return rho.cwiseProduct(cell.proportions.cwiseAbs2());
 }
 
 /// Quadratic form of 3 * pattern + axis, the stiffness of a cell's hourglass springs [N/m].
-HourglassMatrix hourglass_matrix(const AveragedSprings& law, double l, const FilledPart& part,
-                                 const Vec3& proportions) {
+HourglassMatrix hourglass_matrix(const AveragedSprings& law, const CellShape& cell) {
   const auto third = [](int axis) -> HourglassRow { return HourglassRow::Unit(9 + axis); };
   // At the centroid: second differences of the trilinear field vary along the third axis.
   const auto second = [&](int p, int q, int axis) -> HourglassRow {
     const int r = 3 - p - q;
-    return proportions[r] * (HourglassRow::Unit(3 * r + axis) + part.mean[r] * third(axis));
+    return cell.proportions[r] * (HourglassRow::Unit(3 * r + axis) + cell.part.mean[r] * third(axis));
   };
-  const Vec3 rho = second_moments(part, proportions);
-  const double unit = part.fraction * law.shear_modulus * l / 2;
+  const Vec3 rho = second_moments(cell);
+  const double unit = cell.part.fraction * law.shear_modulus * cell.edge / 2;
   HourglassMatrix D = HourglassMatrix::Zero();
   for (int y = 0; y < 3; ++y) {  // the normal of the neutral plane
     const int z = (y + 1) % 3, x = (y + 2) % 3;
@@ -82,12 +81,12 @@ using Corners = Eigen::Matrix<double, 3, 8>;
 using InPatterns = Eigen::Matrix<double, 3, 4>;  // a vector per pattern
 
 /// The product of hourglass_matrix() with v [N], without the matrix.
-InPatterns hourglass_forces(const AveragedSprings& law, double l, const FilledPart& part, const Vec3& proportions,
-                            const InPatterns& v) {
+InPatterns hourglass_forces(const AveragedSprings& law, const CellShape& cell, const InPatterns& v) {
   const HourglassStiffness& k = law.hourglass;
-  const Eigen::Matrix3d at_centroid = (v.leftCols<3>() + v.col(3) * part.mean.transpose()) * proportions.asDiagonal();
+  const Vec3 &mean = cell.part.mean, &proportions = cell.proportions;
+  const Eigen::Matrix3d at_centroid = (v.leftCols<3>() + v.col(3) * mean.transpose()) * proportions.asDiagonal();
   const auto H = [&](int pattern, int axis) { return at_centroid(axis, pattern); };
-  const Vec3 rho = second_moments(part, proportions);
+  const Vec3 rho = second_moments(cell);
   InPatterns w;
   for (int y = 0; y < 3; ++y) {
     const int z = (y + 1) % 3, x = (y + 2) % 3;
@@ -98,22 +97,24 @@ InPatterns hourglass_forces(const AveragedSprings& law, double l, const FilledPa
     w(y, 3) = k.warping / 4 * (0.3 * rho[z] * rho[x] + rho[y] * (rho[z] + rho[x])) / 2.3 * v(y, 3);
   }
   w.leftCols<3>() *= proportions.asDiagonal();
-  w.col(3) += w.leftCols<3>() * part.mean;
-  return part.fraction * law.shear_modulus * l / 2 * w;
+  w.col(3) += w.leftCols<3>() * mean;
+  return cell.part.fraction * law.shear_modulus * cell.edge / 2 * w;
+}
+
+Corners gradient_of(const CellShape& cell) {
+  const std::array<Vec3, 8> g = mean_gradients(cell);
+  Corners gradient;
+  for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
+  return gradient;
 }
 
 /// What the forces of a cell depend on beside the positions of its corners.
-struct CellShape {
-  FilledPart part;
-  Vec3 proportions;
-  double edge, volume;
+struct CellAtRest {
+  CellShape shape;
+  double volume;     ///< of the filled part [m^3]
   Corners gradient;  ///< mean gradients of the corners' weights [1/m]
 
-  CellShape(double l, const FilledPart& filled, const Vec3& of_box)
-      : part(filled), proportions(of_box), edge(l), volume(filled.fraction * l * l * l) {
-    const std::array<Vec3, 8> g = mean_gradients(l, filled, of_box);
-    for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
-  }
+  explicit CellAtRest(const CellShape& of) : shape(of), volume(of.volume()), gradient(gradient_of(of)) {}
 };
 
 Corners corners_of(const Hexahedron& cell, const NodalVectors& x) {
@@ -130,11 +131,11 @@ struct Deformed {
   InPatterns w;         ///< derivative of the hourglass energy to v [N]
   StrainEnergy strain;  ///< per unit of volume
 
-  Deformed(const AveragedSprings& law, const CellShape& shape, const Corners& x, Derivative up_to)
-      : F(x * shape.gradient.transpose()),
+  Deformed(const AveragedSprings& law, const CellAtRest& cell, const Corners& x, Derivative up_to)
+      : F(x * cell.gradient.transpose()),
         q(x * patterns()),
         v(F.transpose() * q),
-        w(hourglass_forces(law, shape.edge, shape.part, shape.proportions, v)) {
+        w(hourglass_forces(law, cell.shape, v)) {
     if (F.determinant() <= 0) {
       strain.value = std::numeric_limits<double>::infinity();
       strain.stress.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -165,44 +166,39 @@ CellMatrix tangent_of(const CellForm& form, const Deformed& s) {
   return K;
 }
 
-/// Calls act(cell, make(its edge, its filled part)); that of full cells of one size is made once.
+/// Calls act(corners, make(shape)) for each cell; that of full cells of one size is made once.
 template <class Make, class Act>
-void for_each_cell(const Network& network, const Make& make, const Act& act) {
-  std::map<double, decltype(make(1.0, FilledPart{}))> full;
+void for_each_cell(const CellSet& cells, const Make& make, const Act& act) {
+  std::map<double, decltype(make(CellShape{}))> full;
   auto last = full.end();
-  for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart& part = filled_part(network, c);
-    const double edge = network.edge(c);
-    if (part.fraction != 1) {
-      act(network.cells[c], make(edge, part));
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (!cells.is_full(c)) {
+      act(cells.corners[c], make(cells.shape(c)));
       continue;
     }
+    const double edge = cells.edge_of(c);
     if (last == full.end() || last->first != edge) last = full.find(edge);
-    if (last == full.end()) last = full.emplace(edge, make(edge, part)).first;
-    act(network.cells[c], last->second);
+    if (last == full.end()) last = full.emplace(edge, make(cells.shape(c))).first;
+    act(cells.corners[c], last->second);
   }
 }
 
 template <class Act>
-void for_each_shape(const Network& network, const Act& act) {
+void for_each_at_rest(const CellSet& cells, const Act& act) {
   for_each_cell(
-      network, [&](double edge, const FilledPart& part) { return CellShape(edge, part, network.proportions); }, act);
+      cells, [](const CellShape& cell) { return CellAtRest(cell); }, act);
 }
 
 template <class Act>
-void for_each_stiffness(const AveragedSprings& law, const Network& network, const Act& act) {
+void for_each_stiffness(const AveragedSprings& law, const CellSet& cells, const Act& act) {
   for_each_cell(
-      network, [&](double edge, const FilledPart& part) { return law.cell_matrix(edge, part, network.proportions); },
-      act);
+      cells, [&](const CellShape& cell) { return law.cell_matrix(cell); }, act);
 }
 
 }  // namespace
 
-CellForm cell_form(const AveragedSprings& law, double l, const FilledPart& part, const Vec3& proportions) {
-  CellForm form{part.fraction * l * l * l, {}, hourglass_matrix(law, l, part, proportions)};
-  const std::array<Vec3, 8> g = mean_gradients(l, part, proportions);
-  for (int n = 0; n < 8; ++n) form.gradient.col(n) = g[n];
-  return form;
+CellForm cell_form(const AveragedSprings& law, const CellShape& cell) {
+  return {cell.volume(), gradient_of(cell), hourglass_matrix(law, cell)};
 }
 
 const Eigen::Matrix<double, 8, 4>& corner_patterns() { return patterns(); }
@@ -224,15 +220,14 @@ HourglassStiffness HourglassStiffness::of_pattern(double face_to_cube, double nu
   return k;
 }
 
-Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(double l, const FilledPart& part,
-                                                           const Vec3& proportions) const {
-  const double G = shear_modulus, alpha = part.fraction, volume = alpha * l * l * l;
+Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(const CellShape& cell) const {
+  const double G = shear_modulus, l = cell.edge, volume = cell.volume();
   const double bulk = lame_lambda + 2 * G / 3;
-  const Vec3& c = part.mean;
+  const Vec3& c = cell.part.mean;
   const auto H = second_difference;
 
   // Strain of the mean gradient; for the deviator shifted by assumed second derivatives q_i = d2u / dxi_i^2.
-  const std::array<Vec3, 8> g = mean_gradients(l, part, proportions);
+  const std::array<Vec3, 8> g = mean_gradients(cell);
   Row normal[3], shear[3], trace = Row::Zero();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -263,63 +258,63 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(double l, const Fille
   for (int n = 0; n < 8; ++n)
     for (int m = 0; m < 4; ++m)
       for (int i = 0; i < 3; ++i) of_patterns(3 * m + i, 3 * n + i) = patterns()(n, m);
-  K += of_patterns.transpose() * hourglass_matrix(*this, l, part, proportions) * of_patterns;
+  K += of_patterns.transpose() * hourglass_matrix(*this, cell) * of_patterns;
   return K;
 }
 
 double AveragedSprings::energy(const Network& network, const NodalVectors& x) const {
   double sum = 0;
   if (shift > 0)
-    for_each_stiffness(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
+    for_each_stiffness(*this, network.cells, [&](const Hexahedron& cell, const CellMatrix& K) {
       const CellVector u = displacement_of(cell, network, x);
       sum += 0.5 * u.dot(K * u);
     });
   else
-    for_each_shape(network, [&](const Hexahedron& cell, const CellShape& shape) {
-      const Deformed s(*this, shape, corners_of(cell, x), Derivative::none);
-      sum += shape.volume * s.strain.value + 0.5 * s.v.cwiseProduct(s.w).sum();
+    for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
+      const Deformed s(*this, cell, corners_of(corners, x), Derivative::none);
+      sum += cell.volume * s.strain.value + 0.5 * s.v.cwiseProduct(s.w).sum();
     });
   return sum;
 }
 
 void AveragedSprings::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
   if (shift > 0)
-    for_each_stiffness(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
+    for_each_stiffness(*this, network.cells, [&](const Hexahedron& cell, const CellMatrix& K) {
       const CellVector force = K * displacement_of(cell, network, x);
       for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
     });
   else
-    for_each_shape(network, [&](const Hexahedron& cell, const CellShape& shape) {
-      const Deformed s(*this, shape, corners_of(cell, x), Derivative::first);
-      const Eigen::Matrix3d stress = shape.volume * s.strain.stress + s.q * s.w.transpose();
+    for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
+      const Deformed s(*this, cell, corners_of(corners, x), Derivative::first);
+      const Eigen::Matrix3d stress = cell.volume * s.strain.stress + s.q * s.w.transpose();
       const InPatterns of_patterns = s.F * s.w;
-      const Corners gradient = stress * shape.gradient + of_patterns * patterns().transpose();
-      for (int n = 0; n < 8; ++n) f.row(cell[n]) -= gradient.col(n).transpose();
+      const Corners gradient = stress * cell.gradient + of_patterns * patterns().transpose();
+      for (int n = 0; n < 8; ++n) f.row(corners[n]) -= gradient.col(n).transpose();
     });
 }
 
 void AveragedSprings::add_viscous_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
                                          double time, NodalVectors& f) const {
   if (shift > 0)
-    return for_each_stiffness(*this, network, [&](const Hexahedron& cell, const CellMatrix& K) {
+    return for_each_stiffness(*this, network.cells, [&](const Hexahedron& cell, const CellMatrix& K) {
       const Corners rate = corners_of(cell, v);
       const CellVector force = time * K * Eigen::Map<const CellVector>(rate.data());
       for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
     });
-  for_each_shape(network, [&](const Hexahedron& cell, const CellShape& shape) {
-    const Corners at = corners_of(cell, x), rate = corners_of(cell, v);
-    const Eigen::Matrix3d F = at * shape.gradient.transpose(), F_rate = rate * shape.gradient.transpose();
+  for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
+    const Corners at = corners_of(corners, x), rate = corners_of(corners, v);
+    const Eigen::Matrix3d F = at * cell.gradient.transpose(), F_rate = rate * cell.gradient.transpose();
     const Eigen::Matrix3d twice = F.transpose() * F_rate + F_rate.transpose() * F;  // 2 E'
     const Eigen::Matrix3d inverse = F.inverse();
     const Eigen::Matrix3d P =
         shear_modulus * F * twice + lame_lambda * (F_rate * inverse).trace() * inverse.transpose();
     const InPatterns q = at * patterns();
-    const InPatterns w = hourglass_forces(*this, shape.edge, shape.part, shape.proportions,
-                                          F_rate.transpose() * q + F.transpose() * (rate * patterns()));
-    const Eigen::Matrix3d stress = time * (shape.volume * P + q * w.transpose());
+    const InPatterns w =
+        hourglass_forces(*this, cell.shape, F_rate.transpose() * q + F.transpose() * (rate * patterns()));
+    const Eigen::Matrix3d stress = time * (cell.volume * P + q * w.transpose());
     const InPatterns of_patterns = time * F * w;
-    const Corners force = stress * shape.gradient + of_patterns * patterns().transpose();
-    for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.col(n).transpose();
+    const Corners force = stress * cell.gradient + of_patterns * patterns().transpose();
+    for (int n = 0; n < 8; ++n) f.row(corners[n]) -= force.col(n).transpose();
   });
 }
 
@@ -329,16 +324,12 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
       for (int n = 0; n < 8; ++n) K.add(cell[m], cell[n], cell_K.block<3, 3>(3 * m, 3 * n));
   };
   if (shift > 0)
-    for_each_stiffness(*this, network, add);
+    for_each_stiffness(*this, network.cells, add);
   else
     for_each_cell(
-        network,
-        [&](double edge, const FilledPart& part) {
-          return std::pair(cell_form(*this, edge, part, network.proportions),
-                           CellShape(edge, part, network.proportions));
-        },
-        [&](const Hexahedron& cell, const auto& of) {
-          add(cell, tangent_of(of.first, Deformed(*this, of.second, corners_of(cell, x), Derivative::second)));
+        network.cells, [&](const CellShape& cell) { return std::pair(cell_form(*this, cell), CellAtRest(cell)); },
+        [&](const Hexahedron& corners, const auto& of) {
+          add(corners, tangent_of(of.first, Deformed(*this, of.second, corners_of(corners, x), Derivative::second)));
         });
 }
 

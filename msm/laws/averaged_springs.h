@@ -30,9 +30,9 @@ struct HourglassStiffness {
 /// the patterns of corner positions that F does not see (covariant frame: F rotates the form with the cell), times
 /// alpha and the second moments of that part (12 S_i, at least `least_variance`).  Uniform strain is exact in a body of
 /// cut cells, at any size, and so is, for circular and rectangular sections, the bending and torsional stiffness of the
-/// section; no constant is negative for -1 < nu < 1/2.  Cells: Network::cells and Network::filled.
+/// section; no constant is negative for -1 < nu < 1/2.
 ///
-/// Boxes: edges h_i = l p_i, p = Network::proportions of product one, so that V = l^3.  The springs' directions are
+/// Boxes: edges h_i = l p_i, p = CellShape::proportions of product one, so that V = l^3.  The springs' directions are
 /// those of a cube, so their part of the energy is the same function of F.  That of the patterns is the energy of the
 /// same fields: curvatures and twists H_pq of xi_p xi_q are second derivatives H_pq / (l^2 p_p p_q), and an energy of
 /// strains linear in X_i has the second moment V l^2 p_i^2 / 12.  Bending u_x = kappa x y: V E / (1 - nu^2) kappa^2
@@ -80,12 +80,8 @@ struct AveragedSprings {
   void add_viscous_forces(const Network& network, const NodalVectors& x, const NodalVectors& v, double time,
                           NodalVectors& f) const;
 
-  /// Stiffness of a cell of edge l at rest [N/m]; unknown 3 * corner + axis.
-  /// @param edge l [m]
-  /// @param part that the body fills
-  /// @param proportions Network::proportions
-  Eigen::Matrix<double, 24, 24> cell_matrix(double edge, const FilledPart& part,
-                                            const Vec3& proportions = Vec3::Ones()) const;
+  /// Stiffness of a cell at rest [N/m]; unknown 3 * corner + axis.
+  Eigen::Matrix<double, 24, 24> cell_matrix(const CellShape& cell) const;
 };
 
 /// What the energy of a cell depends on beside the positions of its corners.
@@ -94,8 +90,8 @@ struct CellForm {
   Eigen::Matrix<double, 3, 8> gradient;     ///< mean gradients of the corners' weights [1/m]
   Eigen::Matrix<double, 12, 12> hourglass;  ///< quadratic form of v, 3 * pattern + axis [N/m]
 };
-/// The form of a cell of edge l [m] of which the body fills `part`, of Network::proportions.
-CellForm cell_form(const AveragedSprings& law, double edge, const FilledPart& part, const Vec3& proportions);
+/// The form of a cell.
+CellForm cell_form(const AveragedSprings& law, const CellShape& cell);
 
 /// The four patterns of corner positions that F does not see: q = (positions of the corners, 3 x 8) times this.
 const Eigen::Matrix<double, 8, 4>& corner_patterns();

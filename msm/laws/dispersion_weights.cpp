@@ -139,7 +139,7 @@ std::vector<double> edge_weights(const Network& network, double unit) {
   std::vector<double> w;
   double sum = 0;
   for (const Spring& s : network.springs) {
-    const double k = s.rest_length < 1.1 * network.cell_edge ? s.stiffness : 0;
+    const double k = s.rest_length < 1.1 * network.cells.edge ? s.stiffness : 0;
     w.insert(w.end(), 2, k);
     sum += 2 * k * s.rest_length;
   }

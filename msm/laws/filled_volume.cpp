@@ -8,10 +8,6 @@ namespace {
 
 using Gradients = std::array<Vec3, 8>;
 
-Gradients gradients_of(const Network& network, std::size_t cell) {
-  return mean_gradients(network.edge(cell), filled_part(network, cell), network.proportions);
-}
-
 Eigen::Matrix3d sum_of(const Hexahedron& cell, const Gradients& g, const NodalVectors& field) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int n = 0; n < 8; ++n) sum += field.row(cell[n]).transpose() * g[n].transpose();
@@ -20,41 +16,37 @@ Eigen::Matrix3d sum_of(const Hexahedron& cell, const Gradients& g, const NodalVe
 
 }  // namespace
 
-const FilledPart& filled_part(const Network& network, std::size_t cell) {
-  static const FilledPart full;
-  return network.filled.empty() ? full : network.filled[cell];
-}
-
 double filled_volume(const Network& network, std::size_t cell) {
-  return filled_part(network, cell).fraction * std::pow(network.edge(cell), 3);
+  return network.cells.part(cell).fraction * std::pow(network.cells.edge_of(cell), 3);
 }
 
-std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part, const Vec3& proportions) {
+std::array<Vec3, 8> mean_gradients(const CellShape& cell) {
+  const FilledPart& part = cell.part;
   Gradients g;
   for (int n = 0; n < 8; ++n)
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
       const double sj = corner_side(n, j), sk = corner_side(n, k);
-      g[n][i] = corner_side(n, i) / (edge * proportions[i]) *
+      g[n][i] = corner_side(n, i) / (cell.edge * cell.proportions[i]) *
                 (0.25 + (sj * part.mean[j] + sk * part.mean[k]) / 2 + sj * sk * part.mixed[i]);
     }
   return g;
 }
 
 Eigen::Matrix3d mean_gradient(const Network& network, std::size_t cell, const NodalVectors& field) {
-  return sum_of(network.cells[cell], gradients_of(network, cell), field);
+  return sum_of(network.cells.corners[cell], mean_gradients(network.cells.shape(cell)), field);
 }
 
-Eigen::Matrix<double, 24, 1> volume_gradient(double edge, const FilledPart& part) {
-  const Gradients g = mean_gradients(edge, part);
+Eigen::Matrix<double, 24, 1> volume_gradient(const CellShape& cell) {
+  const Gradients g = mean_gradients(cell);
   Eigen::Matrix<double, 24, 1> b;
-  for (int n = 0; n < 8; ++n) b.segment<3>(3 * n) = part.fraction * edge * edge * edge * g[n];
+  for (int n = 0; n < 8; ++n) b.segment<3>(3 * n) = cell.volume() * g[n];
   return b;
 }
 
 CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVectors& x) {
-  const Gradients g = gradients_of(network, cell);
-  const Eigen::Matrix3d F = sum_of(network.cells[cell], g, x);
+  const Gradients g = mean_gradients(network.cells.shape(cell));
+  const Eigen::Matrix3d F = sum_of(network.cells.corners[cell], g, x);
   Eigen::Matrix3d cofactor;
   for (int i = 0; i < 3; ++i) cofactor.col(i) = F.col((i + 1) % 3).cross(F.col((i + 2) % 3));
   const double volume = filled_volume(network, cell);
@@ -65,8 +57,8 @@ CellVolume cell_volume(const Network& network, std::size_t cell, const NodalVect
 
 void add_volume_curvature(const Network& network, std::size_t cell, const NodalVectors& x, double pressure,
                           BlockMatrix& K) {
-  const Hexahedron& corners = network.cells[cell];
-  const Gradients g = gradients_of(network, cell);
+  const Hexahedron& corners = network.cells.corners[cell];
+  const Gradients g = mean_gradients(network.cells.shape(cell));
   const Eigen::Matrix3d F = sum_of(corners, g, x);
   const double scale = pressure * filled_volume(network, cell);
   for (int m = 0; m < 8; ++m)
@@ -76,11 +68,12 @@ void add_volume_curvature(const Network& network, std::size_t cell, const NodalV
 VolumeChange volume_change(const Network& network, const NodalVectors& u) {
   double volume = 0;
   VolumeChange change{0, 0};
-  const Gradients of_full = mean_gradients(network.cell_edge, {}, network.proportions);
+  const Gradients of_full = mean_gradients(network.cells.full());
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const bool known = filled_part(network, c).fraction == 1 && network.edge(c) == network.cell_edge;
+    const bool known = network.cells.is_full(c) && network.cells.edge_of(c) == network.cells.edge;
     const Eigen::Matrix3d F =
-        Eigen::Matrix3d::Identity() + sum_of(network.cells[c], known ? of_full : gradients_of(network, c), u);
+        Eigen::Matrix3d::Identity() +
+        sum_of(network.cells.corners[c], known ? of_full : mean_gradients(network.cells.shape(c)), u);
     const double own = filled_volume(network, c);
     volume += own;
     change.first_order += own * (F.trace() - 3);

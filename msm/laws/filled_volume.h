@@ -18,22 +18,17 @@ inline Eigen::Matrix3d cross_matrix(const Vec3& v) {
   return m;
 }
 
-/// The part of a cell of a network that the body fills: all of it unless the network is cut.
-const FilledPart& filled_part(const Network& network, std::size_t cell);
-/// Its volume [m^3].
-double filled_volume(const Network& network, std::size_t cell);
-
 /// Mean over the filled part of the gradients of the corners' trilinear weights [1/m].
-/// @param edge of the cell [m]; of a box that of the cube of its volume
-/// @param part that the body fills
-/// @param proportions Network::proportions
-std::array<Vec3, 8> mean_gradients(double edge, const FilledPart& part, const Vec3& proportions = Vec3::Ones());
+std::array<Vec3, 8> mean_gradients(const CellShape& cell);
+
+/// Volume of the filled part of cell number `cell` [m^3].
+double filled_volume(const Network& network, std::size_t cell);
 
 /// Mean gradient of a nodal field over the filled part of a cell: of positions, F [1].
 Eigen::Matrix3d mean_gradient(const Network& network, std::size_t cell, const NodalVectors& field);
 
 /// Derivative of the volume of the filled part to the displacement of the corners [m^2]; 3 * corner + axis.
-Eigen::Matrix<double, 24, 1> volume_gradient(double edge, const FilledPart& part);
+Eigen::Matrix<double, 24, 1> volume_gradient(const CellShape& cell);
 
 /// Volume of the filled part by its mean deformation gradient, and its derivatives to the positions of the corners.
 struct CellVolume {

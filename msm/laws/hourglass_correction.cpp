@@ -49,9 +49,9 @@ Eigen::Matrix<double, 24, 24> HourglassCorrection::cell_matrix(double edge) cons
 }
 
 double HourglassCorrection::energy(const Network& network, const NodalVectors& x) const {
-  const auto K = cell_matrix(network.cell_edge);
+  const auto K = cell_matrix(network.cells.edge);
   double sum = 0;
-  for (const Hexahedron& cell : network.cells) {
+  for (const Hexahedron& cell : network.cells.corners) {
     const CellVector u = displacement_of(cell, network, x);
     sum += 0.5 * u.dot(K * u);
   }
@@ -59,16 +59,16 @@ double HourglassCorrection::energy(const Network& network, const NodalVectors& x
 }
 
 void HourglassCorrection::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
-  const auto K = cell_matrix(network.cell_edge);
-  for (const Hexahedron& cell : network.cells) {
+  const auto K = cell_matrix(network.cells.edge);
+  for (const Hexahedron& cell : network.cells.corners) {
     const CellVector force = K * displacement_of(cell, network, x);
     for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
   }
 }
 
 void HourglassCorrection::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
-  const auto cell_K = cell_matrix(network.cell_edge);
-  for (const Hexahedron& cell : network.cells)
+  const auto cell_K = cell_matrix(network.cells.edge);
+  for (const Hexahedron& cell : network.cells.corners)
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) K.add(cell[m], cell[n], cell_K.block<3, 3>(3 * m, 3 * n));
 }

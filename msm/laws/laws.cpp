@@ -7,9 +7,9 @@ namespace {
 
 /// Positions with carried nodes where they are carried to.
 const NodalVectors& carried_along(const Network& network, const NodalVectors& x, NodalVectors& copy) {
-  if (network.carried.empty()) return x;
+  if (network.cells.carried.empty()) return x;
   copy = x;
-  carry(network.carried, copy);
+  carry(network.cells.carried, copy);
   return copy;
 }
 
@@ -29,7 +29,7 @@ NodalVectors forces(const MassSpringModel& model, const NodalVectors& x) {
   NodalVectors copy;
   const NodalVectors& at = carried_along(model.network, x, copy);
   for (const ForceLaw& law : model.laws) std::visit([&](const auto& l) { l.add_forces(model.network, at, f); }, law);
-  hand_back(model.network.carried, f);
+  hand_back(model.network.cells.carried, f);
   return f;
 }
 

@@ -17,12 +17,13 @@ constexpr double least_volume = 1e-3;  // det B over that of an isotropic B of t
 /// Those of a lattice of cells; of other networks all directions alike.
 std::vector<SpringDirection> directions_of(const Network& network) {
   const auto all = spring_directions();
-  if (network.cell_springs.empty()) return {all.begin(), all.end()};
+  if (network.cells.springs.empty()) return {all.begin(), all.end()};
   std::vector<SpringDirection> own;
   double sum = 0;
-  for (const Spring& s : network.cell_springs) {
-    const Vec3 n =
-        (network.X.row(network.cells[0][s.j]) - network.X.row(network.cells[0][s.i])).transpose().normalized();
+  for (const Spring& s : network.cells.springs) {
+    const Vec3 n = (network.X.row(network.cells.corners[0][s.j]) - network.X.row(network.cells.corners[0][s.i]))
+                       .transpose()
+                       .normalized();
     const double weight = s.stiffness * s.rest_length * s.rest_length;
     sum += weight;
     const auto same =

@@ -34,9 +34,9 @@ MeanEdgeVolume mean_edge_volume(const Hexahedron& cell, const NodalVectors& x) {
 }
 
 double VolumeCorrection::energy(const Network& network, const NodalVectors& x) const {
-  const double V = network.cell_volume();
+  const double V = network.cells.volume();
   double sum = 0;
-  for (const Hexahedron& cell : network.cells) {
+  for (const Hexahedron& cell : network.cells.corners) {
     const double J = mean_edge_volume(cell, x).value / V;
     if (J <= 0 && form == VolumeEnergy::bounded) return std::numeric_limits<double>::infinity();
     sum += V * kappa * volume_density(form, J).value;
@@ -45,8 +45,8 @@ double VolumeCorrection::energy(const Network& network, const NodalVectors& x) c
 }
 
 void VolumeCorrection::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
-  const double V = network.cell_volume();
-  for (const Hexahedron& cell : network.cells) {
+  const double V = network.cells.volume();
+  for (const Hexahedron& cell : network.cells.corners) {
     const MeanEdgeVolume v = mean_edge_volume(cell, x);
     const double pressure = kappa * volume_density(form, v.value / V).slope;
     for (int n = 0; n < 8; ++n) f.row(cell[n]) -= pressure * v.gradient.row(n);
@@ -54,8 +54,8 @@ void VolumeCorrection::add_forces(const Network& network, const NodalVectors& x,
 }
 
 void VolumeCorrection::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
-  const double V = network.cell_volume();
-  for (const Hexahedron& cell : network.cells) {
+  const double V = network.cells.volume();
+  for (const Hexahedron& cell : network.cells.corners) {
     const MeanEdgeVolume v = mean_edge_volume(cell, x);
     const VolumeDensity d = volume_density(form, v.value / V);
     for (int m = 0; m < 8; ++m)

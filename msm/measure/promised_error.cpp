@@ -41,18 +41,18 @@ Strains nodal_strains(const Network& network, const Strains& of_cells) {
   Strains sum = Strains::Zero(network.nodes(), 9);
   Eigen::VectorXd volume = Eigen::VectorXd::Zero(network.nodes());
   for (std::size_t c = 0; c < network.cells.size(); ++c)
-    for (const int n : network.cells[c]) {
+    for (const int n : network.cells.corners[c]) {
       sum.row(n) += filled_volume(network, c) * of_cells.row(static_cast<Eigen::Index>(c));
       volume[n] += filled_volume(network, c);
     }
-  for (auto p = network.carried.rbegin(); p != network.carried.rend(); ++p)
+  for (auto p = network.cells.carried.rbegin(); p != network.cells.carried.rend(); ++p)
     for (const int n : p->by) {
       sum.row(n) += sum.row(p->point) / static_cast<double>(p->by.size());
       volume[n] += volume[p->point] / static_cast<double>(p->by.size());
     }
   for (int n = 0; n < network.nodes(); ++n)
     if (volume[n] > 0) sum.row(n) /= volume[n];
-  for (const CarriedPoint& p : network.carried) {
+  for (const CarriedPoint& p : network.cells.carried) {
     sum.row(p.point).setZero();
     for (const int n : p.by) sum.row(p.point) += sum.row(n) / static_cast<double>(p.by.size());
   }
@@ -62,7 +62,7 @@ Strains nodal_strains(const Network& network, const Strains& of_cells) {
 /// Energy of the anchors of each cell.
 std::vector<double> anchor_energies(const Network& network, const NodalVectors& u) {
   std::map<Hexahedron, std::size_t> cell_of;
-  for (std::size_t c = 0; c < network.cells.size(); ++c) cell_of[network.cells[c]] = c;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) cell_of[network.cells.corners[c]] = c;
   std::vector<double> energies(network.cells.size());
   for (const Anchor& anchor : network.anchors) {
     Eigen::RowVector3d gap = -u.row(anchor.node);
@@ -107,7 +107,7 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
   energies.anchors = anchor_energies(network, u);
   energies.elastic = sum_of(energies.anchors);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart& part = filled_part(network, c);
+    const FilledPart& part = network.cells.part(c);
     double mean = 0;  // over eight points with the moments of the filled part along each axis
     for (int point = 0; point < 8; ++point) {
       Eigen::Matrix<double, 1, 9> difference = -of_cells.row(static_cast<Eigen::Index>(c));
@@ -117,14 +117,14 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
           const double xi = part.mean[d] + corner_side(point, d) * std::sqrt(part.variance[d]);
           weight *= 0.5 + corner_side(n, d) * xi;
         }
-        difference += weight * of_nodes.row(network.cells[c][n]);
+        difference += weight * of_nodes.row(network.cells.corners[c][n]);
       }
       mean += energy_density(*law, as_matrix(difference)) / 8;
     }
     energies.error.push_back(filled_volume(network, c) * mean);
     Eigen::Matrix<double, 24, 1> of_corners;
-    for (int n = 0; n < 8; ++n) of_corners.segment<3>(3 * n) = u.row(network.cells[c][n]).transpose();
-    energies.elastic += of_corners.dot(law->cell_matrix(network.edge(c), part, network.proportions) * of_corners) / 2;
+    for (int n = 0; n < 8; ++n) of_corners.segment<3>(3 * n) = u.row(network.cells.corners[c][n]).transpose();
+    energies.elastic += of_corners.dot(law->cell_matrix(network.cells.shape(c)) * of_corners) / 2;
   }
   return energies;
 }

@@ -60,7 +60,7 @@ class Path {
         sides_(sides),
         G_(shear_modulus(m)),
         round_off_(1e-13 * bulk_modulus(m)),
-        unit_(G_ * model.network.cell_edge) {}
+        unit_(G_ * model.network.cells.edge) {}
 
   /// The wave that grows at this strain (k = 0: no state, or one that gives way sideways); empty: it is stable.
   std::optional<Vec3> lost_at(double strain) {
@@ -101,7 +101,7 @@ class Path {
       x[3 * n] = hexahedron_corners[n][0];
       y[3 * n + 1] = hexahedron_corners[n][1];
     }
-    const double l = model_.network.cell_edge;
+    const double l = model_.network.cells.edge;
     return {x.dot(cell.tangent * x) / l, x.dot(cell.tangent * y) / l};
   }
 

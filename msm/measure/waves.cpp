@@ -14,7 +14,7 @@ using std::numbers::pi;
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
 
 CellMatrix stiffness_of_cell(const MassSpringModel& model) {
-  if (!consists_of_cells(model) || model.network.has_boxes())
+  if (!consists_of_cells(model) || model.network.cells.kind() == CellKind::boxes)
     throw std::invalid_argument("plane waves are those of a lattice of cubes");
   return cell_stiffness(model).total;
 }
@@ -72,7 +72,7 @@ void take_larger(double error, double& worst) {
 
 WaveErrors wave_errors(const MassSpringModel& model, double G, double lambda, double cells, double consistent) {
   const CellMatrix cell = stiffness_of_cell(model);
-  const double l = model.network.cell_edge, wave = 2 * pi / cells;
+  const double l = model.network.cells.edge, wave = 2 * pi / cells;
   WaveErrors worst{};
   for (const Vec3& n : directions_of_sector()) {
     const Vec3 k = wave * n;
@@ -104,7 +104,7 @@ SoftestWave softest_wave(const MassSpringModel& model, double G) {
         const Vec3 at = Vec3(i, j, k) / fineness;
         if (at.norm() < 0.5) continue;
         const double least = Solver(symbol(cell, pi * at), Eigen::EigenvaluesOnly).eigenvalues()[0];
-        if (const double stiffness = least / (G * model.network.cell_edge); stiffness < softest.stiffness)
+        if (const double stiffness = least / (G * model.network.cells.edge); stiffness < softest.stiffness)
           softest = {stiffness, at};
       }
   return softest;

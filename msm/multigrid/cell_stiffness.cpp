@@ -11,14 +11,14 @@ MassSpringModel one_cell(const MassSpringModel& model) {
   MassSpringModel cell;
   for (const ForceLaw& law : model.laws)
     if (traits(law).reach != Reach::second_neighbours) cell.laws.push_back(law);
-  cell.network.cell_edge = model.network.cell_edge;
-  cell.network.proportions = model.network.proportions;
-  cell.network.springs = model.network.cell_springs;
+  cell.network.cells.edge = model.network.cells.edge;
+  cell.network.cells.proportions = model.network.cells.proportions;
+  cell.network.springs = model.network.cells.springs;
   cell.network.X.resize(8, 3);
   for (int n = 0; n < 8; ++n)
     for (int d = 0; d < 3; ++d)
-      cell.network.X(n, d) = model.network.cell_edge * model.network.proportions[d] * hexahedron_corners[n][d];
-  cell.network.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+      cell.network.X(n, d) = model.network.cells.edge * model.network.cells.proportions[d] * hexahedron_corners[n][d];
+  cell.network.cells.corners = {{0, 1, 2, 3, 4, 5, 6, 7}};
   return cell;
 }
 
@@ -36,8 +36,7 @@ CellMatrix dense(const Tangent& K) {
 
 bool consists_of_cells(const MassSpringModel& model) {
   const auto in_cells = [](const ForceLaw& law) { return traits(law).reach != Reach::second_neighbours; };
-  return model.network.grid && !model.network.cells.empty() &&
-         std::all_of(model.laws.begin(), model.laws.end(), in_cells);
+  return model.network.cells.grid && std::all_of(model.laws.begin(), model.laws.end(), in_cells);
 }
 
 CellStiffness in_units(CellStiffness cell, double G, double edge) {
@@ -53,8 +52,8 @@ CellStiffness cell_stiffness(const MassSpringModel& model) {
   const MassSpringModel cell = one_cell(model);
   CellStiffness s;
   s.total = dense(tangent(cell, cell.network.X));
-  s.volume = cell.network.cell_volume();
-  const MeanEdgeVolume v = mean_edge_volume(cell.network.cells[0], cell.network.X);
+  s.volume = cell.network.cells.volume();
+  const MeanEdgeVolume v = mean_edge_volume(cell.network.cells.corners[0], cell.network.X);
   for (int n = 0; n < 8; ++n) s.volume_gradient.segment<3>(3 * n) = v.gradient.row(n).transpose();
   for (const ForceLaw& law : model.laws)
     if (const auto* correction = std::get_if<VolumeCorrection>(&law)) s.kappa += correction->kappa;
@@ -67,7 +66,7 @@ CellStiffness cell_stiffness(const MassSpringModel& model) {
 StrainedCell strained_cell(const MassSpringModel& model, const Eigen::Matrix3d& F) {
   const MassSpringModel cell = one_cell(model);
   const NodalVectors x = cell.network.X * F.transpose();
-  return {dense(tangent(cell, x)), -forces(cell, x).transpose() * cell.network.X / cell.network.cell_volume()};
+  return {dense(tangent(cell, x)), -forces(cell, x).transpose() * cell.network.X / cell.network.cells.volume()};
 }
 
 }  // namespace springproof

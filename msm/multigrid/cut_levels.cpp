@@ -187,7 +187,7 @@ void CutLevel::prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::
 
 AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns)
     : anchors(network.anchors),
-      carried(network.carried),
+      carried(network.cells.carried),
       fixed(std::move(fixed_unknowns)),
       corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
 
@@ -246,22 +246,22 @@ void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of
 
 std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes) {
   CutLevel finest;
-  finest.edge = network.cell_edge;
-  finest.corners = network.cells;
-  finest.filled = network.filled;
+  finest.edge = network.cells.edge;
+  finest.corners = network.cells.corners;
+  finest.filled = network.cells.filled;
   finest.filled.resize(network.cells.size());  // whole cubes have none
   const Vec3 lower = network.X.topRows(nodes.corners).colwise().minCoeff().transpose();
   for (int n = 0; n < nodes.corners; ++n) {
     std::array<int, 3> at;
     for (int d = 0; d < 3; ++d)
-      at[d] =
-          static_cast<int>(std::lround((network.X(n, d) - lower[d]) / (network.cell_edge * network.proportions[d])));
+      at[d] = static_cast<int>(
+          std::lround((network.X(n, d) - lower[d]) / (network.cells.edge * network.cells.proportions[d])));
     finest.point.push_back(at);
   }
   for (std::size_t c = 0; c < network.cells.size(); ++c)
-    finest.cubes.push_back(
-        {finest.point[network.cells[c][0]], static_cast<int>(std::lround(network.edge(c) / network.cell_edge))});
-  finest.carried = network.carried;
+    finest.cubes.push_back({finest.point[network.cells.corners[c][0]],
+                            static_cast<int>(std::lround(network.cells.edge_of(c) / network.cells.edge))});
+  finest.carried = network.cells.carried;
   for (const Anchor& a : nodes.anchors) {
     int axes = 0;
     for (int d = 0; d < 3; ++d) axes |= int(a.acts(d) && nodes.fixed[3 * a.node + d] != 0) << d;

@@ -104,7 +104,7 @@ CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLev
   }
   block_.assign(9 * static_cast<std::size_t>(blocks) + 1, Real(0));
 
-  const CellStiffnessMatrix full = law.cell_matrix(level.edge, {}) / unit;
+  const CellStiffnessMatrix full = law.cell_matrix({level.edge}) / unit;
   for (std::size_t c = 0; c < level.corners.size(); ++c) {
     const Hexahedron& corners = level.corners[c];
     std::array<bool, 8> needed;
@@ -117,7 +117,7 @@ CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLev
     if (!any) continue;
     const FilledPart& part = level.filled[c];
     const CellStiffnessMatrix K = part.fraction == 1 ? CellStiffnessMatrix(full * level.cubes[c].size)
-                                                     : law.cell_matrix(level.cell_edge(c), part) / unit;
+                                                     : law.cell_matrix({level.cell_edge(c), part}) / unit;
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8 && needed[m]; ++n)
         for_each_carrier(carriers, corners[m], [&](int p, double v) {

@@ -65,7 +65,7 @@ CutMixedMultigrid::Level::Level(CutLevel lattice_of_level, std::vector<char> fix
   gradient_.resize(24 * cells);
   for (std::size_t c = 0; c < cells; ++c) {
     const double h = lattice.cell_edge(c) / finest_edge;
-    const Eigen::Matrix<double, 24, 1> b = volume_gradient(h, lattice.filled[c]);
+    const Eigen::Matrix<double, 24, 1> b = volume_gradient({h, lattice.filled[c]});
     for (int i = 0; i < 24; ++i) gradient_[24 * c + i] = static_cast<float>(b[i]);
     compliance_[static_cast<Eigen::Index>(c)] = static_cast<float>(lattice.filled[c].fraction * h * h * h / kappa);
   }
@@ -239,14 +239,14 @@ void CutMixedMultigrid::Level::solve_coarsest(const CoarsestFactors& factors) {
 CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : nodes_(model.network, fixed), network_(model.network) {
   const AveragedSprings& law = *averaged_springs_of(model);
-  const double l = network_.cell_edge, unit = law.shear_modulus * l,
+  const double l = network_.cells.edge, unit = law.shear_modulus * l,
                kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
   gradient_.resize(24, static_cast<Eigen::Index>(network_.cells.size()));
   compliance_.resize(gradient_.cols());
   for (std::size_t c = 0; c < network_.cells.size(); ++c) {
-    const double h = network_.edge(c) / l;
-    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient(h, network_.filled[c]);
-    compliance_[static_cast<Eigen::Index>(c)] = network_.filled[c].fraction * h * h * h / kappa;
+    const double h = network_.cells.edge_of(c) / l;
+    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient({h, network_.cells.filled[c]});
+    compliance_[static_cast<Eigen::Index>(c)] = network_.cells.filled[c].fraction * h * h * h / kappa;
   }
   std::vector<CutLevel> lattices = cut_levels(network_, nodes_);
   const double finest_edge = lattices[0].edge;
@@ -272,17 +272,19 @@ Eigen::VectorXd CutMixedMultigrid::force(const MixedVector& x) {
   Eigen::VectorXd y;
   nodes_.multiply(K_, 1, x.u, y);
   for (Eigen::Index c = 0; c < x.p.size(); ++c)
-    for (int n = 0; n < 8; ++n) y.segment<3>(3 * network_.cells[c][n]) += x.p[c] * gradient_.col(c).segment<3>(3 * n);
-  hand_back(network_.carried, y);
+    for (int n = 0; n < 8; ++n)
+      y.segment<3>(3 * network_.cells.corners[c][n]) += x.p[c] * gradient_.col(c).segment<3>(3 * n);
+  hand_back(network_.cells.carried, y);
   return y;
 }
 
 Eigen::VectorXd CutMixedMultigrid::volume_change(const Eigen::VectorXd& displacement) {
   Eigen::VectorXd u = displacement;
-  carry(network_.carried, u);
+  carry(network_.cells.carried, u);
   Eigen::VectorXd J = Eigen::VectorXd::Zero(gradient_.cols());
   for (Eigen::Index c = 0; c < J.size(); ++c)
-    for (int n = 0; n < 8; ++n) J[c] += gradient_.col(c).segment<3>(3 * n).dot(u.segment<3>(3 * network_.cells[c][n]));
+    for (int n = 0; n < 8; ++n)
+      J[c] += gradient_.col(c).segment<3>(3 * n).dot(u.segment<3>(3 * network_.cells.corners[c][n]));
   return J;
 }
 

@@ -12,14 +12,14 @@ constexpr int relaxations = 2;  // before and after the coarser lattice
 }  // namespace
 
 bool CutMultigrid::covers(const MassSpringModel& model) {
-  if (model.network.filled.empty() || !averaged_springs_of(model)) return false;
+  if (!model.network.cells.cut() || !averaged_springs_of(model)) return false;
   return std::all_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) {
     return std::holds_alternative<AveragedSprings>(law) || std::holds_alternative<Anchors>(law);
   });
 }
 
 CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
-    : nodes_(model.network, fixed), unit_(averaged_springs_of(model)->shear_modulus * model.network.cell_edge) {
+    : nodes_(model.network, fixed), unit_(averaged_springs_of(model)->shear_modulus * model.network.cells.edge) {
   for (CutLevel& lattice : cut_levels(model.network, nodes_)) {
     const bool finest = levels_.empty();
     const std::vector<char> fixed_here = finest ? nodes_.fixed_corners() : std::vector<char>{};

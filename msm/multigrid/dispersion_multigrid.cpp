@@ -30,7 +30,7 @@ LatticeLevels split_finest(LatticeLevels& all) {
 }
 
 CellStiffness springs_of(const MassSpringModel& model, const LatticeLevels& lattice, double G) {
-  CellStiffness cell = in_units(cell_stiffness(model), G, model.network.cell_edge);
+  CellStiffness cell = in_units(cell_stiffness(model), G, model.network.cells.edge);
   cell.total = reorder(cell.total, lattice.axes);
   return cell;
 }

@@ -95,7 +95,7 @@ Index reorder(const Index& p, const std::array<int, 3>& axes) { return {p[axes[0
 
 void lay_out_finest(const Network& network, const std::vector<char>& fixed, const std::vector<double>& fill,
                     LatticeLevels& all) {
-  const Grid& grid = *network.grid;
+  const Grid& grid = *network.cells.grid;
   all.axes = order_axes(grid.cells);
   Numbering cells(reorder(grid.cells, all.axes));
   for (const Index& c : grid.cell_index) cells.at(reorder(c, all.axes)) = 0;
@@ -108,7 +108,7 @@ void lay_out_finest(const Network& network, const std::vector<char>& fixed, cons
     const int number = all.cell_of_cell[c] = cells.at(reorder(grid.cell_index[c], all.axes));
     if (!fill.empty()) level.fill[number] = fill[c];
     for (int n = 0; n < 8; ++n)
-      all.point_of_node[network.cells[c][n]] =
+      all.point_of_node[network.cells.corners[c][n]] =
           points.at(reorder(plus(grid.cell_index[c], hexahedron_corners[n]), all.axes));
   }
   for (int n = 0; n < network.nodes(); ++n)
@@ -211,9 +211,9 @@ void LatticeLevels::from_rows(Nodal kind, const Eigen::VectorXd& rows, Eigen::Ve
 
 LatticeLevels lattice_levels(const Network& network, const std::vector<char>& fixed, int coarsest_unknowns,
                              const std::vector<double>& fill) {
-  if (!network.grid) throw std::invalid_argument("multigrid needs a network made from a lattice of cells");
+  if (!network.cells.grid) throw std::invalid_argument("multigrid needs a network made from a lattice of cells");
   LatticeLevels all;
-  all.proportions = network.proportions;
+  all.proportions = network.cells.proportions;
   lay_out_finest(network, fixed, fill, all);
   const auto longest = [](const LatticeLevel& l) {
     return *std::max_element(l.cells_per_side.begin(), l.cells_per_side.end());

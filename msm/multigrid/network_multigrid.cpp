@@ -60,13 +60,13 @@ Auxiliary auxiliary_lattice(const Network& above, double edge, bool aligned) {
       }
       cell[n] = i;
     }
-    aux.network.cells.push_back(cell);
+    aux.network.cells.corners.push_back(cell);
   }
   aux.network.X.resize(static_cast<Eigen::Index>(position.size()), 3);
   for (std::size_t i = 0; i < position.size(); ++i)
     aux.network.X.row(static_cast<Eigen::Index>(i)) = position[i].transpose();
-  aux.network.cell_edge = edge;
-  aux.network.grid = std::move(grid);
+  aux.network.cells.edge = edge;
+  aux.network.cells.grid = std::move(grid);
   return aux;
 }
 
@@ -76,8 +76,8 @@ Passage passage(const Network& above, const Auxiliary& aux) {
   level.points = aux.network.nodes();
   level.weight_begin = {0};
   for (int n = 0; n < above.nodes(); ++n) {
-    const Hexahedron& cell = aux.network.cells[aux.cell_of[n]];
-    const Vec3 xi = (above.X.row(n) - aux.network.X.row(cell[0])).transpose() / aux.network.cell_edge;
+    const Hexahedron& cell = aux.network.cells.corners[aux.cell_of[n]];
+    const Vec3 xi = (above.X.row(n) - aux.network.X.row(cell[0])).transpose() / aux.network.cells.edge;
     for (int c = 0; c < 8; ++c) {
       double weight = 1;
       for (int d = 0; d < 3; ++d) weight *= hexahedron_corners[c][d] ? xi[d] : 1 - xi[d];
@@ -148,8 +148,8 @@ NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vect
     : fixed_(fixed), smoother_(network_smoother(model, fixed)) {
   const Network& network = model.network;
   const double edge = network.cells.empty() ? auxiliary_spacings * std::cbrt(network.volume.sum() / network.nodes())
-                                            : 2 * network.cell_edge;
-  const Auxiliary aux = auxiliary_lattice(network, edge, !network.filled.empty());
+                                            : 2 * network.cells.edge;
+  const Auxiliary aux = auxiliary_lattice(network, edge, network.cells.cut());
   passage_ = passage(network, aux);
   hold(fixed, passage_);
   lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, passage_.fixed, 900, aux.fill),

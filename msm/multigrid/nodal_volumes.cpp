@@ -76,8 +76,7 @@ struct Rows {
 
 bool NodalVolumes::covers(const MassSpringModel& model) {
   const MomentumDispersion* law = dispersion_of(model);
-  return law && law->conservative() && law->q > 0 && model.network.grid && !model.network.cells.empty() &&
-         model.network.image_of.empty();
+  return law && law->conservative() && law->q > 0 && model.network.cells.grid && model.network.image_of.empty();
 }
 
 NodalVolumes::NodalVolumes(const MassSpringModel& model, const LatticeLevels& lattice, double G)
@@ -88,7 +87,7 @@ NodalVolumes::NodalVolumes(const MassSpringModel& model, const LatticeLevels& la
   const MomentumDispersion& law = *dispersion_of(model);
   const MomentumDispersion::Coefficients c = law.coefficients(network);
   // J = 10 G times a change of volume, of energy q J^2 / (2 sum w L).
-  const double l = network.cell_edge, to_volume = 1 / (10 * G * l * l),
+  const double l = network.cells.edge, to_volume = 1 / (10 * G * l * l),
                to_compliance = 1 / (100 * law.q * G * l * l * l);
   const LatticeLevel& level = lattice.levels[0];
   compliance = Eigen::VectorXd::Zero(level.stride());

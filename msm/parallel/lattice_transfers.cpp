@@ -16,7 +16,7 @@ using Weights = std::vector<std::vector<std::pair<int, double>>>;
 bool is_lattice(const Network& network) {
   if (network.cells.empty() || !network.image_of.empty()) return false;
   std::vector<char> known(network.nodes(), 0);
-  for (const Hexahedron& cell : network.cells)
+  for (const Hexahedron& cell : network.cells.corners)
     for (const int corner : cell) known[corner] = 1;
   for (const Anchor& a : network.anchors) known[a.node] = 1;
   return std::find(known.begin(), known.end(), 0) == known.end();

@@ -25,7 +25,7 @@ constexpr const char* solver_options =
 class TangentRows {
  public:
   TangentRows(const Tangent& K, const Network& network)
-      : K_(K), coupled_(coupled_through(carriers_of(network.nodes(), network.carried), coupled_nodes(network))) {
+      : K_(K), coupled_(coupled_through(carriers_of(network.nodes(), network.cells.carried), coupled_nodes(network))) {
     if (K.dispersive()) flow_ = NodalForms(K.outflow.transpose()) * K.inflow;
   }
 

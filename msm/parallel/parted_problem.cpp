@@ -14,9 +14,9 @@ namespace {
 
 /// Process of each cell: the owner of its first corner, or of the node that carries that.
 std::vector<int> owners_of_cells(const Network& network, const std::vector<int>& owner) {
-  const Carriers carriers = carriers_of(network.nodes(), network.carried);
+  const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
   std::vector<int> of_cells;
-  for (const Hexahedron& cell : network.cells) {
+  for (const Hexahedron& cell : network.cells.corners) {
     const int corner = cell[0];
     of_cells.push_back(owner[carriers.empty() || carriers[corner].empty() ? corner : carriers[corner].front().first]);
   }
@@ -182,7 +182,7 @@ NodalVectors PartedProblem::all_displacements(const Eigen::VectorXd& own) const 
   for (std::size_t i = 0; i < nodes_.own.size(); ++i) all.row(nodes_.own[i]) = own.segment<3>(3 * i).transpose();
   Sum{communicator_}.all(all.data(), all.size());
   all += conditions_.prescribed;
-  carry(part_.model.network.carried, all);
+  carry(part_.model.network.cells.carried, all);
   return all;
 }
 

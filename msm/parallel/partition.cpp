@@ -15,7 +15,7 @@ PetscMatrix graph(const Network& network, MPI_Comm communicator) {
   const int rank = rank_of(communicator), processes = size_of(communicator);
   const long nodes = network.nodes();
   const int first = static_cast<int>(nodes * rank / processes), last = static_cast<int>(nodes * (rank + 1) / processes);
-  const auto coupled = coupled_through(carriers_of(network.nodes(), network.carried), coupled_nodes(network));
+  const auto coupled = coupled_through(carriers_of(network.nodes(), network.cells.carried), coupled_nodes(network));
   std::size_t entries = 0;
   for (int n = first; n < last; ++n) entries += coupled[n].size() - 1;
   PetscInt *begin, *columns;

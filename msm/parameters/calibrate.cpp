@@ -73,7 +73,7 @@ double volume_stiffness_ratio(const MassSpringModel& model) {
 void calibrate(double shear_modulus, Network& network) {
   const double factor = shear_modulus / affine_shear_modulus(network);
   for (Spring& s : network.springs) s.stiffness *= factor;
-  for (Spring& s : network.cell_springs) s.stiffness *= factor;
+  for (Spring& s : network.cells.springs) s.stiffness *= factor;
 }
 
 void correct_surface(Network& network, const std::vector<char>& bulk) {

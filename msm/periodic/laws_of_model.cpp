@@ -11,7 +11,7 @@ AngularSprings angular(const Network& network, const IsotropicMaterial& material
   const double lambda = lame_lambda(material), planar_nu = lambda / (lambda + 2 * shear_modulus(material));
   double k = 0;  // of an interior spring: those of the boundary have half
   for (const Spring& s : network.springs) k = std::max(k, s.stiffness);
-  return {angular_stiffness(k, network.cell_edge, planar_nu)};
+  return {angular_stiffness(k, network.cells.edge, planar_nu)};
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ std::shared_ptr<BodyModel> read(const std::string& text, const std::string& name
 
 void write(const BodyModel& model, const fs::path& file) {
   require_springs_ending(file);
-  if (!model.network().filled.empty())
+  if (model.network().cells.cut())
     throw InputError(
         fmt::format("{}: cut = True: is not written from here (allowed: cut = False; or springproof export)",
                     model.parameters.row.name));
@@ -99,7 +99,7 @@ py::array springs_view(const py::object& self) {
 }
 
 py::array cells_view(const py::object& self) {
-  const auto& cells = self.cast<BodyModel&>().network().cells;
+  const auto& cells = self.cast<BodyModel&>().network().cells.corners;
   return view(reinterpret_cast<const int*>(cells.data()), {py::ssize_t(cells.size()), 8}, self);
 }
 

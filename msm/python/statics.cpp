@@ -51,7 +51,7 @@ std::shared_ptr<SolvedState> solve(const ModelPointer& model, const std::vector<
         to_field(state, model->body->mesh, model->embedding, model->network(), loads, conditions, kinematics);
     solved->on_body = field.displacement;
     solved->reactions = field.reactions;
-    const bool own_field = !model->network().filled.empty();
+    const bool own_field = model->network().cells.cut();
     solved->volume_change = own_field ? volume_change(model->network(), state.displacement).exact : field.volume_change;
     return 0;
   });
@@ -61,7 +61,7 @@ std::shared_ptr<SolvedState> solve(const ModelPointer& model, const std::vector<
 py::array displacement_at_points(const SolvedState& s, const Numbers& points) {
   const NodalVectors at = rows_of(points, "points");
   if (!s.model->body) throw InputError("points: the model has no body (allowed: displacement, of the nodes)");
-  if (!s.model->network().filled.empty())
+  if (s.model->network().cells.cut())
     return moved(springproof::displacement_at(*s.model->body->cut, s.equilibrium.displacement, at));
   const Mesh& mesh = *s.model->body->mesh;
   const Locator locate(mesh);
@@ -173,13 +173,13 @@ BoundaryConditions conditions_of(const BodyModel& model, const std::vector<Load>
       bc.owner[unknown] = static_cast<int>(loads.size());
       bc.prescribed(nodes.held[h], d) = factor * u;
     }
-  for (const CarriedPoint& c : network.carried)
+  for (const CarriedPoint& c : network.cells.carried)
     for (int d = 0; d < 3; ++d)
       if (bc.fixed[3 * static_cast<std::size_t>(c.point) + static_cast<std::size_t>(d)])
         throw InputError(fmt::format("held: node {} follows others (allowed: nodes with a mass)", c.point));
   if (nodes.forces.size() > 0) bc.external += factor * nodes.forces;
-  hand_back(network.carried, bc.external);
-  if (model.parameters.hold_rigid_motions) hold_free_motions(network.X, bc, network.carried);
+  hand_back(network.cells.carried, bc.external);
+  if (model.parameters.hold_rigid_motions) hold_free_motions(network.X, bc, network.cells.carried);
   return bc;
 }
 

@@ -33,7 +33,7 @@ void finish(const LinearProblem& p, const Eigen::VectorXd& u, const Eigen::Vecto
   for (std::size_t i = 0; i < p.fixed.size(); ++i)
     if (!p.fixed[i]) support[static_cast<Eigen::Index>(i)] = 0;
   result.displacement = nodal(u);
-  carry(p.model.network.carried, result.displacement);
+  carry(p.model.network.cells.carried, result.displacement);
   result.support = nodal(support);
 }
 
@@ -66,7 +66,7 @@ void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
 
 void solve_mixed(const LinearProblem& p, Equilibrium& result) {
   const auto system = saddle_point_at_rest(p.model, p.fixed);
-  const double unit = affine_shear_modulus(p.model) * p.model.network.cell_edge;
+  const double unit = affine_shear_modulus(p.model) * p.model.network.cells.edge;
   // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
   const MixedVector prescribed{p.prescribed, Eigen::VectorXd::Zero(system->compliance().size())},
       b{p.external / unit - system->force(prescribed), -system->volume_change(p.prescribed)};

@@ -27,7 +27,7 @@ std::unique_ptr<SaddlePoint> saddle_point_at_rest(const MassSpringModel& model, 
   if (CutMultigrid::covers(model)) return std::make_unique<CutMixedMultigrid>(model, fixed);
   if (dispersion_of(model)) return std::make_unique<DispersionMultigrid>(model, fixed, G);
   return std::make_unique<MixedMultigrid>(lattice_levels(model.network, fixed),
-                                          in_units(cell_stiffness(model), G, model.network.cell_edge));
+                                          in_units(cell_stiffness(model), G, model.network.cells.edge));
 }
 
 }  // namespace springproof

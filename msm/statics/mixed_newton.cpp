@@ -52,20 +52,20 @@ class MixedNewton::Linearised : public SaddlePoint {
     const double l = newton_.unit_length_;
     const Network& network = newton_.network_;
     Eigen::VectorXd u = x.u, y;
-    carry(network.carried, u);
+    carry(network.cells.carried, u);
     newton_.K_.multiply(u, y);
     y /= newton_.unit_pressure_ * l;
     for (std::size_t c = 0; c < volumes.size(); ++c)
       for (int n = 0; n < 8; ++n)
-        y.segment<3>(3 * network.cells[c][n]) +=
+        y.segment<3>(3 * network.cells.corners[c][n]) +=
             x.p[static_cast<Eigen::Index>(c)] / (l * l) * volumes[c].gradient.segment<3>(3 * n);
-    hand_back(network.carried, y);
+    hand_back(network.cells.carried, y);
     return y;
   }
 
   Eigen::VectorXd volume_change(const Eigen::VectorXd& displacement) override {
     Eigen::VectorXd u = displacement;
-    carry(newton_.network_.carried, u);
+    carry(newton_.network_.cells.carried, u);
     return changes(u) / (newton_.unit_length_ * newton_.unit_length_);
   }
 
@@ -78,7 +78,7 @@ class MixedNewton::Linearised : public SaddlePoint {
     for (std::size_t c = 0; c < volumes.size(); ++c)
       for (int n = 0; n < 8; ++n)
         change[static_cast<Eigen::Index>(c)] +=
-            volumes[c].gradient.segment<3>(3 * n).dot(u.segment<3>(3 * newton_.network_.cells[c][n]));
+            volumes[c].gradient.segment<3>(3 * n).dot(u.segment<3>(3 * newton_.network_.cells.corners[c][n]));
     return change;
   }
 
@@ -104,7 +104,7 @@ MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& 
   kappa_ = parts.kappa;
   density_ = std::move(parts.density);
   unit_pressure_ = affine_shear_modulus(model);
-  unit_length_ = model.network.cell_edge;
+  unit_length_ = model.network.cells.edge;
   rest_ = saddle_point_at_rest(model, fixed);
   K_ = BlockMatrix(model.network);
   rest_volume_.resize(static_cast<Eigen::Index>(network_.cells.size()));
@@ -115,7 +115,7 @@ MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& 
 
 MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& positions, const Eigen::VectorXd& external) {
   NodalVectors x = positions;
-  carry(network_.carried, x);
+  carry(network_.cells.carried, x);
   Linearised at(*this);
   at.curvature = at.mismatch = Eigen::VectorXd(p_.size());
   K_.set_zero();
@@ -134,10 +134,10 @@ MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& positions, co
     const VolumeDensity d = density_(v.value / rest_volume_[i]);
     at.curvature[i] = d.curvature;
     at.mismatch[i] = rest_volume_[i] * (p_[i] / kappa_ - d.slope) / d.curvature;
-    for (int n = 0; n < 8; ++n) f.row(network_.cells[c][n]) -= p_[i] * v.gradient.segment<3>(3 * n).transpose();
+    for (int n = 0; n < 8; ++n) f.row(network_.cells.corners[c][n]) -= p_[i] * v.gradient.segment<3>(3 * n).transpose();
     add_volume_curvature(network_, c, x, p_[i], K_);
   }
-  hand_back(network_.carried, f);
+  hand_back(network_.cells.carried, f);
   at.unbalanced = external + flat(f);
   at.take_compliance();
   return at;

@@ -20,8 +20,8 @@ constexpr long dispersive_limit = 4000;  // the factors of momentum dispersion a
 /// Whether a corner of a cell is turned inside out; of cut cells, which have corners outside of the body, the filled
 /// part as a whole.
 bool has_inverted_cell(const Network& network, NodalVectors x) {
-  carry(network.carried, x);
-  if (network.filled.empty()) return min_relative_jacobian({network.X, network.cells, {}, {}, {}, {}}, x) <= 0;
+  carry(network.cells.carried, x);
+  if (!network.cells.cut()) return min_relative_jacobian({network.X, network.cells.corners, {}, {}, {}, {}}, x) <= 0;
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     if (cell_volume(network, c, x).value <= 0) return true;
   return false;
@@ -203,7 +203,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
     result.softest = softest_motion(model, *newton.K, full.fixed);
   const BoundaryConditions reached = load_path(result.load_reached);
   result.displacement = x - model.network.X;
-  carry(model.network.carried, result.displacement);
+  carry(model.network.cells.carried, result.displacement);
   result.support = support_forces(model, x, reached);
   result.solver =
       fmt::format("Newton + {}, {} load step{}", newton.mixed ? "GMRES + mixed multigrid" : newton.K->name(), steps,

@@ -15,7 +15,7 @@ constexpr double settled = 1e-3;  // relative change of the stiffness
 /// Per axis sum |u_j - u_i|^2 over sum |u_i|^2 + |u_j|^2 of the edges of all cells.
 Vec3 alternation_of(const Network& network, const NodalVectors& u) {
   Vec3 change = Vec3::Zero(), size = Vec3::Zero();
-  for (const Hexahedron& cell : network.cells)
+  for (const Hexahedron& cell : network.cells.corners)
     for (int a = 0; a < 8; ++a)
       for (int b = a + 1; b < 8; ++b) {
         const auto &p = hexahedron_corners[a], &q = hexahedron_corners[b];

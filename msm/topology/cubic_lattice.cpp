@@ -41,7 +41,7 @@ namespace {
 
 /// The springs of all cells, shared ones merged: 13 slots per lattice point, one for each direction away from it.
 std::vector<Spring> superposed(const Network& network) {
-  const Grid& grid = *network.grid;
+  const Grid& grid = *network.cells.grid;
   const std::array<int, 3> points = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
   const auto point = [&](const std::array<int, 3>& p) {
     return (std::size_t(p[2]) * points[1] + p[1]) * points[0] + p[0];
@@ -52,7 +52,7 @@ std::vector<Spring> superposed(const Network& network) {
     double stiffness, rest_length;
   };
   std::vector<Part> parts;
-  for (const Spring& s : network.cell_springs) {
+  for (const Spring& s : network.cells.springs) {
     std::array<int, 3> a = hexahedron_corners[s.i], b = hexahedron_corners[s.j];
     int direction = (b[0] - a[0]) + 3 * (b[1] - a[1]) + 9 * (b[2] - a[2]);
     if (direction < 0) std::swap(a, b), direction = -direction;
@@ -69,7 +69,8 @@ std::vector<Spring> superposed(const Network& network) {
         continue;
       }
       s = static_cast<int>(springs.size());
-      springs.push_back({network.cells[c][part.i], network.cells[c][part.j], part.stiffness, part.rest_length});
+      springs.push_back(
+          {network.cells.corners[c][part.i], network.cells.corners[c][part.j], part.stiffness, part.rest_length});
     }
   }
   return merge_springs(std::move(springs));
@@ -81,11 +82,11 @@ Network lattice_without_springs(const Mesh& mesh) {
   const Grid& grid = grid_of(mesh);
   Network network;
   network.X = mesh.nodes;
-  network.cells = mesh.hexahedra;
-  network.cell_edge = has_cubes(grid) ? grid.spacing[0] : std::cbrt(grid.spacing.prod());
-  if (!has_cubes(grid)) network.proportions = grid.spacing / network.cell_edge;
+  network.cells.corners = mesh.hexahedra;
+  network.cells.edge = has_cubes(grid) ? grid.spacing[0] : std::cbrt(grid.spacing.prod());
+  if (!has_cubes(grid)) network.cells.proportions = grid.spacing / network.cells.edge;
   network.volume = nodal_volumes(mesh);
-  network.grid = mesh.grid;
+  network.cells.grid = mesh.grid;
   return network;
 }
 
@@ -97,7 +98,7 @@ Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
     for (int b = a + 1; b < 8; ++b) {
       int axes = 0;
       for (int d = 0; d < 3; ++d) axes += hexahedron_corners[a][d] != hexahedron_corners[b][d];
-      if (share[axes] > 0) network.cell_springs.push_back({a, b, share[axes], edge * std::sqrt(double(axes))});
+      if (share[axes] > 0) network.cells.springs.push_back({a, b, share[axes], edge * std::sqrt(double(axes))});
     }
   network.springs = superposed(network);
   return network;

@@ -48,7 +48,7 @@ Network hexagonal_lattice(const Mesh& mesh, double edge) {
   const Rows grid{rows, columns};
 
   Network network;
-  network.cell_edge = a;
+  network.cells.edge = a;
   network.X.resize(grid.first(rows + 1), 3);
   const double start = lower[0] + (size[0] - columns * a) / 2;
   for (int row = 0; row <= rows; ++row)

@@ -6,7 +6,7 @@
 namespace springproof {
 
 /// Rows along x through the bounding box of a mesh, in the plane of its mean z.  Whole rows fit the height, which sets
-/// the edge to the value nearest to `edge` [m] (Network::cell_edge); every other row is shifted by half an edge, so the
+/// the edge to the value nearest to `edge` [m] (CellSet::edge); every other row is shifted by half an edge, so the
 /// ends are staggered and the length is right to a quarter of an edge.  Each triangle gives its sides stiffness k/2,
 /// with k = 1 N/m: the boundary has half springs.  Volume shares are the triangles' area times the box's height in z.
 /// Kot et al. (2014), eq. (12): lambda = mu = 3 k / (4 sqrt 3) per thickness, plane stress.

@@ -46,12 +46,12 @@ Eigen::VectorXd masses(const Network& network, double density) { return density 
 
 Eigen::VectorXd inverse_masses(const Network& network, double density) {
   Eigen::VectorXd inverse = masses(network, density).cwiseInverse();
-  for (const CarriedPoint& c : network.carried) inverse[c.point] = 0;
+  for (const CarriedPoint& c : network.cells.carried) inverse[c.point] = 0;
   return inverse;
 }
 
 std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fixed) {
-  for (const CarriedPoint& c : network.carried) std::fill_n(fixed.begin() + 3 * c.point, 3, 1);
+  for (const CarriedPoint& c : network.cells.carried) std::fill_n(fixed.begin() + 3 * c.point, 3, 1);
   for (const Anchor& a : network.anchors)
     for (int d = 0; d < 3; ++d)
       if (!a.acts(d)) fixed[3 * a.node + d] = 1;

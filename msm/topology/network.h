@@ -2,23 +2,11 @@
 #pragma once
 
 #include <array>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "meshes/mesh.h"
-#include "meshes/voxels/filled_part.h"
-#include "meshes/voxels/joined_cubes.h"
+#include "msm/topology/cells.h"
 
 namespace springproof {
-
-/// Linear spring between nodes i < j: energy k/2 (L' - L)^2.
-struct Spring {
-  int i;               ///< node
-  int j;               ///< node, j > i
-  double stiffness;    ///< k [N/m]
-  double rest_length;  ///< L [m]
-};
 
 /// Spring of rest length zero between a weighted mean of the corners of a cell and a node, by which a support holds the
 /// part of a patch in that cell: energy k/2 |sum_a w_a x_a - x_node|^2.
@@ -39,21 +27,12 @@ Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X);
 
 /// Nodes, springs and cells of a body; laws (msm/laws/laws.h) say what forces they have.
 struct Network {
-  NodalVectors X;                    ///< rest positions [m], n x 3
-  std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
-  std::vector<Hexahedron> cells;     ///< cubic cells, or boxes; empty for networks without
-  double cell_edge = 0;              ///< l [m] of the cells; of several sizes, of the smallest; of boxes of their cube
-  Vec3 proportions = Vec3::Ones();   ///< edges of boxes over those of the cube of their volume; cubes: 1
-  std::vector<double> cell_edges;    ///< [m] of cells of several sizes, one per cell; empty: all are equal
-  std::vector<FilledPart> filled;    ///< of cut cells, one per cell; empty: all cells are full
-  std::vector<Anchor> anchors;       ///< of the supports of cut cells
-  std::vector<Spring> cell_springs;  ///< contribution of one cell: springs between its corners 0..7
-  /// Nodes on edges and faces of larger cells.  They are no unknowns: they follow the others, to which the forces on
-  /// them, and their mass, are handed back.
-  std::vector<CarriedPoint> carried;
-  Eigen::VectorXd volume;     ///< volume share of each node in the body [m^3]; of carried ones 0
-  std::optional<Grid> grid;   ///< the lattice of the cells
-  std::vector<int> image_of;  ///< per node the node it is a periodic image of (itself if none); empty: no images
+  NodalVectors X;               ///< rest positions [m], n x 3
+  std::vector<Spring> springs;  ///< each pair once, sorted by (i, j)
+  CellSet cells;                ///< cubes or boxes that fill the body; none in networks without
+  std::vector<Anchor> anchors;  ///< of the supports of cut cells
+  Eigen::VectorXd volume;       ///< volume share of each node in the body [m^3]; of carried ones 0
+  std::vector<int> image_of;    ///< per node the node it is a periodic image of (itself if none); empty: no images
   std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
 
   /// @return number of nodes, periodic images included
@@ -61,13 +40,6 @@ struct Network {
   /// @param node a node
   /// @return the node that it is an image of; itself if it is none
   int master(int node) const { return image_of.empty() ? node : image_of[node]; }
-  /// @param cell its number
-  /// @return its edge [m], that of the cube of its volume
-  double edge(std::size_t cell) const { return cell_edges.empty() ? cell_edge : cell_edges[cell]; }
-  /// @return whether the cells are boxes that are no cubes
-  bool has_boxes() const { return (proportions.array() != 1).any(); }
-  /// @return of a full cell, the smallest if there are several sizes [m^3]
-  double cell_volume() const { return cell_edge * cell_edge * cell_edge; }
 };
 
 /// Merges springs of the same pair by adding their stiffness (Kirchhoff's law, Golec et al. 2019, sec. 5.4) and

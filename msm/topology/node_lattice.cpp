@@ -34,7 +34,7 @@ Network node_lattice(const Mesh& mesh, const CubicPattern& pattern) {
   Network network;
   const auto nodes = static_cast<Eigen::Index>(grid.cell_index.size());
   network.X.resize(nodes, 3);
-  network.cell_edge = edge;
+  network.cells.edge = edge;
   network.volume = Eigen::VectorXd::Constant(nodes, edge * edge * edge);
   std::vector<Spring> springs;
   for (int c = 0; c < nodes; ++c) {

@@ -36,7 +36,7 @@ TEST(RefinedCells, UniformStrainIsExactAtEveryNode) {
         const Eigen::Matrix3d stress =
             2 * law.shear_modulus * strain + law.lame_lambda * strain.trace() * Eigen::Matrix3d::Identity();
         NodalVectors load = built.embedding.patches.at("surface").normal * stress;
-        hand_back(network.carried, load);
+        hand_back(network.cells.carried, load);
         const NodalVectors u = network.X * H.transpose();
         Eigen::VectorXd Ku;
         tangent(built.model, network.X).multiply(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()), Ku);
@@ -54,7 +54,7 @@ TEST(RefinedCells, APressureChangesTheVolumeAsItShould) {
   const Network& network = built.model.network;
   BoundaryConditions conditions =
       transfer({Pressure{"surface", pressure}}, body, built.embedding, network, 1, Kinematics::linear);
-  hold_free_motions(network.X, conditions, network.carried);
+  hold_free_motions(network.X, conditions, network.cells.carried);
   const Equilibrium e = solve_linear(built.model, conditions);
   ASSERT_TRUE(e.ok) << e.message;
   const double exact = -3 * pressure * (1 - 2 * nu);
@@ -76,7 +76,7 @@ TEST(RefinedCells, RigidMotionsAloneCostNoEnergy) {
     }
     EXPECT_LE((dense - dense.transpose()).cwiseAbs().maxCoeff(), 1e-14 * dense.cwiseAbs().maxCoeff());
     const Eigen::VectorXd values = dense.selfadjointView<Eigen::Lower>().eigenvalues();
-    const auto none = 3 * static_cast<Eigen::Index>(model.network.carried.size()) + 6;
+    const auto none = 3 * static_cast<Eigen::Index>(model.network.cells.carried.size()) + 6;
     EXPECT_LE(values.head(none).cwiseAbs().maxCoeff(), 1e-13 * values[n - 1]);
     EXPECT_GE(values[none], 1e-11 * values[n - 1]) << nu;  // slivers are soft
   }

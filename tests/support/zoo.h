@@ -57,19 +57,19 @@ inline NodalVectors noise(Eigen::Index nodes, double size, unsigned seed = 1) {
 inline Network cut_network(double edge = 0.5) {
   const Mesh mesh = block_mesh(edge * Vec3(2, 2, 1), {2, 2, 1});
   Network network;
-  network.cell_edge = edge;
-  network.cells = mesh.hexahedra;
+  network.cells.edge = edge;
+  network.cells.corners = mesh.hexahedra;
   network.X.resize(mesh.nodes.rows() + 2, 3);
   network.X.topRows(mesh.nodes.rows()) = mesh.nodes;
   network.volume = Eigen::VectorXd::Zero(network.X.rows());
   for (int c = 0; c < 4; ++c) {
     FilledPart part;
     if (c > 0) part = {0.2 * c, 0.1 * Vec3(c, -1, 0.5), 0.01 * Vec3(1, -c, 2), Vec3(0.01, 0.02 * c, 0.001)};
-    network.filled.push_back(part);
-    for (const int n : network.cells[c]) network.volume[n] += part.fraction * edge * edge * edge / 8;
+    network.cells.filled.push_back(part);
+    for (const int n : network.cells.corners[c]) network.volume[n] += part.fraction * edge * edge * edge / 8;
   }
   for (int a = 0; a < 2; ++a) {
-    Anchor anchor{network.cells[a], {}, static_cast<int>(mesh.nodes.rows()) + a, 100.0};
+    Anchor anchor{network.cells.corners[a], {}, static_cast<int>(mesh.nodes.rows()) + a, 100.0};
     Vec3 at = Vec3::Zero();
     for (int n = 0; n < 8; ++n) {
       anchor.weights[n] = n == a ? 0.3 : 0.1;
@@ -109,7 +109,7 @@ inline Network bent_triangles(double edge = 0.5) {
       sides.push_back({t[c], t[(c + 1) % 3], 500, (network.X.row(t[c]) - network.X.row(t[(c + 1) % 3])).norm()});
   network.springs = merge_springs(std::move(sides));
   network.volume = Eigen::VectorXd::Constant(n * n, edge * edge * edge);
-  network.cell_edge = edge;
+  network.cells.edge = edge;
   return network;
 }
 

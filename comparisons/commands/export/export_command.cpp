@@ -233,7 +233,7 @@ std::string parts_of(const SpringsFile& s) {
       network.springs.empty() ? "no springs" : fmt::format("{} springs", network.springs.size());
   if (made.find("per cell") == std::string::npos) return fmt::format("{} ({})", made, springs);
   return fmt::format("{} ({}, {} {})", made, springs, network.cells.size(),
-                     network.filled.empty() ? "cells" : "cut cells");
+                     network.cells.cut() ? "cut cells" : "cells");
 }
 
 void report(const fs::path& file, const SpringsFile& s) {
@@ -245,7 +245,7 @@ void report(const fs::path& file, const SpringsFile& s) {
 /// Says so where the cells of a cut body hold something else than the model has by its name.
 void report_averaging(const SpringsFile& s) {
   for (const ModelRow& row : model_table())
-    if (row.name == s.origin.model && !s.model.network.filled.empty() && made_of(row) != made_of(s.model))
+    if (row.name == s.origin.model && s.model.network.cells.cut() && made_of(row) != made_of(s.model))
       to_stdout(
           "note: {} is {} on whole cubes; cut cells hold its springs averaged over each cell, which leaves {} "
           "(--whole-cubes: the springs)\n",

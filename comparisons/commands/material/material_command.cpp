@@ -29,8 +29,8 @@ namespace {
 /// Spring constants inside the lattice, by kind (1, 2, 3 axes apart): a cell's share times the cells that share it.
 std::array<double, 3> lattice_constants(const MassSpringModel& model) {
   std::array<double, 3> k = {0, 0, 0};
-  for (const Spring& s : model.network.cell_springs) {
-    const int axes = static_cast<int>(std::lround(std::pow(s.rest_length / model.network.cell_edge, 2)));
+  for (const Spring& s : model.network.cells.springs) {
+    const int axes = static_cast<int>(std::lround(std::pow(s.rest_length / model.network.cells.edge, 2)));
     k[axes - 1] = s.stiffness * (axes == 1 ? 4 : axes == 2 ? 2 : 1);
   }
   return k;

@@ -104,8 +104,8 @@ struct AddSecantForces {
   }
 
   void operator()(const VolumeCorrection& law) const {
-    const double V = network.cell_volume();
-    const std::array<Vec3, 8> g = mean_gradients(network.cell_edge, {});
+    const double V = network.cells.volume();
+    const std::array<Vec3, 8> g = mean_gradients(network.cells.full());
     Corners gradient;
     for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
     const auto at = [&](const Mat3& C, Derivative up_to) -> Stress {
@@ -113,7 +113,7 @@ struct AddSecantForces {
       const VolumeDensity psi = volume_density(law.form, J);
       return {psi.value, up_to == Derivative::none ? Mat3::Zero() : Mat3(psi.slope * J * C.inverse())};
     };
-    for (const Hexahedron& cell : network.cells) {
+    for (const Hexahedron& cell : network.cells.corners) {
       const Mat3 F0 = corners_at(cell, x0) * gradient.transpose(), F1 = corners_at(cell, x1) * gradient.transpose();
       const Mat3 S = secant_stress(F0.transpose() * F0, F1.transpose() * F1, at);
       subtract(V * law.kappa / 2 * (F0 + F1) * S * gradient, cell, f);
@@ -130,7 +130,7 @@ struct AddSecantForces {
     };
     for (std::size_t c = 0; c < network.cells.size(); ++c) {
       const CellForm& form = forms[form_of[c]];
-      const Corners p0 = corners_at(network.cells[c], x0), p1 = corners_at(network.cells[c], x1);
+      const Corners p0 = corners_at(network.cells.corners[c], x0), p1 = corners_at(network.cells.corners[c], x1);
       const Mat3 F0 = p0 * form.gradient.transpose(), F1 = p1 * form.gradient.transpose(), F = (F0 + F1) / 2;
       const Eigen::Matrix<double, 3, 4> q0 = p0 * corner_patterns(), q1 = p1 * corner_patterns(), q = (q0 + q1) / 2,
                                         v = (F0.transpose() * q0 + F1.transpose() * q1) / 2;
@@ -139,7 +139,7 @@ struct AddSecantForces {
           form.hourglass * Eigen::Map<const Eigen::Matrix<double, 12, 1>>(v.data());
       const Mat3 S = secant_stress(F0.transpose() * F0, F1.transpose() * F1, at);
       subtract((form.volume * F * S + q * w.transpose()) * form.gradient + F * w * corner_patterns().transpose(),
-               network.cells[c], f);
+               network.cells.corners[c], f);
     }
   }
 
@@ -173,24 +173,23 @@ EnergyMomentum::EnergyMomentum(const MassSpringModel& model) : model_(model) {
   std::map<double, int> full;  // by edge
   const Network& network = model.network;
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart part = network.filled.empty() ? FilledPart{} : network.filled[c];
     const auto make = [&] {
-      forms_.push_back(cell_form(*law, network.edge(c), part, network.proportions));
+      forms_.push_back(cell_form(*law, network.cells.shape(c)));
       return static_cast<int>(forms_.size()) - 1;
     };
-    if (part.fraction != 1)
+    if (!network.cells.is_full(c))
       form_of_.push_back(make());
-    else if (const auto known = full.find(network.edge(c)); known != full.end())
+    else if (const auto known = full.find(network.cells.edge_of(c)); known != full.end())
       form_of_.push_back(known->second);
     else
-      form_of_.push_back(full[network.edge(c)] = make());
+      form_of_.push_back(full[network.cells.edge_of(c)] = make());
   }
 }
 
 NodalVectors EnergyMomentum::forces(const NodalVectors& x0, const NodalVectors& x1) const {
   NodalVectors f = NodalVectors::Zero(x0.rows(), 3);
   for (const ForceLaw& law : model_.laws) std::visit(AddSecantForces{model_.network, forms_, form_of_, x0, x1, f}, law);
-  hand_back(model_.network.carried, f);
+  hand_back(model_.network.cells.carried, f);
   return f;
 }
 

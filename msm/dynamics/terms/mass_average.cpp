@@ -33,12 +33,12 @@ MassAverage::MassAverage(const Network& network, double theta, const Eigen::Vect
     throw std::invalid_argument("a share of consistent mass does not suit this model: " + why);
   share_ = Eigen::VectorXd::Zero(network.nodes());
   for (int n = 0; n < network.nodes(); ++n)
-    if (volumes[n] > 0) share_[n] = network.cell_volume() / 8 / volumes[n];
+    if (volumes[n] > 0) share_[n] = network.cells.volume() / 8 / volumes[n];
 }
 
 std::string MassAverage::lacks(const Network& network) {
   if (network.cells.empty()) return "its network has no cells";
-  if (!network.cell_edges.empty()) return "its cells are of several sizes";
+  if (network.cells.kind() == CellKind::sizes) return "its cells are of several sizes";
   if (std::any_of(network.anchors.begin(), network.anchors.end(), [](const Anchor& a) { return a.axes != 7; }))
     return "supports hold its cut cells along some axes only";
   return network.image_of.empty() ? "" : "its network is periodic";
@@ -51,7 +51,7 @@ NodalVectors MassAverage::velocities(const NodalVectors& s, const std::vector<ch
   static const Eigen::Matrix<double, 8, 8> A = of_cell();
   NodalVectors v = s;
   for (std::size_t c = 0; c < network_->cells.size(); ++c) {
-    const Hexahedron& cell = network_->cells[c];
+    const Hexahedron& cell = network_->cells.corners[c];
     Eigen::Matrix<double, 8, 3> of_corners;
     for (int a = 0; a < 8; ++a) of_corners.row(a) = s.row(cell[a]);
     const Eigen::Matrix<double, 8, 3> less = of_corners - A * of_corners;

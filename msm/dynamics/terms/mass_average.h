@@ -42,9 +42,7 @@ class MassAverage {
   /// Of W, corner by corner, for kernels: v = s + sum over the cells of part() share() (s - average of s over the
   /// cell).
   const Network& network() const { return *network_; }
-  double part(std::size_t cell) const {
-    return theta_ * (network_->filled.empty() ? 1 : network_->filled[cell].fraction);
-  }
+  double part(std::size_t cell) const { return theta_ * network_->cells.part(cell).fraction; }
   double share(int node) const { return share_[node]; }
 
   /// Velocities of the nodes.

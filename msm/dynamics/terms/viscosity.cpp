@@ -32,7 +32,7 @@ void Viscosity::add_forces(const Network& network, const NodalVectors& x, const 
                            NodalVectors& f) const {
   if (!along_springs_) {
     cells_.add_viscous_forces(network, x, v, time_, f);
-    return hand_back(network.carried, f);
+    return hand_back(network.cells.carried, f);
   }
   for (const Spring& s : network.springs) {
     const Eigen::RowVector3d along = (x.row(s.j) - x.row(s.i)).normalized();

@@ -21,7 +21,7 @@ std::vector<MassSpringModel> bars() {
   std::vector<MassSpringModel> bars;
   for (const VoxelGrid& g : {grid, test::halved_at_random(grid, 2, 8)})
     bars.push_back(build_cut(test::model("hybmss_avg"), cut_body(g, body), {}, Mesh{}, material).model);
-  EXPECT_GT(bars[1].network.carried.size(), 50u);
+  EXPECT_GT(bars[1].network.cells.carried.size(), 50u);
   return bars;
 }
 

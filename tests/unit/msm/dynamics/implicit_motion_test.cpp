@@ -90,7 +90,7 @@ struct Bar {
 /// Work and torque of the forces between two states, relative to what the forces could do.
 void expect_exact(const MassSpringModel& model, const std::string& name, double size) {
   const NodalVectors& X = model.network.X;
-  const double edge = model.network.cell_edge;
+  const double edge = model.network.cells.edge;
   const NodalVectors x0 = X * test::rotation().transpose() + test::noise(X.rows(), 0.05 * edge, 1),
                      x1 = x0 * Eigen::AngleAxisd(size, Vec3(1, 0, 2).normalized()).toRotationMatrix() +
                           test::noise(X.rows(), size * 0.1 * edge, 2);

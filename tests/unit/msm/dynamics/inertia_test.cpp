@@ -36,7 +36,7 @@ TEST(SupportMass, IsAtTheCornersThatAnAnchorHoldsAlongItsAxes) {
       expected += 0.01 * 0.01 / 4 * a.stiffness * sum * sum;
     }
     EXPECT_NEAR(mass.col(1).sum(), expected, 1e-12 * expected);
-    for (const CarriedPoint& c : model.network.carried) EXPECT_TRUE(mass.row(c.point).isZero(0));
+    for (const CarriedPoint& c : model.network.cells.carried) EXPECT_TRUE(mass.row(c.point).isZero(0));
     for (Anchor& a : model.network.anchors) a.axes = 4;  // along z alone
     const NodalVectors along_z = support_masses(model.network, options);
     EXPECT_TRUE(along_z.leftCols<2>().isZero(0));
@@ -69,7 +69,7 @@ TEST(SupportMass, MovesWithItsSupport) {
       const Vec3 total = bc.external.colwise().sum().transpose();
       if (step < 2) continue;  // it starts from rest
       EXPECT_LE((total - mass * (1 + damping * (step - 0.5) * dt) * acceleration).norm(), 1e-9 * total.norm()) << step;
-      for (const CarriedPoint& c : model.network.carried) EXPECT_TRUE(bc.external.row(c.point).isZero(0));
+      for (const CarriedPoint& c : model.network.cells.carried) EXPECT_TRUE(bc.external.row(c.point).isZero(0));
     }
   }
 }

@@ -44,13 +44,14 @@ TEST(MassMatrix, HoldsTheBodysMassAndItsMomentsOfInertia) {
 
 TEST(MassMatrix, OfCutCellsHasTheMomentsOfTheFilledParts) {
   const Network network = test::cut_network();
-  const double l = network.cell_edge;
+  const double l = network.cells.edge;
   double mass = 0;
   Vec3 first = Vec3::Zero(), second = Vec3::Zero();
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const FilledPart& part = network.filled[c];
-    const double m = density * part.fraction * network.cell_volume();
-    const Vec3 middle = (network.X.row(network.cells[c][0]) + network.X.row(network.cells[c][6])).transpose() / 2;
+    const FilledPart& part = network.cells.filled[c];
+    const double m = density * part.fraction * network.cells.volume();
+    const Vec3 middle =
+        (network.X.row(network.cells.corners[c][0]) + network.X.row(network.cells.corners[c][6])).transpose() / 2;
     const Vec3 centroid = middle + l * part.mean;
     mass += m;
     first += m * centroid;
@@ -199,21 +200,22 @@ MassSpringModel halved_bar() {
 
 TEST(MassMatrix, OfCellsOfSeveralSizesHasTheirMassesAndNoneAtCarriedNodes) {
   const Network network = halved_bar().network;
-  ASSERT_GT(network.carried.size(), 20u);
+  ASSERT_GT(network.cells.carried.size(), 20u);
   double mass = 0;
   Vec3 first = Vec3::Zero();
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const double l = network.edge(c), m = density * network.filled[c].fraction * l * l * l;
-    const Vec3 middle = (network.X.row(network.cells[c][0]) + network.X.row(network.cells[c][6])).transpose() / 2;
+    const double l = network.cells.edge_of(c), m = density * network.cells.filled[c].fraction * l * l * l;
+    const Vec3 middle =
+        (network.X.row(network.cells.corners[c][0]) + network.X.row(network.cells.corners[c][6])).transpose() / 2;
     mass += m;
-    first += m * (middle + l * network.filled[c].mean);
+    first += m * (middle + l * network.cells.filled[c].mean);
   }
   for (const double theta : {0.0, 1.0}) {
     const Eigen::SparseMatrix<double> M = mass_matrix(network, density, theta);
     const Eigen::VectorXd rows = M * Eigen::VectorXd::Ones(network.nodes());
     EXPECT_NEAR(rows.sum(), mass, 1e-12 * mass);
     EXPECT_LT((network.X.transpose() * rows - first).norm(), 1e-12 * mass);
-    for (const CarriedPoint& c : network.carried) EXPECT_EQ(rows[c.point], 0);
+    for (const CarriedPoint& c : network.cells.carried) EXPECT_EQ(rows[c.point], 0);
   }
 }
 
@@ -237,9 +239,9 @@ TEST(NaturalModes, OfCellsOfSeveralSizesLieBesideThoseOfOneSize) {
       // The force of a small displacement along a mode is its inertia, and carried nodes follow.
       const NodalVectors& u = modes.shapes[i];
       NodalVectors followed = u, force = -forces(model, network.X + 1e-7 * u) / 1e-7;
-      carry(network.carried, followed);
+      carry(network.cells.carried, followed);
       EXPECT_EQ(followed, u);
-      hand_back(network.carried, force);
+      hand_back(network.cells.carried, force);
       const NodalVectors inertia = std::pow(2 * std::numbers::pi * modes.frequencies[i], 2) * (M * u);
       EXPECT_LT((force - inertia).norm(), 1e-4 * inertia.norm()) << i;
     }

@@ -53,8 +53,8 @@ TEST(CutSprings, AreReadAsTheyWereWrittenForEveryModelThatTakesThem) {
     EXPECT_NE(text.find("\"version\": 2"), std::string::npos);
     const SpringsFile read = parse_springs(text, "own.json");
     const Network &a = written.model.network, &b = read.model.network;
-    ASSERT_EQ(b.filled.size(), a.filled.size());
-    EXPECT_FALSE(b.grid);
+    ASSERT_EQ(b.cells.filled.size(), a.cells.filled.size());
+    EXPECT_FALSE(b.cells.grid);
     const NodalVectors x = a.X + test::noise(a.nodes(), 0.01);
     const NodalVectors ours = forces(written.model, x);
     EXPECT_LE((forces(read.model, x) - ours).cwiseAbs().maxCoeff(), 1e-12 * ours.cwiseAbs().maxCoeff());

@@ -75,13 +75,13 @@ TEST(SpringsFile, IsReadAsItWasWrittenForEveryModel) {
     const NodalVectors ours = forces(written.model, x);
     EXPECT_LE((forces(read.model, x) - ours).cwiseAbs().maxCoeff(), 1e-12 * ours.cwiseAbs().maxCoeff());
     EXPECT_EQ(read.model.small_displacements_only, written.model.small_displacements_only);
-    EXPECT_EQ(a.grid.has_value(), b.grid.has_value());
+    EXPECT_EQ(a.cells.grid.has_value(), b.cells.grid.has_value());
     EXPECT_EQ(consists_of_cells(written.model), consists_of_cells(read.model));
     const double step = safe_time_step(written.model, material.density);
     EXPECT_NEAR(safe_time_step(read.model, read.density), step, 1e-9 * step);
-    ASSERT_EQ(a.cell_springs.size(), b.cell_springs.size());
-    for (std::size_t s = 0; s < a.cell_springs.size(); ++s)
-      EXPECT_NEAR(a.cell_springs[s].stiffness, b.cell_springs[s].stiffness, 1e-12 * a.cell_springs[s].stiffness);
+    ASSERT_EQ(a.cells.springs.size(), b.cells.springs.size());
+    for (std::size_t s = 0; s < a.cells.springs.size(); ++s)
+      EXPECT_NEAR(a.cells.springs[s].stiffness, b.cells.springs[s].stiffness, 1e-12 * a.cells.springs[s].stiffness);
     EXPECT_EQ(read.patches, written.patches);
     EXPECT_EQ(read.surface.facets, written.surface.facets);
     EXPECT_EQ(read.grip, 0.25);
@@ -93,7 +93,7 @@ TEST(SpringsFile, OfUnequalSpringsIsNoLattice) {
   const double step = safe_time_step(file.model, file.density);
   file.model.network.springs[7].stiffness *= 100;
   const SpringsFile read = parse_springs(springs_as_json(file), "own.json");
-  EXPECT_FALSE(read.model.network.grid);
+  EXPECT_FALSE(read.model.network.cells.grid);
   EXPECT_FALSE(consists_of_cells(read.model));
   EXPECT_LT(safe_time_step(read.model, file.density), step / 2);
 }
@@ -102,7 +102,7 @@ TEST(SpringsFile, OfUnequalMassesIsNoLattice) {
   SpringsFile file = file_of("hybmss");
   file.model.network.volume[0] /= 1000;
   const SpringsFile read = parse_springs(springs_as_json(file), "own.json");
-  EXPECT_FALSE(read.model.network.grid);
+  EXPECT_FALSE(read.model.network.cells.grid);
   EXPECT_LT(safe_time_step(read.model, file.density), safe_time_step(file.model, 10 * file.density));
 }
 
@@ -179,7 +179,7 @@ TEST(SpringsFile, WhatIsNamedTwiceIsRefused) {
   SpringsFile file = file_of("hybmss");
   file.model = build_model(test::model("hybmss"), block_mesh({1, 1, 1}, {2, 2, 2}), material);
   file.surface = {};
-  file.model.network.cells.push_back(file.model.network.cells[3]);
+  file.model.network.cells.corners.push_back(file.model.network.cells.corners[3]);
   EXPECT_NE(
       message_of(springs_as_json(file)).find("/cells/nodes: cells 3 and 8 connect the same nodes (allowed: one cell "),
       std::string::npos)
@@ -242,7 +242,7 @@ TEST(SpringsFile, IsEmbeddedAtTheNodesOfTheMesh) {
   network.X = network.X.colwise().reverse().eval();
   network.volume.reverseInPlace();
   for (Spring& s : network.springs) s = {last - s.i, last - s.j, s.stiffness, s.rest_length};
-  for (Hexahedron& cell : network.cells)
+  for (Hexahedron& cell : network.cells.corners)
     for (int& n : cell) n = last - n;
   file.surface = {};
   ModelParameters p;

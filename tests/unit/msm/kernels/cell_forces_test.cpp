@@ -47,7 +47,7 @@ std::vector<MassSpringModel> models() {
 }
 
 NodalVectors disturbed(const Network& network, double size = 0.1) {
-  return network.X + test::noise(network.nodes(), size * network.cell_edge);
+  return network.X + test::noise(network.nodes(), size * network.cells.edge);
 }
 
 double worst(const NodalVectors& a, const NodalVectors& b) {
@@ -58,14 +58,14 @@ template <class Real>
 void expect_plain_forces(double tolerance) {
   for (const MassSpringModel& model : models()) {
     NodalVectors x = disturbed(model.network), v = test::noise(model.network.nodes(), 10, 2);
-    carry(model.network.carried, x);
-    carry(model.network.carried, v);
+    carry(model.network.cells.carried, x);
+    carry(model.network.cells.carried, v);
     const NodalVectors expected = forces(model, x);
     NodalVectors f, damped = expected;
     ASSERT_TRUE(expected.allFinite());
     const AveragedSprings& law = *averaged_springs_of(model);
     law.add_viscous_forces(model.network, x, v, retardation, damped);
-    hand_back(model.network.carried, damped);
+    hand_back(model.network.cells.carried, damped);
     ASSERT_GT(worst(damped, expected), 0.01);
     for (const InstructionSet set : usable_instruction_sets()) {
       CellForces<Real>(model, set).at(x, v, f);
@@ -80,7 +80,8 @@ void expect_plain_forces(double tolerance) {
 
 TEST(CellForces, DoubleIsThePlainLoop) {
   double least = 1;
-  for (const FilledPart& part : bar(test::model("hybmss_avg")).network.filled) least = std::min(least, part.fraction);
+  for (const FilledPart& part : bar(test::model("hybmss_avg")).network.cells.filled)
+    least = std::min(least, part.fraction);
   EXPECT_LT(least, 0.02);  // slivers
   expect_plain_forces<double>(1e-12);
 }
@@ -128,7 +129,7 @@ TEST(CellOrder, CompletesNodesALayerLater) {
     EXPECT_LT(order.place[node], w.complete[std::min(piece + w.lag, w.pieces())]);  // moved before its next one
   };
   for (std::size_t c = 0; c < order.cells.size(); ++c)
-    for (const int node : network.cells[order.cells[c]]) expect_between(node, static_cast<long>(c) / 8);
+    for (const int node : network.cells.corners[order.cells[c]]) expect_between(node, static_cast<long>(c) / 8);
   ASSERT_GT(network.anchors.size(), 3u);
   ASSERT_EQ(order.first_anchor.back(), static_cast<int>(network.anchors.size()));
   for (long block = 0; block < order.plan.blocks; ++block)
@@ -147,14 +148,14 @@ BoundaryConditions pulled(const Network& network) {
   bc.fixed.assign(3 * network.nodes(), 0);
   bc.prescribed = NodalVectors::Zero(network.nodes(), 3);
   bc.external = test::noise(network.nodes(), 0.5, 4);
-  hand_back(network.carried, bc.external);
+  hand_back(network.cells.carried, bc.external);
   for (const Anchor& a : network.anchors) {
     for (int d = 0; d < 3; ++d) bc.fixed[3 * a.node + d] = 1;
     bc.prescribed.row(a.node) << 0.1, 0, -0.05;
   }
   std::vector<char> own(network.nodes(), 1);
-  for (const CarriedPoint& c : network.carried) own[c.point] = 0;
-  const Hexahedron& last = network.cells.back();
+  for (const CarriedPoint& c : network.cells.carried) own[c.point] = 0;
+  const Hexahedron& last = network.cells.corners.back();
   const int apart = *std::find_if(last.begin(), last.end(), [&](int n) { return own[n]; });
   bc.fixed[3 * apart + 1] = 1;
   bc.prescribed(apart, 1) = 0.02;
@@ -174,7 +175,7 @@ State plain_steps(const MassSpringModel& model, const BoundaryConditions& bc, do
   for (; steps > 0; --steps) {
     NodalVectors f = forces(model, s.x);
     averaged_springs_of(model)->add_viscous_forces(model.network, s.x, s.v + s.of_supports, time, f);
-    hand_back(model.network.carried, f);
+    hand_back(model.network.cells.carried, f);
     f += bc.external;
     ForceNorms squares;
     for (Eigen::Index i = 0; i < f.size(); ++i) {
@@ -189,9 +190,9 @@ State plain_steps(const MassSpringModel& model, const BoundaryConditions& bc, do
         s.x.data()[i] += dt * s.v.data()[i];
       }
     }
-    carry(model.network.carried, s.x);
-    carry(model.network.carried, s.v);
-    carry(model.network.carried, s.of_supports);
+    carry(model.network.cells.carried, s.x);
+    carry(model.network.cells.carried, s.v);
+    carry(model.network.cells.carried, s.of_supports);
     s.norms = {std::sqrt(squares.unbalanced), std::sqrt(squares.support)};
   }
   return s;

@@ -49,7 +49,7 @@ Response response(const MassSpringModel& model, const NodalVectors& u) {
   tangent(model, network.X).multiply(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()), Ku);
   Response r{0.5 * Ku.dot(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()))};
   const NodalVectors f = Eigen::Map<const NodalVectors>(Ku.data(), u.rows(), 3);
-  const double eighth = network.cell_volume() / 8;
+  const double eighth = network.cells.volume() / 8;
   for (int n = 0; n < network.nodes(); ++n)
     if (network.volume[n] > 7.5 * eighth)
       r.inside = std::max(r.inside, f.row(n).norm() / f.rowwise().norm().maxCoeff());
@@ -63,15 +63,15 @@ TEST(BoxCells, AreBuiltOfTheModelsThatHaveThem) {
     try {
       const Network network = build_model(test::model(row.name), mesh, {1e4, 0.25, 1000}).network;
       EXPECT_TRUE(takes_boxes(row)) << row.name;
-      EXPECT_TRUE(network.has_boxes());
-      EXPECT_NEAR(network.proportions.prod(), 1, 1e-14);
-      EXPECT_LT((network.cell_edge * network.proportions - Vec3(1, 0.5, 0.25)).norm(), 1e-14);
+      EXPECT_TRUE(network.cells.kind() == CellKind::boxes);
+      EXPECT_NEAR(network.cells.proportions.prod(), 1, 1e-14);
+      EXPECT_LT((network.cells.edge * network.cells.proportions - Vec3(1, 0.5, 0.25)).norm(), 1e-14);
     } catch (const InputError& e) {
       EXPECT_FALSE(takes_boxes(row)) << row.name;
       EXPECT_NE(std::string(e.what()).find("hybmss_avg"), std::string::npos) << e.what();
     }
   }
-  EXPECT_TRUE((build(block({0.5, 0.5, 0.5}), 0.25).model.network.proportions.array() == 1).all());
+  EXPECT_TRUE((build(block({0.5, 0.5, 0.5}), 0.25).model.network.cells.proportions.array() == 1).all());
 }
 
 TEST(BoxCells, UniformStrainIsExact) {
@@ -162,7 +162,7 @@ TEST(BoxCells, MultigridSolvesWhatCholeskyDoes) {
       ASSERT_TRUE(exact.ok && other.ok) << exact.message << other.message;
       EXPECT_LE((other.displacement - exact.displacement).norm(), 1e-6 * exact.displacement.norm());
       EXPECT_LE((other.support - exact.support).norm(), 1e-6 * exact.support.norm());
-      const Vec3& p = bar.built.model.network.proportions;
+      const Vec3& p = bar.built.model.network.cells.proportions;
       EXPECT_LE(other.iterations, p.maxCoeff() / p.minCoeff() < 3 ? 30 : 90) << size.transpose() << other.solver;
     }
 }

@@ -24,7 +24,7 @@ Eigen::VectorXf linear(const CutLevel& level, float ratio) {
 TEST(CutLevels, OfWholeCubesReproduceLinearFields) {
   const Network network =
       build_model(test::model("hybmss"), block_mesh({1.2, 0.9, 0.7}, {12, 9, 7}), {1, 0.25, 1}).network;
-  ASSERT_TRUE(network.filled.empty());
+  ASSERT_FALSE(network.cells.cut());
   const std::vector<CutLevel> levels =
       cut_levels(network, AnchoredNodes(network, std::vector<char>(network.X.size(), 0)));
   ASSERT_EQ(levels.size(), 2);

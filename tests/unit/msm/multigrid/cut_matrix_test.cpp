@@ -27,7 +27,7 @@ MassSpringModel bar(bool refined, double nu, double shift) {
 /// Noise that is zero in carried unknowns.
 Eigen::VectorXd field(const Network& network, unsigned seed) {
   Eigen::VectorXd x = flat(test::noise(network.nodes(), 1, seed));
-  for (const CarriedPoint& c : network.carried) x.segment<3>(3 * c.point).setZero();
+  for (const CarriedPoint& c : network.cells.carried) x.segment<3>(3 * c.point).setZero();
   return x;
 }
 

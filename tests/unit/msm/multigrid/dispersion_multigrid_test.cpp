@@ -52,7 +52,7 @@ TEST(NodalVolumes, AreTheInflowsOfTheTangentAndItsTranspose) {
     for (bool exact : {true, false}) {
       const MassSpringModel model = emsm(mesh, 0.45, exact);
       const Network& network = model.network;
-      const double G = affine_shear_modulus(network), l = network.cell_edge;
+      const double G = affine_shear_modulus(network), l = network.cells.edge;
       const LatticeLevels lattice = lattice_levels(network, std::vector<char>(3 * network.nodes(), 0));
       const long stride = lattice.levels[0].stride();
       const NodalVolumes volumes(model, lattice, G);
@@ -78,7 +78,7 @@ TEST(NodalVolumes, AreTheInflowsOfTheTangentAndItsTranspose) {
 TEST(NodalVolumes, DiagonalOfTheSchurComplement) {
   const MassSpringModel model = emsm(cut_body(), 0.45);
   const Network& network = model.network;
-  const double G = affine_shear_modulus(network), l = network.cell_edge;
+  const double G = affine_shear_modulus(network), l = network.cells.edge;
   const LatticeLevels lattice = lattice_levels(network, std::vector<char>(3 * network.nodes(), 0));
   const Eigen::VectorXd D = arbitrary(network.nodes(), 3).array() + 2;
   Eigen::VectorXd D_rows;

@@ -140,7 +140,7 @@ TEST(LatticeLevels, InterpolationIsExactForLinearFieldsAndTransposed) {
                   Eigen::Map<const Eigen::VectorXd>(model.network.X.data(), model.network.X.size()), X_rows);
   Eigen::VectorXf X_coarse = Eigen::VectorXf::Constant(3 * coarse.stride(), NAN);
   std::vector<Vec3> corner(coarse.cells(), Vec3::Constant(1e9));
-  const double h = model.network.cell_edge;
+  const double h = model.network.cells.edge;
   for (const CellRow& row : fine.rows)
     for (int i = 0; i < row.length; ++i) {
       Vec3& low = corner[coarse.parent[row.cell + i]];

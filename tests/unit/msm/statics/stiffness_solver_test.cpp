@@ -60,7 +60,7 @@ std::vector<char> held_at_the_left(const Network& network) {
 
 Eigen::VectorXd field(const Network& network) {
   Eigen::VectorXd u = flat(test::noise(network.nodes(), 1, 3));
-  for (const CarriedPoint& c : network.carried) u.segment<3>(3 * c.point).setZero();
+  for (const CarriedPoint& c : network.cells.carried) u.segment<3>(3 * c.point).setZero();
   return u;
 }
 

@@ -80,5 +80,26 @@ TEST(Models, RefuseUnknownNamesAndOptions) {
   EXPECT_THROW(resolve({"hybmss", {{"volume_energy", std::string("log")}}, "", {}}), InputError);
 }
 
+TEST(Cells, SayWhatTheyAre) {
+  EXPECT_EQ(Network{}.cells.kind(), CellKind::none);
+  EXPECT_EQ(lattice_without_springs(test::notched_block()).cells.kind(), CellKind::cubes);
+  EXPECT_EQ(lattice_without_springs(test::notched_block(Vec3(0.5, 0.9, 0.35))).cells.kind(), CellKind::boxes);
+  EXPECT_EQ(test::cut_network().cells.kind(), CellKind::cut);
+  EXPECT_EQ(test::refined_network().cells.kind(), CellKind::sizes);
+}
+
+TEST(Cells, KeepTheirShapesInAPart) {
+  const CellSet all = test::refined_network().cells;
+  const std::vector<int> numbers = {static_cast<int>(all.size()) - 1, 0};
+  const CellSet some = all.of(numbers);
+  ASSERT_EQ(some.size(), numbers.size());
+  for (std::size_t c = 0; c < some.size(); ++c) {
+    EXPECT_EQ(some.corners[c], all.corners[numbers[c]]);
+    EXPECT_EQ(some.shape(c).edge, all.shape(numbers[c]).edge);
+    EXPECT_EQ(some.shape(c).volume(), all.shape(numbers[c]).volume());
+  }
+  EXPECT_EQ(some.kind(), all.kind());
+}
+
 }  // namespace
 }  // namespace springproof::lattice_test

@@ -101,7 +101,7 @@ TEST(HexagonalLattice, HasTheModuliOfKotEquation12) {
 TEST(HexagonalLattice, FillsTheRectangleByWholeRows) {
   for (const double edge : {0.05, 0.11, 0.3, 5.0}) {
     const Network network = hexagonal_lattice(block_mesh({3, 2, 0.1}, {3, 2, 1}), edge);
-    const double a = network.cell_edge;
+    const double a = network.cells.edge;
     EXPECT_NEAR(network.X.col(1).minCoeff(), 0, 1e-14);
     EXPECT_NEAR(network.X.col(1).maxCoeff(), 2, 1e-12);
     EXPECT_NEAR(network.volume.sum() / 0.2, 3, a / 2 + 1e-12);
