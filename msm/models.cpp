@@ -10,6 +10,7 @@
 #include "meshes/volume.h"
 #include "msm/embedding/surface_shares.h"
 #include "msm/exchange/springs_file.h"
+#include "msm/laws/capabilities.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/parameters/patch_fit.h"
 #include "msm/periodic/laws_of_model.h"
@@ -32,10 +33,10 @@ double mean_edge(const Mesh& mesh) {
 /// @throws InputError if the cells are boxes and the model is one of cubes.
 void require_cubes(const ModelRow& row, const Mesh& mesh) {
   const bool of_cubes = row.topology == cells || row.topology == centres;
-  if (!of_cubes || takes_boxes(row) || !mesh.grid || has_cubes(*mesh.grid)) return;
+  if (!of_cubes || can(row, Capability::cells_of_any_shape) || !mesh.grid || has_cubes(*mesh.grid)) return;
   std::vector<std::string> names;
   for (const ModelRow& other : model_table())
-    if (takes_boxes(other)) names.push_back(other.name);
+    if (can(other, Capability::cells_of_any_shape)) names.push_back(other.name);
   const Vec3& edge = mesh.grid->spacing;
   throw InputError(
       fmt::format("{}: needs cubes; the cells are {:.6g} x {:.6g} x {:.6g} m (allowed: cells in proportion to the "
@@ -46,8 +47,8 @@ void require_cubes(const ModelRow& row, const Mesh& mesh) {
 Network network_of(const ModelParameters& p, const Mesh& mesh, const Region* region) {
   switch (p.row.topology) {
     case cells:
-      return takes_boxes(p.row) ? lattice_without_springs(mesh)
-                                : cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
+      return can(p.row, Capability::cells_of_any_shape) ? lattice_without_springs(mesh)
+                                                        : cubic_lattice(mesh, isotropic_pattern(p.face_to_cube));
     case centres:
       return p.turned == 0 ? node_lattice(mesh, isotropic_pattern(p.face_to_cube))
                            : node_lattice(region ? *region : region_of(mesh), cube_edge(mesh), p.turned,
@@ -179,15 +180,13 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
     if (p.has(Extension::momentum_dispersion)) gradient = built.embedding.weights.transpose() * volume_gradient(mesh);
   }
   laws = laws_of(p, network, material, calibration, gradient);
-  small_displacements_only = !holds_at_large_displacement(p.row) || p.shift > 0;
+  small_displacements_only = !can(p.row, Capability::large_displacements) || p.shift > 0;
   return built;
 } catch (const std::invalid_argument& e) {
   throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
 }
 
-bool has_cut_cells(const ModelRow& row) {
-  return row.topology == cells && row.extension != Extension::momentum_dispersion;
-}
+bool has_cut_cells(const ModelRow& row) { return row.topology == cells && can(row, Capability::equal_cells); }
 
 EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std::vector<std::string>& held,
                         const Mesh& mesh, const IsotropicMaterial& material) {

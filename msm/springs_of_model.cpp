@@ -63,14 +63,13 @@ EmbeddedSurface carried_surface(EmbeddedSurface surface, const Mesh& cells, cons
 std::map<std::string, double> derived_of(const SpringsFile& file) {
   std::map<std::string, double> derived = {{"safe_time_step_s", safe_time_step(file.model, file.density)},
                                            {"mass_kg", masses(file.model.network, file.density).sum()}};
-  for (const ForceLaw& law : file.model.laws)
-    if (const auto* hourglass = std::get_if<HourglassCorrection>(&law)) {
-      const HourglassCorrection::Stiffness k = hourglass->stiffness(file.model.network.cells.edge);
-      derived.merge(std::map<std::string, double>{{"hourglass_bending_N_m", k.bending},
-                                                  {"hourglass_coupling_N_m", k.coupling},
-                                                  {"hourglass_torsion_N_m", k.torsion},
-                                                  {"hourglass_torsion_coupling_N_m", k.torsion_coupling}});
-    }
+  if (const auto* hourglass = law_of<HourglassCorrection>(file.model)) {
+    const HourglassCorrection::Stiffness k = hourglass->stiffness(file.model.network.cells.edge);
+    derived.merge(std::map<std::string, double>{{"hourglass_bending_N_m", k.bending},
+                                                {"hourglass_coupling_N_m", k.coupling},
+                                                {"hourglass_torsion_N_m", k.torsion},
+                                                {"hourglass_torsion_coupling_N_m", k.torsion_coupling}});
+  }
   return derived;
 }
 

@@ -134,7 +134,7 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
   const auto add = [&](const std::string& name) {
     const ModelRow row = resolve(choice_of(name, {})).row;
     const bool finite = e.model_kinematics() == Kinematics::finite;
-    if (finite && !holds_at_large_displacement(row)) return;
+    if (finite && !can(row, Capability::large_displacements)) return;
     const bool cuts = voxels && has_cut_cells(row) && (!finite || row.extension == Extension::averaging);
     if (cuts) e.models.push_back(choice_of(name, true));
     e.models.push_back(choice_of(name, cuts ? std::optional(false) : std::nullopt));

@@ -12,6 +12,7 @@
 #include "msm/dynamics/time_step.h"
 #include "msm/kernels/cell_forces.h"
 #include "msm/kernels/list_forces.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof::bench {
 namespace {
@@ -53,11 +54,9 @@ Work operations(const MassSpringModel& model) {
   const Network& net = model.network;
   const double m = double(net.springs.size()), n = double(net.nodes());
   Work w{21 * m + 12 * n, m, 0, 0};
-  for (const ForceLaw& law : model.laws) {
-    if (std::holds_alternative<VolumeCorrection>(law)) w.flops += 156 * double(net.cells.size());
-    if (std::holds_alternative<AveragedSprings>(law)) w.flops += 590 * double(net.cells.size());  // Hencky's curve
-    if (std::holds_alternative<MomentumDispersion>(law)) w.flops += 8 * m;
-  }
+  if (law_of<VolumeCorrection>(model)) w.flops += 156 * double(net.cells.size());
+  if (law_of<AveragedSprings>(model)) w.flops += 590 * double(net.cells.size());  // Hencky's curve
+  if (law_of<MomentumDispersion>(model)) w.flops += 8 * m;
   return w;
 }
 
@@ -133,10 +132,10 @@ TimedStep motion_by_forces(const MassSpringModel& model) {
 std::optional<TimedStep> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
   if (LatticeMotion::suits(model, options)) return timed_lattice(model, options);
   if (options.viscosity.acts() || options.mass_consistency > 0) return {};
-  if (ListForces<double>::covers(model))
+  if (can(model, Capability::list_kernels))
     return options.precision == Precision::float64 ? motion_of_springs<double>(model, options)
                                                    : motion_of_springs<float>(model, options);
-  if (CellForces<double>::covers(model))
+  if (can(model, Capability::cell_kernels))
     return options.precision == Precision::float64 ? motion_of_cells<double>(model, options)
                                                    : motion_of_cells<float>(model, options);
   if (options.threads > 1 || options.precision != Precision::float64) return {};

@@ -28,7 +28,7 @@ void require_cubes(const SpringsFile& springs, const char* engine) {
 }
 
 void require_springs_alone(const SpringsFile& springs) {
-  if (!of_springs_alone(springs.model)) {
+  if (!consists_of<Springs>(springs.model)) {
     std::vector<std::string> able;
     for (const ModelRow& row : model_table())
       if (row.topology == Topology::cells && of_springs_alone(row)) able.push_back(row.name);

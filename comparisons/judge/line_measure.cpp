@@ -17,12 +17,6 @@ void append(const Eigen::Matrix3d& tensor, LineTensors& out) {
   for (const auto& [i, j] : places) out.push_back(tensor(i, j));
 }
 
-bool only_tensions(const MassSpringModel& model) {
-  return std::all_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) {
-    return std::holds_alternative<Springs>(law) || std::holds_alternative<MomentumDispersion>(law);
-  });
-}
-
 /// The springs within `reach` of the line, so that not every spring is visited for every point.
 Network near_line(const Network& network, const Line& line, double reach, std::vector<double>& tensions) {
   Network near;
@@ -96,7 +90,8 @@ LineRecord sample_line(const Line& line, const KelvinSolution& solution, const M
     append((gradient + gradient.transpose()) / 2, record.strain);
     append(kelvin_strain(solution, p), record.exact_strain);
     append(kelvin_stress(solution, p), record.exact_stress);
-    if (only_tensions(model)) append(hardy_stress(near, near.X, tensions, p, stress_reach * spacing), record.stress);
+    if (consists_of<Springs, MomentumDispersion>(model))
+      append(hardy_stress(near, near.X, tensions, p, stress_reach * spacing), record.stress);
   }
   return record;
 }

@@ -23,7 +23,7 @@ constexpr double widest = 8;  // stretch of a cell's mean edge that no pull reac
 
 ModelParameters parameters_of(const std::string& name) {
   for (const ModelRow& row : model_table())
-    if (row.name == name && row.topology == Topology::cells && holds_at_large_displacement(row)) {
+    if (row.name == name && row.topology == Topology::cells && can(row, Capability::large_displacements)) {
       ModelParameters p;
       p.row = row;
       p.face_to_cube = row.face_to_cube;
@@ -234,8 +234,7 @@ bool LiveModel::measure() {
   double sum = 0;
   least_volume_ = least_stretch_ = 1e9;
   largest_area_ = 1;
-  const bool corrected = std::any_of(model_.laws.begin(), model_.laws.end(),
-                                     [](const ForceLaw& l) { return std::holds_alternative<VolumeCorrection>(l); });
+  const bool corrected = law_of<VolumeCorrection>(model_) != nullptr;
   for (const Hexahedron& cell : network.cells.corners) {
     const Eigen::Matrix3d A = edges_of(cell, x_);
     const double J = A.determinant() / rest;

@@ -5,6 +5,7 @@
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
 #include "msm/dynamics/inertia.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 
@@ -28,7 +29,7 @@ void MotionRecorder::operator()(double time, const NodalVectors& x, const NodalV
   const Field field = field_at(x, v, conditions);
   next_ = 0;
   add("kinetic_energy", "J", 0.5 * (s.cwiseProduct(v).rowwise().sum().array() * mass_.array()).sum());
-  if (conservative(model)) add("elastic_energy", "J", energy(model, x));
+  if (can(model, Capability::energy)) add("elastic_energy", "J", energy(model, x));
   add_momenta(x, s);
   const NodalVectors u = x - model.network.X;
   add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());

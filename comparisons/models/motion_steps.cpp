@@ -8,6 +8,7 @@
 #include "msm/dynamics/checked_step.h"
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/terms/energy_momentum.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 namespace {
@@ -52,7 +53,7 @@ double wanted_step(const MotionChoice& motion) {
 bool large_steps_pay(const MotionChoice& motion, const MassSpringModel& model, double own, const Viscosity& viscosity) {
   const double ratio =
       LatticeMotion::suits(model, {.viscosity = viscosity}) ? worthwhile_ratio_beside_kernels : worthwhile_ratio;
-  return EnergyMomentum::lacks(model).empty() && wanted_step(motion) > ratio * (own / share_of_bound);
+  return can(model, Capability::energy_momentum) && wanted_step(motion) > ratio * (own / share_of_bound);
 }
 
 }  // namespace

@@ -29,9 +29,9 @@ void check_kinematics(const Experiment& e, const std::vector<ModelParameters>& m
   if (e.model_kinematics() == Kinematics::linear) return;
   std::vector<std::string> able;
   for (const ModelRow& row : model_table())
-    if (holds_at_large_displacement(row)) able.push_back(row.name);
+    if (can(row, Capability::large_displacements)) able.push_back(row.name);
   for (std::size_t m = 0; m < models.size(); ++m)
-    if (const ModelRow& row = models[m].row; !holds_at_large_displacement(row))
+    if (const ModelRow& row = models[m].row; !can(row, Capability::large_displacements))
       throw InputError(
           e.models[m].where,
           fmt::format(

@@ -55,7 +55,7 @@ void add_cut_network(const PreparedCase& prepared, const Mesh* carried, SpringsF
   const Lattice& lattice = prepared.lattices.front();
   const CutBody& body = *lattice.cut;
   file.model = build_cut(prepared.models.front(), body, {}, *lattice.mesh, *file.material).model;
-  std::erase_if(file.model.laws, [](const ForceLaw& law) { return std::holds_alternative<Anchors>(law); });
+  erase_laws<Anchors>(file.model);
   Embedding loads = embed(body, {}, file.model.network, Mesh{});
   file.loads = std::move(loads.patches);
   file.volumes = std::move(loads.volumes);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "msm/laws/capabilities.h"
+
 namespace springproof {
 namespace {
 
@@ -53,6 +55,33 @@ std::vector<Element> of_numbers(const std::vector<Element>& all, const std::vect
   return some;
 }
 
+/// Leaves a law the values of a part's springs and cells (law_traits.h); nodes keep their numbers.
+struct PartOfLaws {
+  const std::vector<int>& springs;
+  std::size_t all_springs;
+  const std::vector<int>& cells;
+  std::size_t all_cells;
+
+  void number(const char*, double, double = 0, double = 0) const {}
+  void flag(const char*, bool) const {}
+  template <class Enum>
+  void choice(const char*, Enum) const {}
+  void of_nodes(const char*, const std::vector<int>&) const {}
+  void of_springs(const char*, std::vector<double>& values) const { keep(springs, all_springs, values); }
+  void of_cells(const char*, std::vector<double>& values, int = 1) const { keep(cells, all_cells, values); }
+
+ private:
+  static void keep(const std::vector<int>& numbers, std::size_t all, std::vector<double>& values) {
+    if (values.empty()) return;
+    const std::size_t each = values.size() / all;
+    std::vector<double> kept;
+    for (const int number : numbers)
+      kept.insert(kept.end(), values.begin() + static_cast<std::ptrdiff_t>(each * number),
+                  values.begin() + static_cast<std::ptrdiff_t>(each * (number + 1)));
+    values = std::move(kept);
+  }
+};
+
 std::array<int, 9> nodes_of_anchor(const Anchor& a) {
   std::array<int, 9> nodes;
   std::copy(a.corners.begin(), a.corners.end(), nodes.begin());
@@ -64,7 +93,8 @@ std::array<int, 9> nodes_of_anchor(const Anchor& a) {
 
 ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nodes) {
   if (!whole.network.image_of.empty()) throw std::invalid_argument("a periodic network is not parted");
-  if (!conservative(whole)) throw std::invalid_argument("its forces have no energy, so its stiffness is not symmetric");
+  if (!can(whole, Capability::energy))
+    throw std::invalid_argument("its forces have no energy, so its stiffness is not symmetric");
   if (const MomentumDispersion* dispersion = dispersion_of(whole);
       dispersion && dispersion->form == Dispersion::finite_strain)
     throw std::invalid_argument("momentum dispersion of finite strain is not parted");
@@ -83,13 +113,8 @@ ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nod
   network.cells = all.cells.of(part.cells);
   network.triangles = of_numbers(all.triangles, acting(all.triangles, own, themselves));
   network.anchors = of_numbers(all.anchors, acting(all.anchors, own, nodes_of_anchor));
-  for (ForceLaw& law : part.model.laws)
-    if (auto* dispersion = std::get_if<MomentumDispersion>(&law); dispersion && !dispersion->weight.empty()) {
-      std::vector<double> weight;
-      for (const int s : springs)
-        weight.insert(weight.end(), {dispersion->weight[2 * s], dispersion->weight[2 * s + 1]});
-      dispersion->weight = std::move(weight);
-    }
+  PartOfLaws values{springs, all.springs.size(), part.cells, all.cells.size()};
+  for (ForceLaw& law : part.model.laws) std::visit([&](auto& l) { l.fields(values); }, law);
   return part;
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "msm/laws/laws.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 
@@ -18,7 +18,7 @@ struct ModelPart {
 /// @param whole a model without periodic images
 /// @param own per node
 /// @return its part
-/// @throws std::invalid_argument for a periodic model, one whose forces have no energy (conservative()), and
+/// @throws std::invalid_argument for a periodic model, one whose forces have no energy (can(, Capability::energy)), and
 /// momentum dispersion of finite strain.
 ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own);
 

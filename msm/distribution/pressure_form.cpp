@@ -6,12 +6,10 @@ namespace springproof {
 namespace {
 
 MassSpringModel without_volume_term(const MassSpringModel& model) {
-  MassSpringModel springs{model.network, {}, model.small_displacements_only};
-  for (ForceLaw law : model.laws) {
-    if (auto* averaged = std::get_if<AveragedSprings>(&law)) averaged->lame_lambda = averaged->shear_modulus;
-    if (!std::holds_alternative<VolumeCorrection>(law) && !std::holds_alternative<MomentumDispersion>(law))
-      springs.laws.push_back(law);
-  }
+  MassSpringModel springs = model;
+  if (auto* averaged = law_of<AveragedSprings>(springs)) averaged->lame_lambda = averaged->shear_modulus;
+  erase_laws<VolumeCorrection>(springs);
+  erase_laws<MomentumDispersion>(springs);
   return springs;
 }
 
@@ -66,11 +64,9 @@ void set_pressures_of_nodes(const MassSpringModel& model, PressureForm& form) {
 
 }  // namespace
 
-bool has_nodal_pressures(const MassSpringModel& model) { return dispersion_of(model) != nullptr; }
-
 PressureForm pressure_form(const MassSpringModel& model) {
   PressureForm form{without_volume_term(model), {}, {}};
-  has_nodal_pressures(model) ? set_pressures_of_nodes(model, form) : set_pressures_of_cells(model, form);
+  dispersion_of(model) ? set_pressures_of_nodes(model, form) : set_pressures_of_cells(model, form);
   return form;
 }
 

@@ -6,6 +6,7 @@
 #include "msm/dynamics/terms/mass_average.h"
 #include "msm/dynamics/terms/plane_contact.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 namespace {
@@ -21,14 +22,15 @@ void check_mass(const MassSpringModel& model, const MotionOptions& options) {
     refuse("large steps have lumped mass (allowed beside it: integrator = \"explicit\")");
   if (options.contact) refuse("impulses of a plane need lumped mass (allowed beside it: no plane)");
   if (options.lagged) refuse("lagged dispersion needs lumped mass");
-  if (const std::string why = MassAverage::lacks(model.network); !why.empty())
+  if (const std::string why = lacks(model, Capability::mass_average); !why.empty())
     refuse(fmt::format("does not suit this model: {} (allowed for it: 0)", why));
 }
 
 void check_integrator(const MassSpringModel& model, const MotionOptions& options) {
   const auto refuse = [](const std::string& reason) { throw MotionOptionError("integrator", reason); };
   if (options.integrator == Integrator::explicit_euler) return;
-  const std::string why = options.integrator == Integrator::energy_momentum ? EnergyMomentum::lacks(model) : "";
+  const std::string why =
+      options.integrator == Integrator::energy_momentum ? lacks(model, Capability::energy_momentum) : "";
   if (!why.empty())
     refuse(fmt::format("energy_momentum does not suit this model: {} (allowed for it: explicit, implicit_euler)", why));
   if (options.lagged) refuse("lagged dispersion needs the explicit one");
@@ -42,7 +44,7 @@ void check_integrator(const MassSpringModel& model, const MotionOptions& options
 }
 
 void check_damping(const MassSpringModel& model, double density, double dt, const MotionOptions& options) {
-  if (const std::string why = options.viscosity.acts() ? Viscosity::lacks(model) : ""; !why.empty())
+  if (const std::string why = options.viscosity.acts() ? lacks(model, Capability::viscosity) : ""; !why.empty())
     throw MotionOptionError("viscosity", "does not suit this model: " + why);
   if (!(options.damping >= 0)) throw MotionOptionError("damping_1_s", "must be >= 0");
   if (!options.lagged) return;

@@ -10,6 +10,7 @@
 
 #include "msm/algebra/dense.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 namespace {
@@ -117,7 +118,7 @@ void ImplicitMotion::prepare(const Formula& step) {
   cycle_.reset();
   const Network& network = model_.network;
   const long unknowns = std::count(conditions_.fixed.begin(), conditions_.fixed.end(), 0);
-  if (unknowns > cholesky_limit && consists_of_cells(model_) && !network.cells.cut())
+  if (unknowns > cholesky_limit && can(model_, Capability::equal_cells))
     cycle_ = std::make_unique<Multigrid>(lattice_levels(network, conditions_.fixed),
                                          step.of_stiffness * cell_stiffness(model_).total, true,
                                          a * density_ * network.cells.volume() / 8);

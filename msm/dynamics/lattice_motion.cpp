@@ -4,6 +4,7 @@
 
 #include "msm/gpu/gpu.h"
 #include "msm/kernels/lattice_layout.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 namespace {
@@ -29,7 +30,7 @@ bool LatticeMotion::suits(const MassSpringModel& model, const MotionOptions& opt
 }
 
 bool LatticeMotion::suits_gpu(const MassSpringModel& model, const MotionOptions& options) {
-  return is_lattice_of_springs(model) && !dispersion_of(model) && !options.viscosity.acts() &&
+  return is_lattice_of_springs(model) && can(model, Capability::gpu) && !options.viscosity.acts() &&
          options.mass_consistency == 0;
 }
 

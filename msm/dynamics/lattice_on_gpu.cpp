@@ -182,18 +182,16 @@ gpu::LatticeForGpu<Real> LatticeOnGpu<Real>::lattice_of(const MassSpringModel& m
   gpu::LatticeForGpu<Real> l;
   l.box = box_;
   std::vector<double> all(std::size_t(network_.nodes()) * gpu::values_of_kind, 0.0);
-  for (const ForceLaw& law : model.laws) {
-    if (std::get_if<Springs>(&law)) add_springs(all, l.reach);
-    const auto* volume = std::get_if<VolumeCorrection>(&law);
-    const auto* hourglass = std::get_if<HourglassCorrection>(&law);
-    const auto* averaged = std::get_if<AveragedSprings>(&law);
-    if (volume) l.bounded = volume->form == VolumeEnergy::bounded;
-    if (hourglass) l.hourglass = lattice_constants<Real>(hourglass->stiffness(edge_), edge_);
-    if (averaged) l.averaged = lattice_constants<Real>(*averaged, edge_);
-    l.volume = l.volume || volume;
-    l.corrected = l.corrected || hourglass;
-    if (volume || hourglass || averaged) add_cells(volume, all);
-  }
+  const auto* volume = law_of<VolumeCorrection>(model);
+  const auto* hourglass = law_of<HourglassCorrection>(model);
+  const auto* averaged = law_of<AveragedSprings>(model);
+  if (law_of<Springs>(model)) add_springs(all, l.reach);
+  if (volume) l.bounded = volume->form == VolumeEnergy::bounded;
+  if (hourglass) l.hourglass = lattice_constants<Real>(hourglass->stiffness(edge_), edge_);
+  if (averaged) l.averaged = lattice_constants<Real>(*averaged, edge_);
+  l.volume = volume;
+  l.corrected = hourglass;
+  if (volume || hourglass || averaged) add_cells(volume, all);
   CoefficientTable table(gpu::values_of_kind);
   const std::vector<double> empty(gpu::values_of_kind, 0.0);
   l.kind.assign(box_.size, table.entry(empty.data()));

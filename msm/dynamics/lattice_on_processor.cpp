@@ -26,15 +26,12 @@ class LatticeOnProcessor : public LatticeMotion {
         layout_(lattice_layout(model, kernels_.lanes, sizeof(Real), options.viscosity.acts())),
         workers_(dispersion_of(model) ? 1 : std::clamp(options.threads, 1, layout_.nodes[2])),
         progress_(workers_.count()) {
-    for (const ForceLaw& law : model.laws) {
-      if (const auto* volume = std::get_if<VolumeCorrection>(&law)) bounded_ = volume->form == VolumeEnergy::bounded;
-      if (const auto* hourglass = std::get_if<HourglassCorrection>(&law)) {
-        hourglass_ = lattice_constants<Real>(hourglass->stiffness(edge_), edge_);
-        corrected_ = true;
-      }
-      if (const auto* averaged = std::get_if<AveragedSprings>(&law))
-        averaged_ = lattice_constants<Real>(*averaged, edge_);
+    if (const auto* volume = law_of<VolumeCorrection>(model)) bounded_ = volume->form == VolumeEnergy::bounded;
+    if (const auto* hourglass = law_of<HourglassCorrection>(model)) {
+      hourglass_ = lattice_constants<Real>(hourglass->stiffness(edge_), edge_);
+      corrected_ = true;
     }
+    if (const auto* averaged = law_of<AveragedSprings>(model)) averaged_ = lattice_constants<Real>(*averaged, edge_);
     viscous_ = options.viscosity.acts();
     if (viscous_) dashpots_ = lattice_constants<Real>(options.viscosity.cells(), edge_, options.viscosity.time());
     make_arrays();

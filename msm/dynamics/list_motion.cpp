@@ -8,6 +8,7 @@
 #include "msm/dynamics/inertia.h"
 #include "msm/kernels/cell_forces.h"
 #include "msm/kernels/list_forces.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 namespace {
@@ -235,9 +236,9 @@ std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, co
   const std::vector<Anchor>& anchors = model.network.anchors;  // one support mass for all axes of a node
   if (std::any_of(anchors.begin(), anchors.end(), [](const Anchor& a) { return a.axes != 7; })) return nullptr;
   const AveragedSprings& dashpots = options.viscosity.cells();
-  if (CellForces<Real>::covers(model) && !options.viscosity.along_springs() && dashpots.shift == 0)
+  if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0)
     return std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());
-  if (ListForces<Real>::covers(model) && !options.viscosity.acts())
+  if (can(model, Capability::list_kernels) && !options.viscosity.acts())
     return std::make_unique<ListForces<Real>>(model, options.instructions);
   return nullptr;
 }

@@ -12,6 +12,7 @@
 #include "msm/dynamics/terms/mass_average.h"
 #include "msm/embedding/boundary.h"
 #include "msm/embedding/rigid_motions.h"
+#include "msm/laws/capabilities.h"
 #include "msm/statics/stiffness_solver.h"
 #include "problem/system/child.h"
 #include "problem/system/run_cost.h"
@@ -134,7 +135,7 @@ NaturalModes natural_modes(const MassSpringModel& model, const std::vector<char>
                            int count) {
   const double start = cpu_seconds();
   NaturalModes modes;
-  if (!conservative(model))
+  if (!can(model, Capability::energy))
     modes.message = "its forces have no potential, so it has no natural modes (allowed: symmetric dispersion)";
   else
     compute(model, fixed, density, theta, count, modes);

@@ -68,9 +68,10 @@ NodalVectors PlainMotion::moving() const { return average_.velocities(v_ + of_su
 NodalVectors PlainMotion::forces_at_x() {
   if (!dispersion_) return forces(model_, x_);
   NodalVectors f = NodalVectors::Zero(x_.rows(), 3);
-  for (const ForceLaw& law : model_.laws)
-    if (!std::holds_alternative<MomentumDispersion>(law))
-      std::visit([&](const auto& l) { l.add_forces(model_.network, x_, f); }, law);
+  const auto add = [&]<class Law>(const Law& law) {
+    if constexpr (!std::is_same_v<Law, MomentumDispersion>) law.add_forces(model_.network, x_, f);
+  };
+  for (const ForceLaw& law : model_.laws) std::visit(add, law);
   const Eigen::VectorXd J = dispersion_->inflow(model_.network, x_);
   dispersion_->add_forces(model_.network, x_, J_.size() > 0 ? J_ : J, f);
   J_ = J;

@@ -82,7 +82,32 @@ Eigen::VectorXd checked_masses(const Network& network, double density) {
   return mass;
 }
 
-bool belongs_to_cells(const ForceLaw& law) { return traits(law).reach == Reach::cells; }
+/// Adds the bound of a law, but of those of a cell whose stiffness is known as a whole.
+struct AddBound {
+  const Network& network;
+  const Eigen::VectorXd& mass;
+  bool lagged, whole_cells;  ///< springs and laws of cells are in the stiffness of a cell
+  NodeBlocks& blocks;
+
+  void operator()(const Anchors&) const {}          // their nodes have a support mass
+  void operator()(const AveragedSprings&) const {}  // by whole cells, or by averaged_frequency_squared()
+  void operator()(const Springs&) const {
+    if (whole_cells) return;
+    std::vector<double> k;
+    for (const Spring& s : network.springs) k.push_back(s.stiffness);
+    add_springs(network, mass, k, blocks);
+  }
+  void operator()(const MomentumDispersion& law) const {
+    if (law.of_volumes())
+      add_volumes(NodalGradients(law, network), mass, blocks);
+    else
+      add_springs(network, mass, law.stiffness_bound(network, lagged), blocks);
+  }
+  template <class Law>
+  void operator()(const Law& law) const {
+    if (!whole_cells || Law::traits.reach != Reach::cells) add_norms(network, mass, law, blocks);
+  }
+};
 
 /// Largest squared frequency of a full cell alone, of stiffness K and mass `full`, a share theta of it consistent.
 double cell_frequency_squared(const CellMatrix& K, double full, double theta) {
@@ -201,29 +226,12 @@ double averaged_frequency_squared(const AveragedSprings& law, const Network& net
 double safe_time_step(const MassSpringModel& model, double density, bool lagged, double theta) {
   const Network& network = model.network;
   const Eigen::VectorXd mass = checked_masses(network, density);
-  const bool cells =
-      !network.cells.springs.empty() && std::any_of(model.laws.begin(), model.laws.end(), belongs_to_cells);
+  const bool cells = !network.cells.springs.empty() &&
+                     std::any_of(model.laws.begin(), model.laws.end(),
+                                 [](const ForceLaw& law) { return traits(law).reach == Reach::cells; });
   NodeBlocks blocks(network.nodes(), Eigen::Matrix3d::Zero());
   const AveragedSprings* averaged = cells ? nullptr : averaged_springs_of(model);
-  for (const ForceLaw& law : model.laws) {
-    const auto* dispersion = std::get_if<MomentumDispersion>(&law);
-    if (dispersion && dispersion->of_volumes())
-      add_volumes(NodalGradients(*dispersion, network), mass, blocks);
-    else if (dispersion)
-      add_springs(network, mass, dispersion->stiffness_bound(network, lagged), blocks);
-    else if (std::holds_alternative<Anchors>(law))
-      continue;  // their nodes have a support mass
-    else if (averaged && std::holds_alternative<AveragedSprings>(law))
-      continue;  // below
-    else if (cells && (belongs_to_cells(law) || std::holds_alternative<Springs>(law)))
-      continue;  // part of the cell's stiffness
-    else if (std::holds_alternative<Springs>(law)) {
-      std::vector<double> k;
-      for (const Spring& s : network.springs) k.push_back(s.stiffness);
-      add_springs(network, mass, k, blocks);
-    } else
-      std::visit([&](const auto& l) { add_norms(network, mass, l, blocks); }, law);
-  }
+  for (const ForceLaw& law : model.laws) std::visit(AddBound{network, mass, lagged, cells, blocks}, law);
   const double gain = MassAverage::largest_gain(theta);
   double largest = gain * largest_eigenvalue(blocks);
   if (cells) {

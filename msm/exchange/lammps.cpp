@@ -41,13 +41,7 @@ double longest_spring(const Network& network) {
   return longest;
 }
 
-const AngularSprings* angular_springs(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws)
-    if (const auto* angular = std::get_if<AngularSprings>(&law)) return angular;
-  return nullptr;
-}
-
-const char* atom_style(const MassSpringModel& model) { return angular_springs(model) ? "angle" : "bond"; }
+const char* atom_style(const MassSpringModel& model) { return law_of<AngularSprings>(model) ? "angle" : "bond"; }
 
 /// The angles of the triangles: their coefficients and their nodes, the corner in the middle.
 struct Angles {
@@ -76,12 +70,6 @@ Angles angles_of(const Network& network, const AngularSprings& law) {
 
 }  // namespace
 
-bool suits_lammps(const MassSpringModel& model) {
-  return model.network.image_of.empty() && std::all_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) {
-           return std::holds_alternative<Springs>(law) || std::holds_alternative<AngularSprings>(law);
-         });
-}
-
 std::string lammps_data(const MassSpringModel& model, const NodalVectors& x, const Eigen::VectorXd& mass) {
   const Network& network = model.network;
   Types<double> node_types = types_of(mass);
@@ -97,7 +85,7 @@ std::string lammps_data(const MassSpringModel& model, const NodalVectors& x, con
   for (const Spring& s : network.springs)
     fmt::format_to(std::back_inserter(bonds), "{} {} {} {}\n", ++number, bond_types.of({s.stiffness, s.rest_length}),
                    s.i + 1, s.j + 1);
-  const AngularSprings* angular = angular_springs(model);
+  const AngularSprings* angular = law_of<AngularSprings>(model);
   const Angles angles = angular ? angles_of(network, *angular) : Angles{};
   std::string head =
       fmt::format("springs\n\n{} atoms\n{} atom types\n{} bonds\n{} bond types\n", x.rows(),
@@ -133,7 +121,7 @@ std::string lammps_input(const MassSpringModel& model, const Eigen::VectorXd& ma
       1.5 * longest_spring(model.network),
       by_type ? "read_data " + data_file
               : "fix masses all property/atom rmass ghost yes\nread_data " + data_file + " fix masses NULL NodeMasses",
-      time_step, atom_style(model), angular_springs(model) ? "angle_style harmonic\n" : "");
+      time_step, atom_style(model), law_of<AngularSprings>(model) ? "angle_style harmonic\n" : "");
 }
 
 }  // namespace springproof

@@ -7,9 +7,6 @@
 
 namespace springproof {
 
-/// Whether LAMMPS computes the model: its forces are those of springs and of angular springs.
-bool suits_lammps(const MassSpringModel& model);
-
 /// The data file: nodes at x [m], springs as bonds in the network's order, the corners of triangles as angles if there
 /// are angular springs.  LAMMPS' energies are K (r - r0)^2 and K (phi - phi0)^2, so K is half of the constant.  Masses
 /// [kg] are written by types of atoms, or, if there are more than 64 different ones, per atom (lammps_input() has the

@@ -11,6 +11,7 @@
 #include "msm/exchange/lattice_of_cells.h"
 #include "msm/exchange/read_cut_cells.h"
 #include "msm/exchange/springs_document.h"
+#include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
 #include "problem/system/input_error.h"
 #include "problem/system/named_files.h"
@@ -26,8 +27,7 @@ constexpr double unbalanced = 1e-6;  // force at rest over the sum of k L at a n
 /// Reads the parameters that a law names by its function `fields`.
 class LawReader {
  public:
-  LawReader(const JsonPlace& law, std::size_t nodes, std::size_t springs)
-      : law_(law), nodes_(nodes), springs_(springs) {}
+  LawReader(const JsonPlace& law, const Network& network) : law_(law), network_(network) {}
 
   void number(const char* key, double& value, double least = -largest_number_of_file,
               double largest = largest_number_of_file) {
@@ -45,17 +45,23 @@ class LawReader {
   }
   void of_springs(const char* key, std::vector<double>& values) {
     known_.emplace_back(key);
-    if (const auto place = law_.find(key)) values = place->numbers(place->first_is_list() ? 2 : 1, springs_, "springs");
+    if (const auto place = law_.find(key))
+      values = place->numbers(place->first_is_list() ? 2 : 1, network_.springs.size(), "springs");
   }
   void of_nodes(const char* key, std::vector<int>& values) {
     known_.emplace_back(key);
-    if (const auto place = law_.find(key)) values = place->integers(1, static_cast<int>(nodes_) - 1, nodes_, "nodes");
+    if (const auto place = law_.find(key))
+      values = place->integers(1, network_.nodes() - 1, static_cast<std::size_t>(network_.nodes()), "nodes");
+  }
+  void of_cells(const char* key, std::vector<double>& values, int each = 1) {
+    known_.emplace_back(key);
+    values = law_.at(key).numbers(each, network_.cells.size(), "cells");
   }
   void refuse_others() const { law_.require_known(known_); }
 
  private:
   JsonPlace law_;
-  std::size_t nodes_, springs_;
+  const Network& network_;
   std::vector<std::string> known_;
 };
 
@@ -202,13 +208,15 @@ void for_each_law(std::variant<Laws...>*, const Act& act) {
 void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
   if (traits(law).reach == Reach::cells && network.cells.empty())
     place.refuse("has no cells to act on", "beside cells");
-  if (traits(law).reach == Reach::cells && network.cells.cut() && !std::holds_alternative<AveragedSprings>(law))
-    place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
-  if (network.cells.kind() == CellKind::sizes && !std::holds_alternative<AveragedSprings>(law))
-    place.refuse("is beside cells of several sizes", "averaged_springs alone");
-  if (network.cells.kind() == CellKind::boxes && traits(law).reach == Reach::cells &&
-      !std::holds_alternative<AveragedSprings>(law))
-    place.refuse("acts on cubes, the cells are boxes", "averaged_springs in boxes");
+  const bool of_cells = traits(law).reach == Reach::cells;
+  if (!lacks(law, Capability::cells_of_any_shape).empty()) {
+    if (of_cells && network.cells.cut())
+      place.refuse("acts on whole cells, these are cut", "averaged_springs in cut cells");
+    if (network.cells.kind() == CellKind::sizes)
+      place.refuse("is beside cells of several sizes", "averaged_springs alone");
+    if (of_cells && network.cells.kind() == CellKind::boxes)
+      place.refuse("acts on cubes, the cells are boxes", "averaged_springs in boxes");
+  }
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
   const auto* dispersion = std::get_if<MomentumDispersion>(&law);
@@ -227,13 +235,12 @@ void read_laws(const JsonPlace& document, const SpringOrder& order, MassSpringMo
     known.push_back(key_of_law(law.traits));
     const auto place = laws.find(known.back());
     if (!place) return;
-    LawReader reader(*place, static_cast<std::size_t>(network.nodes()), network.springs.size());
+    LawReader reader(*place, network);
     law.fields(reader);
     reader.refuse_others();
     if constexpr (std::is_same_v<decltype(law), MomentumDispersion>) order.sort(law.weight);
-    if constexpr (std::is_same_v<decltype(law), HourglassCorrection>) model.small_displacements_only = true;
-    if constexpr (std::is_same_v<decltype(law), AveragedSprings>) model.small_displacements_only |= law.shift > 0;
     require_its_parts(law, network, *place);
+    model.small_displacements_only |= !lacks(law, Capability::large_displacements).empty();
     model.laws.emplace_back(std::move(law));
   });
   laws.require_known(known);

@@ -69,8 +69,8 @@ class DocumentWriter {
 /// Writes the parameters that a law names by its function `fields`.
 class LawWriter {
  public:
-  LawWriter(DocumentWriter& writer, Keys law, std::size_t springs)
-      : writer_(writer), law_(std::move(law)), springs_(springs) {
+  LawWriter(DocumentWriter& writer, Keys law, const Network& network)
+      : writer_(writer), law_(std::move(law)), network_(network) {
     writer_.at(law_) = Json::object();
   }
 
@@ -84,17 +84,23 @@ class LawWriter {
     writer_.at(law_)[key] = name_of(value);
   }
   void of_springs(const char* key, const std::vector<double>& values) {
-    if (values.empty()) return;
-    if (values.size() == springs_)
-      writer_.numbers(with(key), values);
-    else
-      writer_.array<double>(with(key), {springs_, values.size() / springs_}, values);
+    if (!values.empty()) rows(key, network_.springs.size(), values);
   }
   void of_nodes(const char* key, const std::vector<int>& values) {
     if (!values.empty()) writer_.indices(with(key), values);
   }
+  void of_cells(const char* key, const std::vector<double>& values, int = 1) {
+    rows(key, network_.cells.size(), values);
+  }
 
  private:
+  /// So many rows of equal length; of single numbers a list.
+  void rows(const char* key, std::size_t count, const std::vector<double>& values) {
+    if (values.size() == count)
+      writer_.numbers(with(key), values);
+    else
+      writer_.array<double>(with(key), {count, values.size() / count}, values);
+  }
   Keys with(const char* key) const {
     Keys keys = law_;
     keys.emplace_back(key);
@@ -103,7 +109,7 @@ class LawWriter {
 
   DocumentWriter& writer_;
   Keys law_;
-  std::size_t springs_;
+  const Network& network_;
 };
 
 Json origin_json(const SpringsOrigin& origin) {
@@ -179,7 +185,7 @@ void add_laws(const MassSpringModel& model, DocumentWriter& out) {
     const Keys keys = {"laws", key_of_law(traits(law))};
     if (out.at({"laws"}).contains(keys.back()))
       throw std::invalid_argument(fmt::format("a springs file has one {} only", traits(law).name));
-    LawWriter writer(out, keys, model.network.springs.size());
+    LawWriter writer(out, keys, model.network);
     std::visit([&](auto l) { l.fields(writer); }, law);
   }
 }

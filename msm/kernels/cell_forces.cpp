@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "msm/kernels/lattice_constants.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 namespace {
@@ -19,20 +20,6 @@ int corner_at(int place) {
 }  // namespace
 
 template <class Real>
-bool CellForces<Real>::covers(const MassSpringModel& model) {
-  int averaged = 0, anchors = 0;
-  for (const ForceLaw& law : model.laws) {
-    averaged += std::holds_alternative<AveragedSprings>(law);
-    anchors += std::holds_alternative<Anchors>(law);
-  }
-  const Network& network = model.network;
-  if (averaged != 1 || anchors > 1 || averaged + anchors != static_cast<int>(model.laws.size())) return false;
-  const AveragedSprings& law = *averaged_springs_of(model);
-  return !network.cells.empty() && network.image_of.empty() && law.shift == 0 &&
-         lattice_curve(law.curve) != LatticeCurve::none;
-}
-
-template <class Real>
 CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, const AveragedSprings& dashpots,
                              double time)
     : kernels_(&kernels_of<Real>(set)),
@@ -44,7 +31,7 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
     c.point = order_.place[c.point];
     for (int& by : c.by) by = order_.place[by];
   }
-  if (!covers(model) || (viscous_ && dashpots.shift > 0))
+  if (!can(model, Capability::cell_kernels) || (viscous_ && dashpots.shift > 0))
     throw std::invalid_argument("cell forces are of averaged springs, without shift");
   list_.springs = averaged_constants<Real>(*averaged_springs_of(model), 1);
   list_.dashpots = averaged_constants<Real>(dashpots, time);
@@ -54,9 +41,7 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
     list_.per_proportion[i] = static_cast<Real>(1 / model.network.cells.proportions[i]);
   }
   store_cells(model.network);
-  if (std::any_of(model.laws.begin(), model.laws.end(),
-                  [](const ForceLaw& law) { return std::holds_alternative<Anchors>(law); }))
-    store_anchors(model.network);
+  if (law_of<Anchors>(model)) store_anchors(model.network);
 }
 
 template <class Real>

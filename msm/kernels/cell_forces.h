@@ -13,12 +13,9 @@ namespace springproof {
 template <class Real>
 class CellForces : public BlockForces<Real> {
  public:
-  /// Whether the model has these laws only, at any displacement, with a curve that the kernels have.
-  static bool covers(const MassSpringModel& model);
-
   /// @param dashpots stiffness at rest of what AveragedSprings::add_viscous_forces() adds, where `time` > 0
   /// @param time of retardation [s]
-  /// @throws std::invalid_argument if covers() is false.
+  /// @throws std::invalid_argument without Capability::cell_kernels.
   explicit CellForces(const MassSpringModel& model, InstructionSet set = instruction_set(),
                       const AveragedSprings& dashpots = {}, double time = 0);
 

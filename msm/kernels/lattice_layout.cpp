@@ -6,6 +6,8 @@
 #include <limits>
 #include <string_view>
 
+#include "msm/laws/capabilities.h"
+
 namespace springproof {
 namespace {
 
@@ -59,25 +61,6 @@ bool cells_fit(const Network& network, const std::vector<Place>& places) {
 bool one_node_per_place(std::vector<Place> places) {
   std::sort(places.begin(), places.end());
   return std::adjacent_find(places.begin(), places.end()) == places.end();
-}
-
-/// Whether each law occurs at most once and the kernels have it.
-bool laws_fit(const MassSpringModel& model) {
-  std::vector<std::size_t> kinds;
-  for (const ForceLaw& law : model.laws) {
-    if (!traits(law).lattice_kernels) return false;
-    if (std::find(kinds.begin(), kinds.end(), law.index()) != kinds.end()) return false;
-    kinds.push_back(law.index());
-  }
-  if (const auto* averaged = law_of<AveragedSprings>(model))
-    return model.laws.size() == 1 && !model.network.cells.cut() && averaged->shift == 0 &&
-           lattice_curve(averaged->curve) != LatticeCurve::none;
-  const MomentumDispersion* dispersion = dispersion_of(model);
-  if (!dispersion) return true;
-  if (dispersion->form == Dispersion::finite_strain) return false;
-  for (int to : dispersion->group)
-    if (dispersion->group[to] != to) return false;
-  return law_of<Springs>(model) != nullptr;
 }
 
 long rounded_up(long n, long to) { return (n + to - 1) / to * to; }
@@ -189,7 +172,7 @@ void add_flows(const MomentumDispersion& law, const Network& network, LatticeLay
   MomentumDispersion::Coefficients c = law.coefficients(network);
   for (auto& ends : c.in)
     for (double& in : ends) in *= network.cells.edge;  // of elongations in edges
-  if (law.conservative()) {
+  if (has_energy(law.form)) {
     for (std::size_t n = 0; n < c.in.size(); ++n)
       for (int end = 0; end < 2; ++end)
         c.in[n][end] = std::copysign(std::sqrt(std::abs(c.in[n][end] * c.out[n][end])), c.in[n][end]);
@@ -287,9 +270,7 @@ LatticeCurve lattice_curve(StrainCurve curve) {
 
 bool is_lattice_of_springs(const MassSpringModel& model) {
   const Network& network = model.network;
-  if (!network.image_of.empty() || !network.triangles.empty() || network.cells.kind() == CellKind::boxes ||
-      !laws_fit(model))
-    return false;
+  if (!can(model, Capability::lattice_kernels)) return false;
   const std::vector<Place> places = places_of(network);
   if (places.empty() || !springs_fit(network, places) || !cells_fit(network, places) || !one_node_per_place(places))
     return false;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "msm/kernels/kernels.h"
+#include "msm/laws/capabilities.h"
 
 namespace springproof {
 namespace {
@@ -63,21 +64,10 @@ template struct ListDispersionData<float>;
 template ListDispersionData<float>::ListDispersionData(const ListDispersionData<double>&);
 
 template <class Real>
-bool ListForces<Real>::covers(const MassSpringModel& model) {
-  int springs = 0, dispersions = 0;
-  for (const ForceLaw& law : model.laws) {
-    springs += std::holds_alternative<Springs>(law);
-    dispersions += std::holds_alternative<MomentumDispersion>(law);
-    if (!traits(law).list_kernels) return false;
-  }
-  const MomentumDispersion* dispersion = dispersion_of(model);
-  return springs == 1 && dispersions <= 1 && !(dispersion && dispersion->form == Dispersion::finite_strain);
-}
-
-template <class Real>
 ListForces<Real>::ListForces(const MassSpringModel& model, InstructionSet set)
     : kernels_(&kernels_of<Real>(set).list), blocks_(model.network), x_(zeros<Real>(blocks_)), f_(x_) {
-  if (!covers(model)) throw std::invalid_argument("list forces are of springs and momentum dispersion only");
+  if (!can(model, Capability::list_kernels))
+    throw std::invalid_argument("list forces are of springs and momentum dispersion only");
   const Network& network = model.network;
   k_ = blocks_.per_entry<Real>([&](int s) { return network.springs[s].stiffness; });
   kL_ = blocks_.per_entry<Real>([&](int s) { return network.springs[s].stiffness * network.springs[s].rest_length; });

@@ -30,10 +30,8 @@ struct ListDispersionData {
 template <class Real>
 class ListForces : public BlockForces<Real> {
  public:
-  /// Whether the model has these laws only.  Periodic images are treated as nodes, whose inflows are summed.
-  static bool covers(const MassSpringModel& model);
-
-  /// @throws std::invalid_argument if covers() is false.
+  /// Periodic images are treated as nodes, whose inflows are summed.
+  /// @throws std::invalid_argument without Capability::list_kernels.
   explicit ListForces(const MassSpringModel& model, InstructionSet set = instruction_set());
 
   /// f = internal forces [N] at x [m], in the network's order.

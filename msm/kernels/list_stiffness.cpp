@@ -5,6 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "msm/laws/capabilities.h"
+
 namespace springproof {
 
 template <class Real>
@@ -31,23 +33,14 @@ template void by_node<double>(const SpringBlocks&, const std::vector<Padded<doub
 template void by_node<float>(const SpringBlocks&, const std::vector<Padded<float>>&, double, double*);
 
 template <class Real>
-bool ListStiffness<Real>::covers(const MassSpringModel& model) {
-  const Network& network = model.network;
-  return ListForces<Real>::covers(model) &&
-         std::all_of(network.springs.begin(), network.springs.end(), [&](const Spring& s) {
-           return s.stiffness > 0 &&
-                  std::abs((network.X.row(s.j) - network.X.row(s.i)).norm() - s.rest_length) <= 1e-9 * s.rest_length;
-         });
-}
-
-template <class Real>
 ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
                                    InstructionSet set)
     : set_(set),
       kernels_(&kernels_of<Real>(set).list),
       blocks_(std::move(blocks)),
       m_(blocks_->entries(), Padded<Real>{}) {
-  if (!covers(model)) throw std::invalid_argument("list stiffness is of springs and momentum dispersion only");
+  if (!can(model, Capability::list_stiffness))
+    throw std::invalid_argument("list stiffness is of springs and momentum dispersion only");
   const Network& network = model.network;
   const MomentumDispersion* law = dispersion_of(model);
   if (law) dispersion_.emplace_back(*law, network, *blocks_);

@@ -13,10 +13,7 @@ namespace springproof {
 template <class Real>
 class ListStiffness {
  public:
-  /// Whether the model has only springs of positive stiffness, without tension at rest, and momentum dispersion.
-  static bool covers(const MassSpringModel& model);
-
-  /// @throws std::invalid_argument if covers() is false.
+  /// @throws std::invalid_argument without Capability::list_stiffness.
   ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
                 InstructionSet set = instruction_set());
 

@@ -11,7 +11,8 @@ namespace springproof {
 /// the energy is quadratic and the same in every frame.
 struct Anchors {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"anchors", Reach::cells};
+  static constexpr LawTraits traits = {
+      "anchors", Reach::cells, {Capability::cell_kernels, Capability::cut_multigrid, Capability::energy_momentum}};
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>

@@ -14,7 +14,11 @@ namespace springproof {
 /// No triangle may be degenerate (phi = 0 or pi: no direction for the force).
 struct AngularSprings {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"angular springs", Reach::springs};
+  static constexpr LawTraits traits = {"angular springs", Reach::springs, {Capability::lammps}};
+
+  const char* lacks(Capability what) const {
+    return what == Capability::energy_momentum ? "depend on angles, which have no such forces here" : nullptr;
+  }
 
   double beta = 0;  ///< stiffness of an angle [N m]
 

@@ -262,6 +262,16 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(const CellShape& cell
   return K;
 }
 
+const char* AveragedSprings::lacks(Capability what) const {
+  using enum Capability;
+  const bool by_kernels = what == lattice_kernels || what == gpu || what == cell_kernels;
+  if (shift > 0 && (by_kernels || what == energy_momentum || what == large_displacements))
+    return "with a shift are linear in the displacement";
+  if (by_kernels && (curve == StrainCurve::springs_hencky || curve == StrainCurve::springs_neo_hooke))
+    return "of single springs at large strain have no kernels";
+  return nullptr;
+}
+
 double AveragedSprings::energy(const Network& network, const NodalVectors& x) const {
   double sum = 0;
   if (shift > 0)

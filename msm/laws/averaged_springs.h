@@ -41,7 +41,12 @@ struct HourglassStiffness {
 /// The form is that of a cube of edge l with H_pq / (p_p p_q) = p_r H_pq for H_pq and p_i^2 for 1 in rho_i.
 struct AveragedSprings {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"averaged springs", Reach::cells, true};
+  static constexpr LawTraits traits = {
+      "averaged springs",
+      Reach::cells,
+      {Capability::lattice_kernels, Capability::gpu, Capability::cell_kernels, Capability::cells_of_any_shape,
+       Capability::cut_multigrid, Capability::energy_momentum}};
+  const char* lacks(Capability what) const;
   static constexpr double least_variance = 0.1;  ///< of a full cell's; for the solvers
 
   double shear_modulus = 0;           ///< G [Pa]

@@ -17,7 +17,15 @@ double paired_stiffness(double face_to_cube);
 /// Valid for small displacements from rest only (no corotated frame): linear kinematics.
 struct HourglassCorrection {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"hourglass correction", Reach::cells, true};
+  static constexpr LawTraits traits = {
+      "hourglass correction", Reach::cells, {Capability::lattice_kernels, Capability::gpu}};
+
+  const char* lacks(Capability what) const {
+    if (what == Capability::large_displacements) return "is linear in the displacement";
+    return what == Capability::energy_momentum
+               ? "is linear in the displacement, so its forces have a torque in large rotations"
+               : nullptr;
+  }
 
   double shear_modulus = 0;  ///< G [Pa]
   double poisson_ratio = 0;  ///< nu [1]

@@ -1,7 +1,5 @@
 #include "msm/laws/laws.h"
 
-#include <algorithm>
-
 namespace springproof {
 namespace {
 
@@ -52,15 +50,5 @@ void update_tangent(const MassSpringModel& model, const NodalVectors& x, Tangent
 const MomentumDispersion* dispersion_of(const MassSpringModel& model) { return law_of<MomentumDispersion>(model); }
 
 const AveragedSprings* averaged_springs_of(const MassSpringModel& model) { return law_of<AveragedSprings>(model); }
-
-bool of_springs_alone(const MassSpringModel& model) {
-  return std::all_of(model.laws.begin(), model.laws.end(),
-                     [](const ForceLaw& law) { return std::holds_alternative<Springs>(law); });
-}
-
-bool conservative(const MassSpringModel& model) {
-  const MomentumDispersion* dispersion = dispersion_of(model);
-  return !dispersion || dispersion->conservative();
-}
 
 }  // namespace springproof

@@ -2,6 +2,8 @@
 // fails for a law of this list that it has no case for (tests/laws/law_suite_test.cpp).
 #pragma once
 
+#include <algorithm>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -34,7 +36,7 @@ struct MassSpringModel {
 };
 
 /// Elastic energy; the sum of those of the laws.
-/// @param model a model; laws without an energy count 0 (conservative())
+/// @param model a model; laws without an energy count 0 (Capability::energy)
 /// @param x positions [m], n x 3
 /// @return [J]; +infinity where a law has none, as in an inverted cell
 double energy(const MassSpringModel& model, const NodalVectors& x);
@@ -66,6 +68,25 @@ const Law* law_of(const MassSpringModel& model) {
     if (const auto* found = std::get_if<Law>(&law)) return found;
   return nullptr;
 }
+template <class Law>
+Law* law_of(MassSpringModel& model) {
+  return const_cast<Law*>(law_of<Law>(std::as_const(model)));
+}
+
+/// Whether a model has laws of these kinds only.
+/// @param model a model
+template <class... Laws>
+bool consists_of(const MassSpringModel& model) {
+  return std::all_of(model.laws.begin(), model.laws.end(),
+                     [](const ForceLaw& law) { return (std::holds_alternative<Laws>(law) || ...); });
+}
+
+/// Takes the laws of a kind from a model.
+/// @param model a model
+template <class Law>
+void erase_laws(MassSpringModel& model) {
+  std::erase_if(model.laws, [](const ForceLaw& law) { return std::holds_alternative<Law>(law); });
+}
 
 /// The model's momentum dispersion.
 /// @param model a model
@@ -76,15 +97,5 @@ const MomentumDispersion* dispersion_of(const MassSpringModel& model);
 /// @param model a model
 /// @return them, or nullptr if the model has none
 const AveragedSprings* averaged_springs_of(const MassSpringModel& model);
-
-/// Whether springs between nodes are all that the model has.
-/// @param model a model
-/// @return true: its forces are those of Springs
-bool of_springs_alone(const MassSpringModel& model);
-
-/// Whether the forces derive from an energy, so that the tangent is symmetric.
-/// @param model a model
-/// @return false for dispersion as published or weighted by shares
-bool conservative(const MassSpringModel& model);
 
 }  // namespace springproof

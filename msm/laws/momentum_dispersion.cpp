@@ -107,8 +107,21 @@ MomentumDispersion::Coefficients MomentumDispersion::coefficients(const Network&
   return c;
 }
 
+const char* MomentumDispersion::lacks(Capability what) const {
+  using enum Capability;
+  const bool by_lattice = what == lattice_kernels || what == gpu,
+             by_lists = what == list_kernels || what == list_stiffness;
+  const auto gathers = [&](int node) { return group[node] == node; };
+  if (what == equal_cells) return "couples nodes beyond a cell";
+  if ((by_lattice || by_lists) && form == Dispersion::finite_strain) return "of finite strain has no kernels";
+  if (by_lattice && !std::all_of(group.begin(), group.end(), gathers)) return "of groups in groups has no kernels";
+  if ((what == energy || what == energy_momentum || what == nodal_pressures) && !has_energy(form))
+    return "of this form has no energy";
+  return what == nodal_pressures && q <= 0 ? "has no positive fraction" : nullptr;
+}
+
 double MomentumDispersion::energy(const Network& network, const NodalVectors& x) const {
-  if (!conservative()) return 0;
+  if (!has_energy(form)) return 0;
   double sum = form == Dispersion::finite_strain ? NodalGradients(*this, network).energy(x) : 0;
   if (of_volumes()) return sum;
   const Coefficients c = coefficients(network);
@@ -200,7 +213,7 @@ void MomentumDispersion::add_flow(const Network& network, const NodalVectors& x,
   K.outflow.resize(rows, 3 * network.nodes());
   K.inflow.setFromTriplets(in.begin(), in.end());
   K.outflow.setFromTriplets(out.begin(), out.end());
-  K.symmetric = K.symmetric && conservative();
+  K.symmetric = K.symmetric && has_energy(form);
 }
 
 double dispersed_fraction(double lame_lambda, double shear_modulus, int dimensions) {

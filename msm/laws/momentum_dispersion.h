@@ -31,7 +31,12 @@ inline bool has_energy(Dispersion form) { return form == Dispersion::symmetric |
 /// A node takes in a fraction of what stretches the springs around it, and gives it back to them as tension.
 struct MomentumDispersion {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"momentum dispersion", Reach::second_neighbours, true, true};
+  static constexpr LawTraits traits = {
+      "momentum dispersion",
+      Reach::second_neighbours,
+      {Capability::lattice_kernels, Capability::list_kernels, Capability::list_stiffness, Capability::energy_momentum}};
+
+  const char* lacks(Capability what) const;
 
   double q = 0;                             ///< Q / 2, the fraction of the incoming force that a node disperses
   Dispersion form = Dispersion::symmetric;  ///< which inflow and outflow
@@ -51,9 +56,6 @@ struct MomentumDispersion {
     f.of_springs("weight", weight);
     f.of_nodes("group", group);
   }
-
-  /// Whether the forces derive from an energy.
-  bool conservative() const { return has_energy(form); }
 
   /// Whether a material law at the nodes has taken the place of the dispersed elongations, in finite strain with given
   /// weights; inflow() and tensions() then hold at small strain only.

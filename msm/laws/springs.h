@@ -10,7 +10,10 @@ namespace springproof {
 /// Energy sum_s k/2 (L' - L)^2; geometrically nonlinear (L' is the length between the moved nodes).
 struct Springs {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"springs", Reach::springs, true, true};
+  static constexpr LawTraits traits = {"springs",
+                                       Reach::springs,
+                                       {Capability::lattice_kernels, Capability::gpu, Capability::list_kernels,
+                                        Capability::list_stiffness, Capability::energy_momentum, Capability::lammps}};
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>

@@ -20,7 +20,8 @@ constexpr std::array<const char*, 2> names_of(VolumeEnergy) { return {"paper", "
 /// Golec et al. (2019), eqs. (5.13)-(5.16).  DEVIATION from eq. (5.16): factor 1/4, docs/papers.md.
 struct VolumeCorrection {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"volume correction", Reach::cells, true};
+  static constexpr LawTraits traits = {
+      "volume correction", Reach::cells, {Capability::lattice_kernels, Capability::gpu, Capability::energy_momentum}};
 
   double kappa = 0;                           ///< lambda - G [Pa]
   VolumeEnergy form = VolumeEnergy::bounded;  ///< how the energy grows with J

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "msm/laws/capabilities.h"
 #include "msm/measure/waves.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
@@ -128,7 +129,7 @@ std::vector<StressAtStretch> stress_curve(const ModelParameters& parameters, con
   const ModelParameters p = without_corrections(parameters);
   std::vector<StressAtStretch> curve;
   const MassSpringModel lattice = build_model(p, block_mesh(Vec3::Ones(), {2, 2, 2}), m);
-  const bool of_cells = consists_of_cells(lattice);
+  const bool of_cells = can(lattice, Capability::equal_cells);
   for (const double stretch : {0.6, 0.7, 0.8, 0.9, 0.95, 1.05, 1.1, 1.2, 1.3, 1.4}) {
     StressAtStretch at{stretch, {}, m.youngs_modulus * std::log(stretch) / stretch, neo_hooke_stress(m, stretch)};
     const Equilibrium e = stretched(p, m, stretch - 1);
@@ -147,7 +148,8 @@ std::optional<StrainLimit> strain_limit(const ModelParameters& parameters, const
                                         Sides sides, double strain) {
   const MassSpringModel model =
       build_model(without_corrections(parameters), block_mesh(Vec3::Ones(), {2, 2, 2}), material);
-  if (!consists_of_cells(model)) throw std::invalid_argument("homogeneous states are those of a lattice of cells");
+  if (!can(model, Capability::equal_cells))
+    throw std::invalid_argument("homogeneous states are those of a lattice of cells");
   constexpr double precision = 1e-4;
   const double most = std::abs(strain), direction = strain < 0 ? -1 : 1;
   Path path(model, material, sides);

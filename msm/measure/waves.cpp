@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "msm/laws/capabilities.h"
+
 namespace springproof {
 namespace {
 
@@ -14,7 +16,7 @@ using std::numbers::pi;
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
 
 CellMatrix stiffness_of_cell(const MassSpringModel& model) {
-  if (!consists_of_cells(model) || model.network.cells.kind() == CellKind::boxes)
+  if (!can(model, Capability::equal_cells) || model.network.cells.kind() == CellKind::boxes)
     throw std::invalid_argument("plane waves are those of a lattice of cubes");
   return cell_stiffness(model).total;
 }

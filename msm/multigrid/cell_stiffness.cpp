@@ -34,11 +34,6 @@ CellMatrix dense(const Tangent& K) {
 
 }  // namespace
 
-bool consists_of_cells(const MassSpringModel& model) {
-  const auto in_cells = [](const ForceLaw& law) { return traits(law).reach != Reach::second_neighbours; };
-  return model.network.cells.grid && std::all_of(model.laws.begin(), model.laws.end(), in_cells);
-}
-
 CellStiffness in_units(CellStiffness cell, double G, double edge) {
   cell.total /= G * edge;
   cell.without_volume /= G * edge;
@@ -55,8 +50,7 @@ CellStiffness cell_stiffness(const MassSpringModel& model) {
   s.volume = cell.network.cells.volume();
   const MeanEdgeVolume v = mean_edge_volume(cell.network.cells.corners[0], cell.network.X);
   for (int n = 0; n < 8; ++n) s.volume_gradient.segment<3>(3 * n) = v.gradient.row(n).transpose();
-  for (const ForceLaw& law : model.laws)
-    if (const auto* correction = std::get_if<VolumeCorrection>(&law)) s.kappa += correction->kappa;
+  if (const auto* correction = law_of<VolumeCorrection>(model)) s.kappa += correction->kappa;
   if (const AveragedSprings* averaged = averaged_springs_of(model))
     s.kappa += averaged->lame_lambda - averaged->shear_modulus;
   s.without_volume = s.total - s.kappa / s.volume * s.volume_gradient * s.volume_gradient.transpose();

@@ -19,9 +19,6 @@ struct CellStiffness {
   double volume = 0;           ///< V [m^3]
 };
 
-/// Whether the rest stiffness of a model is the sum of its cells': a lattice without laws that couple beyond a cell.
-bool consists_of_cells(const MassSpringModel& model);
-
 /// The same with G, edge and G * edge as the units of pressure, length and stiffness: entries of order one.
 CellStiffness in_units(CellStiffness cell, double shear_modulus, double edge);
 

@@ -11,13 +11,6 @@ constexpr int relaxations = 2;  // before and after the coarser lattice
 
 }  // namespace
 
-bool CutMultigrid::covers(const MassSpringModel& model) {
-  if (!model.network.cells.cut() || !averaged_springs_of(model)) return false;
-  return std::all_of(model.laws.begin(), model.laws.end(), [](const ForceLaw& law) {
-    return std::holds_alternative<AveragedSprings>(law) || std::holds_alternative<Anchors>(law);
-  });
-}
-
 CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : nodes_(model.network, fixed), unit_(averaged_springs_of(model)->shear_modulus * model.network.cells.edge) {
   for (CutLevel& lattice : cut_levels(model.network, nodes_)) {

@@ -12,9 +12,7 @@ namespace springproof {
 /// of each level, in single precision.  Anchored nodes are eliminated exactly.
 class CutMultigrid {
  public:
-  /// Whether the model is one of averaged springs and anchors.
-  static bool covers(const MassSpringModel& model);
-
+  /// Of a model that has Capability::cut_multigrid.
   CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed);
 
   /// y = K x, all unknowns; x zero in carried ones.

@@ -2,6 +2,7 @@
 // grow as nu -> 1/2.
 #pragma once
 
+#include "msm/laws/capabilities.h"
 #include "msm/multigrid/mixed_multigrid.h"
 #include "msm/multigrid/nodal_volumes.h"
 
@@ -15,7 +16,7 @@ namespace springproof {
 class DispersionMultigrid : public LatticeSaddlePoint {
  public:
   /// G: the springs' shear modulus [Pa].
-  /// @throws std::invalid_argument unless NodalVolumes::covers(model), or for a single cell.
+  /// @throws std::invalid_argument without Capability::nodal_pressures, or for a single cell.
   DispersionMultigrid(const MassSpringModel& model, const std::vector<char>& fixed, double G);
 
   SaddlePointLevel& finest() override { return *level_; }

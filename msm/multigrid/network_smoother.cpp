@@ -5,6 +5,7 @@
 
 #include "msm/algebra/noise.h"
 #include "msm/kernels/list_stiffness.h"
+#include "msm/laws/capabilities.h"
 #include "msm/multigrid/chebyshev.h"
 
 namespace springproof {
@@ -194,7 +195,7 @@ class AssembledSmoother : public NetworkSmoother {
 }  // namespace
 
 std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed) {
-  if (ListStiffness<double>::covers(model)) return std::make_unique<ListSmoother>(model, fixed);
+  if (can(model, Capability::list_stiffness)) return std::make_unique<ListSmoother>(model, fixed);
   return std::make_unique<AssembledSmoother>(model, fixed);
 }
 

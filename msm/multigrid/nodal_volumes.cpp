@@ -4,6 +4,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "msm/laws/capabilities.h"
+
 namespace springproof {
 namespace {
 
@@ -74,14 +76,9 @@ struct Rows {
 
 }  // namespace
 
-bool NodalVolumes::covers(const MassSpringModel& model) {
-  const MomentumDispersion* law = dispersion_of(model);
-  return law && law->conservative() && law->q > 0 && model.network.cells.grid && model.network.image_of.empty();
-}
-
 NodalVolumes::NodalVolumes(const MassSpringModel& model, const LatticeLevels& lattice, double G)
     : directions(unit_directions()) {
-  if (!covers(model))
+  if (!can(model, Capability::nodal_pressures))
     throw std::invalid_argument("nodal pressures are of the energy form of dispersion on a lattice, q > 0");
   const Network& network = model.network;
   const MomentumDispersion& law = *dispersion_of(model);

@@ -20,11 +20,8 @@ struct NodalVolumes {
 
   /// For a model with the symmetric form of dispersion, q > 0, on a lattice of cells; G the springs' shear modulus
   /// [Pa].
-  /// @throws std::invalid_argument for any other.
+  /// @throws std::invalid_argument without Capability::nodal_pressures.
   NodalVolumes(const MassSpringModel& model, const LatticeLevels& lattice, double G);
-
-  /// Whether the constructor accepts a model.
-  static bool covers(const MassSpringModel& model);
 
   /// Diagonal of B D B^T, D a nodal field of the level.
   Eigen::VectorXd schur_diagonal(const LatticeLevel& level, const Eigen::VectorXf& D) const;

@@ -43,7 +43,7 @@ Eigen::VectorXd row_squares(const NodalForms& B) {
 PartedProblem::PartedProblem(const MassSpringModel& model, const BoundaryConditions& conditions, MPI_Comm communicator)
     : communicator_(communicator),
       kappa_(volume_stiffness_ratio(model)),
-      mixed_(kappa_ > (has_nodal_pressures(model) ? 0 : parted_mixed_above_kappa)),
+      mixed_(kappa_ > (dispersion_of(model) ? 0 : parted_mixed_above_kappa)),
       conditions_(conditions) {
   const Network& network = model.network;
   std::vector<int> owner = owners_of_nodes(network, communicator);
@@ -56,7 +56,7 @@ PartedProblem::PartedProblem(const MassSpringModel& model, const BoundaryConditi
     for (std::size_t n = 0; n < owner.size(); ++n)
       if (fixed[3 * n] && fixed[3 * n + 1] && fixed[3 * n + 2]) with_equations[n] = -1;
     nodes_ = number_equations(with_equations, communicator);
-    if (mixed_ && has_nodal_pressures(model)) {
+    if (mixed_ && dispersion_of(model)) {
       pressures_ = number_equations(owner, communicator);
       return;
     }

@@ -54,6 +54,19 @@ struct TermOf {
   }
 };
 
+/// The laws of a row, without the constants of a material.
+std::vector<ForceLaw> laws_in(const ModelRow& row) {
+  if (row.extension == averaging) return {AveragedSprings{}};
+  std::vector<ForceLaw> laws;
+  laws.reserve(3);
+  laws.emplace_back(Springs{});
+  if (row.extension == volume_correction) laws.emplace_back(VolumeCorrection{});
+  if (row.extension == momentum_dispersion) laws.emplace_back(MomentumDispersion{});
+  if (row.extension == angular_springs) laws.emplace_back(AngularSprings{});
+  if (row.bending_correction) laws.emplace_back(HourglassCorrection{});
+  return laws;
+}
+
 }  // namespace
 
 const std::vector<ModelRow>& model_table() { return table; }
@@ -69,20 +82,12 @@ double spring_shear_modulus(const ModelParameters& p, const IsotropicMaterial& m
   return as_if_quarter ? 0.4 * material.youngs_modulus : shear_modulus(material);
 }
 
-std::string made_of(const ModelRow& row) {
-  switch (row.extension) {
-    case volume_correction:
-      return joined(true, per_cell);
-    case momentum_dispersion:
-      return joined(true, per_node);
-    case angular_springs:
-      return joined(true, per_angle);
-    case averaging:
-      return joined(false, per_cell);
-    default:  // springs alone, of whatever force
-      return joined(true, row.bending_correction ? per_cell : "");
-  }
+bool can(const ModelRow& row, Capability what) {
+  const std::vector<ForceLaw> laws = laws_in(row);
+  return std::all_of(laws.begin(), laws.end(), [&](const ForceLaw& law) { return lacks(law, what).empty(); });
 }
+
+std::string made_of(const ModelRow& row) { return made_of(MassSpringModel{{}, laws_in(row)}); }
 
 std::string made_of(const ModelParameters& parameters) {
   if (parameters.cut.value_or(false)) return joined(false, per_cell);
@@ -90,14 +95,12 @@ std::string made_of(const ModelParameters& parameters) {
 }
 
 std::string made_of(const MassSpringModel& model) {
-  bool springs = false;
   std::string terms;
   for (const ForceLaw& law : model.laws) {
-    springs = springs || std::holds_alternative<Springs>(law);
     const std::string term = std::visit(TermOf{}, law);
     if (terms.find(term) == std::string::npos) terms += (terms.empty() ? "" : " + ") + term;
   }
-  return joined(springs, terms);
+  return joined(law_of<Springs>(model) != nullptr, terms);
 }
 
 }  // namespace springproof

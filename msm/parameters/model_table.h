@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "msm/laws/laws.h"
+#include "msm/laws/capabilities.h"
 #include "msm/topology/random_network.h"
 #include "problem/material.h"
 #include "problem/model_choice.h"
@@ -62,6 +62,12 @@ const std::vector<ModelRow>& model_table();
 /// @return 1/4; empty: any (of a springs file: not known)
 std::optional<double> own_poisson_ratio(const ModelRow& row);
 
+/// Whether each law of a model can, whatever its parameters: Capability::large_displacements, that solve_finite() and
+/// run_dynamics() may take it; Capability::cells_of_any_shape, that its cells may be boxes.
+/// @param row of the table
+/// @param what is asked of its laws
+bool can(const ModelRow& row, Capability what);
+
 /// Whether springs between nodes are all that the model has.
 /// @param row of the table
 /// @return true: its forces are those of springs
@@ -69,23 +75,10 @@ inline bool of_springs_alone(const ModelRow& row) {
   return row.extension == Extension::none && !row.bending_correction;
 }
 
-/// Whether the model is valid under finite kinematics; hourglass corrections of springs are for small displacements
-/// only.
-/// @param row of the table
-/// @return true: it is, and solve_finite() and run_dynamics() may take it
-inline bool holds_at_large_displacement(const ModelRow& row) {
-  return !row.bending_correction || row.extension == Extension::averaging;
-}
-
 /// Whether each spring has its own constant, by the patch test at its nodes.
 /// @param row of the table
 /// @return true for emsm_patch
 inline bool passes_patch_test(const ModelRow& row) { return row.calibration == Calibration::patch_test; }
-
-/// Whether the cells may be boxes that are no cubes.
-/// @param row of the table
-/// @return true: build_embedded() takes a mesh of equal boxes; false: if it takes cells, they are cubes
-inline bool takes_boxes(const ModelRow& row) { return row.extension == Extension::averaging; }
 
 /// A model choice with all options resolved.
 struct ModelParameters {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "msm/algebra/krylov.h"
+#include "msm/laws/capabilities.h"
 #include "msm/statics/stiffness_solver.h"
 
 namespace springproof {
@@ -120,7 +121,7 @@ Effective effective_stiffness(const MassSpringModel& model, const Strains& strai
   const PeriodicStiffness K(model);
   std::unique_ptr<PeriodicStiffness> companion;
   const MassSpringModel energy_form = symmetric_companion(model);
-  if (!conservative(model)) companion = std::make_unique<PeriodicStiffness>(energy_form);
+  if (!can(model, Capability::energy)) companion = std::make_unique<PeriodicStiffness>(energy_form);
 
   const auto size = static_cast<Eigen::Index>(strains.size());
   Eigen::MatrixXd affine(3 * network.nodes(), size);

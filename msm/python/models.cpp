@@ -88,7 +88,7 @@ py::list table() {
   for (const ModelRow& row : model_table())
     rows.append(py::dict("name"_a = row.name, "what"_a = row.what, "made_of"_a = made_of(row),
                          "poisson_ratio"_a = own_poisson_ratio(row),
-                         "large_displacements"_a = holds_at_large_displacement(row),
+                         "large_displacements"_a = can(row, Capability::large_displacements),
                          "cut_cells"_a = has_cut_cells(row)));
   return rows;
 }

@@ -25,7 +25,7 @@ void require_large(const BodyModel& model) {
   if (!model.model().small_displacements_only) return;
   std::string able;
   for (const ModelRow& row : model_table())
-    if (holds_at_large_displacement(row)) able += (able.empty() ? "" : ", ") + row.name;
+    if (can(row, Capability::large_displacements)) able += (able.empty() ? "" : ", ") + row.name;
   throw InputError(fmt::format("{} holds under small displacements only, and large = True (allowed: {})",
                                model.parameters.row.name, able));
 }

@@ -18,27 +18,27 @@ constexpr int most_krylov_steps = 200;
 /// The volume term of a model, and its other laws.
 struct Split {
   double kappa = 0;
-  std::function<VolumeDensity(double J)> density;
-  std::vector<ForceLaw> springs;
-};
+  std::function<VolumeDensity(double J)> density = {};
+  std::vector<ForceLaw> springs = {};
 
-Split split(const MassSpringModel& model) {
-  Split s;
-  for (const ForceLaw& law : model.laws)
-    if (const auto* volume = std::get_if<VolumeCorrection>(&law)) {
-      s.kappa = volume->kappa;
-      s.density = [form = volume->form](double J) { return volume_density(form, J); };
-    } else if (const auto* averaged = std::get_if<AveragedSprings>(&law)) {
-      AveragedSprings alone = *averaged;
-      alone.lame_lambda = averaged->shear_modulus;
-      s.springs.emplace_back(alone);
-      s.kappa = averaged->lame_lambda - averaged->shear_modulus;
-      s.density = [curve = averaged->curve](double J) { return volume_term(curve, J); };
-    } else {
-      s.springs.push_back(law);
-    }
-  return s;
-}
+  explicit Split(const MassSpringModel& model) {
+    for (const ForceLaw& law : model.laws) std::visit(*this, law);
+  }
+  void operator()(const VolumeCorrection& law) {
+    kappa = law.kappa;
+    density = [form = law.form](double J) { return volume_density(form, J); };
+  }
+  void operator()(AveragedSprings law) {
+    kappa = law.lame_lambda - law.shear_modulus;
+    density = [curve = law.curve](double J) { return volume_term(curve, J); };
+    law.lame_lambda = law.shear_modulus;
+    springs.emplace_back(law);
+  }
+  template <class Law>
+  void operator()(const Law& law) {
+    springs.emplace_back(law);
+  }
+};
 
 }  // namespace
 
@@ -99,7 +99,7 @@ class MixedNewton::Linearised : public SaddlePoint {
 
 MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& fixed)
     : network_(model.network), fixed_(fixed) {
-  Split parts = split(model);
+  Split parts(model);
   springs_ = std::move(parts.springs);
   kappa_ = parts.kappa;
   density_ = std::move(parts.density);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meshes/volume.h"
+#include "msm/laws/capabilities.h"
 #include "msm/statics/equilibrium.h"
 #include "msm/statics/mixed_form.h"
 #include "msm/statics/mixed_newton.h"
@@ -87,7 +88,7 @@ struct Newton {
   bool line_search(const Eigen::VectorXd& r, double relative, const Eigen::VectorXd& du, const NodalVectors& external,
                    NodalVectors& x) const {
     const double start = potential(x, external), slope = -r.dot(du);
-    const bool has_potential = conservative(model);
+    const bool has_potential = can(model, Capability::energy);
     const double noise = 1e-12 * (std::abs(start) + std::abs(slope));
     for (double t = 1; t > 1e-4; t /= 2) {
       const NodalVectors trial = x + t * Eigen::Map<const NodalVectors>(du.data(), x.rows(), 3);
@@ -199,7 +200,7 @@ Equilibrium solve_finite(const MassSpringModel& model, const LoadPath& load_path
   }
   result.ok = result.load_reached >= 1;
   if (result.ok) result.message.clear(), result.loss = Loss::none;
-  if (options.softest_motion && newton.stiffness > 0 && conservative(model))
+  if (options.softest_motion && newton.stiffness > 0 && can(model, Capability::energy))
     result.softest = softest_motion(model, *newton.K, full.fixed);
   const BoundaryConditions reached = load_path(result.load_reached);
   result.displacement = x - model.network.X;

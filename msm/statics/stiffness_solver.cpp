@@ -9,6 +9,7 @@
 #include "msm/algebra/fixed.h"
 #include "msm/algebra/noise.h"
 #include "msm/kernels/list_stiffness.h"
+#include "msm/laws/capabilities.h"
 #include "msm/multigrid/cut_multigrid.h"
 #include "msm/multigrid/multigrid.h"
 #include "msm/multigrid/network_multigrid.h"
@@ -95,7 +96,7 @@ class UnsymmetricSolver : public StiffnessSolver {
         model_(model),
         companion_(symmetric_companion(model)),
         symmetric_(solver_for(companion_, fixed, direct_limit)) {
-    if (unknowns() > direct_limit && ListStiffness<double>::covers(model))
+    if (unknowns() > direct_limit && can(model, Capability::list_stiffness))
       rest_.emplace(model, std::make_shared<SpringBlocks>(model.network));
   }
 
@@ -127,7 +128,7 @@ class UnsymmetricSolver : public StiffnessSolver {
   const MassSpringModel& model_;
   const MassSpringModel companion_;
   const std::unique_ptr<StiffnessSolver> symmetric_;  ///< of the companion
-  std::optional<ListStiffness<double>> rest_;         ///< of networks that it covers
+  std::optional<ListStiffness<double>> rest_;         ///< of networks that have it
   Tangent K_;                                         ///< where that is not used
   bool at_rest_ = false;
 };
@@ -136,9 +137,8 @@ class UnsymmetricSolver : public StiffnessSolver {
 
 MassSpringModel symmetric_companion(const MassSpringModel& model) {
   MassSpringModel companion = model;
-  for (ForceLaw& law : companion.laws)
-    if (auto* dispersion = std::get_if<MomentumDispersion>(&law))
-      *dispersion = {dispersion->q, Dispersion::symmetric, {}, {}};
+  if (auto* dispersion = law_of<MomentumDispersion>(companion))
+    *dispersion = {dispersion->q, Dispersion::symmetric, {}, {}};
   return companion;
 }
 
@@ -180,12 +180,12 @@ bool StiffnessSolver::stable() const {
 
 std::unique_ptr<StiffnessSolver> solver_for(const MassSpringModel& model, const std::vector<char>& fixed,
                                             long direct_limit) {
-  if (!conservative(model)) return std::make_unique<UnsymmetricSolver>(model, fixed, direct_limit);
+  if (!can(model, Capability::energy)) return std::make_unique<UnsymmetricSolver>(model, fixed, direct_limit);
   if (std::count(fixed.begin(), fixed.end(), 0) <= direct_limit) return std::make_unique<CholeskySolver>(model, fixed);
-  if (consists_of_cells(model))
+  if (can(model, Capability::equal_cells))
     return std::make_unique<LatticeSolver>(model, fixed, "CG + multigrid", lattice_levels(model.network, fixed),
                                            cell_stiffness(model).total);
-  if (CutMultigrid::covers(model))
+  if (can(model, Capability::cut_multigrid))
     return std::make_unique<MultigridSolver<CutMultigrid>>(model, fixed, "CG + multigrid", model, fixed);
   return std::make_unique<MultigridSolver<NetworkMultigrid>>(model, fixed, "CG + network multigrid", model, fixed);
 }

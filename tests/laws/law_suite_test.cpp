@@ -5,8 +5,8 @@
 
 #include "meshes/volume.h"
 #include "msm/exchange/springs_file.h"
+#include "msm/laws/capabilities.h"
 #include "msm/laws/dispersion_weights.h"
-#include "msm/laws/laws.h"
 #include "msm/topology/cubic_lattice.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
@@ -105,6 +105,27 @@ TEST(LawSuiteCases, HaveEveryLawOfTheList) {
   EXPECT_EQ(tested.size(), std::variant_size_v<ForceLaw>);
 }
 
+TEST(LawSuiteCases, SayWithTheirNameWhatTheyLack) {
+  bool any = false;
+  for (const Case& c : cases())
+    for (const ForceLaw& law : c.model.laws)
+      for (std::size_t what = 0; what < names_of(Capability{}).size(); ++what) {
+        const std::string why = lacks(law, static_cast<Capability>(what));
+        EXPECT_TRUE(why.empty() || why.starts_with(traits(law).name)) << why;
+        any |= !why.empty();
+      }
+  EXPECT_TRUE(any);
+}
+
+TEST(LawSuiteCases, LackEnergyMomentumStepsWhereTheirForcesDoNotTurn) {
+  for (const Case& c : cases()) {
+    if (!can(c.model, Capability::large_displacements)) {
+      EXPECT_FALSE(can(c.model, Capability::energy_momentum)) << c.name;
+    }
+    EXPECT_EQ(can(c.model, Capability::large_displacements), c.rotates) << c.name;
+  }
+}
+
 class LawSuite : public testing::TestWithParam<Case> {
  protected:
   const MassSpringModel& model() const { return GetParam().model; }
@@ -144,7 +165,7 @@ TEST_P(LawSuite, RigidRotationLeavesNoForce) {
 }
 
 TEST_P(LawSuite, ForceIsMinusTheGradientOfTheEnergy) {
-  if (!conservative(model())) {
+  if (!can(model(), Capability::energy)) {
     EXPECT_EQ(energy(model(), disturbed()), 0);
     return;
   }
@@ -181,14 +202,14 @@ TEST_P(LawSuite, TangentIsTheDerivativeOfTheForce) {
 // Reciprocity: v K u = u K v where there is an energy, and only there (an unsymmetric tangent must say so).
 TEST_P(LawSuite, TangentIsSymmetricIfThereIsAnEnergy) {
   const Tangent K = tangent(model(), disturbed());
-  EXPECT_EQ(K.symmetric, conservative(model()));
+  EXPECT_EQ(K.symmetric, can(model(), Capability::energy));
   const NodalVectors a = test::noise(X().rows(), 1, 7), b = test::noise(X().rows(), 1, 8);
   const Eigen::Map<const Eigen::VectorXd> u(a.data(), a.size()), v(b.data(), b.size());
   Eigen::VectorXd Ku, Kv;
   K.multiply(u, Ku);
   K.multiply(v, Kv);
   const double asymmetry = std::abs(v.dot(Ku) - u.dot(Kv)) / (Ku.norm() * v.norm());
-  if (conservative(model()))
+  if (can(model(), Capability::energy))
     EXPECT_LE(asymmetry, 1e-14);
   else
     EXPECT_GE(asymmetry, 1e-6);

@@ -18,6 +18,7 @@
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "msm/exchange/lammps.h"
+#include "msm/laws/capabilities.h"
 #include "msm/parameters/made_of.h"
 #include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
@@ -285,10 +286,10 @@ int export_lammps(const ExportRequest& request) {
     throw InputError(fmt::format("--out: is {} (allowed: a name that ends in .data; the input gets the same with .in)",
                                  data.string()));
   const SpringsFile springs = springs_of(request);
-  if (!suits_lammps(springs.model)) {
+  if (!can(springs.model, Capability::lammps)) {
     std::vector<std::string> able;
     for (const ModelRow& row : model_table())
-      if (of_springs_alone(row) || row.extension == Extension::angular_springs) able.push_back(row.name);
+      if (can(row, Capability::lammps)) able.push_back(row.name);
     throw InputError(fmt::format("--model: {} has forces that LAMMPS does not compute (allowed: {})",
                                  springs.origin.model, fmt::join(able, ", ")));
   }

@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
 
 namespace springproof {
@@ -152,22 +153,8 @@ struct AddSecantForces {
 
 }  // namespace
 
-std::string EnergyMomentum::lacks(const MassSpringModel& model) {
-  for (const ForceLaw& law : model.laws) {
-    const std::string name = traits(law).name;
-    if (std::holds_alternative<HourglassCorrection>(law))
-      return name + " is linear in the displacement, so its forces have a torque in large rotations";
-    if (std::holds_alternative<AngularSprings>(law)) return name + " depend on angles, which have no such forces here";
-    if (const auto* dispersion = std::get_if<MomentumDispersion>(&law); dispersion && !dispersion->conservative())
-      return "this form of " + name + " has no energy";
-    if (const auto* averaged = std::get_if<AveragedSprings>(&law); averaged && averaged->shift > 0)
-      return name + " with a shift are linear in the displacement";
-  }
-  return "";
-}
-
 EnergyMomentum::EnergyMomentum(const MassSpringModel& model) : model_(model) {
-  if (const std::string why = lacks(model); !why.empty()) throw std::invalid_argument(why);
+  if (const std::string why = lacks(model, Capability::energy_momentum); !why.empty()) throw std::invalid_argument(why);
   const AveragedSprings* law = averaged_springs_of(model);
   if (!law) return;
   std::map<double, int> full;  // by edge

@@ -19,11 +19,8 @@ namespace springproof {
 /// what the work lacks where that is more than round-off.
 class EnergyMomentum {
  public:
-  /// Why there are no such forces for a model; empty: there are.
-  static std::string lacks(const MassSpringModel& model);
-
   /// Keeps a reference to the model.
-  /// @throws std::invalid_argument if the model lacks them.
+  /// @throws std::invalid_argument if the model lacks Capability::energy_momentum.
   explicit EnergyMomentum(const MassSpringModel& model);
 
   /// At positions x0 and x1 with carried nodes in their places [N]; NaN where a cell is flat.

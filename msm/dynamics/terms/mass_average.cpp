@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "msm/laws/capabilities.h"
+
 namespace springproof {
 
 Eigen::Matrix<double, 8, 8> consistent_mass(const FilledPart& part, double full) {
@@ -29,19 +31,11 @@ MassAverage::MassAverage(const Network& network, double theta, const Eigen::Vect
   if (!(theta >= 0 && theta <= 1))
     throw std::invalid_argument(fmt::format("share of consistent mass {:g} (allowed: 0 to 1)", theta));
   if (!acts()) return;
-  if (const std::string why = lacks(network); !why.empty())
+  if (const std::string why = lacks(network, Capability::mass_average); !why.empty())
     throw std::invalid_argument("a share of consistent mass does not suit this model: " + why);
   share_ = Eigen::VectorXd::Zero(network.nodes());
   for (int n = 0; n < network.nodes(); ++n)
     if (volumes[n] > 0) share_[n] = network.cells.volume() / 8 / volumes[n];
-}
-
-std::string MassAverage::lacks(const Network& network) {
-  if (network.cells.empty()) return "its network has no cells";
-  if (network.cells.kind() == CellKind::sizes) return "its cells are of several sizes";
-  if (std::any_of(network.anchors.begin(), network.anchors.end(), [](const Anchor& a) { return a.axes != 7; }))
-    return "supports hold its cut cells along some axes only";
-  return network.image_of.empty() ? "" : "its network is periodic";
 }
 
 Eigen::Matrix<double, 8, 8> MassAverage::of_cell() { return 8 * consistent_mass(FilledPart{}, 1); }

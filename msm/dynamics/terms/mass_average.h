@@ -29,12 +29,9 @@ class MassAverage {
   /// @param network with cells
   /// @param theta share of consistent mass, 0 to 1
   /// @param volumes lumped masses L over the density [m^3], one per node
-  /// @throws std::invalid_argument outside of it, and for a network that lacks what it takes.
+  /// @throws std::invalid_argument outside of it, and for a network that lacks Capability::mass_average.
   MassAverage(const Network& network, double theta, const Eigen::VectorXd& volumes);
   MassAverage(const Network& network, double theta) : MassAverage(network, theta, network.volume) {}
-
-  /// Why a network cannot have it; empty: it can.
-  static std::string lacks(const Network& network);
 
   bool acts() const { return theta_ > 0; }
   double theta() const { return theta_; }

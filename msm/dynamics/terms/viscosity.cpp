@@ -1,23 +1,18 @@
 #include "msm/dynamics/terms/viscosity.h"
 
+#include "msm/laws/capabilities.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {
-
-std::string Viscosity::lacks(const MassSpringModel& model) {
-  return model.network.cells.empty() && !of_springs_alone(model)
-             ? "its network has no cells, and more than springs between nodes"
-             : "";
-}
 
 Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& material, double time) {
   if (!(time >= 0)) throw InputError("viscosity: its time must be >= 0");
   Viscosity viscosity;
   if (time == 0) return viscosity;
-  if (const std::string why = lacks(model); !why.empty())
+  if (const std::string why = lacks(model, Capability::viscosity); !why.empty())
     throw InputError("viscosity does not suit this model: " + why);
   viscosity.time_ = time;
-  viscosity.along_springs_ = of_springs_alone(model);
+  viscosity.along_springs_ = consists_of<Springs>(model);
   if (const AveragedSprings* own = averaged_springs_of(model))
     viscosity.cells_ = *own;
   else if (!model.network.cells.empty()) {

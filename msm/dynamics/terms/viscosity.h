@@ -19,12 +19,9 @@ class Viscosity {
   /// None.
   Viscosity() = default;
 
-  /// Why a model cannot have viscosity; empty: it can.
-  static std::string lacks(const MassSpringModel& model);
-
   /// That of a model: along its springs, of its own averaged springs, or of those exact for the material.
   /// @param time of retardation [s]; 0: none, for any model
-  /// @throws InputError for a model that cannot have it, and for time < 0.
+  /// @throws InputError for a model that lacks Capability::viscosity, and for time < 0.
   static Viscosity of(const MassSpringModel& model, const IsotropicMaterial& material, double time);
 
   bool acts() const { return time_ > 0; }

@@ -9,6 +9,7 @@
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/laws/capabilities.h"
 #include "support/zoo.h"
 
 namespace springproof::viscosity_test {
@@ -77,11 +78,12 @@ TEST(Viscosity, AtRestIsTheStiffnessTimesTheRetardation) {
 
 TEST(Viscosity, OfAModelWithoutCellsButMoreThanSpringsIsRefused) {
   const EmbeddedModel body = bar("emsm_random", 0.25);
-  EXPECT_NE(Viscosity::lacks(body.model), "");
+  EXPECT_NE(lacks(body.model, Capability::viscosity), "");
   EXPECT_FALSE(Viscosity::of(body.model, {1e4, 0.25, density}, 0).acts());
   EXPECT_THROW(viscosity_of(body.model, 0.25), InputError);
   EXPECT_THROW(Viscosity::of(bar("hybmss", 0.25).model, {1e4, 0.25, density}, -1e-3), InputError);
-  for (const std::string model : any_model) EXPECT_EQ(Viscosity::lacks(bar(model, own_ratio(model)).model), "");
+  for (const std::string model : any_model)
+    EXPECT_EQ(lacks(bar(model, own_ratio(model)).model, Capability::viscosity), "");
 }
 
 TEST(Viscosity, ResistsNoRigidMotionOfADeformedBody) {

@@ -9,6 +9,7 @@
 
 #include "msm/dynamics/time_step.h"
 #include "msm/exchange/npz.h"
+#include "msm/laws/capabilities.h"
 #include "msm/multigrid/cell_stiffness.h"
 #include "problem/system/input_error.h"
 #include "support/zoo.h"
@@ -76,7 +77,7 @@ TEST(SpringsFile, IsReadAsItWasWrittenForEveryModel) {
     EXPECT_LE((forces(read.model, x) - ours).cwiseAbs().maxCoeff(), 1e-12 * ours.cwiseAbs().maxCoeff());
     EXPECT_EQ(read.model.small_displacements_only, written.model.small_displacements_only);
     EXPECT_EQ(a.cells.grid.has_value(), b.cells.grid.has_value());
-    EXPECT_EQ(consists_of_cells(written.model), consists_of_cells(read.model));
+    EXPECT_EQ(can(written.model, Capability::equal_cells), can(read.model, Capability::equal_cells));
     const double step = safe_time_step(written.model, material.density);
     EXPECT_NEAR(safe_time_step(read.model, read.density), step, 1e-9 * step);
     ASSERT_EQ(a.cells.springs.size(), b.cells.springs.size());
@@ -94,7 +95,7 @@ TEST(SpringsFile, OfUnequalSpringsIsNoLattice) {
   file.model.network.springs[7].stiffness *= 100;
   const SpringsFile read = parse_springs(springs_as_json(file), "own.json");
   EXPECT_FALSE(read.model.network.cells.grid);
-  EXPECT_FALSE(consists_of_cells(read.model));
+  EXPECT_FALSE(can(read.model, Capability::equal_cells));
   EXPECT_LT(safe_time_step(read.model, file.density), step / 2);
 }
 

@@ -10,6 +10,7 @@
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/plain_motion.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/laws/capabilities.h"
 #include "support/refined_cells.h"
 #include "support/solids.h"
 #include "support/zoo.h"
@@ -102,7 +103,7 @@ TEST(CellForces, CoverAveragedSpringsWithoutShift) {
   const auto covers = [&](auto change) {
     MassSpringModel changed = model;
     change(changed, std::get<AveragedSprings>(changed.laws[0]));
-    return CellForces<double>::covers(changed);
+    return can(changed, Capability::cell_kernels);
   };
   EXPECT_TRUE(covers([](MassSpringModel&, AveragedSprings&) {}));
   EXPECT_FALSE(covers([](MassSpringModel&, AveragedSprings& law) { law.shift = 0.4; }));

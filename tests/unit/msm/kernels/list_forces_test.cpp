@@ -9,6 +9,7 @@
 #include "msm/dynamics/time_step.h"
 #include "msm/kernels/list_forces.h"
 #include "msm/kernels/list_stiffness.h"
+#include "msm/laws/capabilities.h"
 #include "msm/topology/random_network.h"
 #include "support/zoo.h"
 
@@ -120,11 +121,11 @@ TEST(ListForces, FloatIsThePlainLoopToSinglePrecision) { expect_plain_forces<flo
 
 TEST(ListForces, CoverSpringsAndDispersionOnly) {
   const Network network = tangle(7, 7, 2);
-  EXPECT_TRUE(ListForces<double>::covers({network, {Springs{}}}));
-  EXPECT_TRUE(ListForces<double>::covers({network, {Springs{}, MomentumDispersion{0.1}}}));
-  EXPECT_FALSE(ListForces<double>::covers({network, {MomentumDispersion{0.1}}}));
+  EXPECT_TRUE(can({network, {Springs{}}}, Capability::list_kernels));
+  EXPECT_TRUE(can({network, {Springs{}, MomentumDispersion{0.1}}}, Capability::list_kernels));
+  EXPECT_FALSE(can({network, {MomentumDispersion{0.1}}}, Capability::list_kernels));
   const MassSpringModel corrected{network, {Springs{}, VolumeCorrection{1.0}}};
-  EXPECT_FALSE(ListForces<double>::covers(corrected));
+  EXPECT_FALSE(can(corrected, Capability::list_kernels));
   EXPECT_THROW(ListForces<double>{corrected}, std::invalid_argument);
 }
 

@@ -62,12 +62,12 @@ TEST(BoxCells, AreBuiltOfTheModelsThatHaveThem) {
     if (row.topology != Topology::cells && row.topology != Topology::centres) continue;
     try {
       const Network network = build_model(test::model(row.name), mesh, {1e4, 0.25, 1000}).network;
-      EXPECT_TRUE(takes_boxes(row)) << row.name;
+      EXPECT_TRUE(can(row, Capability::cells_of_any_shape)) << row.name;
       EXPECT_TRUE(network.cells.kind() == CellKind::boxes);
       EXPECT_NEAR(network.cells.proportions.prod(), 1, 1e-14);
       EXPECT_LT((network.cells.edge * network.cells.proportions - Vec3(1, 0.5, 0.25)).norm(), 1e-14);
     } catch (const InputError& e) {
-      EXPECT_FALSE(takes_boxes(row)) << row.name;
+      EXPECT_FALSE(can(row, Capability::cells_of_any_shape)) << row.name;
       EXPECT_NE(std::string(e.what()).find("hybmss_avg"), std::string::npos) << e.what();
     }
   }

@@ -1,6 +1,7 @@
 // The mixed form of momentum dispersion on lattices, held to its tangent and to the direct solver.
 #include <gtest/gtest.h>
 
+#include "msm/laws/capabilities.h"
 #include "msm/multigrid/dispersion_multigrid.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/equilibrium.h"
@@ -126,11 +127,11 @@ TEST(DispersionMultigrid, IterationsStayFew) {
 TEST(DispersionMultigrid, IsForTheEnergyFormAboveAQuarter) {
   const MassSpringModel model = emsm(cubes(4, 4, 4), 0.2);
   const std::vector<char> free(3 * model.network.nodes(), 0);
-  EXPECT_FALSE(NodalVolumes::covers(model));
+  EXPECT_FALSE(can(model, Capability::nodal_pressures));
   EXPECT_THROW(DispersionMultigrid(model, free, 1), std::invalid_argument);
   ModelParameters published = test::model("emsm");
   published.dispersion = Dispersion::published;
-  EXPECT_FALSE(NodalVolumes::covers(build_model(published, cubes(4, 4, 4), {1e4, 0.45, 1000})));
+  EXPECT_FALSE(can(build_model(published, cubes(4, 4, 4), {1e4, 0.45, 1000}), Capability::nodal_pressures));
 }
 
 }  // namespace
