@@ -9,6 +9,7 @@
 
 #include "msm/algebra/dense.h"
 #include "msm/dynamics/terms/mass_average.h"
+#include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
 #include "msm/multigrid/cell_stiffness.h"
 
@@ -80,6 +81,17 @@ Eigen::VectorXd checked_masses(const Network& network, double density) {
     if (network.master(n) == n && !massless[n] && !(mass[n] > 0))
       throw std::invalid_argument("a node has no mass: explicit dynamics cannot move it");
   return mass;
+}
+
+/// Whether the springs and the laws of cells make the same stiffness in every cell.
+bool has_whole_cells(const MassSpringModel& model) {
+  bool of_cells = false;
+  for (const ForceLaw& law : model.laws) {
+    if (traits(law).reach != Reach::cells) continue;
+    if (!lacks(law, Capability::equal_cells).empty()) return false;
+    of_cells = true;
+  }
+  return of_cells && !model.network.cells.springs.empty();
 }
 
 /// Adds the bound of a law, but of those of a cell whose stiffness is known as a whole.
@@ -226,9 +238,7 @@ double averaged_frequency_squared(const AveragedSprings& law, const Network& net
 double safe_time_step(const MassSpringModel& model, double density, bool lagged, double theta) {
   const Network& network = model.network;
   const Eigen::VectorXd mass = checked_masses(network, density);
-  const bool cells = !network.cells.springs.empty() &&
-                     std::any_of(model.laws.begin(), model.laws.end(),
-                                 [](const ForceLaw& law) { return traits(law).reach == Reach::cells; });
+  const bool cells = has_whole_cells(model);
   NodeBlocks blocks(network.nodes(), Eigen::Matrix3d::Zero());
   const AveragedSprings* averaged = cells ? nullptr : averaged_springs_of(model);
   for (const ForceLaw& law : model.laws) std::visit(AddBound{network, mass, lagged, cells, blocks}, law);
