@@ -41,6 +41,15 @@ const Pattern& patterns() {
   return all;
 }
 
+/// Components in the patterns, 3 * pattern + axis, of displacements of the corners.
+Eigen::Matrix<double, 12, 24> components_of_patterns() {
+  Eigen::Matrix<double, 12, 24> rows = Eigen::Matrix<double, 12, 24>::Zero();
+  for (int n = 0; n < 8; ++n)
+    for (int m = 0; m < 4; ++m)
+      for (int i = 0; i < 3; ++i) rows(3 * m + i, 3 * n + i) = patterns()(n, m);
+  return rows;
+}
+
 /// 12 S_i, in the square of the cell's edge.
 Vec3 second_moments(const CellShape& cell) {
   const Vec3 rho = (12 * cell.part.variance).cwiseMax(AveragedSprings::least_variance);
@@ -254,10 +263,7 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(const CellShape& cell
     K += volume * G * (2 * deviator.transpose() * deviator + shear[i].transpose() * shear[i]);
   }
 
-  Eigen::Matrix<double, 12, 24> of_patterns = Eigen::Matrix<double, 12, 24>::Zero();
-  for (int n = 0; n < 8; ++n)
-    for (int m = 0; m < 4; ++m)
-      for (int i = 0; i < 3; ++i) of_patterns(3 * m + i, 3 * n + i) = patterns()(n, m);
+  const Eigen::Matrix<double, 12, 24> of_patterns = components_of_patterns();
   K += of_patterns.transpose() * hourglass_matrix(*this, cell) * of_patterns;
   return K;
 }

@@ -65,10 +65,8 @@ std::vector<std::array<int, 2>> neighbours(const CutLevel& level, const std::vec
   return pairs;
 }
 
-/// The cells of twice the edge: children of one cube that share points are one cell, and cells whose children share
-/// points share their corners.
-CutLevel coarsen(CutLevel& fine) {
-  const auto at_point = cells_at_points(fine);
+/// Cells of a level that become one: children of one cube that share points.
+UnitedNumbers families(const CutLevel& fine, const std::vector<std::vector<int>>& at_point) {
   UnitedNumbers family(fine.cubes.size());
   const auto are_siblings = [&](const LatticeCube& a, const LatticeCube& b) {
     return a.size == 1 && b.size == 1 && parent_of(a).at == parent_of(b).at;
@@ -77,9 +75,11 @@ CutLevel coarsen(CutLevel& fine) {
     for (const int c : cells)
       for (const int d : cells)
         if (d < c && are_siblings(fine.cubes[c], fine.cubes[d])) family.unite(c, d);
+  return family;
+}
 
-  CutLevel coarse;
-  coarse.edge = 2 * fine.edge;
+/// Sets the parents of a level's cells, and the cubes of the coarser level with what the body fills of them.
+void add_parents(UnitedNumbers family, CutLevel& fine, CutLevel& coarse) {
   std::vector<int>& parent = fine.parent;
   parent.assign(fine.cubes.size(), -1);
   std::vector<ChildMoments> moments;
@@ -96,18 +96,13 @@ CutLevel coarsen(CutLevel& fine) {
   }
   for (std::size_t c = 0; c < moments.size(); ++c)
     if (const ChildMoments& m = moments[c]; m.volume > 0) coarse.filled[c] = filled_part(m.volume, m.first, m.second);
+}
 
-  std::vector<std::array<int, 2>> links;
-  for (const auto& [c, d] : neighbours(fine, at_point))
-    if (parent[c] != parent[d]) links.push_back({parent[c], parent[d]});
-  JoinedCubes joined = join_cubes(coarse.cubes, links);
-  coarse.corners = std::move(joined.corners);
-  coarse.point = std::move(joined.points);
-  coarse.carried = std::move(joined.carried);
-
+/// How the points of a level follow those of the coarser one.
+void set_weights(const std::vector<std::vector<int>>& at_point, const CutLevel& coarse, CutLevel& fine) {
   fine.weight_begin = {0};
   for (std::size_t p = 0; p < fine.point.size(); ++p) {
-    const int c = parent[at_point[p].front()];
+    const int c = fine.parent[at_point[p].front()];
     for (int n = 0; n < 8; ++n) {
       const double w = weight_at(coarse.cubes[c], n, fine.point[p]);
       if (w <= 0) continue;
@@ -116,18 +111,39 @@ CutLevel coarsen(CutLevel& fine) {
     }
     fine.weight_begin.push_back(static_cast<int>(fine.weight.size()));
   }
+}
 
+/// The anchors of a level, on the corners of the parents.
+void add_anchors(const std::vector<std::vector<int>>& at_point, const CutLevel& fine, CutLevel& coarse) {
   for (const Anchor& a : fine.anchors) {
     int cell = -1;
     for (const int c : at_point[a.corners[0]])
       if (fine.corners[c] == a.corners) cell = c;
-    const int up = parent[cell];
+    const int up = fine.parent[cell];
     Anchor above{coarse.corners[up], {}, a.node, a.stiffness, a.axes};
     for (int n = 0; n < 8; ++n)
       for (int m = 0; m < 8; ++m)
         above.weights[m] += a.weights[n] * weight_at(coarse.cubes[up], m, fine.point[a.corners[n]]);
     coarse.anchors.push_back(above);
   }
+}
+
+/// The cells of twice the edge: children of one cube that share points are one cell, and cells whose children share
+/// points share their corners.
+CutLevel coarsen(CutLevel& fine) {
+  const auto at_point = cells_at_points(fine);
+  CutLevel coarse;
+  coarse.edge = 2 * fine.edge;
+  add_parents(families(fine, at_point), fine, coarse);
+  std::vector<std::array<int, 2>> links;
+  for (const auto& [c, d] : neighbours(fine, at_point))
+    if (fine.parent[c] != fine.parent[d]) links.push_back({fine.parent[c], fine.parent[d]});
+  JoinedCubes joined = join_cubes(coarse.cubes, links);
+  coarse.corners = std::move(joined.corners);
+  coarse.point = std::move(joined.points);
+  coarse.carried = std::move(joined.carried);
+  set_weights(at_point, coarse, fine);
+  add_anchors(at_point, fine, coarse);
   return coarse;
 }
 

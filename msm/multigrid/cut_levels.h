@@ -35,8 +35,8 @@ struct CutLevel {
   std::vector<float> D;  ///< inverse diagonal blocks of A
 
   Eigen::Index unknowns() const { return 3 * static_cast<Eigen::Index>(point.size()); }
-  /// Edge of a cell [m].
-  double cell_edge(std::size_t cell) const { return edge * cubes[cell].size; }
+  /// Of a cell.
+  CellShape shape(std::size_t cell) const { return {edge * cubes[cell].size, filled[cell]}; }
   /// out += P^T r and u += P coarse; `coarse` and its right-hand side `out` are of the next level.
   void restrict_to(const Eigen::VectorXf& r, const CutLevel& next, Eigen::VectorXf& out) const;
   void prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::VectorXf& u) const;

@@ -115,9 +115,8 @@ CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLev
       any |= needed[m];
     }
     if (!any) continue;
-    const FilledPart& part = level.filled[c];
-    const CellStiffnessMatrix K = part.fraction == 1 ? CellStiffnessMatrix(full * level.cubes[c].size)
-                                                     : law.cell_matrix({level.cell_edge(c), part}) / unit;
+    const CellStiffnessMatrix K = level.filled[c].fraction == 1 ? CellStiffnessMatrix(full * level.cubes[c].size)
+                                                                : law.cell_matrix(level.shape(c)) / unit;
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8 && needed[m]; ++n)
         for_each_carrier(carriers, corners[m], [&](int p, double v) {

@@ -10,6 +10,12 @@
 namespace springproof {
 namespace {
 
+/// A cell in units of a length.
+CellShape in_units(CellShape cell, double length) {
+  cell.edge /= length;
+  return cell;
+}
+
 constexpr int sweeps_of_cut_cells = 2;  // before and after the coarser lattice
 constexpr float damped = 2;             // of the inverse diagonal blocks in the Schur complement; 1 diverges
 
@@ -64,10 +70,10 @@ CutMixedMultigrid::Level::Level(CutLevel lattice_of_level, std::vector<char> fix
   compliance_ = inverse_schur_ = g = p = Bu_ = r_ = q_ = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
   gradient_.resize(24 * cells);
   for (std::size_t c = 0; c < cells; ++c) {
-    const double h = lattice.cell_edge(c) / finest_edge;
-    const Eigen::Matrix<double, 24, 1> b = volume_gradient({h, lattice.filled[c]});
+    const CellShape cell = in_units(lattice.shape(c), finest_edge);
+    const Eigen::Matrix<double, 24, 1> b = volume_gradient(cell);
     for (int i = 0; i < 24; ++i) gradient_[24 * c + i] = static_cast<float>(b[i]);
-    compliance_[static_cast<Eigen::Index>(c)] = static_cast<float>(lattice.filled[c].fraction * h * h * h / kappa);
+    compliance_[static_cast<Eigen::Index>(c)] = static_cast<float>(cell.volume() / kappa);
   }
   set_up_schur();
 }
@@ -244,9 +250,9 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
   gradient_.resize(24, static_cast<Eigen::Index>(network_.cells.size()));
   compliance_.resize(gradient_.cols());
   for (std::size_t c = 0; c < network_.cells.size(); ++c) {
-    const double h = network_.cells.edge_of(c) / l;
-    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient({h, network_.cells.filled[c]});
-    compliance_[static_cast<Eigen::Index>(c)] = network_.cells.filled[c].fraction * h * h * h / kappa;
+    const CellShape cell = in_units(network_.cells.shape(c), l);
+    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient(cell);
+    compliance_[static_cast<Eigen::Index>(c)] = cell.volume() / kappa;
   }
   std::vector<CutLevel> lattices = cut_levels(network_, nodes_);
   const double finest_edge = lattices[0].edge;
