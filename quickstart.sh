@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12), builds, and runs the main job:   ./quickstart.sh
 # or the tests:                                                          ./quickstart.sh test
+# or a Python package to import, in build/release/python:                ./quickstart.sh python
 # Arguments of `./quickstart.sh` are passed on to `springproof compare`, those of `./quickstart.sh test` to ctest; without
 # any the first runs three experiments of Golec et al. (2019) in the linear regime, and a rabbit, at four Poisson's
 # ratios.  Repeating either command only does what is still to be done.  Each step says in a few lines how far it is; all of what it prints is in build/log/.
@@ -61,18 +62,25 @@ install_missing() {
 
 # build TARGET ...
 build() {
-  [ -f build/release/build.ninja ] || step configure "configuring" cmake --preset release
+  step configure "configuring" cmake --preset release  # always: what has been installed since is seen
   step build "building" cmake --build build/release --target "$@"
 }
 
-# Of the tests cli.format, python.* and cli.springs.
-[ "${1:-}" != test ] || packages+=(clang-format-14 pybind11-dev python3-dev python3-numpy python3-pytest python3-pip python3-setuptools)
+of_python=(pybind11-dev python3-dev python3-numpy)
+case ${1:-} in
+  test) packages+=(clang-format-14 "${of_python[@]}" python3-scipy python3-pytest python3-pip python3-setuptools) ;;  # of the tests cli.format, python.* and cli.springs
+  python) packages+=("${of_python[@]}") ;;
+esac
 install_missing
 if [ "${1:-}" = test ]; then
   shift
   build all
   # Without those that take another compiler or many minutes: ctest --test-dir build/release -L long (or recipe, fuzz, hostile)
   step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" -LE "long|recipe|fuzz|hostile" "$@"
+elif [ "${1:-}" = python ]; then
+  build springproof springproof-mesh springproof-fem springproof-python
+  PYTHONPATH=build/release/python /usr/bin/python3 -c "import springproof"
+  echo "PYTHONPATH=$PWD/build/release/python /usr/bin/python3     # import springproof"
 else
   build springproof springproof-mesh springproof-fem  # without the bench, the tests and what runs on several processes
   [ $# -gt 0 ] || set -- golec_2019/bending golec_2019/compression golec_2019/torsion bodies/rabbit --poisson-ratio=-0.5,0.25,0.4,0.499

@@ -32,6 +32,7 @@ class CMakeBuild(build_ext):
             raise SystemExit(f"{tree} builds no {file.name}; it is of another Python (allowed: a build tree of {sys.executable})")
         file.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(built, file)
+        shutil.copyfile(SOURCE / "examples" / "springs.py", file.parent / "springs.py")
         # The built-in bodies, which voxels() finds beside the package.
         shutil.copytree(SOURCE / "meshes" / "geo", file.parent / "geo", dirs_exist_ok=True)
 

@@ -1,6 +1,7 @@
 // A rule of the case file that selects part of the surface by its position or orientation.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,10 @@
 #include "problem/vector.h"
 
 namespace springproof {
+
+/// Sides of a body along the axes: -x, x, -y, y, -z, z.
+enum class BodySide { left, right, front, back, bottom, top };
+constexpr std::array<const char*, 6> names_of(BodySide) { return {"left", "right", "front", "back", "bottom", "top"}; }
 
 /// Selects the part of the outer surface where all given conditions hold; at least one is given.  Its border cuts
 /// through facets (meshes/patches/rule_region.h), except for `facing`, which selects whole facets by their normals.
@@ -31,6 +36,7 @@ struct PatchRule {
   };
 
   std::string name;
+  std::optional<BodySide> side;  ///< without beyond and facing, by which it is settled for a surface (settled())
   std::optional<Box> box;
   std::optional<Beyond> beyond;
   std::optional<Facing> facing;

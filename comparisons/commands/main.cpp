@@ -18,6 +18,7 @@
 #include "comparisons/commands/frequencies_command.h"
 #include "comparisons/commands/material/homogenise_command.h"
 #include "comparisons/commands/material/material_command.h"
+#include "comparisons/commands/new_command.h"
 #include "comparisons/commands/pictures_command.h"
 #include "comparisons/commands/report_command.h"
 #include "comparisons/commands/reproduce_command.h"
@@ -51,6 +52,8 @@ constexpr Subcommand subcommands[] = {
     {"report", "The results of a comparison whose parts were computed by shards: compare --shard, on several machines",
      made<ReportCommand>},
     {"list", "Built-in cases, models and measures; of cases named: their files", made<ListCommand>, Reads::nothing},
+    {"new", "A case of a body of your own, ready to run: its size, sides, resolutions, loads of 1 % strain",
+     made<NewCommand>, Reads::bodies},
     {"material",
      "Any two moduli in: spring constants, kappa, safe time step, validity range, and the moduli measured back",
      made<MaterialCommand>},
@@ -76,9 +79,21 @@ constexpr Subcommand subcommands[] = {
      made<DescribeCommand>, Reads::nothing},
 };
 
+constexpr const char* tasks =
+    R"(Mass-spring models of elastic solids, proved against finite elements.
+
+Springs of my body:        springproof export body.stl --scale 0.001 -E 5e3 --nu 0.45 --hold bottom --to springs --out body.json
+Is my case right?          springproof new body.stl --scale 0.001 > case.toml
+                           springproof compare case.toml
+My model beside yours:     [[external]] in case.toml, or models = {"mine": f} in Python (docs/python.md)
+
+What is built in:          springproof list
+Every command and option:  springproof --help, springproof COMMAND --help
+)";
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app{"Mass-spring models of elastic solids, proved against finite elements.", "springproof"};
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.set_version_flag("--version", versions);
   struct Ready {
     CLI::App* command;
@@ -98,6 +113,10 @@ int parse_and_run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
+  }
+  if (app.get_subcommands().empty()) {
+    to_stdout("{}", tasks);
+    return 0;
   }
   const auto asked = std::find_if(commands.begin(), commands.end(), [](const Ready& r) { return r.command->parsed(); });
   if (asked->reads != Reads::nothing) gpu::wants_gpu();  // refuses what cannot be had before anything runs

@@ -155,9 +155,38 @@ Vec3 nearest_point(const Vec3& p, const Surface& s) {
   return best;
 }
 
+/// Sum of the facets' areas along `outwards` that face it within the angle and lie wholly above the height.
+double area_above(double height, const PatchRule::Facing& facing, const Surface& s) {
+  double sum = 0;
+  for (const Triangle& t : s.triangles) {
+    const Vec3 doubled = doubled_area({s.points[t[0]], s.points[t[1]], s.points[t[2]]});
+    const bool above =
+        std::all_of(t.begin(), t.end(), [&](int n) { return facing.direction.dot(s.points[n]) >= height; });
+    if (above && faces(facing, doubled)) sum += facing.direction.dot(doubled) / 2;
+  }
+  return sum;
+}
+
 }  // namespace
 
-RuleRegion rule_region(const PatchRule& rule, const Surface& surface) {
+PatchRule settled(PatchRule rule, const Surface& surface) {
+  if (!rule.side) return rule;
+  constexpr double flat_depth = 1e-3, round_depth = 0.05, flat_share = 0.01, flat_deg = 10;
+  const int side = static_cast<int>(*rule.side), axis = side / 2;
+  const Box box = bounding_box(surface);
+  const Vec3 size = box.high - box.low, outwards = side % 2 ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis)),
+             extreme = side % 2 ? box.high : box.low;
+  const auto at = [&](double depth) -> Vec3 { return extreme - depth * size[axis] * outwards; };
+  const PatchRule::Facing facing{outwards, flat_deg};
+  const bool flat = area_above(outwards.dot(at(flat_depth)), facing, surface) >= flat_share * size.prod() / size[axis];
+  rule.beyond = {at(flat ? flat_depth : round_depth), outwards};
+  if (flat) rule.facing = facing;
+  rule.side.reset();
+  return rule;
+}
+
+RuleRegion rule_region(const PatchRule& given, const Surface& surface) {
+  const PatchRule rule = settled(given, surface);
   RuleRegion region;
   for (int axis = 0; rule.box && axis < 3; ++axis) {
     region.planes.push_back({rule.box->low, Vec3::Unit(axis)});

@@ -28,7 +28,11 @@ struct RuleRegion {
   double slack = 0;  ///< what is so near to a border is on it: 1e-9 of the body [m]
 };
 
-RuleRegion rule_region(const PatchRule& rule, const Surface& surface);
+/// A rule by its `side`, of this surface: facets that face it within 1/1000 of the body's depth, if they are a
+/// hundredth of the box's face or more; else all beyond a twentieth of the depth.  Other rules stay.
+PatchRule settled(PatchRule rule, const Surface& surface);
+
+RuleRegion rule_region(const PatchRule& given, const Surface& surface);
 
 /// Part of a facet.
 struct FacetPart {

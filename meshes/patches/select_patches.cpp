@@ -174,8 +174,10 @@ std::vector<std::string> select_patches(const std::vector<PatchRule>& rules, Mes
   std::vector<std::string> names;
   for (const Patch& p : mesh.patches) names.push_back(p.name);
   const Facets facets = facets_of(mesh);
+  const Surface surface = outside_of(mesh);
   CutMesh cut(mesh);
-  for (const PatchRule& rule : rules) {
+  for (const PatchRule& given : rules) {
+    const PatchRule rule = settled(given, surface);
     refuse_taken(rule, names);
     if (mesh.tetrahedra.empty())
       mesh.patches.push_back(selected(rule, facets, mesh));

@@ -71,6 +71,12 @@ std::vector<ForceLaw> laws_in(const ModelRow& row) {
 
 const std::vector<ModelRow>& model_table() { return table; }
 
+const ModelRow& recommended_model() {
+  const auto& rows = model_table();
+  return *std::find_if(rows.begin(), rows.end(),
+                       [](const ModelRow& row) { return row.what.starts_with("recommended"); });
+}
+
 std::optional<double> own_poisson_ratio(const ModelRow& row) {
   return row.extension == none && row.topology != file ? std::optional(0.25) : std::nullopt;
 }

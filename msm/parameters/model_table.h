@@ -57,6 +57,9 @@ struct ModelRow {
 /// @return the rows, in the order of `springproof list`
 const std::vector<ModelRow>& model_table();
 
+/// The row that the table recommends for any solid.
+const ModelRow& recommended_model();
+
 /// The only Poisson's ratio that a model can have: springs without an extension are solids of nu = 1/4.
 /// @param row of the table
 /// @return 1/4; empty: any (of a springs file: not known)

@@ -159,6 +159,11 @@ Experiment read_experiment(const std::filesystem::path& file);
 /// As read_experiment, from text; `file` is used for messages and relative paths.
 Experiment parse_experiment(const std::string& text, const std::filesystem::path& file);
 
+/// A rule by the keys of [[patch]], `side = "bottom"`; a word alone is a side.
+/// @param source named by errors, e.g. "--hold"
+/// @throws InputError as read_experiment
+PatchRule parse_patch_rule(const std::string& name, const std::string& text, const std::string& source);
+
 /// Kelvin's solution of the case's point force; empty unless there are exactly one point force and one material, and
 /// the kinematics are linear.
 std::optional<KelvinSolution> kelvin_of(const Experiment& experiment);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "problem/case_file/experiment_parts.h"
 
 namespace springproof {
@@ -16,6 +18,12 @@ PatchRule::Box read_box(const TomlValue& value) {
              fmt::format("has {} for {}, where the first corner has {}", box.high[axis], "xyz"[axis], box.low[axis]),
              "the lower corner, then the higher one");
   return box;
+}
+
+BodySide read_side(const TomlValue& value) {
+  const auto names = names_of(BodySide{});
+  const std::string name = as_choice(value, {names.begin(), names.end()});
+  return static_cast<BodySide>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 PatchRule::Beyond read_beyond(const TomlValue& value) {
@@ -39,17 +47,35 @@ PatchRule read_rule(const TomlValue& value) {
   PatchRule rule;
   rule.where = location_of(value);
   rule.name = as_text(table.at("name"));
+  if (const auto side = table.find("side")) rule.side = read_side(*side);
   if (const auto box = table.find("box_m")) rule.box = read_box(*box);
   if (const auto beyond = table.find("beyond")) rule.beyond = read_beyond(*beyond);
   if (const auto facing = table.find("facing")) rule.facing = read_facing(*facing);
   if (const auto near = table.find("near")) rule.near = read_near(*near);
-  if (!rule.box && !rule.beyond && !rule.facing && !rule.near)
+  if (!rule.side && !rule.box && !rule.beyond && !rule.facing && !rule.near)
     refuse(value, fmt::format("'{}' does not say where it lies", rule.name),
-           "one or more of box_m, beyond, facing, near");
+           "one or more of side, box_m, beyond, facing, near");
+  if (rule.side && (rule.beyond || rule.facing))
+    refuse(*table.find("side"), "stands beside beyond or facing", "side with box_m or near, or none of the three");
   return rule;
 }
 
 }  // namespace
+
+PatchRule parse_patch_rule(const std::string& name, const std::string& text, const std::string& source) {
+  require_bounded(text, source);
+  toml::table table;
+  try {
+    table = toml::parse(text.find('=') == std::string::npos ? fmt::format("side = \"{}\"", text) : text, source);
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}: '{}' is no rule of a patch: {} (allowed: left, right, front, back, bottom, top, or "
+                    "keys of [[patch]] such as 'beyond = {{ point_m = [0, 0, 0.01], normal = [0, 0, -1] }}')",
+                    source, text, error.description()));
+  }
+  table.insert("name", name);
+  return read_rule({&table, "patch", source});
+}
 
 std::vector<PatchRule> read_patch_rules(const TomlTable& document) {
   std::vector<PatchRule> rules;

@@ -49,6 +49,7 @@ constexpr Key body_keys[] = {
 
 constexpr Key patch_keys[] = {
   {"name",   "its name, for `on`",                             "a name",                                  required,       "\"wrist\""},
+  {"side",   "the plane face on that side of the body, or the outer twentieth of a round side: -x, x, -y, y, -z, z", "left, right, front, back, bottom, top", "no condition", "\"bottom\""},
   {"box_m",  "inside the box of two corners, the lower first", "two corners, [[x, y, z], [x, y, z]]",     "no condition", "[[0, 0, 0], [0.1, 0.1, 0.02]]"},
   {"beyond", "on one side of a plane",                         "a table",                                 "no condition", "{ point_m = [0, 0, 0.01], normal = [0, 0, -1] }"},
   {"facing", "whose outward normals are within an angle",      "a table",                                 "no condition", "{ direction = [0, 0, -1], within_deg = 30 }"},

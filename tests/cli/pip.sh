@@ -16,7 +16,7 @@ block 2 >wanted
 [ "$(wc -l <lines.py)" -eq 5 ] || fail "docs/python.md does not begin with five lines"
 PYTHONPATH=$work/installed "$python" lines.py >printed || fail "the five lines"
 diff printed wanted || fail "they print something else than docs/python.md"
-for file in __init__.py _springproof.pyi geo/rabbit.geo geo/solids.inc; do
+for file in __init__.py springs.py _springproof.pyi geo/rabbit.geo geo/solids.inc; do
   [ -s "installed/springproof/$file" ] || fail "$file is not installed"
 done
 [ -e installed/springproof/py.typed ] || fail "py.typed is not installed"

@@ -95,6 +95,32 @@ def test_springs_alone(tmp_path):
     assert float(rebound.group(1)) < 1 and 0.3 < float(rebound.group(2)) < 0.999, out
 
 
+def test_hanging(tmp_path):
+    """A body of cut cells without a case: what hang_springs.py finds is the equilibrium of `compare`, held and loaded at the same sides."""
+    pytest.importorskip("scipy")
+    program = sp.find_program()
+    if not program:
+        pytest.skip("no program springproof")
+    (tmp_path / "icosahedron.stl").write_bytes((SOURCE / "comparisons/experiments/calibration/icosahedron.stl").read_bytes())
+    for file in ("hang_springs.py", "springs.py"):
+        (tmp_path / file).write_text((EXAMPLES / file).read_text())
+    assert "import springproof" not in (tmp_path / "hang_springs.py").read_text()
+    run(program, "export", "icosahedron.stl", "-E", "5e3", "--nu", "0.45", "--scale", "0.1", "--voxels", "300", "--hold", "bottom",
+        "--load", "top", "--to", "springs", "--out", "ball.npz", cwd=tmp_path)
+    out = run(sys.executable, "hang_springs.py", "ball.npz", "bottom", "top", "0.1", "0", "-0.5", cwd=tmp_path)
+    moves = [float(u) for u in re.search(r"where it is loaded by \[(.*)\]", out).group(1).split(",")]
+    written = run(program, "new", "icosahedron.stl", "-E", "5e3", "--nu", "0.45", "--scale", "0.1", cwd=tmp_path)
+    case = re.sub(r"^voxels = .*", "voxels = 300", written, flags=re.M)
+    case = case.replace('"left"', '"bottom"').replace('"right"', '"top"').replace('# kinematics = "hencky"', 'kinematics = "hencky"\n')
+    case = re.sub(r"^force_N = .*", "force_N = [0.1, 0, -0.5]", case, flags=re.M)
+    case = re.sub(r"^models = .*", 'models = ["hybmss_avg"]\nmeasures = ["mean_displacement"]\n[reference]\nelements = []', case, flags=re.M)
+    (tmp_path / "case.toml").write_text(case)
+    rows = {row["measure"]: row["value"] for row in sp.compare(tmp_path / "case.toml")}
+    compared = [rows[f"mean_displacement.top.{axis}"] for axis in "xyz"]
+    assert moves == pytest.approx(compared, abs=1e-4 * abs(compared[2])) and compared[2] < -1e-4
+    assert (tmp_path / "ball-hung.obj").read_text().count("\nf ") > 100
+
+
 def test_own_springs(tmp_path):
     """The page shows the example's model; it is a row at each Poisson's ratio, and the two that stand beside it are better."""
     example = (EXAMPLES / "own_springs.py").read_text()

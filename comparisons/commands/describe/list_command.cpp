@@ -1,6 +1,9 @@
 #include "comparisons/commands/describe/list_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include "comparisons/sweep/find_cases.h"
 #include "msm/parameters/made_of.h"
@@ -10,24 +13,79 @@
 #include "problem/system/streams.h"
 
 namespace springproof {
+namespace {
+
+using Files = std::vector<std::filesystem::path>;
+
+/// Folders of the built-in cases; one without a row here has no words.
+constexpr std::pair<const char*, const char*> folders[] = {
+    {"bodies", "bodies that are no blocks: cut cells beside finite elements"},
+    {"boxes", "blocks of cells that are longer than wide"},
+    {"calibration", "does the reference's uncertainty hold? beside exact solutions"},
+    {"cost", "error against time, springs and elements on the same cells"},
+    {"cross_check", "laws that CalculiX has too: springproof cross-check"},
+    {"golec_2019", "the experiments of Golec et al. (2019)"},
+    {"kot_2014", "those of Kot et al. (2014)"},
+    {"kot_2015", "those of Kot and Nagahashi (2015)"},
+    {"large_strain", "strains of a fifth and more"},
+    {"motion", "in time: swings, waves, falls"},
+    {"verification", "benchmarks with a known solution: Lame, MacNeal and Harder, Cook, fields"},
+};
+
+/// "golec_2019" of "golec_2019/tables/table2"
+std::string folder_of(const std::string& name) { return name.substr(0, name.find('/')); }
+
+void list_cases(const Files& files) {
+  std::string folder;
+  for (const auto& file : files) {
+    const std::string name = case_name(file);
+    if (folder_of(name) != folder && name.find('/') != std::string::npos) {
+      folder = folder_of(name);
+      const auto* row =
+          std::find_if(std::begin(folders), std::end(folders), [&](const auto& f) { return f.first == folder; });
+      to_stdout("{}/{}{}\n", folder, row == std::end(folders) ? "" : "  ", row == std::end(folders) ? "" : row->second);
+    }
+    to_stdout("  {:<38} {}\n", name, read_experiment(file).what);
+  }
+}
+
+void list_models() {
+  for (const ModelRow& row : model_table()) to_stdout("  {:<15} {:<26} {}\n", row.name, made_of(row), row.what);
+}
+
+void list_measures() {
+  for (const Measure& measure : measure_table()) to_stdout("  {:<28}{}\n", measure.name, measure.what);
+}
+
+}  // namespace
 
 void ListCommand::add_options(CLI::App& command) {
-  command.add_option("CASE", names_, "built-in cases or folders, whose files are listed");
+  command.add_option("WHAT", names_, "models; measures; a folder of cases; a case, whose file is named (default: all)");
 }
 
 int ListCommand::run() const {
-  if (!names_.empty()) {
-    for (const auto& file : find_cases(names_)) to_stdout("{}\n", file.string());
-    return 0;
+  for (const std::string& name : names_) {
+    if (name == "models") {
+      list_models();
+    } else if (name == "measures") {
+      list_measures();
+    } else if (const Files files = find_cases({name}); files.size() > 1) {
+      list_cases(files);
+    } else {
+      to_stdout("{}\n", files.front().string());
+    }
   }
-  to_stdout("Cases (springproof compare NAME):\n");
-  for (const auto& file : built_in_cases()) {
-    to_stdout("  {:<38} {}\n", case_name(file), read_experiment(file).what);
-  }
+  if (!names_.empty()) return 0;
+  to_stdout(
+      "Begin here: springproof compare golec_2019/compression    (a cube, every model beside finite elements, "
+      "seconds)\n"
+      "Of your own body: springproof new BODY.stl > case.toml\n\n"
+      "Cases (springproof compare NAME, or FOLDER):\n");
+  list_cases(built_in_cases());
   to_stdout("\nModels ([compare] models = [...]):\n");
-  for (const ModelRow& row : model_table()) to_stdout("  {:<15} {:<26} {}\n", row.name, made_of(row), row.what);
+  list_models();
   to_stdout("\nMeasures ([compare] measures = [...]):\n");
-  for (const Measure& measure : measure_table()) to_stdout("  {:<28}{}\n", measure.name, measure.what);
+  list_measures();
   return 0;
 }
 

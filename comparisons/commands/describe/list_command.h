@@ -10,11 +10,11 @@ class App;
 
 namespace springproof {
 
-/// `springproof list [CASE...]`.
+/// `springproof list [models | measures | CASE...]`.
 class ListCommand {
  public:
   void add_options(CLI::App& command);
-  /// Without names all that is built in, else the files of these cases.
+  /// Without names all that is built in; "models", "measures"; of a folder its cases; of a case its file.
   int run() const;
 
  private:

@@ -15,6 +15,7 @@
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
+#include "meshes/locate/outer_facets.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "msm/exchange/lammps.h"
@@ -89,14 +90,29 @@ int export_calculix(const ExportRequest& request) {
   return 0;
 }
 
-/// The row that the table recommends.
-std::string recommended_model() {
-  const auto& rows = model_table();
-  return std::find_if(rows.begin(), rows.end(), [](const ModelRow& row) { return row.what.starts_with("recommended"); })
-      ->name;
+ModelChoice named_model(const std::string& name) { return {name, {}, name, {}}; }
+
+/// Sides are named as they are, other rules "held", "held_2", ...
+void add_patches(const std::string& option, const std::string& stem, const std::vector<std::string>& rules,
+                 std::vector<PatchRule>& patches) {
+  int count = 0;
+  for (const std::string& rule : rules) {
+    const bool side = rule.find('=') == std::string::npos;
+    std::string name = rule;
+    if (!side && ++count > 1) name = fmt::format("{}_{}", stem, count);
+    if (!side && count == 1) name = stem;
+    patches.push_back(parse_patch_rule(name, rule, option));
+  }
 }
 
-ModelChoice named_model(const std::string& name) { return {name, {}, name, {}}; }
+/// @throws InputError for a patch of the command line that is the whole surface.
+void refuse_whole_surface(const PreparedCase& prepared) {
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  const std::size_t facets = outer_facets(body).size();
+  for (const PatchRule& rule : prepared.experiment.patches)
+    if (patch(body, rule.name).facets.size() == facets)
+      throw InputError(rule.where, fmt::format("'{}' takes the whole surface (allowed: a part of it)", rule.name));
+}
 
 /// A body alone, of the material and the model of the command line.
 Experiment body_alone(const ExportRequest& request) {
@@ -114,7 +130,9 @@ Experiment body_alone(const ExportRequest& request) {
     throw InputError(
         fmt::format("{}: {} (a body alone needs -E and --nu, or another two moduli)", request.what, error.what()));
   }
-  e.models = {named_model(request.model.empty() ? recommended_model() : request.model)};
+  e.models = {named_model(request.model.empty() ? recommended_model().name : request.model)};
+  add_patches("--hold", "held", request.hold, e.patches);
+  add_patches("--load", "loaded", request.load, e.patches);
   if (request.cells.empty()) e.body.voxel_counts = {request.voxels.value_or(default_voxels)};
   return e;
 }
@@ -136,9 +154,10 @@ ModelChoice chosen_model(const Experiment& e, const std::string& name) {
 
 /// The case with one material, one model and one resolution, without what is computed of it.
 Experiment one_of_each(Experiment e, const ExportRequest& request) {
-  if (request.moduli.youngs_modulus || request.scale != 1 || !request.size.empty())
+  if (request.moduli.youngs_modulus || request.scale != 1 || !request.size.empty() || !request.hold.empty() ||
+      !request.load.empty())
     throw InputError(
-        fmt::format("{}: a case has its own material and size (allowed: --poisson-ratio, --model, --cells, "
+        fmt::format("{}: a case has its own material, patches and size (allowed: --poisson-ratio, --model, --cells, "
                     "--voxels)",
                     request.what));
   e.materials = {material_of(e, request.moduli.poisson_ratio)};
@@ -213,6 +232,7 @@ SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   Status status(false);
   const Status::Working working(status, request.what);
   const PreparedCase prepared = prepare_lattices(e);
+  if (!e.patches.empty() && is_body(request.what)) refuse_whole_surface(prepared);
   const Topology of = prepared.models.front().row.topology;
   if (request.to != "springs" && (of == Topology::cells || of == Topology::centres))
     require_cubes(request, *prepared.lattices.front().mesh);
@@ -305,8 +325,12 @@ int export_lammps(const ExportRequest& request) {
 
 int export_engine(const ExportRequest& request) {
   const SpringsFile springs = springs_of(for_engine(request));
-  return export_to_engine(request, springs,
-                          is_body(request.what) ? std::vector<std::string>{} : held_patches(read_case(request.what)));
+  if (!is_body(request.what)) return export_to_engine(request, springs, held_patches(read_case(request.what)));
+  std::vector<PatchRule> held;
+  add_patches("--hold", "held", request.hold, held);
+  std::vector<std::string> names;
+  for (const PatchRule& rule : held) names.push_back(rule.name);
+  return export_to_engine(request, springs, names);
 }
 
 /// A form of export: a row.
@@ -342,9 +366,9 @@ void ExportCommand::add_options(CLI::App& command) {
                   "cells along each side of a body of hexahedra (default: the case's first resolution)")
       ->expected(3)
       ->check(CLI::Range(1, 1000));
-  command.add_option(
-      "--model", r.model,
-      fmt::format("springs: a model of the case or of the table (default: the case's first; {})", recommended_model()));
+  command.add_option("--model", r.model,
+                     fmt::format("springs: a model of the case or of the table (default: the case's first; {})",
+                                 recommended_model().name));
   command.add_option("--voxels", r.voxels, "springs: about so many cubes (default: the case's first; 2000)")
       ->check(CLI::Range(1, 4000000));
   command.add_flag("--whole-cubes", r.whole_cubes,
@@ -354,6 +378,14 @@ void ExportCommand::add_options(CLI::App& command) {
       "springs: an .stl, .obj, .ply or .msh file whose vertices the springs carry, in its order, in place "
       "of the body's surface");
   command.add_option("--youngs-modulus,-E", r.moduli.youngs_modulus, "of a body alone: Young's modulus [Pa]");
+  command
+      .add_option(
+          "--hold", r.hold,
+          "of a body alone: what a support holds: left, right, front, back, bottom, top (-x, x, -y, y, -z, z), or "
+          "keys of [[patch]], 'near = { point_m = [0, 0, 0.1], radius_m = 0.02 }'; again for another")
+      ->allow_extra_args(false);
+  command.add_option("--load", r.load, "of a body alone: what loads act on, named like --hold")
+      ->allow_extra_args(false);
   command.add_option("--density", r.density, "of a body alone [kg/m^3]")->check(positive())->capture_default_str();
   command.add_option("--scale", r.scale, "of a body alone: its coordinates are multiplied by it")
       ->check(positive())

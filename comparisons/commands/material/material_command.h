@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
 
 namespace CLI {
@@ -23,7 +24,7 @@ class MaterialCommand {
   Moduli moduli_;
   double density_ = 1000;
   double cell_size_ = 0.1, frequency_ = 1;
-  ModelChoice choice_{"hybmss", {}, "hybmss", {}};
+  ModelChoice choice_{recommended_model().name, {}, recommended_model().name, {}};
   bool json_ = false;
 };
 

@@ -1,6 +1,7 @@
 """The program springproof: comparisons with finite elements."""
 
 import csv
+import html
 import json
 import os
 import pathlib
@@ -43,6 +44,50 @@ class Loads(NamedTuple):
     displacement: numpy.ndarray  #: that supports prescribe, n x 3 [m]; NaN: free
 
 
+class Rows(list):
+    """Rows of a comparison: a list of dicts that a notebook shows as a table, and that draws itself."""
+
+    _SHOWN = ("case", "model", "poisson_ratio", "cells", "measure", "value", "unit", "error", "reference_uncertainty")
+
+    def _repr_html_(self) -> str:
+        def cell(value: object) -> str:
+            return "" if value is None else html.escape(f"{value:.4g}" if isinstance(value, float) else str(value))
+
+        head = "".join(f"<th>{column.replace('_', ' ')}</th>" for column in self._SHOWN)
+        body = "".join("<tr>" + "".join(f"<td>{cell(row[column])}</td>" for column in self._SHOWN) + "</tr>" for row in self)
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    def plot(self, measure: str = "displacement_error", ax=None):
+        """Draws the errors of a measure against Poisson's ratio, a line per model and resolution, the reference's uncertainty
+        in grey.
+
+        ax: axes of matplotlib, which is needed (Debian: python3-matplotlib); by default new ones.  Returns the axes.  Raises
+        InputError if no row has an error of the measure.
+        """
+        try:
+            import matplotlib.pyplot as pyplot
+        except ImportError:
+            raise RuntimeError("plot: needs matplotlib (Debian: python3-matplotlib; or pip install matplotlib)") from None
+        rows = [row for row in self if row["measure"] == measure and row["error"] is not None]
+        if not rows:
+            known = sorted({row["measure"] for row in self if row["error"] is not None})
+            raise InputError(f"plot: no row has an error of '{measure}' (allowed: {', '.join(known) or 'none: these rows have no reference'})")
+        ax = ax or pyplot.figure().add_subplot()
+        lines: dict = {}
+        for row in rows:
+            lines.setdefault(" ".join(str(row[key]) for key in ("case", "model", "cells")), []).append((row["poisson_ratio"], abs(row["error"])))
+        for label, points in lines.items():
+            ax.plot(*zip(*sorted(points)), marker="o", label=label)
+        doubts: dict = {}
+        for row in rows:
+            doubts[row["poisson_ratio"]] = max(doubts.get(row["poisson_ratio"], 0), row["reference_uncertainty"] or 0)
+        ratios = sorted(doubts)
+        ax.fill_between(ratios, [doubts[ratio] for ratio in ratios], color="0.85", label="uncertainty of the reference")
+        ax.set(xlabel="Poisson's ratio", ylabel=measure.replace("_", " "), yscale="log")
+        ax.legend(fontsize="small")
+        return ax
+
+
 def compare(
     case: "str | os.PathLike[str] | Mapping[str, object]",
     *,
@@ -51,7 +96,7 @@ def compare(
     out: "str | os.PathLike[str] | None" = None,
     jobs: "int | None" = None,
     resume: bool = False,
-) -> "list[dict[str, object]]":
+) -> "Rows":
     """Models beside finite elements: runs `springproof compare` and returns the rows of its results.csv.
 
     case: a case file, the name of a built-in case or folder, or a case as a dict of the keys of a case file, whose files are
@@ -65,7 +110,7 @@ def compare(
 
     A row has the columns of docs/results.md: case, kinematics, model, poisson_ratio, cells, measure, value, unit, reference,
     reference_uncertainty, error, samples, spread, published, published_where.  Numbers are floats (samples: int), None where
-    there is none.  pandas.DataFrame(rows) takes them.
+    there is none.  pandas.DataFrame(rows) takes them; a notebook shows them as a table, rows.plot() draws their errors.
 
     Raises InputError with the program's message if the input cannot be used, and what a function of yours raises; warns where an [[expect]] of the case does not
     hold or a run has no result.
@@ -158,9 +203,9 @@ def _read_case(file):
 
 def _read_rows(file):
     if not file.is_file():
-        return []
+        return Rows()
     with open(file, newline="", encoding="utf-8") as text:
-        rows = list(csv.DictReader(text))
+        rows = Rows(csv.DictReader(text))
     for row in rows:
         for key in _NUMBERS:
             row[key] = float(row[key]) if row[key] else None

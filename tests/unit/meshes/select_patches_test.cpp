@@ -40,6 +40,12 @@ PatchRule near(const Vec3& point, double radius) {
   return r;
 }
 
+PatchRule on_side(int number) {
+  PatchRule r = rule("p");
+  r.side = static_cast<BodySide>(number);
+  return r;
+}
+
 Patch selected(const PatchRule& r, Mesh mesh) {
   select_patches({r}, mesh);
   return mesh.patches.back();
@@ -80,7 +86,7 @@ TEST(SelectPatches, FacesOfABlock) {
     const Vec3 outward = (face % 2 ? 1 : -1) * Vec3::Unit(face / 2);
     const Vec3 on_it = centroid(block, expected);
     for (const Mesh& mesh : {bricks, tetrahedra})
-      for (const PatchRule& r : {facing(outward, 1), beyond(on_it, outward), flat_box(on_it, outward)}) {
+      for (const PatchRule& r : {facing(outward, 1), beyond(on_it, outward), flat_box(on_it, outward), on_side(face)}) {
         const Patch p = selected(r, mesh);
         EXPECT_EQ(nodes_of(p), nodes_of(expected)) << face;
         EXPECT_NEAR(nodal_areas(mesh, p).sum(), nodal_areas(block, expected).sum(), 1e-12);
@@ -92,6 +98,18 @@ TEST(SelectPatches, FacesOfABlock) {
         EXPECT_GT(normal.dot(outward), 0);
       }
   }
+}
+
+/// The cap of a twentieth of the diameter, of area 2 pi R h; along its border tetrahedra are cut.
+TEST(SelectPatches, ASideOfARoundBodyIsItsOuterTwentieth) {
+  Mesh ball = block_mesh({2, 2, 2}, {24, 24, 24});
+  for (Eigen::Index n = 0; n < ball.nodes.rows(); ++n) {
+    const Vec3 x = ball.nodes.row(n).transpose() - Vec3::Ones();
+    if (x.norm() > 0) ball.nodes.row(n) = (x.cwiseAbs().maxCoeff() / x.norm() * x).transpose();
+  }
+  ball.patches.clear();
+  const Mesh tetrahedra = test::tetrahedra_of(ball);
+  for (int side = 0; side < 6; ++side) EXPECT_NEAR(area(on_side(side), tetrahedra), 2 * M_PI * 0.1, 0.01) << side;
 }
 
 TEST(SelectPatches, AllConditionsMustHold) {

@@ -1,0 +1,167 @@
+#include "comparisons/commands/new_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "comparisons/sweep/status.h"
+#include "meshes/mesher/mesher.h"
+#include "meshes/patches/rule_region.h"
+#include "meshes/volume.h"
+#include "problem/case_file/experiment.h"
+#include "problem/case_file/keys.h"
+#include "problem/system/number_checks.h"
+#include "problem/system/streams.h"
+
+namespace springproof {
+namespace {
+
+constexpr int tetrahedra_of_a_look = 5000;
+constexpr double strain = 0.01;
+
+/// What a case says of a body.
+struct Measured {
+  Vec3 low, size;     ///< of its box [m]
+  double volume = 0;  ///< [m^3]
+  double thick = 0;   ///< 2 V / A [m]: that of a sheet, two thirds of a ball's radius
+  int longest = 0;    ///< axis
+  std::vector<std::string> notes;
+};
+
+Measured measured(const MeshRequest& request) {
+  const MeshedBody meshed = mesh_body(request);
+  const Surface outside = outside_of(meshed.mesh);
+  const Box box = bounding_box(outside);
+  Measured m{box.low, box.high - box.low, volume(meshed.mesh, meshed.mesh.nodes), 0, 0, meshed.notes};
+  m.thick = 2 * m.volume / area(outside);
+  m.size.maxCoeff(&m.longest);
+  return m;
+}
+
+/// So many cells that two lie across the thickness, between the bounds.
+int cells_for(const Measured& m, int least, int most) {
+  const double two_across = m.volume / std::pow(m.thick / 2, 3);
+  return static_cast<int>(std::clamp(std::ceil(two_across / 100) * 100, double(least), double(most)));
+}
+
+/// "4.1 mm, 3.2 across the thickness"
+std::string cell_words(const Measured& m, int cells) {
+  const double edge = std::cbrt(m.volume / cells);
+  return fmt::format("about {} cells of {:.3g} m, {:.2g} across the thickness", cells, edge, m.thick / edge);
+}
+
+/// A TOML string.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string list(const Vec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v[0], v[1], v[2]); }
+
+std::string body_of(const Measured& m, const MeshRequest& request, const std::string& geo) {
+  const int coarse = cells_for(m, 1500, 20000), fine = std::min(4 * coarse, 60000);
+  std::string text = fmt::format("[body]\ngeo = {}\n", quoted(geo));
+  if (!request.size.isZero(0)) text += fmt::format("size_m = {}\n", list(request.size));
+  if (request.size.isZero(0) && (request.scale != 1 || m.size.maxCoeff() > 10))
+    text += fmt::format("scale = {:g}{}\n", request.scale,
+                        request.scale == 1 ? "  # 0.001 if the file is in millimetres" : "");
+  text += fmt::format("voxels = {}  # {}\n# voxels = {}  # {}: some five times the time\n", coarse,
+                      cell_words(m, coarse), fine, cell_words(m, fine));
+  return text;
+}
+
+std::string patches_of(const Measured& m) {
+  const auto names = names_of(BodySide{});
+  std::string text;
+  for (int side = 0; side < 6; ++side) {
+    const char* before = side / 2 == m.longest ? "" : "# ";
+    text += fmt::format("{0}[[patch]]\n{0}name = \"{1}\"\n{0}side = \"{1}\"\n", before, names[side]);
+  }
+  return text + "# A part of a side: box_m, beyond, facing, near (docs/keys.md).\n";
+}
+
+/// Held at its lower end along the longest axis and pulled at the other, to 1 % on average.
+std::string loads_of(const Measured& m, const IsotropicMaterial& material) {
+  const auto names = names_of(BodySide{});
+  const double section = m.volume / m.size[m.longest];
+  const Vec3 force = strain * material.youngs_modulus * section * Vec3::Unit(m.longest);
+  return fmt::format(
+      "[[load]]\non = \"{}\"\ndisplacement_m = [0, 0, 0]\n\n"
+      "[[load]]\non = \"{}\"\nforce_N = {}  # {:g} E V / length: a strain of 1 % on average\n# [[load]]\n# "
+      "gravity_m_s2 = [0, 0, "
+      "-9.81]\n",
+      names[2 * m.longest], names[2 * m.longest + 1], list(force), strain);
+}
+
+std::string case_of(const Measured& m, const MeshRequest& request, const std::string& geo,
+                    const IsotropicMaterial& material) {
+  const Vec3 high = m.low + m.size;
+  std::string text = fmt::format(
+      "# {}: {:.4g} x {:.4g} x {:.4g} m, from {} to {} m,\n# of {:.5g} m³; thickness {:.3g} m (2 volume / surface).\n",
+      std::filesystem::path(geo).filename().string(), m.size[0], m.size[1], m.size[2], list(m.low), list(high),
+      m.volume, m.thick);
+  for (const std::string& note : m.notes) text += "# " + note + "\n";
+  text += "# springproof compare THIS-FILE        every key: docs/keys.md\n";
+  text += fmt::format(
+      "what = {}\n# kinematics = \"hencky\"  # here, above all tables: beyond strains of a few per cent\n\n",
+      quoted(std::filesystem::path(geo).stem().string() + ", held at one end and pulled at the other."));
+  text += body_of(m, request, geo) + "\n" + patches_of(m) + "\n";
+  text += fmt::format("[material]\nyoungs_modulus_Pa = {:g}\npoisson_ratio = {:g}\ndensity_kg_m3 = {:g}\n\n",
+                      material.youngs_modulus, material.poisson_ratio, material.density);
+  text += loads_of(m, material) + "\n";
+  text += "[compare]\nmodels = [\"hybmss_avg\", \"hybmss\", \"emsm\", \"msm_18\"]\n";
+  return text;
+}
+
+}  // namespace
+
+void NewCommand::add_options(CLI::App& command) {
+  command.add_option("BODY", body_, "closed .stl, .obj or .ply, .msh, .step, .brep, or a script for gmsh (*.geo)")
+      ->required();
+  command.add_option("--scale", scale_, "coordinates are multiplied by it, to metres")
+      ->check(positive())
+      ->capture_default_str();
+  command.add_option("--size", size_, "of a script: its size_x size_y size_z [m]")->expected(3)->check(positive());
+  command.add_option("--youngs-modulus,-E", moduli_.youngs_modulus, "Young's modulus [Pa] (default: 1e5)");
+  command.add_option("--poisson-ratio,--nu", moduli_.poisson_ratio, "Poisson's ratio (default: 0.45)");
+  command.add_option("--density", density_, "[kg/m^3]")->check(positive())->capture_default_str();
+}
+
+int NewCommand::run() const {
+  Body body;
+  body.geo = body_;
+  body.scale = scale_;
+  if (!size_.empty()) body.size = Vec3(size_[0], size_[1], size_[2]);
+  const auto& endings = body_file_endings();
+  if (std::find(endings.begin(), endings.end(), extension_of(body_)) == endings.end())
+    throw InputError(fmt::format("{}: is no body (allowed: {})", body_, fmt::join(endings, ", ")));
+  if (body.is_script() && size_.empty())
+    throw InputError(fmt::format("{}: a script needs its size (allowed: --size X Y Z [m])", body_));
+  IsotropicMaterial material{moduli_.youngs_modulus.value_or(1e5), moduli_.poisson_ratio.value_or(0.45), density_};
+  try {
+    check(material);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(error.what());
+  }
+  MeshRequest request;
+  request.file = find_geo(body, "case.toml");
+  request.size = body.size;
+  request.scale = scale_;
+  request.tetrahedra = tetrahedra_of_a_look;
+  Status status(false);
+  const Status::Working working(status, body_);
+  const std::string text = case_of(measured(request), request, body_, material);
+  parse_experiment(text, "case.toml");
+  to_stdout("{}", text);
+  return 0;
+}
+
+}  // namespace springproof
