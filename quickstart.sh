@@ -11,7 +11,7 @@ cd "$(dirname "$0")"
 packages=(
   g++ cmake ninja-build pkg-config
   libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev libxxhash-dev zlib1g-dev libgtest-dev
-  libdeal.ii-dev libopenblas0-serial libgmsh-dev libcgal-dev libjs-chart.js libjs-three
+  libdeal.ii-dev libopenblas0-serial libgmsh-dev libcgal-dev libtinygltf-dev libjs-chart.js libjs-three
 )
 
 # A line per tenth of the steps that ninja and ctest number; all of what a failing one prints; ctest's summary.

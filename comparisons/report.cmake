@@ -63,5 +63,6 @@ set(report_view ${CMAKE_BINARY_DIR}/arrows/comparisons)
 file(MAKE_DIRECTORY ${report_view})
 file(CREATE_LINK ${CMAKE_SOURCE_DIR}/comparisons ${report_view}/comparisons SYMBOLIC)
 target_include_directories(report PUBLIC ${report_view})
+find_package(TinyGLTF REQUIRED)
 target_link_libraries(report PUBLIC problem meshes nlohmann_json::nlohmann_json
-                             PRIVATE springproof_warnings fmt::fmt)
+                             PRIVATE springproof_warnings fmt::fmt TinyGLTF::TinyGLTF)

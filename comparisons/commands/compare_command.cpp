@@ -35,6 +35,8 @@ void CompareCommand::add_options(CLI::App& command) {
       ->excludes(live);
   command.add_flag("--vtu,!--no-vtu", options_.vtu, "also write a VTU file of every run, for ParaView");
   command.add_flag("--vtu-single", options_.vtu_single, "VTU files in single precision, half the size")->needs("--vtu");
+  command.add_flag("--gltf", options_.gltf,
+                   "also write the deformed surface of every run as OUT/gltf/CASE/RUN.glb, moving as the body does");
   command.footer(
       "Exit status: 0 every expectation holds, 1 one does not or cannot be judged, or a reference or every run failed, "
       "or nothing was compared, 2 the input is unusable, 130 interrupted; with --shard 0 its parts are there.");

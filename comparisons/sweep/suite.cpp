@@ -329,7 +329,7 @@ int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
       if (task.prepared == &p) append(task.part, results.back());
   }
   return write_results(std::move(results), plan.libraries,
-                       {options.out, options.vtu, options.live_page, options.verbose})
+                       {options.out, options.vtu, options.gltf, options.live_page, options.verbose})
              ? 0
              : 1;
 }

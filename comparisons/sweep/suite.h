@@ -16,6 +16,7 @@ struct SuiteOptions {
   bool resume = false;                 ///< take finished parts from `out`
   bool vtu = false;                    ///< write a VTU per run
   bool vtu_single = false;             ///< in single precision
+  bool gltf = false;                   ///< write the deformed surface of each run
   bool quiet = false;                  ///< show no progress
   bool verbose = false;                ///< also print a sentence on every model
   std::filesystem::path live_page;     ///< copied beside the report, which links it; empty: none

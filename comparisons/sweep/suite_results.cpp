@@ -14,6 +14,7 @@
 #include "comparisons/judge/calibration.h"
 #include "comparisons/judge/judge.h"
 #include "comparisons/reference/vtu_output.h"
+#include "comparisons/report/gltf.h"
 #include "comparisons/report/headline.h"
 #include "comparisons/report/report.h"
 #include "comparisons/results/crack_picture.h"
@@ -122,6 +123,7 @@ bool write_results(std::vector<CaseResult> results, const std::string& libraries
   for (CaseResult& r : results) {
     judge(r);
     if (choice.vtu) write_series(r, out / "vtu" / key_of(r.experiment.file));
+    if (choice.gltf) write_gltf(r, out / "gltf" / key_of(r.experiment.file));
   }
   const std::vector<KnownQuantity> known = known_quantities(results);
   const nlohmann::json doc = document(results, known, libraries);

@@ -22,6 +22,7 @@ void append(const Part& from, Part& to);
 struct ResultsChoice {
   std::filesystem::path out;
   bool vtu = false;                 ///< series of the VTU files in out/vtu are written
+  bool gltf = false;                ///< the deformed surfaces go to out/gltf
   std::filesystem::path live_page;  ///< copied beside the report, which links it; empty: none
   bool verbose = false;             ///< a sentence on every model is printed
 };

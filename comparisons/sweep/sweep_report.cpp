@@ -94,7 +94,7 @@ int report_sweep(const SweepReportOptions& options) {
                     "is there)",
                     options.folder.string(), shards.size() == 1 ? "" : "s", fmt::join(shards, ",")));
   const bool success =
-      write_results(std::move(results), sweep.libraries, {options.folder, sweep.vtu, options.live_page});
+      write_results(std::move(results), sweep.libraries, {options.folder, sweep.vtu, false, options.live_page});
   return success && missing.empty() ? 0 : 1;
 }
 
