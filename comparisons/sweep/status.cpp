@@ -53,6 +53,13 @@ std::string left_words(std::optional<double> left) {
   return left ? fmt::format(", about {} left", time_words(*left)) : "";
 }
 
+/// "[####......] "
+std::string bar_of(double share) {
+  constexpr int tenths = 10;
+  const int done = std::clamp(static_cast<int>(share * tenths), 0, tenths);
+  return fmt::format("[{}{}] ", std::string(done, '#'), std::string(tenths - done, '.'));
+}
+
 /// Clears the live line before the process is killed by a signal.
 void clear_and_die(int signal) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, clear_line, sizeof clear_line - 1);
@@ -86,12 +93,16 @@ std::string time_words(double seconds) {
   return tens % 6 == 0 ? fmt::format("{} h", tens / 6) : fmt::format("{} h {} min", tens / 6, tens % 6 * 10);
 }
 
-std::string live_line(const std::vector<Activity>& running, std::optional<double> left, std::size_t width) {
+std::string live_line(const std::vector<Activity>& running, const Span& span, std::size_t width) {
   if (running.empty()) return {};
+  constexpr std::size_t width_for_a_bar = 79;
+  const bool has_bar = span.left && width >= width_for_a_bar;
+  const std::string bar = has_bar ? bar_of(span.spent / std::max(span.spent + *span.left, 1e-9)) : "";
+  width -= bar.size();
   const Activity& first = running.front();
-  const std::string tail = fmt::format(", {}{}{}", time_words(first.seconds), left_words(left),
+  const std::string tail = fmt::format(", {}{}{}", time_words(first.seconds), left_words(span.left),
                                        running.size() > 1 ? fmt::format(" (and {} more)", running.size() - 1) : "");
-  return cut(cut(words(first), width - std::min(width, length(tail))) + tail, width);
+  return bar + cut(cut(words(first), width - std::min(width, length(tail))) + tail, width);
 }
 
 std::string phase_line(const Activity& a, std::optional<double> left) {
@@ -135,7 +146,7 @@ void Status::show() {
     e.phase_is_said = true;
     to_stderr("{}\n", phase_line(running.back(), left));
   }
-  if (terminal_) rewrite(live_line(running, left, terminal_width() - 1));
+  if (terminal_) rewrite(live_line(running, {seconds_since(begun_), left}, terminal_width() - 1));
 }
 
 void Status::rewrite(const std::string& live_line) {

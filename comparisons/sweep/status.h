@@ -2,6 +2,7 @@
 // phase.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <list>
@@ -26,9 +27,15 @@ struct Activity {
   double phase_seconds = 0;   ///< since its phase began
 };
 
-/// The running work in at most `width` characters: the first (the oldest) with its phase, the time left, the number of
-/// others.
-std::string live_line(const std::vector<Activity>& running, std::optional<double> left, std::size_t width);
+/// Seconds since everything began and, where known, to its end.
+struct Span {
+  double spent = 0;
+  std::optional<double> left = {};
+};
+
+/// The running work in at most `width` characters: a bar of the time spent, where its end is known and 80 are there,
+/// the first (the oldest) with its phase, the time left, the number of others.
+std::string live_line(const std::vector<Activity>& running, const Span& span, std::size_t width);
 
 /// "  golec_2019/bending  nu0.3: finite elements 2 of 5, ... (10 s so far, about 3 min left)".
 std::string phase_line(const Activity& activity, std::optional<double> left);
@@ -55,6 +62,7 @@ class Status {
 
   const bool quiet_, terminal_;
   const std::function<std::optional<double>()> left_;
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
   std::condition_variable ended_;
   bool end_ = false, line_is_shown_ = false;

@@ -29,26 +29,29 @@ TEST(Status, TimesAreAsExactAsTheyAreWorth) {
 }
 
 TEST(Status, LiveLineSaysPartPhaseDetailTimeAndWhatIsLeft) {
-  EXPECT_EQ(live_line({solving}, 130.0, 200),
-            "[3/8] beam  nu0.3: finite elements 2 of 5, q2 on 12 x 12 x 12 cells, 46875 unknowns, iteration 12, 42 s, "
+  EXPECT_EQ(live_line({solving}, {52, 130}, 200),
+            "[##........] [3/8] beam  nu0.3: finite elements 2 of 5, q2 on 12 x 12 x 12 cells, 46875 unknowns, "
+            "iteration 12, 42 s, "
             "about 2 min left");
   EXPECT_EQ(live_line({waiting}, {}, 200), "[4/8] cube  nu0.3: hybmss on 10 x 10 x 10 cells, 3 s");
-  EXPECT_EQ(live_line({}, 3.0, 200), "");
+  EXPECT_EQ(live_line({}, {1, 3}, 200), "");
 }
 
 TEST(Status, SeveralPartsAreOneLine) {
-  const std::string line = live_line({solving, waiting, waiting}, 20.0, 200);
-  EXPECT_TRUE(line.starts_with("[3/8] beam")) << line;
+  const std::string line = live_line({solving, waiting, waiting}, {60, 20}, 200);
+  EXPECT_TRUE(line.starts_with("[#######...] [3/8] beam")) << line;
   EXPECT_TRUE(line.ends_with(", 42 s, about 20 s left (and 2 more)")) << line;
 }
 
 TEST(Status, LiveLineIsCutToTheTerminalButNotItsEnd) {
-  for (const std::size_t width : {40u, 60u, 80u}) {
-    const std::string line = live_line({solving}, 130.0, width);
+  for (const std::size_t width : {40u, 60u, 79u}) {
+    const std::string line = live_line({solving}, {0, 130}, width);
     EXPECT_EQ(line.size(), width);
     EXPECT_TRUE(line.ends_with("..., 42 s, about 2 min left")) << line;
+    EXPECT_EQ(line.starts_with("[..........] "), width == 79u) << line;
   }
-  for (std::size_t width = 0; width < 40; ++width) EXPECT_LE(live_line({solving, waiting}, 130.0, width).size(), width);
+  for (std::size_t width = 0; width < 40; ++width)
+    EXPECT_LE(live_line({solving, waiting}, {0, 130}, width).size(), width);
 }
 
 TEST(Status, LettersOfSeveralBytesAreCutWhole) {
