@@ -29,7 +29,8 @@ std::string versions() {
                       EIGEN_MINOR_VERSION, dotted(FMT_VERSION), CLI11_VERSION);
   text += fmt::format("nlohmann-json {}.{}.{}, toml++ {}, ", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
                       NLOHMANN_JSON_VERSION_PATCH, SPRINGPROOF_TOMLPLUSPLUS_VERSION);
-  text += fmt::format("xxHash {}, zlib {}\n", dotted(XXH_VERSION_NUMBER), zlibVersion());
+  text += fmt::format("xxHash {}, zlib {}, TinyGLTF {}\n", dotted(XXH_VERSION_NUMBER), zlibVersion(),
+                      SPRINGPROOF_TINYGLTF_VERSION);
   text += fmt::format("springproof-fem: {}\n", or_absent(fem::version()));
   text += fmt::format("springproof-mesh: {}",
                       or_absent(version_of(find_program("springproof-mesh", "SPRINGPROOF_MESH_PROGRAM"))));
