@@ -7,9 +7,10 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <stdexcept>
+#include <sstream>
 
 #include "problem/system/file_name.h"
+#include "problem/system/files.h"
 
 namespace springproof {
 namespace {
@@ -131,8 +132,9 @@ void write_gltf(const std::filesystem::path& file, const Picture& picture) {
   model.scenes[0].nodes = {0};
   model.defaultScene = 0;
   animate(builder, course_of(picture, targets.size()));
-  if (!tinygltf::TinyGLTF().WriteGltfSceneToFile(&model, file.string(), false, true, false, true))
-    throw std::runtime_error(fmt::format("cannot write {}", file.string()));
+  std::ostringstream out;
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, out, false, true);
+  write_file(file, out.str());
 }
 
 void write_gltf(const CaseResult& result, const std::filesystem::path& folder) {
