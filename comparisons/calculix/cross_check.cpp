@@ -16,6 +16,7 @@
 #include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
+#include "meshes/patches/select_patches.h"
 #include "problem/system/child.h"
 #include "problem/system/interrupts.h"
 #include "problem/system/streams.h"
@@ -260,6 +261,7 @@ Question question(const PreparedCase& prepared, const IsotropicMaterial& materia
   Question q{prepared, material, three_grids(finest_cells(e, material, options.cells)), {}, options.time_limit};
   for (const Cells& cells : q.cells) {
     q.meshes.push_back(mesh_geo(prepared.body.geo, e.body.size, cells));
+    select_whole_facets(e.patches, q.meshes.back());
     if (q.meshes.back().grid) grade(e.reference.grading, q.meshes.back());
   }
   return q;

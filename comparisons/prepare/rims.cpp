@@ -57,6 +57,7 @@ std::vector<std::optional<NearRim>> rims_near(const PreparedCase& prepared, cons
 
 std::vector<std::string> ragged_patches(const PreparedCase& prepared) {
   std::vector<std::string> ragged;
+  if (prepared.body.tetrahedra.empty()) return ragged;  // the borders of blocks are lines of every grid
   const Experiment& e = prepared.experiment;
   const std::set<std::string> loaded = patches_of_loads(e);
   for (const PatchRule& rule : e.patches)

@@ -17,6 +17,7 @@
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/results/records.h"
 #include "meshes/mesher/mesher.h"
+#include "meshes/patches/select_patches.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
@@ -143,12 +144,26 @@ void check_fineness(const Body& body, const Cells& c) {
                     c[0], c[1], c[2], total, largest_lattice));
 }
 
+/// @throws InputError at a [[patch]] whose border is no line of one of the reference's grids.
+void check_patches_of_reference(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  if (e.patches.empty() || (e.reference.elements.empty() && !e.reference.in_time)) return;
+  for (const int divisor : {4, 2, 1}) {
+    Mesh mesh = mesh_geo(prepared.body.geo, e.body.size, divided(prepared.reference_cells, divisor));
+    select_whole_facets(e.patches, mesh);
+  }
+}
+
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   prepared.reference_cells = reference_cells(e);
   for (const Cells& cells : e.body.cells) check_fineness(e.body, cells);
-  for (const Cells& cells : e.body.cells)
-    add_lattice({cells, std::make_shared<Mesh>(mesh_geo(prepared.body.geo, e.body.size, cells))}, prepared);
+  for (const Cells& cells : e.body.cells) {
+    Mesh mesh = mesh_geo(prepared.body.geo, e.body.size, cells);
+    select_whole_facets(e.patches, mesh);
+    add_lattice({cells, std::make_shared<Mesh>(std::move(mesh))}, prepared);
+  }
+  check_patches_of_reference(prepared);
 }
 
 /// Samples the patches of the body itself, if their mean displacement is measured.

@@ -7,7 +7,10 @@ namespace springproof::fem {
 Request request_of(const Experiment& experiment, const IsotropicMaterial& material) {
   Request request;
   request.name = experiment.file.string();
-  if (!experiment.body.is_voxels()) request.geo = find_geo(experiment.body, experiment.file);
+  if (!experiment.body.is_voxels()) {
+    request.geo = find_geo(experiment.body, experiment.file);
+    request.patches = experiment.patches;
+  }
   request.size = experiment.body.size;
   request.law = experiment.kinematics;
   request.material = material;

@@ -3,31 +3,40 @@
 #include <algorithm>
 
 #include "meshes/mesher/mesher.h"
+#include "meshes/patches/select_patches.h"
 
 namespace springproof::fem {
 namespace {
 
-/// Halves the cells as long as all counts are even, down to the coarsest level of the multigrid; returns how often.
-int halve(Cells& cells) {
-  int times = 0;
+/// The cells after halving them as long as all counts are even, coarsest first: levels of the multigrid.
+std::vector<Cells> halved(Cells cells) {
+  std::vector<Cells> levels = {cells};
   const auto can_be_halved = [](int n) { return n % 2 == 0; };
   while (std::all_of(cells.begin(), cells.end(), can_be_halved)) {
     for (int& n : cells) n /= 2;
-    ++times;
+    levels.insert(levels.begin(), cells);
   }
-  return times;
+  return levels;
 }
 
-/// Sets the refinements that the mesh needs.
-Mesh mesh_for(const Request& request, Discretisation& grid) {
-  if (grid.element.starts_with('p')) return mesh_geo(request.geo, request.size, grid.cells, {.tetrahedra = true});
-  Cells coarse = grid.cells;
-  const int refinements = halve(coarse);
-  if (Mesh mesh = mesh_geo(request.geo, request.size, coarse); mesh.grid) {
-    grid.refinements = refinements;
-    return mesh;
+/// The coarsest of a block's levels on whose lines the borders of the patches run, with the refinements that lead to
+/// `grid`; curved bodies have one level.
+Mesh hexahedra_for(const Request& request, Discretisation& grid) {
+  const std::vector<Cells> levels = halved(grid.cells);
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    Mesh mesh = mesh_geo(request.geo, request.size, levels[level]);
+    if (!mesh.grid) return mesh_geo(request.geo, request.size, grid.cells, {.second_order = true});
+    grid.refinements = static_cast<int>(levels.size() - level) - 1;
+    if (grid.refinements == 0 || end_at_edges_of(mesh, request.patches)) return mesh;
   }
-  return mesh_geo(request.geo, request.size, grid.cells, {.second_order = true});
+  return {};
+}
+
+Mesh mesh_for(const Request& request, Discretisation& grid) {
+  Mesh mesh = grid.element.starts_with('p') ? mesh_geo(request.geo, request.size, grid.cells, {.tetrahedra = true})
+                                            : hexahedra_for(request, grid);
+  select_whole_facets(request.patches, mesh);
+  return mesh;
 }
 
 }  // namespace

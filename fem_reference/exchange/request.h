@@ -11,6 +11,7 @@
 #include "problem/course.h"
 #include "problem/loads.h"
 #include "problem/material.h"
+#include "problem/patch_rule.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof::fem {
@@ -43,10 +44,11 @@ struct MotionRequest {
 };
 
 struct Request {
-  std::string name;            ///< of the case, in messages
-  std::filesystem::path geo;   ///< gmsh script of the body, for grids without a given mesh
-  Vec3 size = Vec3::Zero();    ///< its parameters [m]
-  std::string law = "linear";  ///< or a law of finite strain (fem_reference/elements/laws.h)
+  std::string name;                     ///< of the case, in messages
+  std::filesystem::path geo;            ///< gmsh script of the body, for grids without a given mesh
+  Vec3 size = Vec3::Zero();             ///< its parameters [m]
+  std::vector<PatchRule> patches = {};  ///< added to it by mesh_grids(), which the program is not told of
+  std::string law = "linear";           ///< or a law of finite strain (fem_reference/elements/laws.h)
   IsotropicMaterial material;
   std::vector<Load> loads;
   std::vector<Discretisation> grids;

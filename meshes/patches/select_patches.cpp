@@ -12,6 +12,7 @@
 
 #include "meshes/locate/facet_tree.h"
 #include "meshes/patches/imprint.h"
+#include "meshes/patches/rule_region.h"
 
 namespace springproof {
 namespace {
@@ -191,6 +192,46 @@ std::vector<std::string> select_patches(const std::vector<PatchRule>& rules, Mes
   if (cut.cells() == before) return {};
   return {fmt::format("the borders of the patches cut {} tetrahedra into {}; worst shape 6 sqrt(2) V / edge^3 = {:.2g}",
                       before, cut.cells(), cut.worst_shape())};
+}
+
+namespace {
+
+double area_of(const Surface& s, std::size_t triangle) {
+  const auto& [a, b, c] = s.triangles[triangle];
+  return (s.points[b] - s.points[a]).cross(s.points[c] - s.points[a]).norm() / 2;
+}
+
+/// Of the outer facets of hexahedra, how many a rule cuts.
+std::size_t facets_cut(const PatchRule& rule, const Mesh& mesh) {
+  constexpr double whole = 1e-6;  // of a facet's area
+  const Surface surface = outside_of(mesh);
+  const std::vector<FacetPart> parts = parts_within(rule_region(rule, surface), surface);
+  std::size_t cut = 0;
+  for (std::size_t f = 0; f + 1 < parts.size(); f += 2) {  // a quadrilateral is two triangles
+    const double share =
+        (parts[f].area.norm() + parts[f + 1].area.norm()) / (area_of(surface, f) + area_of(surface, f + 1));
+    cut += share > whole && share < 1 - whole;
+  }
+  return cut;
+}
+
+}  // namespace
+
+bool end_at_edges_of(const Mesh& mesh, const std::vector<PatchRule>& rules) {
+  return !mesh.tetrahedra.empty() ||
+         std::all_of(rules.begin(), rules.end(), [&](const PatchRule& rule) { return facets_cut(rule, mesh) == 0; });
+}
+
+void select_whole_facets(const std::vector<PatchRule>& rules, Mesh& mesh) {
+  if (mesh.tetrahedra.empty())
+    for (const PatchRule& rule : rules)
+      if (const std::size_t cut = facets_cut(rule, mesh))
+        throw InputError(rule.where,
+                         fmt::format("patch: the border of '{}' runs through {} facets of a grid with {} cells, so it "
+                                     "would be another patch on each grid (allowed: borders along the lines of every "
+                                     "grid, those of the reference too; or a body of voxels, whose facets are cut)",
+                                     rule.name, cut, mesh.hexahedra.size()));
+  select_patches(rules, mesh);
 }
 
 }  // namespace springproof

@@ -18,4 +18,12 @@ namespace springproof {
 ///   a patch which is there already.
 std::vector<std::string> select_patches(const std::vector<PatchRule>& rules, Mesh& mesh, double coarseness = 1);
 
+/// Whether the borders of the rules run along edges of the mesh's outer facets, so that every mesh with this property
+/// has the same patches.
+bool end_at_edges_of(const Mesh& mesh, const std::vector<PatchRule>& rules);
+
+/// select_patches() for meshes of one body that are to have the same patches.
+/// @throws InputError as it does, and at a rule whose border runs through facets of hexahedra.
+void select_whole_facets(const std::vector<PatchRule>& rules, Mesh& mesh);
+
 }  // namespace springproof

@@ -28,6 +28,7 @@ std::shared_ptr<SolidBody> in_tetrahedra(const Experiment& e) {
       return double(a[0]) * a[1] * a[2] < double(b[0]) * b[1] * b[2];
     });
     mesh = mesh_geo(geo, body.size, finest, {.tetrahedra = true});
+    select_patches(e.patches, mesh);
   } else {
     MeshRequest request;
     request.file = geo;

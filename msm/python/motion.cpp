@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "msm/dynamics/dynamics.h"
+#include "msm/dynamics/inertia.h"
 #include "msm/python/bindings.h"
 #include "problem/system/run_cost.h"
 
@@ -13,17 +14,25 @@ namespace {
 
 using namespace py::literals;
 
+constexpr int steps_of_moved_supports = 3;     // that which moves them, that which stops them, and one without force
 constexpr long nodes_between_looks = 2000000;  // nodes times steps until the next look for Ctrl-C, some 50 ms
 
 /// A model in motion, with copies of its state for Python that are renewed when they are asked for.
 class MovingModel {
  public:
-  MovingModel(ModelPointer model, std::vector<Load> loads, NodeConditions nodes, DynamicsOptions options)
-      : model_(std::move(model)), loads_(std::move(loads)), nodes_(std::move(nodes)) {
+  /// @param conditions of nodes, and the factor of these and of the loads at the start
+  MovingModel(ModelPointer model, std::vector<Load> loads, std::pair<NodeConditions, double> conditions,
+              DynamicsOptions options)
+      : model_(std::move(model)),
+        loads_(std::move(loads)),
+        nodes_(std::move(conditions.first)),
+        factor_(finite(conditions.second, "load_factor")) {
     const double density = model_->springs.density;
     options.time_step = dt_ = checked_time_step(model_->model(), density, options);
     motion_ = make_motion(model_->model(), density, options);
+    of_supports_.emplace(model_->network(), options);
     apply();
+    carry_supports();
     const NodalVectors& X = model_->network().X;
     options.velocity = NodalVectors::Zero(X.rows(), 3);
     set_state(X, velocity_before(model_->model(), density, X, conditions_, options));
@@ -34,7 +43,7 @@ class MovingModel {
     if (n < 0) throw InputError(fmt::format("n: is {} steps (allowed: 0 or more)", n));
     const long chunk = std::max(1L, nodes_between_looks / std::max(1, model_->network().nodes()));
     while (n > 0) {
-      const long now = std::min(n, chunk);
+      const long now = carry_supports() ? 1 : std::min(n, chunk);
       const ForceNorms norms = motion_->advance(now);
       n -= now;
       steps_ += now;
@@ -58,6 +67,11 @@ class MovingModel {
   void set_forces(NodalVectors forces) {
     nodes_.forces = std::move(forces);
     apply();
+  }
+  void set_load_factor(double factor) {
+    factor_ = finite(factor, "factor");
+    apply();
+    moved_for_ = steps_of_moved_supports;
   }
 
   const NodalVectors& positions() const {
@@ -92,8 +106,18 @@ class MovingModel {
  private:
   void apply() {
     const Kinematics kinematics = model_->model().small_displacements_only ? Kinematics::linear : Kinematics::finite;
-    conditions_ = conditions_of(*model_, loads_, nodes_, kinematics, 1);
+    conditions_ = conditions_of(*model_, loads_, nodes_, kinematics, factor_);
     motion_->set_conditions(conditions_);
+  }
+
+  /// Sets the forces that move the support masses in the step to come; false: supports have rested for two steps.
+  bool carry_supports() {
+    if (!of_supports_->acts() || moved_for_ == 0) return false;
+    --moved_for_;
+    BoundaryConditions with_inertia = conditions_;
+    of_supports_->add(with_inertia);
+    motion_->set_conditions(with_inertia);
+    return true;
   }
 
   /// Into the same memory, which views of Python refer to.
@@ -112,8 +136,10 @@ class MovingModel {
   std::vector<Load> loads_;
   NodeConditions nodes_;
   BoundaryConditions conditions_;
-  double dt_ = 0;
+  double factor_, dt_ = 0;
   std::unique_ptr<Motion> motion_;
+  std::optional<SupportInertia> of_supports_;
+  int moved_for_ = 1;  ///< steps for which the support masses still have forces to be set; 1: where they are at first
   long steps_ = 0;
   mutable NodalVectors x_, v_, f_;
   mutable bool fresh_x_ = false, fresh_v_ = false, fresh_f_ = false;
@@ -128,8 +154,8 @@ Integrator integrator_of(const std::string& name) {
 
 std::shared_ptr<MovingModel> motion_of(const ModelPointer& model, const std::vector<BoundLoad>& loads,
                                        const py::object& held, const py::object& displacement, const py::object& forces,
-                                       std::optional<double> time_step, double damping, const std::string& integrator,
-                                       bool float32, int threads) {
+                                       double load_factor, std::optional<double> time_step, double damping,
+                                       const std::string& integrator, bool float32, int threads) {
   if (threads < 1 || threads > 1024) throw InputError(fmt::format("threads: is {} (allowed: 1 to 1024)", threads));
   DynamicsOptions options;
   options.integrator = integrator_of(integrator);
@@ -138,7 +164,9 @@ std::shared_ptr<MovingModel> motion_of(const ModelPointer& model, const std::vec
   options.precision = float32 ? Precision::float32 : Precision::float64;
   options.threads = threads;
   NodeConditions nodes = node_conditions(*model, held, displacement, forces);
-  return long_call([&] { return std::make_shared<MovingModel>(model, loads_of(loads), std::move(nodes), options); });
+  return long_call([&] {
+    return std::make_shared<MovingModel>(model, loads_of(loads), std::pair(std::move(nodes), load_factor), options);
+  });
 }
 
 }  // namespace
@@ -164,6 +192,9 @@ copy what is to be kept.)")
             s.set_forces(finite(rows_of(forces, "forces", s.model().network().nodes()), "forces"));
           },
           "forces"_a, "Forces on the nodes, n x 3 [N], from now on, beside the loads; instead of those given before.")
+      .def("set_load_factor", &MovingModel::set_load_factor, "factor"_a,
+           "From now on loads, displacements of supports and forces are this much of theirs; the next step ends there. "
+           "Call it before each step to move supports.")
       .def_property_readonly(
           "positions", [](const py::object& self) { return view(self.cast<MovingModel&>().positions(), self); },
           "n x 3 [m]; a view, renewed when read")
@@ -183,10 +214,11 @@ copy what is to be kept.)")
       .def("_seconds_per_step", &MovingModel::seconds_per_step, "n"_a,
            "CPU time of a step, of n made by a loop of C++ [s].");
   model.def("motion", &motion_of, "loads"_a = std::vector<BoundLoad>(), py::kw_only(), "held"_a = py::none(),
-            "displacement"_a = py::none(), "forces"_a = py::none(), "time_step"_a = py::none(), "damping"_a = 0.0,
-            "integrator"_a = "explicit", "float32"_a = false, "threads"_a = 1,
+            "displacement"_a = py::none(), "forces"_a = py::none(), "load_factor"_a = 1.0, "time_step"_a = py::none(),
+            "damping"_a = 0.0, "integrator"_a = "explicit", "float32"_a = false, "threads"_a = 1,
             R"(The model in motion from rest, under loads and supports as of solve().
 
+load_factor: of all of these at the start (Motion.set_load_factor);
 time_step [s]: default 0.95 of safe_time_step (10 of it where the integrator is implicit: "energy_momentum",
 "implicit_euler"); damping: in proportion to the mass [1/s]; float32: kernels in single precision.
 Raises InputError for an explicit step above safe_time_step, which the message names.)");

@@ -205,15 +205,23 @@ void require_density(const TomlTable& document, const Experiment& experiment) {
     missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
 }
 
+/// Grading would move the borders of the patches of a block, which are lines of its grids.
+void keep_grids_even(const TomlTable& document, Experiment& experiment) {
+  if (experiment.patches.empty() || experiment.body.is_voxels()) return;
+  experiment.reference.grading = 1;
+  const auto reference = document.find("reference");
+  if (!reference) return;
+  const auto grading = TomlTable(*reference, keys_of("reference")).find("grading");
+  if (grading && as_number(*grading, positive_number) != 1)
+    refuse(*grading, "would move the border of a [[patch]], which is a line of the grid", "1, beside a [[patch]]");
+}
+
 Experiment read_document(const TomlTable& document, Experiment experiment) {
   if (const auto cite = document.find("cite")) experiment.cite = as_text(*cite);
   if (const auto what = document.find("what")) experiment.what = as_text(*what);
   if (const auto name = document.find("kinematics")) experiment.kinematics = as_choice(*name, kinematics_names());
   experiment.body = read_body(document.at("body"));
   experiment.patches = read_patch_rules(document);
-  if (!experiment.patches.empty() && !experiment.body.is_voxels())
-    throw InputError(experiment.patches.front().where,
-                     "patch: is for bodies of voxels (allowed for hexahedra: the physical surfaces of the .geo)");
   experiment.materials = read_materials(document.at("material"));
   for (const TomlValue& value : document.tables("load"))
     for (const Load& load : read_load(value)) {
@@ -230,6 +238,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
     experiment.reference = read_reference(*reference, experiment.body.is_voxels());
   else if (experiment.body.is_voxels())
     experiment.reference.elements = {"p2"};
+  keep_grids_even(document, experiment);
   settle_kelvin(experiment);
   read_line(document, experiment);
   read_dynamics(document, experiment);

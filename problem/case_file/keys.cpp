@@ -192,7 +192,7 @@ constexpr Key probe_keys[] = {
 constexpr Key reference_keys[] = {
   {"cells",      "of the finest of three grids, of hexahedra",               "[nx, ny, nz], integers from 1 to 1000", "from those of the body", "[48, 8, 8]"},
   {"elements",   "each on three grids or meshes; the first is the reference; []: none", "a list of elements: q1, q2, p1, p2", "[\"q2\"]; of voxels [\"p2\"]", "[\"q2\", \"q1\"]"},
-  {"grading",    "draws elements towards the faces of a block; 1: even",     "a number from 1 to 3",                  "1.5",    "1"},
+  {"grading",    "draws elements towards the faces of a block; 1: even",     "a number from 1 to 3",                  "1.5; 1 beside [[patch]]", "1"},
   {"edge_m",     "of the tetrahedra of the finest of three meshes, of voxels", above_0,                               "from the body", "0.01"},
   {"smooth",     "the solution is smooth: the elements' order in theory is assumed", a_flag,                          "false",  "true"},
   {"in_time",    "finite elements move too, minutes for each Poisson's ratio; with [dynamics] and [[probe]]",  a_flag,                                  "false",  "true"},
@@ -225,7 +225,7 @@ constexpr Key published_keys[] = {
 constexpr KeyTable tables[] = {
   {"",                           "The file",                         "Every table of a case.",                                      file_keys},
   {"body",                       "[body]",                           "",                                                            body_keys},
-  {"patch",                      "[[patch]]",                        "A part of the surface of a body of voxels, where all its conditions hold. Facets are cut along its border (with `facing`, they are taken whole). A box that reaches a little below the edge of a face also takes that strip of the side faces.", patch_keys},
+  {"patch",                      "[[patch]]",                        "A part of the surface, where all its conditions hold. Of a body of voxels facets are cut along its border (with `facing`, they are taken whole); of a body of hexahedra the border must run along lines of every grid, those of the reference too (its finest cells, half and a quarter of them). A box that reaches a little below the edge of a face also takes that strip of the side faces.", patch_keys},
   {"patch.beyond",               "beyond of [[patch]]",              "",                                                            beyond_keys},
   {"patch.facing",               "facing of [[patch]]",              "",                                                            facing_keys},
   {"patch.near",                 "near of [[patch]]",                "",                                                            near_keys},

@@ -193,3 +193,25 @@ def test_what_pulls_at_a_carried_node_moves_the_body(tmp_path, integrator):
     np.testing.assert_allclose(momentum, np.multiply(motion.time - behind, force[carried]), rtol=1e-8)
     with pytest.raises(sp.InputError, match="follows others"):
         model.motion(held=[carried])
+
+
+def test_moved_supports_carry_the_support_mass():
+    """A body whose weight is what accelerates it with its supports is not strained."""
+    body = sp.voxels("sphere.geo", cubes=300, size=(0.2, 0.2, 0.2), patches=[sp.Patch("low", beyond=((0, 0, 0.05), (0, 0, -1)))])
+    model = sp.Model("hybmss_avg", body, sp.Material(E=1e5, nu=0.3, density=1000), cut=True, held=["low"])
+    motion = model.motion([sp.Displacement("low", (0, 0, -1))], load_factor=0)
+    place = lambda k: 1e-8 * max(0, k) ** 3  # of the supports after k steps [m]
+    change = lambda k: place(k + 1) - 2 * place(k) + place(k - 1)
+    for k in range(60):
+        motion.set_load_factor(place(k + 1))
+        motion.set_forces(model.masses[:, None] * (0, 0, -change(k) / motion.time_step**2 / place(k + 1)))
+        motion.step()
+    moved = motion.positions - model.positions
+    assert moved[:, 2] == pytest.approx(-place(60), abs=1e-6 * change(59))
+    assert motion.elastic_energy < 1e-12 * motion.kinetic_energy
+    still = motion.positions.copy()
+    motion.set_forces(np.zeros(still.shape))
+    motion.step(100)  # the support stops at once: the body swings on
+    assert np.abs(motion.positions - still).max() > 10 * change(59)
+    with pytest.raises(sp.InputError, match="factor"):
+        motion.set_load_factor(float("nan"))

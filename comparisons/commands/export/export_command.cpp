@@ -18,6 +18,7 @@
 #include "meshes/locate/outer_facets.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
+#include "meshes/patches/select_patches.h"
 #include "msm/exchange/lammps.h"
 #include "msm/laws/capabilities.h"
 #include "msm/parameters/made_of.h"
@@ -79,8 +80,9 @@ int export_calculix(const ExportRequest& request) {
     throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
   const Cells cells = request.cells.empty() && !experiment.body.is_voxels() ? experiment.body.cells.front()
                                                                             : cells_of_option(request.cells);
-  const Mesh mesh = experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
-                                                : mesh_geo(prepared.body.geo, experiment.body.size, cells);
+  Mesh mesh = experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
+                                          : mesh_geo(prepared.body.geo, experiment.body.size, cells);
+  if (!experiment.body.is_voxels()) select_whole_facets(experiment.patches, mesh);
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
   std::ostringstream out;
   calculix::write(deck, out);

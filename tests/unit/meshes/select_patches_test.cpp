@@ -195,5 +195,25 @@ TEST(SelectPatches, NamesThatAreTakenAreRefused) {
   EXPECT_NE(message_of({facing({0, 0, 1}, 1), facing({0, 0, 1}, 1)}, bare_block()), "accepted");
 }
 
+/// Half of a face, on grids that have its border as a line, and on one that has not.
+TEST(SelectPatches, OfHexahedraABorderIsALineOfTheGrid) {
+  PatchRule half = boxed({-1, -1, -1}, {2, 3, 0});
+  for (const Cells& cells : {Cells{2, 1, 1}, Cells{8, 3, 5}}) {
+    Mesh block = block_mesh({4, 2, 2}, cells);
+    EXPECT_TRUE(end_at_edges_of(block, {half}));
+    select_whole_facets({half}, block);
+    EXPECT_NEAR(nodal_areas(block, block.patches.back()).sum(), 4, 1e-12);
+  }
+  Mesh odd = block_mesh({4, 2, 2}, {7, 4, 4});
+  EXPECT_FALSE(end_at_edges_of(odd, {half}));
+  try {
+    select_whole_facets({half}, odd);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("the border of 'p' runs through 4 facets"), std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace springproof::select_patches_test

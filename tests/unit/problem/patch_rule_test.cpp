@@ -49,11 +49,13 @@ TEST(PatchRules, AreRead) {
   EXPECT_TRUE(e.patches[1].near && !e.patches[1].box && !e.patches[1].beyond && !e.patches[1].facing);
 }
 
-TEST(PatchRules, AreForBodiesOfVoxels) {
-  EXPECT_EQ(message_of(std::string(test::small_case) +
-                       "[[patch]]\nname = \"low\"\nfacing = { direction = [0, 0, -1], within_deg = 10 }\n")
-                .find("case.toml:13:1: patch: is for bodies of voxels"),
-            0u);
+TEST(PatchRules, KeepTheGridsOfHexahedraEven) {
+  const std::string block = std::string(test::small_case) +
+                            "[[patch]]\nname = \"low\"\nfacing = { direction = [0, 0, -1], within_deg = 10 }\n";
+  EXPECT_EQ(parse_experiment(test::small_case, "case.toml").reference.grading, 1.5);
+  EXPECT_EQ(parse_experiment(block, "case.toml").reference.grading, 1);
+  EXPECT_NE(message_of(block + "[reference]\ngrading = 1.5\n").find("would move the border of a [[patch]]"),
+            std::string::npos);
 }
 
 TEST(PatchRules, NoneIsTheUsualCase) { EXPECT_TRUE(parse_experiment(test::small_case, "case.toml").patches.empty()); }
