@@ -16,6 +16,7 @@ struct AngularSprings {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {"angular springs", Reach::springs, {Capability::lammps}};
 
+  /// Why it cannot what its traits say, with these parameters; nullptr: it can (law_traits.h).
   const char* lacks(Capability what) const {
     return what == Capability::energy_momentum ? "depend on angles, which have no such forces here" : nullptr;
   }

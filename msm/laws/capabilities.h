@@ -28,6 +28,7 @@ std::string lacks(const MassSpringModel& model, Capability what);
 /// Whether a model can.
 /// @param model a model
 /// @param what is asked of it
+/// @return true: it lacks nothing
 inline bool can(const MassSpringModel& model, Capability what) { return lacks(model, what).empty(); }
 
 }  // namespace springproof

@@ -20,6 +20,7 @@ struct HourglassCorrection {
   static constexpr LawTraits traits = {
       "hourglass correction", Reach::cells, {Capability::lattice_kernels, Capability::gpu}};
 
+  /// Why it cannot what its traits say, with these parameters; nullptr: it can (law_traits.h).
   const char* lacks(Capability what) const {
     if (what == Capability::large_displacements) return "is linear in the displacement";
     return what == Capability::energy_momentum

@@ -62,9 +62,11 @@ constexpr std::array<const char*, 15> names_of(Capability) {
 /// A set of them.
 class Capabilities {
  public:
+  /// @param all of the set
   constexpr Capabilities(std::initializer_list<Capability> all) {
     for (const Capability c : all) bits_ |= 1u << static_cast<unsigned>(c);
   }
+  /// @return whether it is one of them
   constexpr bool has(Capability c) const { return bits_ >> static_cast<unsigned>(c) & 1; }
 
  private:

@@ -68,6 +68,9 @@ const Law* law_of(const MassSpringModel& model) {
     if (const auto* found = std::get_if<Law>(&law)) return found;
   return nullptr;
 }
+/// The same, to be changed.
+/// @param model a model
+/// @return the first one, or nullptr if the model has none
 template <class Law>
 Law* law_of(MassSpringModel& model) {
   return const_cast<Law*>(law_of<Law>(std::as_const(model)));
@@ -75,6 +78,7 @@ Law* law_of(MassSpringModel& model) {
 
 /// Whether a model has laws of these kinds only.
 /// @param model a model
+/// @return true: it has no other
 template <class... Laws>
 bool consists_of(const MassSpringModel& model) {
   return std::all_of(model.laws.begin(), model.laws.end(),

@@ -36,6 +36,7 @@ struct MomentumDispersion {
       Reach::second_neighbours,
       {Capability::lattice_kernels, Capability::list_kernels, Capability::list_stiffness, Capability::energy_momentum}};
 
+  /// Why it cannot what its traits say, with these parameters; nullptr: it can (law_traits.h).
   const char* lacks(Capability what) const;
 
   double q = 0;                             ///< Q / 2, the fraction of the incoming force that a node disperses

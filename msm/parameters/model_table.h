@@ -69,6 +69,7 @@ std::optional<double> own_poisson_ratio(const ModelRow& row);
 /// run_dynamics() may take it; Capability::cells_of_any_shape, that its cells may be boxes.
 /// @param row of the table
 /// @param what is asked of its laws
+/// @return true: all can
 bool can(const ModelRow& row, Capability what);
 
 /// Whether springs between nodes are all that the model has.

@@ -53,8 +53,8 @@ struct CellSet {
 
   /// @return what they are
   CellKind kind() const;
-  bool empty() const { return corners.empty(); }
-  std::size_t size() const { return corners.size(); }
+  bool empty() const { return corners.empty(); }       ///< there are none
+  std::size_t size() const { return corners.size(); }  ///< how many
   /// @return whether the body fills some in part only: CellKind::cut or sizes
   bool cut() const { return !filled.empty(); }
   /// @param cell its number
@@ -67,6 +67,7 @@ struct CellSet {
   /// @return whether it is as all other full cells of its edge are
   bool is_full(std::size_t cell) const { return part(cell).fraction == 1; }
   /// @param cell its number
+  /// @return all that its stiffness depends on beside its law
   CellShape shape(std::size_t cell) const { return {edge_of(cell), part(cell), proportions}; }
   /// @return of a full cell, the smallest if there are several sizes
   CellShape full() const { return {edge, {}, proportions}; }
