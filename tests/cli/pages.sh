@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every file and heading that a page refers to is there: targets of links, and `paths` that begin with a folder of the source tree.
-# A decision has at most 120 words, and a line in the index.
+# A decision has at most 120 words, and a line in the index; README and docs have at most 55,000.
 #   pages.sh SOURCE-FOLDER
 . "$(dirname "$0")/lib.sh"
 cd "$1" || exit 1
@@ -57,7 +57,11 @@ for page in docs/decisions/*.md; do
     grep -qF "](${page#docs/}#$anchor)" docs/decisions.md || fail "$page#$anchor is not in docs/decisions.md"
   done < <(anchors <(grep '^##' "$page"))
 done
+# README and docs together; bars and rules of tables are no words.
+most_words=55000
+words=$(cat README.md docs/*.md docs/*/*.md | awk '{ for (i = 1; i <= NF; ++i) words += $i !~ /^[-|:]+$/ } END { print words }')
+[ "$words" -le $most_words ] || fail "README and docs have $words words (at most $most_words)"
 [ $decisions -ge 50 ] || fail "only $decisions decisions found"
 [ $found -ge 50 ] || fail "only $found links and paths found"
-echo "$found links and paths, $decisions decisions"
+echo "$found links and paths, $decisions decisions, $words words"
 exit $((failures > 0))
