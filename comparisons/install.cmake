@@ -1,4 +1,4 @@
-# cmake --install: the programs beside each other, what they read (data_folder in problem/system/child.h finds it from where they lie),
+# cmake --install: the programs beside each other, what they read (data_folder in problem/processes/child.h finds it from where they lie),
 # the man page and the completion for bash.
 foreach(program springproof springproof-mesh springproof-fem springproof-bench springproof-mpi)
   if(TARGET ${program})

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/solve_grid.h"
-#include "problem/system/in_child.h"
-#include "problem/system/named_files.h"
+#include "problem/files/named_files.h"
+#include "problem/processes/in_child.h"
 #include "problem/system/streams.h"
 
 namespace springproof::fem {

@@ -14,7 +14,7 @@
 #include "fem_reference/exchange/plain_words.h"
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/solve_grid.h"
-#include "problem/system/fork_server.h"
+#include "problem/processes/fork_server.h"
 #include "problem/system/progress.h"
 #include "problem/system/streams.h"
 

@@ -5,8 +5,8 @@
 
 #include "meshes/volume.h"
 #include "meshes/vtu.h"
-#include "problem/system/encoding.h"
-#include "problem/system/files.h"
+#include "problem/files/encoding.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 namespace {

@@ -6,7 +6,7 @@
 #include <new>
 #include <sstream>
 
-#include "problem/system/encoding.h"
+#include "problem/files/encoding.h"
 
 namespace springproof {
 namespace {

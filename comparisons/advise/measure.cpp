@@ -9,8 +9,8 @@
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
 #include "fem_reference/exchange/reference.h"
-#include "problem/system/child.h"
-#include "problem/system/interrupts.h"
+#include "problem/processes/child.h"
+#include "problem/processes/interrupts.h"
 
 namespace springproof {
 namespace {

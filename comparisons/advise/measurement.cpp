@@ -4,9 +4,9 @@
 
 #include <sstream>
 
-#include "problem/system/child.h"
+#include "problem/files/named_files.h"
+#include "problem/processes/child.h"
 #include "problem/system/input_error.h"
-#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {

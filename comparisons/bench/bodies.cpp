@@ -8,7 +8,7 @@
 #include "meshes/voxels/voxelise.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 
 namespace springproof::bench {
 

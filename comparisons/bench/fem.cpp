@@ -13,7 +13,7 @@
 #include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/streams.h"
 
 namespace springproof::bench {

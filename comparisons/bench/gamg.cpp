@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "problem/system/mpi_start.h"
+#include "problem/processes/mpi_start.h"
 #include "problem/system/run_cost.h"
 
 #ifdef SPRINGPROOF_PETSC

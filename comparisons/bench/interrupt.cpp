@@ -4,8 +4,8 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "problem/system/child.h"
-#include "problem/system/in_child.h"
+#include "problem/processes/child.h"
+#include "problem/processes/in_child.h"
 
 namespace springproof::bench {
 namespace {

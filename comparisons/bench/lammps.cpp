@@ -12,7 +12,7 @@
 #include "comparisons/bench/interrupt.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/exchange/lammps.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 
 namespace springproof::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "msm/topology/network.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::bench {
 

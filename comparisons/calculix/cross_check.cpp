@@ -17,8 +17,8 @@
 #include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
-#include "problem/system/child.h"
-#include "problem/system/interrupts.h"
+#include "problem/processes/child.h"
+#include "problem/processes/interrupts.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

@@ -10,7 +10,7 @@
 #include <memory>
 #include <sstream>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::calculix {
 namespace {

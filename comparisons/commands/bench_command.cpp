@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 

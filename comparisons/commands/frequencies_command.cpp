@@ -17,9 +17,9 @@
 #include "comparisons/sweep/status.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/field.h"
-#include "problem/system/child.h"
-#include "problem/system/files.h"
-#include "problem/system/interrupts.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
+#include "problem/processes/interrupts.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

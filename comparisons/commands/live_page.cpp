@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {

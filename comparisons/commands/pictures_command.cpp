@@ -9,7 +9,7 @@
 #include "comparisons/report/png_page.h"
 #include "comparisons/sweep/status.h"
 #include "problem/case_file/experiment.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 #include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 namespace {

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/judge/reference_value.h"
+#include "problem/files/named_files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"
-#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {

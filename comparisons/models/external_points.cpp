@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "problem/files/named_files.h"
 #include "problem/system/input_error.h"
-#include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
 

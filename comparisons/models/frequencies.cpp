@@ -15,7 +15,7 @@
 #include "msm/dynamics/natural_modes.h"
 #include "msm/embedding/boundary.h"
 #include "problem/case_file/external.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/progress.h"
 
 namespace springproof {

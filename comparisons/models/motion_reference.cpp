@@ -11,7 +11,7 @@
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/solve_each.h"
 #include "fem_reference/exchange/case_request.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

@@ -20,8 +20,8 @@
 #include "msm/parallel/parted_problem.h"
 #include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
+#include "problem/processes/mpi_start.h"
 #include "problem/system/input_error.h"
-#include "problem/system/mpi_start.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

@@ -2,8 +2,8 @@
 
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/script_files.h"
-#include "problem/system/checksum.h"
-#include "problem/system/files.h"
+#include "problem/files/checksum.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 

@@ -7,7 +7,7 @@
 
 #include "msm/measure/promised_error.h"
 #include "msm/statics/equilibrium.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/progress.h"
 
 namespace springproof {

@@ -16,7 +16,7 @@
 #include "msm/embedding/boundary.h"
 #include "problem/case_file/measures.h"
 #include "problem/exact_field.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "problem/system/checked_file.h"
-#include "problem/system/child.h"
+#include "problem/files/checked_file.h"
+#include "problem/processes/child.h"
 #include "problem/system/json.h"
 #include "problem/system/streams.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// File format: this heading (problem/system/checked_file.h), then the stamp and the run.
+// File format: this heading (problem/files/checked_file.h), then the stamp and the run.
 constexpr std::string_view run_heading = "springproof run 1 ", run_ending = ".run";
 
 /// Of a program that was killed while it wrote, too.

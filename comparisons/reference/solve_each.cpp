@@ -11,8 +11,8 @@
 #include "comparisons/reference/grid_cost.h"
 #include "fem_reference/exchange/exchange.h"
 #include "fem_reference/exchange/reference.h"
-#include "problem/system/checksum.h"
-#include "problem/system/child.h"
+#include "problem/files/checksum.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

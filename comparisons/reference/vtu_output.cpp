@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "meshes/field.h"
-#include "problem/system/file_name.h"
+#include "problem/files/file_name.h"
 
 namespace springproof {
 

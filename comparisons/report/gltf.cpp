@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "problem/system/file_name.h"
-#include "problem/system/files.h"
+#include "problem/files/file_name.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "problem/system/child.h"
-#include "problem/system/encoding.h"
+#include "problem/files/encoding.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

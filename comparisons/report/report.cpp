@@ -13,8 +13,8 @@
 #include "comparisons/report/page.h"
 #include "comparisons/results/records.h"
 #include "problem/case_file/measures.h"
-#include "problem/system/encoding.h"
-#include "problem/system/files.h"
+#include "problem/files/encoding.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 namespace {

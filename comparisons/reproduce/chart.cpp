@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "problem/system/encoding.h"
+#include "problem/files/encoding.h"
 
 namespace springproof {
 namespace {

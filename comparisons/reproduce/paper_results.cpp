@@ -9,7 +9,7 @@
 #include "comparisons/judge/differences.h"
 #include "comparisons/reproduce/read_pictures.h"
 #include "comparisons/results/crack_picture.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "problem/system/encoding.h"
-#include "problem/system/files.h"
+#include "problem/files/encoding.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"
 

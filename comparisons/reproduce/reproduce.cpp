@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "problem/system/child.h"
-#include "problem/system/encoding.h"
-#include "problem/system/files.h"
+#include "problem/files/encoding.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {

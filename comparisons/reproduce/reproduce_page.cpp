@@ -4,7 +4,7 @@
 
 #include "comparisons/report/assets.h"
 #include "comparisons/reproduce/reproduce.h"
-#include "problem/system/encoding.h"
+#include "problem/files/encoding.h"
 
 namespace springproof {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "problem/system/file_name.h"
-#include "problem/system/files.h"
+#include "problem/files/file_name.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 namespace {

@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "comparisons/results/records.h"
-#include "problem/system/encoding.h"
+#include "problem/files/encoding.h"
 
 namespace springproof {
 namespace {

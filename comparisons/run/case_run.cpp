@@ -15,7 +15,7 @@
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 namespace {

@@ -22,7 +22,7 @@
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/progress.h"
 
 namespace springproof {

@@ -7,8 +7,8 @@
 
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
-#include "problem/system/child.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 #include "problem/system/shortened.h"
 

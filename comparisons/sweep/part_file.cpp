@@ -6,7 +6,7 @@
 
 namespace springproof {
 
-// File format: this heading (problem/system/checked_file.h), then the stamp and the part.
+// File format: this heading (problem/files/checked_file.h), then the stamp and the part.
 static constexpr std::string_view part_heading = "springproof part 3 ";
 
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part) {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "comparisons/results/records.h"
-#include "problem/system/checked_file.h"
+#include "problem/files/checked_file.h"
 
 namespace springproof {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <csignal>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

@@ -21,8 +21,8 @@
 #include "comparisons/sweep/find_cases.h"
 #include "msm/parameters/made_of.h"
 #include "problem/case_file/external.h"
-#include "problem/system/file_name.h"
-#include "problem/system/files.h"
+#include "problem/files/file_name.h"
+#include "problem/files/files.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

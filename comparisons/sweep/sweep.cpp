@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "problem/system/checked_file.h"
+#include "problem/files/checked_file.h"
 #include "problem/system/json.h"
 
 namespace springproof {

@@ -11,8 +11,8 @@
 #include "fem_reference/exchange/exchange.h"
 #include "fem_reference/exchange/grid_meshes.h"
 #include "fem_reference/exchange/plain_words.h"
-#include "problem/system/child.h"
-#include "problem/system/fork_server.h"
+#include "problem/processes/child.h"
+#include "problem/processes/fork_server.h"
 #include "problem/system/progress.h"
 
 namespace springproof::fem {

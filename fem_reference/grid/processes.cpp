@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
+#include "problem/processes/mpi_start.h"
 #include "problem/system/input_error.h"
-#include "problem/system/mpi_start.h"
 
 namespace springproof::fem {
 

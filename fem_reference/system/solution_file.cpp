@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 
 namespace springproof::fem {
 namespace {

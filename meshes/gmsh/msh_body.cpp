@@ -11,7 +11,7 @@
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/gmsh/split_cells.h"
 #include "meshes/patches/transfer_patches.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

@@ -15,9 +15,9 @@
 
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/mesher/script_files.h"
-#include "problem/system/checked_file.h"
-#include "problem/system/checksum.h"
-#include "problem/system/child.h"
+#include "problem/files/checked_file.h"
+#include "problem/files/checksum.h"
+#include "problem/processes/child.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t most_bytes = 1'000'000'000;
 
-// File format: this heading (problem/system/checked_file.h), then the key and the answer of the mesher.
+// File format: this heading (problem/files/checked_file.h), then the key and the answer of the mesher.
 constexpr std::string_view heading = "springproof mesh 1 ";
 
 /// Empty: none.
@@ -45,7 +45,7 @@ std::string line_of(const fs::path& file) {
                      s.st_ctim.tv_nsec);
 }
 
-/// Whether the name is one of ours: mesh-<checksum>.cbor, and before it has its place (problem/system/new_file.h) with
+/// Whether the name is one of ours: mesh-<checksum>.cbor, and before it has its place (problem/files/new_file.h) with
 /// .<8 digits>.part.
 bool has_our_name(const fs::path& file) {
   static const std::regex ours("mesh-[0-9a-f]{32}\\.cbor(\\.[0-9a-f]{8}\\.part)?");

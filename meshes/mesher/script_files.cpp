@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <sstream>
 
+#include "problem/files/named_files.h"
 #include "problem/system/input_error.h"
-#include "problem/system/named_files.h"
 
 namespace springproof {
 

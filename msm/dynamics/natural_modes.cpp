@@ -14,7 +14,7 @@
 #include "msm/embedding/rigid_motions.h"
 #include "msm/laws/capabilities.h"
 #include "msm/statics/stiffness_solver.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof {

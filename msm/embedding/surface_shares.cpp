@@ -15,7 +15,7 @@
 #include "meshes/volume.h"
 #include "msm/algebra/dense.h"
 #include "msm/topology/point_cells.h"
-#include "msm/topology/surface_features.h"
+#include "msm/topology/random/surface_features.h"
 
 namespace springproof {
 namespace {

@@ -13,8 +13,8 @@
 #include "msm/exchange/springs_document.h"
 #include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
+#include "problem/files/named_files.h"
 #include "problem/system/input_error.h"
-#include "problem/system/named_files.h"
 #include "problem/system/shortened.h"
 
 namespace springproof {

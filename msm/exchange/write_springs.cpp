@@ -6,8 +6,8 @@
 #include "meshes/vtu.h"
 #include "msm/exchange/npz.h"
 #include "msm/exchange/springs_document.h"
+#include "problem/files/named_files.h"
 #include "problem/system/input_error.h"
-#include "problem/system/named_files.h"
 
 namespace springproof {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "msm/fracture/cracks.h"
 #include "msm/topology/point_cells.h"
-#include "msm/topology/random_addition.h"
+#include "msm/topology/random/random_addition.h"
 #include "problem/system/progress.h"
 
 namespace springproof {

@@ -31,7 +31,7 @@ enum class Capability {
   list_kernels,         ///< those of springs of any network (msm/kernels/list_forces.h)
   list_stiffness,       ///< their stiffness at rest (msm/kernels/list_stiffness.h)
   cells_of_any_shape,   ///< acts in cells that are boxes, cut, or of several sizes
-  cut_multigrid,        ///< multigrid of cut cells (msm/multigrid/cut_multigrid.h)
+  cut_multigrid,        ///< multigrid of cut cells (msm/multigrid/cut/cut_multigrid.h)
   equal_cells,          ///< the stiffness at rest is the sum of that of equal cells of a grid
   nodal_pressures,      ///< volume terms at the nodes of a lattice as pressures (msm/multigrid/nodal_volumes.h)
   energy,               ///< forces derive from an energy, so that the tangent is symmetric

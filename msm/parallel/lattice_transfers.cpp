@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "msm/multigrid/cut_levels.h"
+#include "msm/multigrid/cut/cut_levels.h"
 #include "msm/parallel/parted_equations.h"
 
 namespace springproof {

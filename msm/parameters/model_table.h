@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "msm/laws/capabilities.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 #include "problem/material.h"
 #include "problem/model_choice.h"
 

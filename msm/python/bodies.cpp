@@ -10,7 +10,7 @@
 #include "meshes/voxels/voxelise.h"
 #include "msm/python/bindings.h"
 #include "problem/body.h"
-#include "problem/system/named_files.h"
+#include "problem/files/named_files.h"
 
 namespace springproof::python {
 namespace {

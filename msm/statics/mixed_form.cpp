@@ -1,8 +1,8 @@
 #include "msm/statics/mixed_form.h"
 
 #include "msm/laws/capabilities.h"
-#include "msm/multigrid/cut_mixed_multigrid.h"
-#include "msm/multigrid/cut_multigrid.h"
+#include "msm/multigrid/cut/cut_mixed_multigrid.h"
+#include "msm/multigrid/cut/cut_multigrid.h"
 #include "msm/multigrid/dispersion_multigrid.h"
 #include "msm/parameters/calibrate.h"
 

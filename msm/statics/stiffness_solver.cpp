@@ -10,7 +10,7 @@
 #include "msm/algebra/noise.h"
 #include "msm/kernels/list_stiffness.h"
 #include "msm/laws/capabilities.h"
-#include "msm/multigrid/cut_multigrid.h"
+#include "msm/multigrid/cut/cut_multigrid.h"
 #include "msm/multigrid/multigrid.h"
 #include "msm/multigrid/network_multigrid.h"
 

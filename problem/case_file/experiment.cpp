@@ -8,9 +8,9 @@
 
 #include "problem/body_size.h"
 #include "problem/case_file/experiment_parts.h"
+#include "problem/files/named_files.h"
 #include "problem/large_strain.h"
 #include "problem/moduli.h"
-#include "problem/system/named_files.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
 

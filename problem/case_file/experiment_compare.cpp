@@ -6,7 +6,7 @@
 #include "problem/case_file/experiment_parts.h"
 #include "problem/case_file/measures.h"
 #include "problem/exact_field.h"
-#include "problem/system/file_name.h"
+#include "problem/files/file_name.h"
 #include "problem/system/nearest_name.h"
 
 namespace springproof {

@@ -5,7 +5,7 @@
 
 #include "comparisons/sweep/part_file.h"
 #include "fuzz/reader.h"
-#include "problem/system/checksum.h"
+#include "problem/files/checksum.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "problem/system/fork_server.h"
+#include "problem/processes/fork_server.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/exchange/reference.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

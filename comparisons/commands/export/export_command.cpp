@@ -24,7 +24,7 @@
 #include "msm/parameters/made_of.h"
 #include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
-#include "problem/system/named_files.h"
+#include "problem/files/named_files.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/number_checks.h"
 #include "problem/system/streams.h"

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "problem/system/child.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {

@@ -14,7 +14,7 @@
 #include "meshes/locate/outer_facets.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/volume.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "support/tolerances.h"
 
 namespace springproof::mesher_test {

@@ -8,7 +8,7 @@
 #include "meshes/mesher/mesher.h"
 #include "meshes/quality.h"
 #include "meshes/volume.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "support/surfaces.h"
 
 namespace springproof::reference_meshes_test {

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::script_files_test {
 namespace {

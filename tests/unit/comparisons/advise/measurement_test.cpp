@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::measurement_test {

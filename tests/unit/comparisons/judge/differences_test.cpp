@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::differences_test {

@@ -14,7 +14,7 @@
 #include "meshes/volume.h"
 #include "msm/embedding/boundary.h"
 #include "msm/models.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 #include "support/voxel_case.h"
 #include "support/vtu_reader.h"
 

@@ -13,7 +13,7 @@
 #include "comparisons/run/prepare.h"
 #include "fem_reference/exchange/reference.h"
 #include "problem/exact_field.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::reference_grids_test {
 namespace {

@@ -10,8 +10,8 @@
 #include "comparisons/sweep/part_file.h"
 #include "fem_reference/exchange/reference.h"
 #include "problem/case_file/experiment.h"
-#include "problem/system/child.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
 
 namespace springproof::run_keeper_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::gltf_test {
 namespace {
@@ -74,7 +74,8 @@ TEST(Gltf, TheTrueSurfaceIsTakenWhereThereIsOne) {
   result.pictures[2].model = "emsm";
   write_gltf(result, folder.path);
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path)) files += entry.path().extension() == ".glb";
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path))
+    files += entry.path().extension() == ".glb";
   EXPECT_EQ(files, 2);
 }
 

@@ -10,7 +10,7 @@
 
 #include "comparisons/sweep/find_cases.h"
 #include "problem/case_file/experiment.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::figures_test {

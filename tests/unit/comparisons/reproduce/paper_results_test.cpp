@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "comparisons/results/crack_picture.h"
-#include "problem/system/child.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::paper_results_test {

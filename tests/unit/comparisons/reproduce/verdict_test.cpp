@@ -8,8 +8,8 @@
 #include "comparisons/report/page.h"
 #include "comparisons/reproduce/read_pictures.h"
 #include "comparisons/reproduce/reproduce.h"
-#include "problem/system/child.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 #include "support/sample_case.h"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 #include "support/sample_case.h"
 
 namespace springproof::results_test {

@@ -16,7 +16,7 @@
 #include "comparisons/sweep/folder_lock.h"
 #include "comparisons/sweep/part_file.h"
 #include "comparisons/sweep/suite_results.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::case_run_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "comparisons/sweep/folder_lock.h"
 #include "comparisons/sweep/sweep.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::shard_test {
 namespace {

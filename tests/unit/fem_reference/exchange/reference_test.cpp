@@ -12,7 +12,7 @@
 #include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/exchange.h"
 #include "fem_reference/solve_grid.h"
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::reference_test {
 namespace {

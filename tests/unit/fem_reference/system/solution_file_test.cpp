@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "fem_reference/solve_grid.h"
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 #include "support/fem_block.h"
 #include "support/solids.h"
 #include "support/vtu_reader.h"

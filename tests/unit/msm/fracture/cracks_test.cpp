@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "msm/topology/node_lattice.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 
 namespace springproof::cracks_test {
 namespace {

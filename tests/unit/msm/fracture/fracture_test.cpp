@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "msm/topology/node_lattice.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 #include "support/bodies.h"
 
 namespace springproof::fracture_test {

@@ -10,7 +10,7 @@
 #include "msm/kernels/list_forces.h"
 #include "msm/kernels/list_stiffness.h"
 #include "msm/laws/capabilities.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 #include "support/zoo.h"
 
 namespace springproof::list_forces_test {

@@ -7,7 +7,7 @@
 #include "msm/measure/statistics.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/topology/cubic_lattice.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 #include "support/network_moduli.h"
 #include "support/tolerances.h"
 

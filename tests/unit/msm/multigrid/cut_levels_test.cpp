@@ -1,5 +1,5 @@
 // Levels of cubes as other solvers take them: weights of whole cubes.
-#include "msm/multigrid/cut_levels.h"
+#include "msm/multigrid/cut/cut_levels.h"
 
 #include <gtest/gtest.h>
 

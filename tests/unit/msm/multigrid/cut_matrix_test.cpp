@@ -1,12 +1,12 @@
 // Matrices of cut cells against the laws' tangent, and their kernels against plain loops.
-#include "msm/multigrid/cut_matrix.h"
+#include "msm/multigrid/cut/cut_matrix.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
 #include "msm/models.h"
-#include "msm/multigrid/cut_levels.h"
+#include "msm/multigrid/cut/cut_levels.h"
 #include "support/refined_cells.h"
 #include "support/solids.h"
 #include "support/zoo.h"

@@ -8,7 +8,7 @@
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/statics/equilibrium.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 #include "problem/material.h"
 
 namespace springproof::random_homogenisation_test {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "msm/measure/statistics.h"
-#include "msm/topology/random_network.h"
+#include "msm/topology/random/random_network.h"
 #include "support/bodies.h"
 #include "support/zoo.h"
 

@@ -2,9 +2,9 @@
 
 #include <random>
 
+#include "msm/topology/random/surface_features.h"
 #include "msm/topology/ray_parity.h"
 #include "msm/topology/region.h"
-#include "msm/topology/surface_features.h"
 #include "support/bodies.h"
 #include "support/zoo.h"
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "msm/topology/repair.h"
+#include "msm/topology/random/repair.h"
 
 namespace springproof::repair_test {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "problem/case_file/experiment.h"
-#include "problem/system/file_name.h"
+#include "problem/files/file_name.h"
 #include "problem/system/shortened.h"
 #include "support/case_file.h"
 

@@ -1,5 +1,5 @@
 // Files that say themselves whether they are whole.
-#include "problem/system/checked_file.h"
+#include "problem/files/checked_file.h"
 
 #include <gtest/gtest.h>
 #include <linux/audit.h>
@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::checked_file_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

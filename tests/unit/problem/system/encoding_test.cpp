@@ -1,4 +1,4 @@
-#include "problem/system/encoding.h"
+#include "problem/files/encoding.h"
 
 #include <gtest/gtest.h>
 

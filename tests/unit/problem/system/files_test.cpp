@@ -1,5 +1,5 @@
 // Whole files, written at once, and whatever a user may name as one.
-#include "problem/system/files.h"
+#include "problem/files/files.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,8 +10,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "problem/system/child.h"
-#include "problem/system/named_files.h"
+#include "problem/files/named_files.h"
+#include "problem/processes/child.h"
 #include "support/case_file.h"
 
 namespace springproof::files_test {

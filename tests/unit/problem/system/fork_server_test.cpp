@@ -1,5 +1,5 @@
 // Programs that are started once and fork for every run.
-#include "problem/system/fork_server.h"
+#include "problem/processes/fork_server.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

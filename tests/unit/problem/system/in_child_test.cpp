@@ -1,4 +1,4 @@
-#include "problem/system/in_child.h"
+#include "problem/processes/in_child.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "problem/system/child.h"
+#include "problem/processes/child.h"
 
 namespace springproof::in_child_test {
 namespace {

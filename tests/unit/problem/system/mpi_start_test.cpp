@@ -1,4 +1,4 @@
-#include "problem/system/mpi_start.h"
+#include "problem/processes/mpi_start.h"
 
 #include <gtest/gtest.h>
 

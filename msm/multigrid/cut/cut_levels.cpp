@@ -1,0 +1,319 @@
+#include "msm/multigrid/cut/cut_levels.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "meshes/united_numbers.h"
+
+namespace springproof {
+namespace {
+
+constexpr std::size_t smallest_cut_level = 300;  // points
+
+/// The smallest cubes become their parents; others stay.  In edges of the coarser level.
+LatticeCube parent_of(const LatticeCube& c) {
+  return {{c.at[0] >> 1, c.at[1] >> 1, c.at[2] >> 1}, std::max(1, c.size / 2)};
+}
+
+/// Trilinear weight of corner n of a cube at a place in half edges.
+double weight_at(const LatticeCube& cube, int n, const std::array<int, 3>& place) {
+  const std::array<int, 3> corner = cube.corner(n);
+  double w = 1;
+  for (int d = 0; d < 3; ++d) w *= std::max(0.0, 1 - std::abs(place[d] - 2.0 * corner[d]) / (2 * cube.size));
+  return w;
+}
+
+/// Moments about the middle of a cube, in its edges: volume, first, second.
+struct ChildMoments {
+  double volume = 0;
+  Vec3 first = Vec3::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+
+  void add_child(const FilledPart& part, const std::array<int, 3>& child) {
+    const double v = part.fraction / 8;
+    const Vec3 o(child[0] & 1 ? 0.25 : -0.25, child[1] & 1 ? 0.25 : -0.25, child[2] & 1 ? 0.25 : -0.25);
+    const Eigen::Matrix3d own = second_moments(part);
+    volume += v;
+    first += v * (part.mean / 2 + o);
+    second += v * (own / 4 + o * part.mean.transpose() / 2 + part.mean * o.transpose() / 2 + o * o.transpose());
+  }
+};
+
+/// Cells of a level at each of its points.
+std::vector<std::vector<int>> cells_at_points(const CutLevel& level) {
+  std::vector<std::vector<int>> at(level.point.size());
+  for (std::size_t c = 0; c < level.corners.size(); ++c)
+    for (const int p : level.corners[c]) at[p].push_back(static_cast<int>(c));
+  return at;
+}
+
+/// Pairs of cells that share a point, or of which one carries a point of the other.
+std::vector<std::array<int, 2>> neighbours(const CutLevel& level, const std::vector<std::vector<int>>& at_point) {
+  std::vector<std::array<int, 2>> pairs;
+  for (const std::vector<int>& cells : at_point)
+    for (const int c : cells)
+      if (c != cells.front()) pairs.push_back({c, cells.front()});
+  for (const CarriedPoint& p : level.carried)
+    for (const int carrier : at_point[p.by.front()]) {
+      const Hexahedron& all = level.corners[carrier];
+      if (std::all_of(p.by.begin(), p.by.end(),
+                      [&](int q) { return std::find(all.begin(), all.end(), q) != all.end(); }))
+        for (const int c : at_point[p.point]) pairs.push_back({c, carrier});
+    }
+  return pairs;
+}
+
+/// Cells of a level that become one: children of one cube that share points.
+UnitedNumbers families(const CutLevel& fine, const std::vector<std::vector<int>>& at_point) {
+  UnitedNumbers family(fine.cubes.size());
+  const auto are_siblings = [&](const LatticeCube& a, const LatticeCube& b) {
+    return a.size == 1 && b.size == 1 && parent_of(a).at == parent_of(b).at;
+  };
+  for (const std::vector<int>& cells : at_point)
+    for (const int c : cells)
+      for (const int d : cells)
+        if (d < c && are_siblings(fine.cubes[c], fine.cubes[d])) family.unite(c, d);
+  return family;
+}
+
+/// Sets the parents of a level's cells, and the cubes of the coarser level with what the body fills of them.
+void add_parents(UnitedNumbers family, CutLevel& fine, CutLevel& coarse) {
+  std::vector<int>& parent = fine.parent;
+  parent.assign(fine.cubes.size(), -1);
+  std::vector<ChildMoments> moments;
+  for (std::size_t c = 0; c < fine.cubes.size(); ++c) {
+    const int head = family.of(static_cast<int>(c));
+    if (parent[head] < 0) {
+      parent[head] = static_cast<int>(coarse.cubes.size());
+      coarse.cubes.push_back(parent_of(fine.cubes[c]));
+      coarse.filled.push_back(fine.filled[c]);
+      moments.emplace_back();
+    }
+    parent[c] = parent[head];
+    if (fine.cubes[c].size == 1) moments[parent[c]].add_child(fine.filled[c], fine.cubes[c].at);
+  }
+  for (std::size_t c = 0; c < moments.size(); ++c)
+    if (const ChildMoments& m = moments[c]; m.volume > 0) coarse.filled[c] = filled_part(m.volume, m.first, m.second);
+}
+
+/// How the points of a level follow those of the coarser one.
+void set_weights(const std::vector<std::vector<int>>& at_point, const CutLevel& coarse, CutLevel& fine) {
+  fine.weight_begin = {0};
+  for (std::size_t p = 0; p < fine.point.size(); ++p) {
+    const int c = fine.parent[at_point[p].front()];
+    for (int n = 0; n < 8; ++n) {
+      const double w = weight_at(coarse.cubes[c], n, fine.point[p]);
+      if (w <= 0) continue;
+      fine.weight_point.push_back(coarse.corners[c][n]);
+      fine.weight.push_back(static_cast<float>(w));
+    }
+    fine.weight_begin.push_back(static_cast<int>(fine.weight.size()));
+  }
+}
+
+/// The anchors of a level, on the corners of the parents.
+void add_anchors(const std::vector<std::vector<int>>& at_point, const CutLevel& fine, CutLevel& coarse) {
+  for (const Anchor& a : fine.anchors) {
+    int cell = -1;
+    for (const int c : at_point[a.corners[0]])
+      if (fine.corners[c] == a.corners) cell = c;
+    const int up = fine.parent[cell];
+    Anchor above{coarse.corners[up], {}, a.node, a.stiffness, a.axes};
+    for (int n = 0; n < 8; ++n)
+      for (int m = 0; m < 8; ++m)
+        above.weights[m] += a.weights[n] * weight_at(coarse.cubes[up], m, fine.point[a.corners[n]]);
+    coarse.anchors.push_back(above);
+  }
+}
+
+/// The cells of twice the edge: children of one cube that share points are one cell, and cells whose children share
+/// points share their corners.
+CutLevel coarsen(CutLevel& fine) {
+  const auto at_point = cells_at_points(fine);
+  CutLevel coarse;
+  coarse.edge = 2 * fine.edge;
+  add_parents(families(fine, at_point), fine, coarse);
+  std::vector<std::array<int, 2>> links;
+  for (const auto& [c, d] : neighbours(fine, at_point))
+    if (fine.parent[c] != fine.parent[d]) links.push_back({fine.parent[c], fine.parent[d]});
+  JoinedCubes joined = join_cubes(coarse.cubes, links);
+  coarse.corners = std::move(joined.corners);
+  coarse.point = std::move(joined.points);
+  coarse.carried = std::move(joined.carried);
+  set_weights(at_point, coarse, fine);
+  add_anchors(at_point, fine, coarse);
+  return coarse;
+}
+
+}  // namespace
+
+void CutLevel::invert_anchored() {
+  anchored.clear();
+  const Carriers carriers = carriers_of(static_cast<int>(point.size()), carried);
+  for (const Anchor& a : anchors) {
+    std::vector<int>& points = anchored.emplace_back();
+    for (const int n : a.corners) for_each_carrier(carriers, n, [&](int p, double) { points.push_back(p); });
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  }
+  std::sort(anchored.begin(), anchored.end());
+  anchored.erase(std::unique(anchored.begin(), anchored.end()), anchored.end());
+  anchored_inverse.clear();
+  for (const std::vector<int>& points : anchored) {
+    const auto size = static_cast<Eigen::Index>(points.size());
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * size, 3 * size);
+    for (Eigen::Index m = 0; m < size; ++m)
+      for (Eigen::Index n = 0; n < size; ++n) {
+        const float* block = A.block(points[m], points[n]);
+        if (!block) continue;
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) K(3 * m + a, 3 * n + b) = block[3 * a + b];
+      }
+    for (Eigen::Index i = 0; i < K.rows(); ++i)
+      if (K(i, i) == 0) K(i, i) = 1e30;  // fixed
+    anchored_inverse.push_back(K.inverse().cast<float>());
+  }
+}
+
+void CutLevel::relax_anchored(std::size_t c, const float* b, float* x) const {
+  const std::vector<int>& points = anchored[c];
+  Eigen::VectorXf r(3 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t n = 0; n < points.size(); ++n) A.residual(b, x, points[n], r.data() + 3 * n);
+  const Eigen::VectorXf d = anchored_inverse[c] * r;
+  for (std::size_t n = 0; n < points.size(); ++n)
+    for (int a = 0; a < 3; ++a) x[3 * points[n] + a] += d[static_cast<Eigen::Index>(3 * n) + a];
+}
+
+void CutLevel::restrict_to(const Eigen::VectorXf& r, const CutLevel& next, Eigen::VectorXf& out) const {
+  for (std::size_t i = 0; i < point.size(); ++i)
+    for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
+      for (int a = 0; a < 3; ++a) out[3 * weight_point[e] + a] += weight[e] * r[static_cast<Eigen::Index>(3 * i) + a];
+  hand_back(next.carried, out);
+}
+
+void CutLevel::prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::VectorXf& u) const {
+  carry(next.carried, coarse);
+  for (std::size_t i = 0; i < point.size(); ++i)
+    for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
+      for (int a = 0; a < 3; ++a)
+        u[static_cast<Eigen::Index>(3 * i) + a] += weight[e] * coarse[3 * weight_point[e] + a];
+}
+
+AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns)
+    : anchors(network.anchors),
+      carried(network.cells.carried),
+      fixed(std::move(fixed_unknowns)),
+      corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
+
+std::vector<char> AnchoredNodes::fixed_corners() const {
+  std::vector<char> corner = unknowns_of_corners(), own = corner;
+  for (const CarriedPoint& p : carried) std::fill_n(own.begin() + 3 * p.point, 3, 0);
+  if (std::count(own.begin(), own.end(), 0) == 3 * corners) return {};
+  return corner;
+}
+
+Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
+  Eigen::VectorXd b = r.head(3 * corners);
+  for (const Anchor& a : anchors)  // k (u_node - sum w u) = r_node
+    for (int d = 0; d < 3; ++d)
+      if (!fixed[3 * a.node + d])
+        for (int n = 0; n < 8; ++n) b[3 * a.corners[n] + d] += a.weights[n] * r[3 * a.node + d];
+  hand_back(carried, b);
+  for (int i = 0; i < 3 * corners; ++i)
+    if (fixed[i]) b[i] = 0;
+  return b;
+}
+
+void AnchoredNodes::multiply(const CutMatrix<double>& of_cells, double unit, const Eigen::VectorXd& x,
+                             Eigen::VectorXd& y) const {
+  y.setZero(x.size());
+  of_cells.multiply(x.data(), y.data());
+  y *= unit;
+  if (anchors.empty()) return;
+  Eigen::VectorXd u = x, f = Eigen::VectorXd::Zero(carried.empty() ? 0 : x.size());
+  carry(carried, u);
+  Eigen::VectorXd& on_corners = carried.empty() ? y : f;
+  for (const Anchor& a : anchors) {
+    Vec3 force = -u.segment<3>(3 * a.node);
+    for (int n = 0; n < 8; ++n) force += a.weights[n] * u.segment<3>(3 * a.corners[n]);
+    for (int d = 0; d < 3; ++d) force[d] *= a.acts(d) ? a.stiffness : 0;
+    y.segment<3>(3 * a.node) -= force;
+    for (int n = 0; n < 8; ++n) on_corners.segment<3>(3 * a.corners[n]) += a.weights[n] * force;
+  }
+  if (carried.empty()) return;
+  hand_back(carried, f);
+  y += f;
+}
+
+void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of_corners, Eigen::VectorXd& z) const {
+  z.setZero(r.size());
+  z.head(3 * corners) = of_corners;
+  carry(carried, z);
+  for (const Anchor& a : anchors)
+    for (int d = 0; d < 3; ++d) {
+      if (fixed[3 * a.node + d]) continue;
+      z[3 * a.node + d] = r[3 * a.node + d] / a.stiffness;
+      for (int n = 0; n < 8; ++n) z[3 * a.node + d] += a.weights[n] * z[3 * a.corners[n] + d];
+    }
+  for (const CarriedPoint& c : carried) z.segment<3>(3 * c.point).setZero();
+}
+
+std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes) {
+  CutLevel finest;
+  finest.edge = network.cells.edge;
+  finest.corners = network.cells.corners;
+  finest.filled = network.cells.filled;
+  finest.filled.resize(network.cells.size());  // whole cubes have none
+  const Vec3 lower = network.X.topRows(nodes.corners).colwise().minCoeff().transpose();
+  for (int n = 0; n < nodes.corners; ++n) {
+    std::array<int, 3> at;
+    for (int d = 0; d < 3; ++d)
+      at[d] = static_cast<int>(
+          std::lround((network.X(n, d) - lower[d]) / (network.cells.edge * network.cells.proportions[d])));
+    finest.point.push_back(at);
+  }
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    finest.cubes.push_back({finest.point[network.cells.corners[c][0]],
+                            static_cast<int>(std::lround(network.cells.edge_of(c) / network.cells.edge))});
+  finest.carried = network.cells.carried;
+  for (const Anchor& a : nodes.anchors) {
+    int axes = 0;
+    for (int d = 0; d < 3; ++d) axes |= int(a.acts(d) && nodes.fixed[3 * a.node + d] != 0) << d;
+    finest.anchors.push_back({a.corners, a.weights, a.node, a.stiffness, axes});
+  }
+  std::vector<CutLevel> levels = {std::move(finest)};
+  while (levels.back().point.size() > smallest_cut_level && levels.back().cubes.size() > 8) {
+    CutLevel coarse = coarsen(levels.back());
+    levels.push_back(std::move(coarse));
+  }
+  return levels;
+}
+
+void take_matrix(const CutMatrix<double>& of_cells, double unit, const std::vector<char>& fixed, CutLevel& level) {
+  level.A = CutMatrix<float>(of_cells);
+  level.A.add_anchors(level, unit);
+  level.A.clear_fixed(fixed);
+  level.D = level.A.inverse_diagonal(fixed);
+}
+
+void CoarsestFactors::factor(const Eigen::SparseMatrix<double>& K) {
+  // In single precision rigid motions of a level without supports are nearly singular, and fixed unknowns of the finest
+  // level, if it is the coarsest, have empty rows.
+  const double mean = K.diagonal().mean();
+  Eigen::SparseMatrix<double> I(K.rows(), K.cols());
+  I.setIdentity();
+  for (const double shift : {1e-7, 1e-3}) {
+    ldlt_.compute(K + shift * mean * I);
+    if (ldlt_.info() == Eigen::Success && ldlt_.vectorD().minCoeff() > 0.1 * shift * mean) return;
+  }
+  if (ldlt_.info() != Eigen::Success || !(ldlt_.vectorD().minCoeff() > 0))
+    throw std::runtime_error("the coarsest lattice is not positive definite");
+}
+
+Eigen::VectorXf CoarsestFactors::solve(const Eigen::VectorXf& b) const {
+  return ldlt_.solve(b.cast<double>().eval()).cast<float>();
+}
+
+}  // namespace springproof

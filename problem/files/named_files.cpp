@@ -1,0 +1,83 @@
+#include "problem/files/named_files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "problem/files/files.h"
+#include "problem/files/new_file.h"
+#include "problem/system/input_error.h"
+
+namespace springproof {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why, std::string_view allowed) {
+  throw InputError(SourceLocation{file.string(), 0, 0},
+                   allowed.empty() ? why : fmt::format("{} (allowed: {})", why, allowed));
+}
+
+std::string too_large(std::uintmax_t most_bytes) {
+  constexpr std::uintmax_t MiB = std::uintmax_t{1} << 20, GiB = MiB << 10;
+  return most_bytes < GiB ? fmt::format("is larger than {} MiB", most_bytes / MiB)
+                          : fmt::format("is larger than {} GiB", most_bytes / GiB);
+}
+
+/// Something is there, and a file in its place would be a loss: a pipe, a device.
+bool takes_bytes_as_it_is(const fs::path& file) {
+  std::error_code none;
+  const fs::file_status status = fs::status(file, none);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+}  // namespace
+
+void require_file(const fs::path& file, std::string_view allowed, std::uintmax_t most_bytes) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) refuse(file, "no such file", allowed);
+  if (!fs::status_known(status)) refuse(file, "cannot be read: " + error.message(), allowed);
+  if (fs::is_directory(status)) refuse(file, "is a folder", allowed);
+  if (!fs::is_regular_file(status)) refuse(file, "is no regular file", allowed);
+  if (fs::file_size(file, error) > most_bytes && !error) refuse(file, too_large(most_bytes), allowed);
+}
+
+std::string read_named_file(const fs::path& file, std::string_view allowed, std::uintmax_t most_bytes) {
+  require_file(file, allowed, most_bytes);
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes;
+  for (char buffer[1 << 16]; in.read(buffer, sizeof buffer), in.gcount() > 0;) {
+    bytes.append(buffer, static_cast<std::size_t>(in.gcount()));
+    if (bytes.size() > most_bytes) refuse(file, too_large(most_bytes), allowed);  // files of /proc have no size
+  }
+  if (!in.eof()) refuse(file, fmt::format("cannot be read: {}", std::strerror(errno)), allowed);
+  return bytes;
+}
+
+fs::path end_of_links(fs::path file) {
+  constexpr int most_links = 40;  // as Linux
+  for (int links = 0; links <= most_links; ++links) {
+    std::error_code no_link;
+    const fs::path to = fs::read_symlink(file, no_link);
+    if (no_link) return file;
+    file = file.parent_path() / to;
+  }
+  throw std::system_error(ELOOP, std::generic_category(), "cannot write " + file.string());
+}
+
+void write_named_file(const fs::path& file, std::string_view bytes) {
+  if (!takes_bytes_as_it_is(file)) return write_file(end_of_links(file), bytes);
+  std::ofstream out(file, std::ios::binary);
+  out << bytes;
+  out.close();
+  if (!out) throw std::system_error(errno, std::generic_category(), "cannot write " + file.string());
+}
+
+}  // namespace springproof
