@@ -39,6 +39,25 @@ def test_rows_are_those_of_the_same_models():
     assert array.size == 4 and np.isfinite(array["value"]).all()
 
 
+def test_rows_show_themselves():
+    rows = sp.compare(CASE, poisson_ratio=0.4)
+    shown = rows._repr_html_()
+    assert shown.count("<tr>") == len(rows) + 1 and "<td>hybmss_avg</td>" in shown and "displacement.tip.z" in shown
+    try:
+        import matplotlib
+    except ImportError:
+        with pytest.raises(RuntimeError, match="python3-matplotlib"):
+            rows.plot()
+        return
+    matplotlib.use("Agg")
+    with pytest.raises(sp.InputError, match="no row has an error of 'displacement_error' .*no reference"):
+        rows.plot()
+    for row, error in zip(rows, (0.01, 0.02)):
+        row.update(measure="displacement_error", error=error, reference_uncertainty=0.001)
+    axes = rows.plot()
+    assert len(axes.lines) == 1 and axes.get_ylabel() == "displacement error"
+
+
 def test_one_ratio_and_a_folder_that_is_kept(tmp_path):
     rows = sp.compare(CASE, poisson_ratio=0.4, out=tmp_path / "kept", jobs=1)
     assert {row["poisson_ratio"] for row in rows} == {0.4}

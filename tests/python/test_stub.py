@@ -3,6 +3,8 @@ import ast
 import inspect
 import pathlib
 import re
+import subprocess
+import sys
 
 import springproof as sp
 from springproof import _springproof
@@ -85,3 +87,12 @@ def test_everything_is_described():
     page = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
     missing = [name for name in sp.__all__ if f"`{name}" not in page.read_text()]
     assert not missing, f"docs/python.md lacks {missing}"
+
+
+def test_without_the_compiled_part_the_remedy_is_named(tmp_path):
+    package = tmp_path / "springproof"
+    package.mkdir()
+    for file in pathlib.Path(sp.__file__).parent.glob("*.py"):
+        (package / file.name).write_text(file.read_text())
+    run = subprocess.run([sys.executable, "-c", "import springproof"], capture_output=True, text=True, cwd=tmp_path, env={"PYTHONPATH": str(tmp_path)})
+    assert run.returncode != 0 and "./quickstart.sh python" in run.stderr and sys.executable in run.stderr

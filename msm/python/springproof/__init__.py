@@ -9,6 +9,16 @@
 SI units throughout.  docs/python.md has the table of functions.
 """
 
+import sys as _sys
+
+try:
+    from . import _springproof as _compiled  # noqa: F401
+except ImportError as _error:
+    raise ImportError(
+        f"springproof: its compiled part is not beside it, or is of another Python than {_sys.executable} ({_error}); at the top of the "
+        "repository: ./quickstart.sh python, and what that prints; or pip install --no-build-isolation ."
+    ) from _error
+
 from ._compare import compare, find_program
 from ._springproof import (
     Body,

@@ -58,8 +58,8 @@ class Rows(list):
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def plot(self, measure: str = "displacement_error", ax=None):
-        """Draws the errors of a measure against Poisson's ratio, a line per model and resolution, the reference's uncertainty
-        in grey.
+        """Draws the errors of a measure against Poisson's ratio, a line per model at its finest resolution, the reference's
+        uncertainty in grey.
 
         ax: axes of matplotlib, which is needed (Debian: python3-matplotlib); by default new ones.  Returns the axes.  Raises
         InputError if no row has an error of the measure.
@@ -72,19 +72,20 @@ class Rows(list):
         if not rows:
             known = sorted({row["measure"] for row in self if row["error"] is not None})
             raise InputError(f"plot: no row has an error of '{measure}' (allowed: {', '.join(known) or 'none: these rows have no reference'})")
-        ax = ax or pyplot.figure().add_subplot()
+        ax = ax or pyplot.figure(figsize=(8, 4.5), layout="constrained").add_subplot()
         lines: dict = {}
-        for row in rows:
-            lines.setdefault(" ".join(str(row[key]) for key in ("case", "model", "cells")), []).append((row["poisson_ratio"], abs(row["error"])))
-        for label, points in lines.items():
-            ax.plot(*zip(*sorted(points)), marker="o", label=label)
+        for row in rows:  # the resolutions of a case ascend
+            lines.setdefault((row["case"], row["model"]), {})[row["poisson_ratio"]] = abs(row["error"])
+        several = len({case for case, _ in lines}) > 1
+        for number, ((case, model), points) in enumerate(lines.items()):
+            ax.plot(*zip(*sorted(points.items())), marker="osv^Dx"[number // 10 % 6], label=f"{case} {model}" if several else model)
         doubts: dict = {}
         for row in rows:
             doubts[row["poisson_ratio"]] = max(doubts.get(row["poisson_ratio"], 0), row["reference_uncertainty"] or 0)
         ratios = sorted(doubts)
         ax.fill_between(ratios, [doubts[ratio] for ratio in ratios], color="0.85", label="uncertainty of the reference")
         ax.set(xlabel="Poisson's ratio", ylabel=measure.replace("_", " "), yscale="log")
-        ax.legend(fontsize="small")
+        ax.legend(fontsize="small", loc="center left", bbox_to_anchor=(1, 0.5))
         return ax
 
 
