@@ -3,14 +3,22 @@
 #include <fmt/format.h>
 #include <gmsh.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
 
 #include "meshes/gmsh/file_kind.h"
 #include "meshes/gmsh/read_mesh.h"
+#include "meshes/locate/facet_tree.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/mesher/refined_meshes.h"
 #include "meshes/quality.h"
+#include "meshes/surface/balanced.h"
+#include "meshes/surface/raised.h"
+#include "meshes/volume.h"
 
 namespace springproof {
 namespace {
@@ -123,13 +131,134 @@ double model_volume() {
   return sum;
 }
 
+/// Turns triangles of the body's surface as the facets of a mesh beside them.
+void turn_outward(const Mesh& mesh, Surface& surface) {
+  const std::vector<OuterFacet> facets = outer_facets(mesh);
+  const FacetTree tree(mesh, facets);
+  const auto area = [](const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); };
+  for (auto& [a, b, c] : surface.triangles) {
+    const Vec3 &A = surface.points[a], &B = surface.points[b], &C = surface.points[c];
+    const auto& n = facets[tree.nearest((A + B + C) / 3).facet].nodes;
+    const Vec3 outward = area(mesh.nodes.row(n[0]), mesh.nodes.row(n[1]), mesh.nodes.row(n[2]));
+    if (area(A, B, C).dot(outward) < 0) std::swap(b, c);
+  }
+}
+
+constexpr double finer = 2;  ///< facets of the body's surface than of the finest mesh, before they are cut into four
+
+/// The point of a triangle of six nodes (gmsh's order) with these barycentric coordinates.
+Vec3 on_curved(const std::array<Vec3, 6>& x, const Vec3& w) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < 3; ++i) sum += w[i] * (2 * w[i] - 1) * x[i] + 4 * w[i] * w[(i + 1) % 3] * x[3 + i];
+  return sum;
+}
+
+constexpr int quarters[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+
+/// Mean height of a triangle of six nodes above a quarter of it, exact for heights of second degree.
+double height_above(const std::array<Vec3, 6>& x, const int (&quarter)[3]) {
+  const Vec3 places[6] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}};
+  const auto& [a, b, c] = quarter;
+  const Vec3 n = (x[b] - x[a]).cross(x[c] - x[a]).normalized();
+  double sum = 0;
+  for (const int corner : quarter) {
+    const Vec3 w = (places[a] + places[b] + places[c]) / 6 + places[corner] / 2;
+    sum += (on_curved(x, w) - x[a]).dot(n) / 3;
+  }
+  return sum;
+}
+
+/// The triangles around the model's volumes, balanced across the body on which their nodes are:
+/// gmsh's triangles of second order, cut into four.  Outward as the facets of `mesh` beside them.
+/// @throws InputError where gmsh cannot place the nodes.
+Surface curved_surface(const fs::path& file, const GmshSession& session, const Mesh& mesh) {
+  gmsh::model::mesh::generate(2);
+  gmsh::model::mesh::setOrder(2);
+  session.stop_on_error(file);
+  gmsh::vectorpair volumes, surfaces;
+  gmsh::model::getEntities(volumes, 3);
+  gmsh::model::getBoundary(volumes, surfaces, true, false, false);
+  std::vector<int> entities;
+  for (const auto& [dimension, tag] : surfaces) entities.push_back(tag);
+  std::vector<std::size_t> tags;
+  std::vector<double> coordinates, parametric;
+  gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
+  Surface surface;
+  std::map<std::size_t, int> number;
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    number[tags[i]] = static_cast<int>(i);
+    surface.points.emplace_back(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
+  }
+  std::vector<double> heights;
+  for (const ElementBlock& b : elements(2, entities)) {
+    if (b.nodes != 6) refuse(file, fmt::format("gmsh: facets of type '{}'", b.name));
+    for (std::size_t i = 0; i < b.node_tags.size(); i += 6) {
+      std::array<Vec3, 6> x;
+      for (int n = 0; n < 6; ++n) x[n] = surface.points[number.at(b.node_tags[i + n])];
+      for (const auto& quarter : quarters) {
+        surface.triangles.push_back({number.at(b.node_tags[i + quarter[0]]), number.at(b.node_tags[i + quarter[1]]),
+                                     number.at(b.node_tags[i + quarter[2]])});
+        heights.push_back(height_above(x, quarter));
+      }
+    }
+  }
+  surface = raised(surface, heights);
+  turn_outward(mesh, surface);
+  return surface;
+}
+
+/// Moves the outer nodes so that the facets are balanced across the body's surface; back where a cell would lose most
+/// of its volume.
+void balance(const Surface& body, Mesh& mesh) {
+  constexpr double least = 0.25;
+  const Mesh before = mesh;
+  Surface outside;
+  for (const auto& X : mesh.nodes.rowwise()) outside.points.push_back(X.transpose());
+  for (const OuterFacet& f : outer_facets(mesh)) outside.triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
+  outside = balanced(outside, body);
+  for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) mesh.nodes.row(n) = outside.points[n].transpose();
+  const Eigen::VectorXd whole = cell_volumes(before, before.nodes);
+  for (bool any = true; any;) {
+    any = false;
+    const Eigen::VectorXd now = cell_volumes(mesh, mesh.nodes);
+    for (std::size_t c = 0; c < mesh.tetrahedra.size(); ++c)
+      for (const int n : mesh.tetrahedra[c])
+        if (now[static_cast<Eigen::Index>(c)] < least * whole[static_cast<Eigen::Index>(c)]) {
+          any = any || mesh.nodes.row(n) != before.nodes.row(n);
+          mesh.nodes.row(n) = before.nodes.row(n);
+        }
+  }
+}
+
+void draw_with(double edge, double drawn) {
+  gmsh::model::mesh::clear();
+  gmsh::option::setNumber("Mesh.MeshSizeFactor", edge / drawn);
+}
+
 /// Meshes of one model as drawn with an edge of `drawn` [m]; all lengths scale together, those for round parts too.
 MeshAt model_at(const MeshRequest& r, const GmshSession& session, double drawn) {
   return [&r, &session, drawn](double edge, double) {
-    gmsh::model::mesh::clear();
-    gmsh::option::setNumber("Mesh.MeshSizeFactor", edge / drawn);
+    draw_with(edge, drawn);
     OneMesh made{{}, {}, edge};
     made.mesh = fill_with_tetrahedra(r.file, session, made.notes);
+    return made;
+  };
+}
+
+/// The same, their facets balanced across the model's surface.
+MeshAt balanced_at(const MeshRequest& r, const GmshSession& session, double drawn) {
+  const auto surface = std::make_shared<std::optional<Surface>>();
+  const auto chords = std::make_shared<std::string>();  // why the facets stay chords
+  return [&r, &session, drawn, surface, chords, plain = model_at(r, session, drawn)](double edge, double times) {
+    OneMesh made = plain(edge, times);
+    if (!*surface && chords->empty()) try {
+        draw_with(r.edge / finer, drawn);
+        *surface = curved_surface(r.file, session, made.mesh);
+      } catch (const InputError& e) {
+        *chords = fmt::format("facets are chords of curved surfaces: {}", e.what());
+      }
+    if (*surface) balance(**surface, made.mesh);
+    if (!chords->empty()) made.notes.push_back(*chords);
     return made;
   };
 }
@@ -225,7 +354,7 @@ MeshedBody mesh_solid(const MeshRequest& request) {
     gmsh::model::setPhysicalName(2, group, fmt::format("surface_{}", ++number));
   }
   want_edge(r.edge / r.scale);
-  return mesh_refined(r, model_at(r, session, r.edge));
+  return mesh_refined(r, balanced_at(r, session, r.edge));
 }
 
 MeshedBody mesh_file(const MeshRequest& r) try {
