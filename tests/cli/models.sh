@@ -20,7 +20,7 @@ while read -r row made; do
   line=$(grep -E "^\| $(sed 's/+/[+]/' <<<"$made") \| \`" "$page")
   grep -qF "\`$row\`" <<<"$line" || fail "docs/models.md does not say that $row is $made"
 done < <("$program" list | awk '/^Models/ { inside = 1; next } inside && NF == 0 { exit } inside { print $1, substr($0, 19, 26) }')
-"$2/docs/best_of_kind.sh" "$program" | while read -r line; do grep -qxF "$line" "$page" || echo "$line"; done >"$work/missing"
+"$2/docs/scripts/best_of_kind.sh" "$program" | while read -r line; do grep -qxF "$line" "$page" || echo "$line"; done >"$work/missing"
 [ ! -s "$work/missing" ] || fail "docs/models.md lacks lines of docs/scripts/best_of_kind.sh: $(cat "$work/missing")"
 "$program" homogenise -E 1e4 --nu 0.25 --model msm_random --seeds 5 | grep -qE 'a bias of the model: .*K by [+]3 %, [0-9]+ standard errors' ||
   fail "homogenise takes for scatter what is off by many standard errors of the mean"

@@ -14,8 +14,8 @@ awk -F, 'FNR == 1 { ++files; next }
          !seen[FILENAME, $4]++ { ++cases[$4] }
          END { for (nu in cases) if (cases[nu] == files) print nu }' "${results[@]}" >"$work/ratios"
 of_all_cases() { awk -F, 'FNR == NR { ratios[$1]; next } $2 in ratios' "$work/ratios" "$1"; }
-of_all_cases "$source/docs/error-against-poisson-ratio.csv" >"$drawn"
-"$source/docs/figures.sh" points "${results[@]}" >"$work/points" || exit 1
+of_all_cases "$source/docs/pictures/error-against-poisson-ratio.csv" >"$drawn"
+"$source/docs/scripts/figures.sh" points "${results[@]}" >"$work/points" || exit 1
 of_all_cases "$work/points" >"$today"
 [ "$(wc -l <"$today")" -ge 40 ] || { echo "FAILED: only $(wc -l <"$today") points"; exit 1; }
 awk -F, '
