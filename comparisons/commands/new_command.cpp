@@ -7,10 +7,11 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "comparisons/sweep/status.h"
 #include "meshes/mesher/mesher.h"
-#include "meshes/patches/rule_region.h"
+#include "meshes/surface/surface.h"
 #include "meshes/volume.h"
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/keys.h"
@@ -48,21 +49,14 @@ int cells_for(const Measured& m, int least, int most) {
   return static_cast<int>(std::clamp(std::ceil(two_across / 100) * 100, double(least), double(most)));
 }
 
-/// "4.1 mm, 3.2 across the thickness"
+/// "about 1500 cells of 0.0041 m, 3.2 across the thickness"
 std::string cell_words(const Measured& m, int cells) {
   const double edge = std::cbrt(m.volume / cells);
   return fmt::format("about {} cells of {:.3g} m, {:.2g} across the thickness", cells, edge, m.thick / edge);
 }
 
-/// A TOML string.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
+/// A TOML string, as of JSON.
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
 std::string list(const Vec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v[0], v[1], v[2]); }
 
@@ -106,7 +100,7 @@ std::string case_of(const Measured& m, const MeshRequest& request, const std::st
   const Vec3 high = m.low + m.size;
   std::string text = fmt::format(
       "# {}: {:.4g} x {:.4g} x {:.4g} m, from {} to {} m,\n# of {:.5g} m³; thickness {:.3g} m (2 volume / surface).\n",
-      std::filesystem::path(geo).filename().string(), m.size[0], m.size[1], m.size[2], list(m.low), list(high),
+      quoted(std::filesystem::path(geo).filename().string()), m.size[0], m.size[1], m.size[2], list(m.low), list(high),
       m.volume, m.thick);
   for (const std::string& note : m.notes) text += "# " + note + "\n";
   text += "# springproof compare THIS-FILE        every key: docs/keys.md\n";

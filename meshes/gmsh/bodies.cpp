@@ -212,10 +212,7 @@ Surface curved_surface(const fs::path& file, const GmshSession& session, const M
 void balance(const Surface& body, Mesh& mesh) {
   constexpr double least = 0.25;
   const Mesh before = mesh;
-  Surface outside;
-  for (const auto& X : mesh.nodes.rowwise()) outside.points.push_back(X.transpose());
-  for (const OuterFacet& f : outer_facets(mesh)) outside.triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
-  outside = balanced(outside, body);
+  const Surface outside = balanced(outside_of(mesh), body);
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) mesh.nodes.row(n) = outside.points[n].transpose();
   const Eigen::VectorXd whole = cell_volumes(before, before.nodes);
   for (bool any = true; any;) {

@@ -65,17 +65,6 @@ MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blo
   return body;
 }
 
-/// The outer facets of a mesh, quadrilaterals cut into two triangles.
-Surface outside_of(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
-  Surface surface;
-  for (const auto& X : mesh.nodes.rowwise()) surface.points.push_back(X.transpose());
-  for (const OuterFacet& f : facets) {
-    surface.triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
-    if (f.nodes[3] >= 0) surface.triangles.push_back({f.nodes[0], f.nodes[2], f.nodes[3]});
-  }
-  return surface;
-}
-
 /// The body of the file's cells, filled anew.
 MeshedBody filled_anew(const MeshRequest& r, const MeshedBody& own) {
   const std::vector<OuterFacet> facets = outer_facets(own.mesh);

@@ -211,16 +211,6 @@ std::vector<FacetPart> parts_within(const RuleRegion& region, const Surface& sur
   return parts;
 }
 
-Surface outside_of(const Mesh& mesh) {
-  Surface surface;
-  for (const auto& X : mesh.nodes.rowwise()) surface.points.push_back(X.transpose());
-  for (const OuterFacet& f : outer_facets(mesh)) {
-    surface.triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
-    if (f.nodes[3] >= 0) surface.triangles.push_back({f.nodes[0], f.nodes[2], f.nodes[3]});
-  }
-  return surface;
-}
-
 std::vector<FacetPart> parts_of(const PatchRule& rule, const Mesh& mesh) {
   const Surface surface = outside_of(mesh);
   std::vector<FacetPart> parts = parts_within(rule_region(rule, surface), surface);

@@ -46,9 +46,6 @@ struct FacetPart {
 /// sphere.
 std::vector<FacetPart> parts_within(const RuleRegion& region, const Surface& surface);
 
-/// The outer facets of a mesh, quadrilaterals cut into two triangles.
-Surface outside_of(const Mesh& mesh);
-
 /// The parts that a rule names of the outer facets; none is without area.
 std::vector<FacetPart> parts_of(const PatchRule& rule, const Mesh& mesh);
 

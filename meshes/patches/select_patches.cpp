@@ -175,7 +175,7 @@ std::vector<std::string> select_patches(const std::vector<PatchRule>& rules, Mes
   std::vector<std::string> names;
   for (const Patch& p : mesh.patches) names.push_back(p.name);
   const Facets facets = facets_of(mesh);
-  const Surface surface = outside_of(mesh);
+  const Surface surface = outside_of(mesh, facets.facets);
   CutMesh cut(mesh);
   for (const PatchRule& given : rules) {
     const PatchRule rule = settled(given, surface);
@@ -201,13 +201,12 @@ double area_of(const Surface& s, std::size_t triangle) {
   return (s.points[b] - s.points[a]).cross(s.points[c] - s.points[a]).norm() / 2;
 }
 
-/// Of the outer facets of hexahedra, how many a rule cuts.
-std::size_t facets_cut(const PatchRule& rule, const Mesh& mesh) {
+/// Of the outer facets of hexahedra, each two triangles of the surface, how many a rule cuts.
+std::size_t facets_cut(const PatchRule& rule, const Surface& surface) {
   constexpr double whole = 1e-6;  // of a facet's area
-  const Surface surface = outside_of(mesh);
   const std::vector<FacetPart> parts = parts_within(rule_region(rule, surface), surface);
   std::size_t cut = 0;
-  for (std::size_t f = 0; f + 1 < parts.size(); f += 2) {  // a quadrilateral is two triangles
+  for (std::size_t f = 0; f + 1 < parts.size(); f += 2) {
     const double share =
         (parts[f].area.norm() + parts[f + 1].area.norm()) / (area_of(surface, f) + area_of(surface, f + 1));
     cut += share > whole && share < 1 - whole;
@@ -218,19 +217,22 @@ std::size_t facets_cut(const PatchRule& rule, const Mesh& mesh) {
 }  // namespace
 
 bool end_at_edges_of(const Mesh& mesh, const std::vector<PatchRule>& rules) {
-  return !mesh.tetrahedra.empty() ||
-         std::all_of(rules.begin(), rules.end(), [&](const PatchRule& rule) { return facets_cut(rule, mesh) == 0; });
+  if (rules.empty() || !mesh.tetrahedra.empty()) return true;
+  const Surface surface = outside_of(mesh);
+  return std::all_of(rules.begin(), rules.end(), [&](const PatchRule& rule) { return facets_cut(rule, surface) == 0; });
 }
 
 void select_whole_facets(const std::vector<PatchRule>& rules, Mesh& mesh) {
-  if (mesh.tetrahedra.empty())
+  if (!rules.empty() && mesh.tetrahedra.empty()) {
+    const Surface surface = outside_of(mesh);
     for (const PatchRule& rule : rules)
-      if (const std::size_t cut = facets_cut(rule, mesh))
+      if (const std::size_t cut = facets_cut(rule, surface))
         throw InputError(rule.where,
                          fmt::format("patch: the border of '{}' runs through {} facets of a grid with {} cells, so it "
                                      "would be another patch on each grid (allowed: borders along the lines of every "
                                      "grid, those of the reference too; or a body of voxels, whose facets are cut)",
                                      rule.name, cut, mesh.hexahedra.size()));
+  }
   select_patches(rules, mesh);
 }
 

@@ -5,6 +5,16 @@
 
 namespace springproof {
 
+Surface outside_of(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
+  Surface surface;
+  for (const auto& X : mesh.nodes.rowwise()) surface.points.push_back(X.transpose());
+  for (const OuterFacet& f : facets) {
+    surface.triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
+    if (f.nodes[3] >= 0) surface.triangles.push_back({f.nodes[0], f.nodes[2], f.nodes[3]});
+  }
+  return surface;
+}
+
 double volume(const Surface& surface) {
   if (surface.triangles.empty()) return 0;
   const Vec3 origin = surface.points[surface.triangles[0][0]];  // near the body: no cancellation far from zero

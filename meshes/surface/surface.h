@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "meshes/locate/outer_facets.h"
 #include "problem/vector.h"
 
 namespace springproof {
@@ -22,6 +23,10 @@ struct Box {
   Vec3 low;   ///< lowest corner
   Vec3 high;  ///< highest corner
 };
+
+/// Outer facets of a mesh [m], quadrilaterals cut into two triangles; its points are all nodes.
+Surface outside_of(const Mesh& mesh, const std::vector<OuterFacet>& facets);
+inline Surface outside_of(const Mesh& mesh) { return outside_of(mesh, outer_facets(mesh)); }
 
 /// Volume enclosed by a closed surface [m^3]; negative if its facets point inward.
 double volume(const Surface& surface);
