@@ -12,10 +12,6 @@
 
 namespace springproof {
 
-std::string vtu_stem(const RunKey& key) {
-  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
-}
-
 static std::string reference_name(const std::string& element, double poisson_ratio) {
   return fmt::format("reference_{}_nu{}.vtu", element, poisson_ratio);
 }
@@ -53,7 +49,7 @@ void write_series(const CaseResult& result, const std::filesystem::path& folder)
   for (const IsotropicMaterial& m : result.experiment.materials)
     for (const Cells& cells : result.cells) keys.push_back({"fem", m.poisson_ratio, cells});
   for (const RunKey& key : keys) {
-    const std::string file = vtu_stem(key) + ".vtu";
+    const std::string file = file_stem(key) + ".vtu";
     if (std::filesystem::exists(folder / file))
       series[fmt::format("{}_{}", file_name(key.model), fmt::join(key.cells, "x"))][key.poisson_ratio] = file;
   }

@@ -16,9 +16,6 @@ struct VtuOutput {
   bool single = false;           ///< in single precision
 };
 
-/// Name of the VTU file of a run, without its ending.
-std::string vtu_stem(const RunKey& key);
-
 /// The file of the reference on its own mesh (an element of [reference], its finest grid); empty: none is wanted.
 std::string reference_file(const VtuOutput& vtu, const std::string& element, double poisson_ratio);
 

@@ -9,7 +9,6 @@
 #include <set>
 #include <sstream>
 
-#include "problem/files/file_name.h"
 #include "problem/files/files.h"
 
 namespace springproof {
@@ -96,10 +95,6 @@ void animate(Builder& builder, const Course& course) {
   builder.model().animations.push_back(animation);
 }
 
-std::string stem_of(const RunKey& key) {
-  return file_name(fmt::format("{}_nu{:g}_{}", key.model, key.poisson_ratio, cells_text(key.cells)));
-}
-
 }  // namespace
 
 void write_gltf(const std::filesystem::path& file, const Picture& picture) {
@@ -141,10 +136,10 @@ void write_gltf(const CaseResult& result, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::set<std::string> smooth;
   for (const Picture& picture : result.pictures)
-    if (picture.surface == "smooth") smooth.insert(stem_of(picture));
+    if (picture.surface == "smooth") smooth.insert(file_stem(picture));
   for (const Picture& picture : result.pictures)
-    if (picture.surface == "smooth" || !smooth.contains(stem_of(picture)))
-      write_gltf(folder / (stem_of(picture) + ".glb"), picture);
+    if (picture.surface == "smooth" || !smooth.contains(file_stem(picture)))
+      write_gltf(folder / (file_stem(picture) + ".glb"), picture);
 }
 
 }  // namespace springproof

@@ -7,6 +7,7 @@
 
 #include "comparisons/results/records_json.h"
 #include "problem/case_file/measures.h"
+#include "problem/files/file_name.h"
 
 namespace springproof {
 namespace {
@@ -83,6 +84,10 @@ std::string to_string(Verdict verdict) { return Json(verdict); }
 
 bool same_run(const RunKey& a, const RunKey& b) {
   return a.model == b.model && same_poisson_ratio(a.poisson_ratio, b.poisson_ratio) && a.cells == b.cells;
+}
+
+std::string file_stem(const RunKey& key) {
+  return fmt::format("{}_nu{}_{}", file_name(key.model), key.poisson_ratio, fmt::join(key.cells, "x"));
 }
 
 bool is_tetrahedra(const Cells& cells) { return cells[0] > 0 && cells[1] == 0 && cells[2] == 0; }

@@ -23,6 +23,9 @@ struct RunKey {
 /// Whether both are of one model at one Poisson's ratio and resolution.
 bool same_run(const RunKey& a, const RunKey& b);
 
+/// Name of the files of a run, without an ending: "hybmss_nu0.3_10x10x10".
+std::string file_stem(const RunKey& key);
+
 /// A record of a run, all else in it blank.
 template <class Record>
 Record of_run(const RunKey& key) {

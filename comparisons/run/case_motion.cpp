@@ -46,7 +46,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
   for (auto& [time, displacement] : motion.frames) {
     field.displacement = std::move(displacement);
     if (!run.vtu.folder.empty()) {
-      series.emplace_back(time, fmt::format("{}_{:04}.vtu", vtu_stem(key), series.size() + 1));
+      series.emplace_back(time, fmt::format("{}_{:04}.vtu", file_stem(key), series.size() + 1));
       VtuNotes notes = run.notes(key);
       notes.numbers.emplace_back("time_s", time);
       write_vtu(run.vtu.folder / series.back().second, field, {}, notes);
@@ -59,7 +59,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
                              : smooth_picture(key, field, *run.prepared.body.tetrahedra.back(), nullptr).displacement);
     }
   }
-  if (!series.empty()) write_pvd(run.vtu.folder / (vtu_stem(key) + ".pvd"), series);
+  if (!series.empty()) write_pvd(run.vtu.folder / (file_stem(key) + ".pvd"), series);
 }
 
 void run_motion_reference(PartRun& run) {

@@ -33,8 +33,8 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu.folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  write_vtu(run.vtu.folder / (vtu_stem(key) + ".vtu"), field, extra, run.notes(key));
-  write_file(run.vtu.folder / (vtu_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
+  write_vtu(run.vtu.folder / (file_stem(key) + ".vtu"), field, extra, run.notes(key));
+  write_file(run.vtu.folder / (file_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
 }
 
 void add_splits(PartRun& run, std::size_t lattice, const std::string& model, const std::vector<NodalVectors>& u,
@@ -138,7 +138,7 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
   const NodalVectors& u = samples.front().state.displacement;
   if (!run.vtu.folder.empty())
-    write_cells(run.vtu.folder / (vtu_stem(key) + "_cells.vtu"), *run.prepared.lattices[lattice].cut, u,
+    write_cells(run.vtu.folder / (file_stem(key) + "_cells.vtu"), *run.prepared.lattices[lattice].cut, u,
                 run.notes(key));
   run.cut_states.push_back({lattice, number, u, samples.front().field.displacement, scalars.front()});
   add_splits_of_cut_cells(run, lattice, number, fields, scalars);

@@ -25,7 +25,8 @@ std::vector<ModelSample> samples_of(const PartRun& run, std::size_t lattice, Cho
 FractureSamples fracture_samples_of(const PartRun& run, std::size_t lattice, std::size_t number) {
   const Lattice& on = run.prepared.lattices[lattice];
   const RunKey key = run.key(run.experiment().models[number].label, lattice);
-  const std::filesystem::path vtu = run.vtu.folder.empty() ? run.vtu.folder : run.vtu.folder / (vtu_stem(key) + ".vtu");
+  const std::filesystem::path vtu =
+      run.vtu.folder.empty() ? run.vtu.folder : run.vtu.folder / (file_stem(key) + ".vtu");
   return run.keeper.run(
       name_of_samples(lattice, {number}), cost_of_model(run.prepared, on, number, run.material),
       [&] { return run_fracture_samples(run.prepared, on, number, run.material, vtu); },

@@ -227,7 +227,7 @@ TEST(VoxelBody, RefinedLatticesKeepTheirPromiseAndHaveALimit) {
   const std::string notes = fmt::format("{}", fmt::join(prepared.body.notes, "\n"));
   EXPECT_NE(notes.find("promise a displacement error of"), std::string::npos) << notes;
   EXPECT_THROW(case_of_modes(experiment, {.free = true}), InputError);
-  expect_cells_fill_the_body(vtu / (vtu_stem({"hybmss_avg", 0.3, fine.cells}) + "_cells.vtu"), *fine.cut,
+  expect_cells_fill_the_body(vtu / (file_stem({"hybmss_avg", 0.3, fine.cells}) + "_cells.vtu"), *fine.cut,
                              volume(*prepared.body.tetrahedra.back(), prepared.body.tetrahedra.back()->nodes));
   std::filesystem::remove_all(vtu);
 }
