@@ -107,6 +107,15 @@ if [ -n "$numpy" ]; then
     awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of $file by examples/springs.py: off by '$off'"
   done
 fi
+# Patches of a body alone, by side or rule: of cut cells anchors, of a block nodes.
+export_to "${body[@]}" --hold bottom --load 'near = { point_m = [0, 0, 0.01], radius_m = 0.003 }' --out held.json
+grep -q '"bottom": ' held.json && grep -q '"loaded": ' held.json || fail "no patches of --hold and --load"
+export_to block.geo --size 0.2 0.1 0.1 --cells 4 2 2 -E 1e4 --nu 0.3 --hold left --to springs --out held_block.json
+grep -q '"left": ' held_block.json || fail "no patch of --hold on a block"
+for wrong in below 'beyond = { point_m = [0, 0, 9], normal = [0, 0, -1] }' 'beyond = { point_m = [0, 0, 9], normal = [0, 0, 1] }' 'near = {'; do
+  "$program" export "${body[@]}" --hold "$wrong" --out refused.json >log 2>&1
+  [ $? -eq 2 ] && grep -q -- "--hold" log && [ ! -e refused.json ] || fail "--hold $wrong: $(cat log)"
+done
 # Cells of several sizes, refined for the loads of a case.
 { sed -e 's/^geo = .*/geo = "icosahedron.stl"\nscale = 0.01/; s/^size_m = .*/voxels = 30\naccuracy = 0.05/; /^cells = /d; s/x_min/low/; s/x_max/high/' \
       -e 's/^models = .*/models = ["hybmss_avg"]/; s/0\.25, 0\.4/0.4/' case.toml

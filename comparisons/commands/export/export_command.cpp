@@ -10,12 +10,12 @@
 
 #include "comparisons/calculix/cross_check.h"
 #include "comparisons/calculix/deck.h"
+#include "comparisons/commands/export/body_alone.h"
 #include "comparisons/commands/export/export_engines.h"
 #include "comparisons/prepare/springs_of_case.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
-#include "meshes/locate/outer_facets.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/patches/select_patches.h"
@@ -33,8 +33,6 @@ namespace springproof {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int default_voxels = 2000;
 
 Cells cells_of_option(const std::vector<int>& cells) {
   return cells.empty() ? Cells{0, 0, 0} : Cells{cells[0], cells[1], cells[2]};
@@ -66,7 +64,8 @@ void require_writable(const fs::path& file) {
 int export_calculix(const ExportRequest& request) {
   if (is_body(request.what))
     throw InputError(fmt::format("{}: is a body without loads (allowed with --to calculix: a case)", request.what));
-  if (!request.model.empty() || request.voxels || request.moduli.youngs_modulus || !request.size.empty())
+  if (!request.model.empty() || request.voxels || request.moduli.youngs_modulus || !request.size.empty() ||
+      !request.hold.empty() || !request.load.empty())
     throw InputError("--to calculix: a deck has the case's elements and material (allowed: --poisson-ratio, --cells)");
   const Experiment experiment = read_case(request.what);
   calculix::require_counterpart(experiment);
@@ -90,53 +89,6 @@ int export_calculix(const ExportRequest& request) {
   to_stdout("{}: {} nodes, {} elements {}, nu = {:g}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
             deck.element, material.poisson_ratio);
   return 0;
-}
-
-ModelChoice named_model(const std::string& name) { return {name, {}, name, {}}; }
-
-/// Sides are named as they are, other rules "held", "held_2", ...
-void add_patches(const std::string& option, const std::string& stem, const std::vector<std::string>& rules,
-                 std::vector<PatchRule>& patches) {
-  int count = 0;
-  for (const std::string& rule : rules) {
-    const bool side = rule.find('=') == std::string::npos;
-    std::string name = rule;
-    if (!side && ++count > 1) name = fmt::format("{}_{}", stem, count);
-    if (!side && count == 1) name = stem;
-    patches.push_back(parse_patch_rule(name, rule, option));
-  }
-}
-
-/// @throws InputError for a patch of the command line that is the whole surface.
-void refuse_whole_surface(const PreparedCase& prepared) {
-  const Mesh& body = *prepared.body.tetrahedra.back();
-  const std::size_t facets = outer_facets(body).size();
-  for (const PatchRule& rule : prepared.experiment.patches)
-    if (patch(body, rule.name).facets.size() == facets)
-      throw InputError(rule.where, fmt::format("'{}' takes the whole surface (allowed: a part of it)", rule.name));
-}
-
-/// A body alone, of the material and the model of the command line.
-Experiment body_alone(const ExportRequest& request) {
-  Experiment e;
-  e.file = request.what;
-  e.name = e.file.stem().string();
-  e.body.geo = e.file.filename().string();
-  e.body.scale = request.scale;
-  if (e.body.is_script() && request.size.empty())
-    throw InputError(fmt::format("{}: a script needs its size (allowed: --size X Y Z [m])", request.what));
-  if (!request.size.empty()) e.body.size = Vec3(request.size[0], request.size[1], request.size[2]);
-  try {
-    e.materials = {material_from(request.moduli, request.density)};
-  } catch (const std::invalid_argument& error) {
-    throw InputError(
-        fmt::format("{}: {} (a body alone needs -E and --nu, or another two moduli)", request.what, error.what()));
-  }
-  e.models = {named_model(request.model.empty() ? recommended_model().name : request.model)};
-  add_patches("--hold", "held", request.hold, e.patches);
-  add_patches("--load", "loaded", request.load, e.patches);
-  if (request.cells.empty()) e.body.voxel_counts = {request.voxels.value_or(default_voxels)};
-  return e;
 }
 
 /// The model of the case with this label, or a row of the table; by default the case's first.
@@ -327,12 +279,8 @@ int export_lammps(const ExportRequest& request) {
 
 int export_engine(const ExportRequest& request) {
   const SpringsFile springs = springs_of(for_engine(request));
-  if (!is_body(request.what)) return export_to_engine(request, springs, held_patches(read_case(request.what)));
-  std::vector<PatchRule> held;
-  add_patches("--hold", "held", request.hold, held);
-  std::vector<std::string> names;
-  for (const PatchRule& rule : held) names.push_back(rule.name);
-  return export_to_engine(request, springs, names);
+  return export_to_engine(request, springs,
+                          is_body(request.what) ? held_patches(request) : held_patches(read_case(request.what)));
 }
 
 /// A form of export: a row.
