@@ -217,7 +217,7 @@ def test_what_a_function_raises_reaches_the_caller():
         sp.compare(CASE, models={"mine": lambda body, material, loads: np.nan * body.nodes})
     with pytest.raises(sp.InputError, match="the label 'hybmss_avg' is taken"):
         sp.compare(CASE, models={"hybmss_avg": affine})
-    with pytest.raises(sp.InputError, match=r"folder of \d+ cases"):
+    with pytest.raises(sp.InputError, match="folder of 5 cases"):
         sp.compare("golec_2019", models={"mine": affine})
     with pytest.raises(sp.InputError, match="no such case"):
         sp.compare("golec_2020", models={"mine": affine})

@@ -150,8 +150,8 @@ def _with_models(name, models, ratios, program, folder):
     if listed.returncode != 0:
         raise InputError(listed.stderr.strip())
     files = listed.stdout.splitlines()
-    if len(files) != 1:
-        raise InputError(f"{name} is a folder of {len(files)} cases (allowed with models: one case)")
+    if len(files) != 1:  # each case on an indented line
+        raise InputError(f"{name} is a folder of {sum(line.startswith(' ') for line in files)} cases (allowed with models: one case)")
     problems = [p for p in _problems_of(files[0]) if ratios is None or any(abs(p[1].nu - nu) < 1e-9 for nu in ratios)]
     external = []
     for label, function in models.items():
