@@ -17,14 +17,15 @@ namespace {
 
 constexpr double frame = 1.0 / 60, damping = 2, amplitude = 0.1, frequency = 1.5;  // [s], [1/s], of the size, [Hz]
 
-/// Where the support is, how fast, and what it accelerates by, along x.
+/// Where the support is and what it accelerates by, along x.
 struct Shaken {
   double u = 0, a = 0;
 };
 
+/// Begins at rest.
 Shaken shaken(double time, double size) {
-  const double w = 2 * std::numbers::pi * frequency, slow = std::min(time, 1.0);  // it sets in within a second
-  return {slow * amplitude * size * std::sin(w * time), -slow * amplitude * size * w * w * std::sin(w * time)};
+  const double w = 2 * std::numbers::pi * frequency, A = amplitude * size;
+  return {A * (1 - std::cos(w * time)), A * w * w * std::cos(w * time)};
 }
 
 /// By what the nodes at a support are heavier in explicit steps, so that the safe step stays (docs/springs_file.md).
