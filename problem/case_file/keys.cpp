@@ -348,15 +348,16 @@ std::string keys_page() {
   std::string page =
       "# Keys of a case file\n\n"
       "Printed by `springproof describe keys`. A case is a file in TOML; the [tutorial](tutorial.md) has a first one. "
-      "Any other key, type or number is refused with its line, what is allowed and the nearest key. Numbers are finite; "
-      "x, y, z are numbers.\n";
+      "Any other key, type or number is refused with its line, what is allowed and the nearest key. Numbers are "
+      "finite; x, y, z are numbers.\n";
   bool loads = false;
   for (const KeyTable& table : tables) {
     const std::string_view name = table.name;
     const bool load = name.starts_with("load.");
     if (load && !std::exchange(loads, true))
-      page += section_of("[[load]]", "One of these kinds; all but the last three act on a patch or a list of patches: "
-                                     "`on = \"x_min\"`.");
+      page += section_of("[[load]]",
+                         "One of these kinds; all but the last three act on a patch or a list of patches: "
+                         "`on = \"x_min\"`.");
     if (load)
       page += fmt::format("| *{}* | {} | | | | |\n", table.heading, table.what);
     else if (*table.heading)
