@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/prepare/refined_lattice.h"
@@ -242,7 +243,8 @@ void set_wrenches(PreparedCase& prepared) {
   const Mesh& body = *prepared.body.tetrahedra.back();
   const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
   const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
-  for (Load& load : prepared.loads) {
+  const std::size_t own = prepared.loads.size() - prepared.experiment.weights;  // masses weigh where their inertia is
+  for (Load& load : std::span(prepared.loads).first(own)) {
     if (auto* t = std::get_if<Traction>(&load)) {
       t->wrench = at_centroid(area(parts(t->on)) * t->traction, centroid(parts(t->on)));
     } else if (auto* q = std::get_if<Pressure>(&load)) {

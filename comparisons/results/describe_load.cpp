@@ -115,4 +115,11 @@ std::string describe(const Load& load, Kinematics kinematics) {
       load);
 }
 
+std::string describe(const AttachedMass& mass) {
+  std::string where = "spread over " + mass.on;
+  if (mass.at.size() == 1) where = fmt::format("at {} m", text(mass.at[0]));
+  if (mass.at.size() == 2) where = fmt::format("along the segment from {} to {} m", text(mass.at[0]), text(mass.at[1]));
+  return fmt::format("{}: {:.6g} kg {}{}", mass.name, mass.mass, where, mass.weighs ? "" : ", without weight");
+}
+
 }  // namespace springproof

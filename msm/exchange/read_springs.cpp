@@ -135,15 +135,24 @@ void require_each_once(const std::vector<std::array<int, n>>& all, const char* w
 void read_nodes(const JsonPlace& document, SpringsFile& file) {
   file.density = document.at("density_kg_m3").number(smallest_of_file, largest_number_of_file);
   const JsonPlace nodes = document.at("nodes");
-  nodes.require_known({"position_m", "mass_kg", "weight_kg"});
+  nodes.require_known({"position_m", "mass_kg", "attached_kg", "weight_kg"});
   Network& network = file.model.network;
   network.X = vectors(nodes.at("position_m"));
   if (network.nodes() == 0) nodes.at("position_m").refuse("is empty", "at least one node");
   const bool some_carried = document.find("carried").has_value();  // read_carried() sees to their masses
   const std::vector<double> mass = nodes.at("mass_kg").numbers(1, static_cast<std::size_t>(network.nodes()), "nodes",
                                                                some_carried ? 0 : smallest_of_file);
-  network.volume =
-      Eigen::Map<const Eigen::VectorXd>(mass.data(), static_cast<Eigen::Index>(mass.size())) / file.density;
+  Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(mass.data(), static_cast<Eigen::Index>(mass.size()));
+  if (const auto place = nodes.find("attached_kg")) {
+    const std::vector<double> attached = place->numbers(1, mass.size(), "nodes", 0);
+    network.attached = Eigen::Map<const Eigen::VectorXd>(attached.data(), own.size());
+    own -= network.attached;
+    for (std::size_t n = 0; n < mass.size(); ++n)
+      if (!(own[static_cast<Eigen::Index>(n)] > 0) && mass[n] > 0)
+        place->refuse(fmt::format("node {} has {:g} kg attached, of {:g} kg in all", n, attached[n], mass[n]),
+                      "less than its mass_kg, which has them in it");
+  }
+  network.volume = own / file.density;
 }
 
 /// In the order of the file.

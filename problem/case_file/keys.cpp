@@ -24,6 +24,7 @@ constexpr Key file_keys[] = {
   {"patch",      "parts of its surface",                            "tables headed [[patch]]",                     "those of the body", ""},
   {"material",   "elastic moduli and density",                      "a table [material] with two moduli",          required, ""},
   {"load",       "supports and loads",                              "tables headed [[load]]",                      "required, but beside [dynamics]", ""},
+  {"mass",       "masses hung on the body or glued to it",          "tables headed [[mass]]",                      "none", ""},
   {"compare",    "models and measures",                             "a table",                                     "hybmss, with three measures", ""},
   {"external",   "displacements that another program computed",     "tables headed [[external]]",                  "none", ""},
   {"section",    "a plane on which two deformed states are compared", "a table",                                   "none", ""},
@@ -184,6 +185,14 @@ constexpr Key fracture_keys[] = {
   {"seeds",     "number of samples",                                    "a whole number from 1 to 1000",     "1",                    "5"},
 };
 
+constexpr Key mass_keys[] = {
+  {"name",    "its name, in messages and reports",                "a name",                                              required,              "\"weight\""},
+  {"at_m",    "a point of the body, or the ends of a segment that it is spread along", "[x, y, z], or two such",         "one of at_m, on is required", "[[0.1, 0, 0.03], [0.1, 0.03, 0.03]]"},
+  {"on",      "a patch that it is spread over",                   "the name of a patch",                                 "one of at_m, on is required", "\"x_max\""},
+  {"mass_kg", "mass",                                             above_0,                                               required,              "0.052"},
+  {"weighs",  "whether gravity acts on it; false: inertia alone", a_flag,                                                "true",                "false"},
+};
+
 constexpr Key probe_keys[] = {
   {"name", "part of the names of its rows", "a name",  required, "\"tip\""},
   {"at_m", "a rest position",               a_vector,  required, "[0.06, 0.005, 0.005]"},
@@ -240,6 +249,7 @@ constexpr KeyTable tables[] = {
   {"load.at_m",                  "a force at a point",               "",                                                            point_force_keys},
   {"load.gravity_m_s2",          "gravity",                          "",                                                            gravity_keys},
   {"load.body_force_of",         "the force of an exact field",          "Under kinematics = \"linear\", with models = [].",        body_force_keys},
+  {"mass",                       "[[mass]]",                         "Beside the body's own: inertia in motions and frequencies, and weight where a load is gravity.", mass_keys},
   {"compare",                    "[compare]",                        "",                                                            compare_keys},
   {"reference",                  "[reference]",                      "",                                                            reference_keys},
   {"probe",                      "[[probe]]",                        "",                                                            probe_keys},
@@ -285,7 +295,7 @@ constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
 
 // Longer ones first.
 constexpr std::pair<std::string_view, const char*> units[] = {
-  {"_kg_m3", "kg/m³"}, {"_m_s2", "m/s²"}, {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_s", "1/s"},
+  {"_kg_m3", "kg/m³"}, {"_kg", "kg"}, {"_m_s2", "m/s²"}, {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_s", "1/s"},
   {"_Pa", "Pa"}, {"_Hz", "Hz"}, {"_deg", "°"}, {"_N", "N"}, {"_m", "m"}, {"_s", "s"},
 };
 // clang-format on
