@@ -43,14 +43,14 @@ std::string scale_hint(const Mesh& mesh, const Body& body) {
   constexpr double large = 10, small = 1e-3;  // [m]
   const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
   if (body.is_script()) return {};
-  const std::string ending = extension_of(body.geo);
-  if (body.scale != 1 && (ending == ".step" || ending == ".stp") && (span > large || span < small))
+  if (body.scale != 1 && body.states_its_unit() && (span > large || span < small))
     return fmt::format(
         "the body spans {:.3g} m: a STEP file states its unit, and scale = {:g} multiplies that; is scale "
         "one too many?",
         span, body.scale);
   if (body.scale == 1 && span > large)
-    return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+    return fmt::format(
+        "the body spans {:.3g} m; did you forget scale = 0.001, or units = \"mm\" at the top of the file?", span);
   return span < small ? fmt::format("the body spans {:.3g} m; is it so small?", span) : "";
 }
 

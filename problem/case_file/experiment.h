@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "problem/body.h"
+#include "problem/case_file/units.h"
 #include "problem/course.h"
 #include "problem/fracture.h"
 #include "problem/loads.h"
@@ -123,6 +124,7 @@ struct Experiment {
   std::filesystem::path file;
   std::string cite;
   std::string what;
+  Units units = Units::m;             ///< in which it is written and its results are given; here all is in SI
   std::string kinematics = "linear";  ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke",
                                       ///< "neo_hooke_isochoric", "st_venant_kirchhoff"
   Body body;
