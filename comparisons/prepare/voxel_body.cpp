@@ -25,8 +25,8 @@ namespace springproof {
 namespace {
 
 // Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.  At large
-// strain half as many, which take a minute.
-constexpr int finest_tetrahedra = 20000, finest_at_large_strain = 10000;
+// strain a third of them, which take a minute.
+constexpr int finest_tetrahedra = 20000, finest_at_large_strain = 7000;
 constexpr double least_spread = 1e-6;  // of an area or a volume between the meshes, above which it is reported
 constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
 
