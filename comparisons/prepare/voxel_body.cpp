@@ -25,8 +25,9 @@
 namespace springproof {
 namespace {
 
-// Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.
-constexpr int finest_tetrahedra = 20000;
+// Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.  At large
+// strain a third of them, which take a minute.
+constexpr int finest_tetrahedra = 20000, finest_at_large_strain = 7000;
 constexpr double least_spread = 1e-6;  // of an area or a volume between the meshes, above which it is reported
 constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
 
@@ -43,14 +44,14 @@ std::string scale_hint(const Mesh& mesh, const Body& body) {
   constexpr double large = 10, small = 1e-3;  // [m]
   const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
   if (body.is_script()) return {};
-  const std::string ending = extension_of(body.geo);
-  if (body.scale != 1 && (ending == ".step" || ending == ".stp") && (span > large || span < small))
+  if (body.scale != 1 && body.states_its_unit() && (span > large || span < small))
     return fmt::format(
         "the body spans {:.3g} m: a STEP file states its unit, and scale = {:g} multiplies that; is scale "
         "one too many?",
         span, body.scale);
   if (body.scale == 1 && span > large)
-    return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+    return fmt::format(
+        "the body spans {:.3g} m; did you forget scale = 0.001, or units = \"mm\" at the top of the file?", span);
   return span < small ? fmt::format("the body spans {:.3g} m; is it so small?", span) : "";
 }
 
@@ -72,7 +73,8 @@ double coarseness(const Mesh& mesh, const PreparedCase& prepared) {
 void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
   const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
-  request.tetrahedra = finest_tetrahedra;
+  const bool large_strain = e.model_kinematics() == Kinematics::finite && !e.dynamics;
+  request.tetrahedra = large_strain ? finest_at_large_strain : finest_tetrahedra;
   if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
   MeshedBody body = mesh_body(request);
   prepared.body.notes = {size_note(body.mesh)};

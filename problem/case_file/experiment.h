@@ -9,6 +9,7 @@
 
 #include "problem/attached_mass.h"
 #include "problem/body.h"
+#include "problem/case_file/units.h"
 #include "problem/course.h"
 #include "problem/fracture.h"
 #include "problem/loads.h"
@@ -124,6 +125,7 @@ struct Experiment {
   std::filesystem::path file;
   std::string cite;
   std::string what;
+  Units units = Units::m;             ///< in which it is written and its results are given; here all is in SI
   std::string kinematics = "linear";  ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke",
                                       ///< "neo_hooke_isochoric", "st_venant_kirchhoff"
   Body body;

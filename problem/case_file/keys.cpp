@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "problem/case_file/units.h"
+
 namespace springproof {
 namespace {
 
@@ -19,6 +21,7 @@ constexpr const char* from_0 = "a finite number >= 0";
 constexpr Key file_keys[] = {
   {"what",       "what the case shows, a sentence",                 "a string",                                    "none", "\"A clamped bar.\""},
   {"cite",       "the paper that it is taken from",                 "a string",                                    "none", "\"Golec et al. (2019)\""},
+  {"units",      "m: SI; mm: [mm, N, MPa, t, s](#units)",          "m, mm",                                       "m",    "\"m\""},
   {"kinematics", "small displacements, or the law of large strain", "linear, hencky, log_cauchy, neo_hooke, neo_hooke_isochoric, st_venant_kirchhoff", "linear", "\"hencky\""},
   {"body",       "the body and its lattices",                       "a table [body] with geo, size_m, cells",      required, ""},
   {"patch",      "parts of its surface",                            "tables headed [[patch]]",                     "those of the body", ""},
@@ -276,7 +279,7 @@ constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
   {"fixed",           "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
   {"fix",             "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
   {"support",         "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
-  {"gravity",         "gravity_m_s2 = [0, 0, -9.81] in a [[load]] is gravity"},
+  {"gravity",         "gravity_m_s2 in a [[load]] is gravity"},
   {"force",           "force_N in a [[load]] is a force"},
   {"pressure",        "pressure_Pa in a [[load]] is a pressure"},
   {"thickness",       "there are no shells: a body is a solid, and a thin one has cells that are smaller than it is thick"},
@@ -290,7 +293,6 @@ constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
   {"materials",       "a body has one material: [material]"},
   {"fibres",          "materials are isotropic: there are no fibres"},
   {"fibers",          "materials are isotropic: there are no fibres"},
-  {"units",           "lengths are in metres; scale of [body] multiplies the coordinates of a file"},
 };
 
 // Longer ones first.
@@ -376,7 +378,14 @@ std::string keys_page() {
     for (const Key& key : table.keys)
       if (!load || std::string_view(key.name) != on.name) page += row_of(key, inside);
   }
-  return page;
+  page +=
+      "\n## Units\n\nUnder `units = \"mm\"` keys end as below; files of bodies (but STEP, which states its unit) "
+      "and of `[[external]]` are in mm, values of `[[expect]]`, `[[published]]`, results and report in mm, N, MPa "
+      "and t. Springs files, VTU, glTF and notes stay in SI.\n\n"
+      "| `units` | in place of `_m` | `_Pa` | `_kg_m3` | `_kg` | `_m_s2` | `_m_s` |\n|---|---|---|---|---|---|---|\n| `\"mm\"` |";
+  for (const char* ending : {"_m", "_Pa", "_kg_m3", "_kg", "_m_s2", "_m_s"})
+    page += fmt::format(" `{}` |", key_in(Units::mm, ending).name);
+  return page + "\n";
 }
 
 }  // namespace springproof
