@@ -12,7 +12,7 @@ hybmss_avg.  Fails if less than 95 % of the displacements do.
 
 known.csv holds limits of two meshes of quadratic tetrahedra that fill exactly the facets of the file (of bracket and
 gear: their plane faces) and differ at the rims of what is held alone, where facets are four times smaller in the finer
-one (bar, dumbbell: all cells cut into eight).  Their difference, to first order, is the uncertainty.
+one (bar, dumbbell: all cells cut into eight; gear: both).  What is left of the step, or half of it, is the uncertainty.
 """
 
 import csv
