@@ -79,8 +79,11 @@ std::vector<std::string> refine_rims(const PreparedCase& prepared, int uncut, Me
   if (e.reference.elements.empty() || e.model_kinematics() == Kinematics::finite) return {};
   const double edge = std::cbrt(6 * std::sqrt(2.0) * volume(mesh, mesh.nodes) / uncut);
   const double coarser = std::cbrt(static_cast<double>(prepared.body.uncut.back()) / uncut);
+  std::vector<std::string> held = supported_patches(e);
+  for (const PatchRule& rule : e.patches)  // by normals: ragged, on noise as long as the surface is large
+    if (rule.facing) std::erase(held, rule.name);
   const std::size_t before = mesh.tetrahedra.size();
-  refine_rims(supported_patches(e), edge * coarser / finer_at_rims, mesh);
+  refine_rims(held, edge * coarser / finer_at_rims, mesh);
   if (mesh.tetrahedra.size() == before) return {};
   return {fmt::format("held patches end on a smooth surface: {} tetrahedra cut into {} there", before,
                       mesh.tetrahedra.size())};
