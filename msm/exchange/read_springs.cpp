@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "msm/algebra/dense.h"
 #include "msm/exchange/json_place.h"
 #include "msm/exchange/lattice_of_cells.h"
 #include "msm/exchange/read_cut_cells.h"
@@ -214,6 +215,18 @@ void for_each_law(std::variant<Laws...>*, const Act& act) {
   (act(Laws{}), ...);
 }
 
+/// Every form of a cell has its energy.
+void require_positive(const MeasuredCells& law, const Network& network, const JsonPlace& place) {
+  constexpr double round_off = 1e-9;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const Eigen::VectorXd values = symmetric_eigenvalues(law.form_of_cell(c));
+    if (values[0] < -round_off * values[values.size() - 1])
+      place.at("form_N_m")
+          .refuse(fmt::format("the form of cell {} has the eigenvalue {:.3g} N/m", c, values[0]),
+                  "forms without negative eigenvalues");
+  }
+}
+
 void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
   if (traits(law).reach == Reach::cells && network.cells.empty())
     place.refuse("has no cells to act on", "beside cells");
@@ -228,6 +241,7 @@ void require_its_parts(const ForceLaw& law, const Network& network, const JsonPl
   }
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
+  if (const auto* measured = std::get_if<MeasuredCells>(&law)) require_positive(*measured, network, place);
   const auto* dispersion = std::get_if<MomentumDispersion>(&law);
   if (dispersion && dispersion->form == Dispersion::finite_strain) try {
       const NodalGradients every_node(*dispersion, network);
@@ -267,6 +281,10 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
     for (std::size_t c = 0; c < network.cells.size(); ++c)
       for (const int n : network.cells.corners[c])
         scale[n] += averaged->shear_modulus * std::pow(network.cells.edge_of(c), 2);
+  if (const auto* measured = law_of<MeasuredCells>(model))
+    for (std::size_t c = 0; c < network.cells.size(); ++c)
+      for (const int n : network.cells.corners[c])
+        scale[n] += measured->form_of_cell(c).trace() * network.cells.edge_of(c);
   const NodalVectors f = forces(model, network.X);
   for (int n = 0; n < network.nodes(); ++n)
     if (const double force = f.row(n).norm(); !(force <= unbalanced * scale[n]))
@@ -275,7 +293,7 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
   for (int n = 0; n < network.nodes(); ++n)
     if (scale[n] == 0)
       document.at("springs").refuse(fmt::format("node {} has no spring", n),
-                                    "one at least, or a cell with averaged springs");
+                                    "one at least, or a cell with averaged springs or a measured form");
 }
 
 void read_patches(const JsonPlace& document, SpringsFile& file) {
