@@ -8,9 +8,10 @@ Newton's method on the forces of the file, which hold at large strain (but for h
 """
 import sys
 from pathlib import Path
-import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+try:
+    import numpy as np, scipy.sparse as sp
+    from scipy.sparse.linalg import splu
+except ImportError as missing: sys.exit(f"{missing}: needs NumPy and SciPy (Debian: apt-get install python3-numpy python3-scipy)")
 from springs import load, forces, carry  # or, with the package: from springproof.springs import ...
 
 def colours_of(s, n):
@@ -52,13 +53,12 @@ def rest(s, held, external):
         support = w.T @ sp.diags(a["stiffness_N_m"]) @ w
     else:
         free = free & ~np.isin(np.arange(n), s["patches"][held])
-    (colour, reach), dofs, x = colours_of(s, n), np.flatnonzero(np.repeat(free, 3)), X.copy()
+    (colour, reach), dofs, x, largest = colours_of(s, n), np.flatnonzero(np.repeat(free, 3)), X.copy(), abs(external).max()
     def newton(x, share):  # None: no equilibrium found from here
         for _ in range(12):
             r = (forces(s, x) + share * external - support @ (x - X)).ravel()[dofs]
-            print(f"  {share:.3f} of the load: residual {abs(r).max() / abs(external).max():.1e}")
-            if abs(r).max() < 1e-9 * abs(external).max(): return x
-            if not abs(r).max() < 1e3 * abs(external).max(): return None
+            print(f"  {share:.3f} of the load: residual {abs(r).max() / largest:.1e}")
+            if not 1e-9 * largest < abs(r).max() < 1e3 * largest: return x if abs(r).max() <= 1e-9 * largest else None
             K = (tangent(s, x, colour, reach, 1e-6 * np.ptp(X)) + sp.kron(support, sp.identity(3))).tocsc()
             x = x.copy()
             x.ravel()[dofs] += splu(K[dofs][:, dofs]).solve(r)
@@ -71,6 +71,7 @@ def rest(s, held, external):
     return x
 
 if __name__ == "__main__":
+    np.seterr(all="ignore")  # where Newton's method fails the load step is cut
     s, held, on, force = load(sys.argv[1]), sys.argv[2], sys.argv[3:4], np.array(sys.argv[4:7], float)
     nodes, surface, share = s["nodes"], s["surface"], np.zeros(len(s["nodes"]["mass_kg"]))
     if not on: share, force = nodes.get("weight_kg", nodes["mass_kg"]), np.array([0, 0, -9.81])
