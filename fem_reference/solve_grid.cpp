@@ -94,6 +94,11 @@ bool matrix_free_tetrahedra(const GridProblem& problem, const Body3& body) {
          problem.method == Method::automatic && process_count() == 1;
 }
 
+// Continuous pressures leave the dilatation at single points free: at the rim of a support det F falls to a twentieth,
+// and laws lose their ellipticity there.  At large strain they stand for what lambda exceeds its value at nu = 0.4 by,
+// up to which quadratic tetrahedra take none.
+constexpr double pointwise_over_mu = 4;
+
 std::string element_name(const ElasticSystem& system) {
   return describe({system.body.has_tetrahedra(), system.degree}, system.form);
 }
@@ -123,6 +128,8 @@ struct Discrete {
     held.erase(std::remove_if(held.begin(), held.end(), [&](const auto& p) { return !owned.is_element(p.dof); }),
                held.end());
     check_held(held, dof_handler.get_communicator());
+    if (body.has_tetrahedra() && problem.law != "linear" && system.form == Form::mixed)
+      system.pointwise = pointwise_over_mu * system.mu;
     if (matrix_free_tetrahedra(problem, body)) add_linear_coarse_space(problem.coarse, problem.place, system);
     if (!dof_handler.has_level_dofs()) return;
     system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);
@@ -152,8 +159,8 @@ ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete,
 
 // Small enough that the linear predictor stays near the solution path: it enlarges rotating bodies and preserves volume
 // only to first order.
-double first_load_step(const GridProblem& problem) {
-  double step = problem.material.poisson_ratio > 0.45 ? 0.25 : 1;
+double first_load_step(const GridProblem& problem, bool tetrahedra) {
+  double step = problem.material.poisson_ratio > 0.45 || tetrahedra ? 0.25 : 1;
   for (const Load& load : problem.loads)
     if (const auto* turn = std::get_if<PrescribedRotation>(&load)) step = std::min(step, 0.35 / std::abs(turn->angle));
   return step;
@@ -164,7 +171,7 @@ ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discre
   if (!law) throw InputError(fmt::format("unknown law \"{}\"; there are: linear, {}", problem.law, law_names()));
   FiniteProblem finite{
       *law, [&](double factor, DofVector& to) { prescribe(problem, discrete, Kinematics::finite, factor, to); }};
-  finite.first_step = first_load_step(problem);
+  finite.first_step = first_load_step(problem, discrete.system.body.has_tetrahedra());
   const FiniteAnswer answer = solve_finite(discrete.system, finite, discrete.load, u);
   solution.form = fmt::format("{}, {}: {} load steps, {} Newton steps", element_name(discrete.system), answer.method,
                               answer.load_steps, answer.newton_iterations);

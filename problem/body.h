@@ -25,7 +25,8 @@ struct Body {
   std::vector<double> accuracies = {};   ///< voxels: promised errors to which cut cells are halved; empty: one size
   double scale = 1;                      ///< coordinates of a file are multiplied by it
 
-  bool is_script() const;  ///< true for a .geo, whose size is a parameter; false for a file with fixed geometry
+  bool is_script() const;        ///< true for a .geo, whose size is a parameter; false for a file with fixed geometry
+  bool states_its_unit() const;  ///< true for a STEP file
   bool is_voxels() const { return !voxel_edges.empty() || !voxel_counts.empty(); }
   std::size_t resolutions() const {
     return std::max({cells.size(), voxel_edges.size(), voxel_counts.size(), accuracies.size()});

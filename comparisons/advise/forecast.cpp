@@ -61,9 +61,10 @@ std::vector<Resolution> resolutions_of(const Pilot& pilot) {
 std::vector<std::string> notes_of(const Pilot& pilot) {
   std::vector<std::string> out;
   if (pilot.strain > 0.1 && pilot.experiment_is_linear)
-    out.push_back(fmt::format(
-        "strains reach {:.2g}: small displacements are no longer right (kinematics = \"hencky\" in the case)",
-        pilot.strain));
+    out.push_back(
+        fmt::format("strains reach {:.2g}: small displacements are no longer right (kinematics = \"hencky\" at the top "
+                    "of the case)",
+                    pilot.strain));
   for (const PilotModel& m : pilot.models)
     if (m.cells.empty()) out.push_back(fmt::format("{} has no result: {}", m.label, m.failure));
   if (pilot.base[0] == 0)

@@ -72,15 +72,16 @@ External read_external(const PreparedCase& prepared, std::size_t number) {
 void check_units(const External& e) {
   const Vec3 body = extent_of(e.mesh().nodes), data = extent_of(e.points.X);
   const double scale = option_of(e.choice, "scale", 1.0);
+  const Named unit = unit_in(e.prepared.experiment.units, "m");
   if (data.maxCoeff() > 0) {
     const double times = body.maxCoeff() / data.maxCoeff(), digits = std::log10(times);
     if (std::abs(digits) > 0.5)
       e.fail(fmt::format(
-          "the points span {}, the body {}: {} (allowed: scale in [[external]] such that lengths are in m, "
+          "the points span {}, the body {}: {} (allowed: scale in [[external]] such that lengths are in {}, "
           "perhaps scale = {:g})",
           sizes_text(data), sizes_text(body),
           digits < 0 ? fmt::format("{:.4g} times too large", 1 / times) : fmt::format("{:.4g} times too small", times),
-          scale * std::pow(10, std::round(digits))));
+          unit.name, scale / unit.in_si * std::pow(10, std::round(digits))));
   }
   Eigen::Index at = 0;
   if (const double largest = e.points.u.rowwise().norm().maxCoeff(&at); largest > 10 * body.norm())

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/prepare/refined_lattice.h"
@@ -26,8 +27,9 @@
 namespace springproof {
 namespace {
 
-// Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.
-constexpr int finest_tetrahedra = 20000;
+// Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.  At large
+// strain a third of them, which take a minute.
+constexpr int finest_tetrahedra = 20000, finest_at_large_strain = 7000;
 constexpr double least_spread = 1e-6;  // of an area or a volume between the meshes, above which it is reported
 constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
 constexpr double finer_at_rims = 4;    // edges of the finest mesh over those where held patches end on a smooth surface
@@ -45,14 +47,14 @@ std::string scale_hint(const Mesh& mesh, const Body& body) {
   constexpr double large = 10, small = 1e-3;  // [m]
   const double span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
   if (body.is_script()) return {};
-  const std::string ending = extension_of(body.geo);
-  if (body.scale != 1 && (ending == ".step" || ending == ".stp") && (span > large || span < small))
+  if (body.scale != 1 && body.states_its_unit() && (span > large || span < small))
     return fmt::format(
         "the body spans {:.3g} m: a STEP file states its unit, and scale = {:g} multiplies that; is scale "
         "one too many?",
         span, body.scale);
   if (body.scale == 1 && span > large)
-    return fmt::format("the body spans {:.3g} m; did you forget scale = 0.001?", span);
+    return fmt::format(
+        "the body spans {:.3g} m; did you forget scale = 0.001, or units = \"mm\" at the top of the file?", span);
   return span < small ? fmt::format("the body spans {:.3g} m; is it so small?", span) : "";
 }
 
@@ -92,7 +94,8 @@ std::vector<std::string> refine_rims(const PreparedCase& prepared, int uncut, Me
 void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
   const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
-  request.tetrahedra = finest_tetrahedra;
+  const bool large_strain = e.model_kinematics() == Kinematics::finite && !e.dynamics;
+  request.tetrahedra = large_strain ? finest_at_large_strain : finest_tetrahedra;
   if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
   MeshedBody body = mesh_body(request);
   prepared.body.notes = {size_note(body.mesh)};
@@ -265,7 +268,8 @@ void set_wrenches(PreparedCase& prepared) {
   const Mesh& body = *prepared.body.tetrahedra.back();
   const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
   const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
-  for (Load& load : prepared.loads) {
+  const std::size_t own = prepared.loads.size() - prepared.experiment.weights;  // masses weigh where their inertia is
+  for (Load& load : std::span(prepared.loads).first(own)) {
     if (auto* t = std::get_if<Traction>(&load)) {
       t->wrench = at_centroid(area(parts(t->on)) * t->traction, centroid(parts(t->on)));
     } else if (auto* q = std::get_if<Pressure>(&load)) {

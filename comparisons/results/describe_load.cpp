@@ -11,13 +11,24 @@ namespace {
 
 std::string text(const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
 
+/// With the unit that stands for this one of SI.
+std::string text(double x, Units units, const char* si) {
+  const Named unit = unit_in(units, si);
+  return fmt::format("{:.6g} {}", x / unit.in_si, unit.name);
+}
+
+std::string text(const Vec3& v, Units units, const char* si) {
+  const Named unit = unit_in(units, si);
+  return fmt::format("{} {}", text(Vec3(v / unit.in_si)), unit.name);
+}
+
 std::string components(const std::vector<std::string>& axes) {
   if (axes.size() < 2) return axes.empty() ? "" : axes[0];
   const std::vector<std::string> head(axes.begin(), axes.end() - 1);
   return fmt::format("{} and {}", fmt::join(head, ", "), axes.back());
 }
 
-std::string sentence(const PrescribedDisplacement& load) {
+std::string sentence(const PrescribedDisplacement& load, Units units) {
   std::vector<std::string> held, moved, free;
   for (int c = 0; c < 3; ++c) {
     const std::string axis(1, "xyz"[c]);
@@ -27,7 +38,7 @@ std::string sentence(const PrescribedDisplacement& load) {
     } else if (*u == 0) {
       held.push_back(axis);
     } else {
-      moved.push_back(fmt::format("by {:.6g} m in {}", *u, axis));
+      moved.push_back(fmt::format("by {} in {}", text(*u, units, "m"), axis));
     }
   }
   std::vector<std::string> parts;
@@ -41,46 +52,46 @@ std::string sentence(const PrescribedDisplacement& load) {
   return fmt::format("{}: {}", load.on, fmt::join(parts, ", "));
 }
 
-std::string sentence(const PrescribedAffine& load) {
+std::string sentence(const PrescribedAffine& load, Units units) {
   const auto& A = load.gradient;
-  return fmt::format("{}: moved by u = A X + b with the rows of A {} {} {} and b = {} m", load.on,
+  return fmt::format("{}: moved by u = A X + b with the rows of A {} {} {} and b = {}", load.on,
                      text(A.row(0).transpose()), text(A.row(1).transpose()), text(A.row(2).transpose()),
-                     text(load.offset));
+                     text(load.offset, units, "m"));
 }
 
-std::string sentence(const PrescribedRotation& load) {
-  return fmt::format("{}: turned by {:.6g} degrees about the axis {} through {} m", load.on,
-                     load.angle * 180 / std::numbers::pi, text(load.axis), text(load.point));
+std::string sentence(const PrescribedRotation& load, Units units) {
+  return fmt::format("{}: turned by {:.6g} degrees about the axis {} through {}", load.on,
+                     load.angle * 180 / std::numbers::pi, text(load.axis), text(load.point, units, "m"));
 }
 
-std::string sentence(const PrescribedField& load) {
+std::string sentence(const PrescribedField& load, Units) {
   return fmt::format("{}: moved by the exact field '{}'", load.on, load.field);
 }
 
-std::string sentence(const FieldBodyForce& load) {
+std::string sentence(const FieldBodyForce& load, Units) {
   return fmt::format("whole body: the body force of the exact field '{}'", load.field);
 }
 
-std::string sentence(const Pressure& load, Kinematics kinematics) {
+std::string sentence(const Pressure& load, Units units, Kinematics kinematics) {
   return fmt::format(
-      "{}: pressed by {:.6g} Pa{}", load.on, load.pressure,
+      "{}: pressed by {}{}", load.on, text(load.pressure, units, "Pa"),
       kinematics == Kinematics::linear ? "" : ", a dead load: per area at rest, against the outward normals at rest");
 }
 
-std::string sentence(const Traction& load) {
-  return fmt::format("{}: loaded by a traction of {} Pa", load.on, text(load.traction));
+std::string sentence(const Traction& load, Units units) {
+  return fmt::format("{}: loaded by a traction of {}", load.on, text(load.traction, units, "Pa"));
 }
 
-std::string sentence(const PatchForce& load) {
+std::string sentence(const PatchForce& load, Units) {
   return fmt::format("{}: loaded by a total force of {} N", load.on, text(load.force));
 }
 
-std::string sentence(const Gravity& load) {
-  return fmt::format("whole body: gravity of {} m/s²", text(load.acceleration));
+std::string sentence(const Gravity& load, Units units) {
+  return fmt::format("whole body: gravity of {}", text(load.acceleration, units, "m/s²"));
 }
 
-std::string sentence(const PointForce& load) {
-  return fmt::format("point {} m: loaded by a force of {} N", text(load.at), text(load.force));
+std::string sentence(const PointForce& load, Units units) {
+  return fmt::format("point {}: loaded by a force of {} N", text(load.at, units, "m"), text(load.force));
 }
 
 LoadMark mark_of(const PrescribedDisplacement& load) {
@@ -104,15 +115,25 @@ LoadMark mark(const Load& load) {
   return std::visit([](const auto& l) { return mark_of(l); }, load);
 }
 
-std::string describe(const Load& load, Kinematics kinematics) {
+std::string describe(const Load& load, Kinematics kinematics, Units units) {
   return std::visit(
       [&](const auto& l) {
         if constexpr (std::is_same_v<std::decay_t<decltype(l)>, Pressure>)
-          return sentence(l, kinematics);
+          return sentence(l, units, kinematics);
         else
-          return sentence(l);
+          return sentence(l, units);
       },
       load);
+}
+
+std::string describe(const AttachedMass& mass, Units units) {
+  std::string where = "spread over " + mass.on;
+  if (mass.at.size() == 1) where = "at " + text(mass.at[0], units, "m");
+  if (mass.at.size() == 2)
+    where = fmt::format("along the segment from {} to {}", text(mass.at[0], units, "m"), text(mass.at[1], units, "m"));
+  const Named kg = unit_in(units, "kg");
+  return fmt::format("{}: {:.6g} {} {}{}", mass.name, mass.mass / kg.in_si, kg.name, where,
+                     mass.weighs ? "" : ", without weight");
 }
 
 }  // namespace springproof

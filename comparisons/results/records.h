@@ -254,8 +254,14 @@ double cell_count(const Cells& cells);
 /// strain loads, and models that follow another law than the reference.
 std::vector<std::string> cautions(const CaseResult& result);
 
+/// Turns every value that has a unit beside it into the units of its case.
+void give_in_units_of_case(CaseResult& result);
+
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".
-std::string describe(const Load& load, Kinematics kinematics = Kinematics::linear);
+std::string describe(const Load& load, Kinematics kinematics = Kinematics::linear, Units units = Units::m);
+
+/// A mass likewise: "weight: 0.05 kg at (0.1, 0, 0.03) m".
+std::string describe(const AttachedMass& mass, Units units = Units::m);
 
 /// How a load is drawn.
 struct LoadMark {

@@ -126,6 +126,7 @@ bool write_results(std::vector<CaseResult> results, const std::string& libraries
     if (choice.gltf) write_gltf(r, out / "gltf" / key_of(r.experiment.file));
   }
   const std::vector<KnownQuantity> known = known_quantities(results);
+  for (CaseResult& r : results) give_in_units_of_case(r);
   const nlohmann::json doc = document(results, known, libraries);
   nlohmann::json pictures = nlohmann::json::array();
   for (const CaseResult& r : results) pictures.push_back(pictures_to_json(r));

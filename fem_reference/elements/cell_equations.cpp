@@ -59,13 +59,15 @@ PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p) {
 }
 
 ValueAndSlope pressure_of(const CellLaw& law, double g) {
-  if (!law.law) return {law.lambda * g, law.lambda};
-  return pressure(*law.law, law.lambda, g);
+  const double lambda = law.form == Form::mixed ? law.pointwise : law.lambda;
+  if (!law.law) return {lambda * g, lambda};
+  return pressure(*law.law, lambda, g);
 }
 
 ValueAndSlope dilatation_of(const CellLaw& law, double p) {
-  if (!law.law) return {p / law.lambda, 1 / law.lambda};
-  return dilatation_at_pressure(*law.law, law.lambda, p);
+  const double lambda = law.lambda - law.pointwise;
+  if (!law.law) return {p / lambda, 1 / lambda};
+  return dilatation_at_pressure(*law.law, lambda, p);
 }
 
 // dE = B du, with engineering shears.
@@ -100,7 +102,8 @@ void add_forces(const CellShape& shape, const PointTensors& stress, Eigen::Matri
 // Displacement gradients, dilatations and pressures at all quadrature points.
 struct PointStates {
   std::vector<Matrix3d> h;
-  Eigen::VectorXd g, p, slope;  // slope: dp/dg, or dg/dp in the mixed form
+  Eigen::VectorXd g, p, slope;  // slope: dp/dg
+  Eigen::VectorXd unknown;      // of the mixed form: the part of p that is an unknown
   double smallest = std::numeric_limits<double>::infinity();
 };
 
@@ -119,14 +122,13 @@ PointStates states(const CellLaw& law, const CellShape& shape, const CellVector&
   for (int q = 0; q < n; ++q) s.g[q] = dilatation_at(law, s.h[q]);
   if (law.form == Form::mean_dilatation) s.g.setConstant(s.g.dot(shape.weights) / shape.weights.sum());
   for (int q = 0; q < n; ++q) {
-    if (law.form == Form::mixed) {
-      s.p[q] = shape.pressures.row(q).dot(x.p);
-      s.slope[q] = dilatation_of(law, s.p[q]).slope;
-    } else {
-      const ValueAndSlope p = pressure_of(law, s.g[q]);
-      s.p[q] = p.value;
-      s.slope[q] = p.slope;
-    }
+    const ValueAndSlope p = pressure_of(law, s.g[q]);
+    s.p[q] = p.value;
+    s.slope[q] = p.slope;
+  }
+  if (law.form == Form::mixed) {
+    s.unknown = shape.pressures * x.p;
+    s.p += s.unknown;
   }
   return s;
 }
@@ -180,7 +182,7 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
     const Matrix3d S = tensor(response.S);
     stress.middleRows<3>(3 * q) = w * S * response.F.transpose();
     if (law.form == Form::mixed)
-      r.p += w * (state.g[q] - dilatation_of(law, state.p[q]).value) * shape.pressures.row(q).transpose();
+      r.p += w * (state.g[q] - dilatation_of(law, state.unknown[q]).value) * shape.pressures.row(q).transpose();
     if (!tangent) continue;
     const auto b = strain_matrix(response.F, dN);
     stresses.push_back(law.law ? S : Matrix3d::Zero());
@@ -202,12 +204,17 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
     case Form::mean_dilatation:
       tangent->uu += QB.transpose() * (weights * state.slope) * (shape.weights.transpose() * GB / shape.weights.sum());
       break;
-    case Form::mixed:
+    case Form::mixed: {
+      if (law.pointwise > 0)
+        tangent->uu += QB.transpose() * (shape.weights.cwiseProduct(state.slope).asDiagonal() * GB);
+      Eigen::VectorXd compliance(points);
+      for (int q = 0; q < points; ++q) compliance[q] = dilatation_of(law, state.unknown[q]).slope;
       tangent->up = QB.transpose() * (weights * shape.pressures);
       tangent->pu = shape.pressures.transpose() * (weights * GB);
       tangent->pp =
-          -shape.pressures.transpose() * (shape.weights.cwiseProduct(state.slope).asDiagonal() * shape.pressures);
+          -shape.pressures.transpose() * (shape.weights.cwiseProduct(compliance).asDiagonal() * shape.pressures);
       break;
+    }
   }
   return r;
 }
@@ -228,7 +235,7 @@ CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellV
     if (law.form == Form::mixed)
       r.p += w *
              ((first.g[q] + last.g[q]) / 2 -
-              mean_over(first.p[q], last.p[q], [&](double at) { return dilatation_of(law, at).value; })) *
+              mean_over(first.unknown[q], last.unknown[q], [&](double at) { return dilatation_of(law, at).value; })) *
              shape.pressures.row(q).transpose();
     else
       p = mean_over(first.g[q], last.g[q], [&](double at) { return pressure_of(law, at).value; });
@@ -247,7 +254,7 @@ double cell_energy(const CellLaw& law, const CellShape& shape, const CellVector&
   const PointStates s = states(law, shape, x);
   double sum = 0;
   for (int q = 0; q < shape.points(); ++q) {
-    const double g = law.form == Form::mixed ? dilatation_of(law, s.p[q]).value : s.g[q];
+    const double g = law.form == Form::mixed ? dilatation_of(law, s.unknown[q]).value : s.g[q];
     const Matrix3 F = to_array(Matrix3d::Identity() + s.h[q]);
     sum += shape.weights[q] *
            (shear_energy(*law.law, law.mu, F) + dilatation_energy(*law.law, law.lambda, g) + s.p[q] * (s.g[q] - g));
@@ -320,12 +327,13 @@ CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eige
     mean += shape.weights[q] * all;
   }
   const Eigen::MatrixXd M = X * X.transpose();
+  const double lambda = law.form == Form::pointwise ? law.lambda : law.pointwise;
   CellMatrix K = CellMatrix::Zero(3 * n, 3 * n);
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < n; ++b) {
       const Matrix3d m = M.block<3, 3>(3 * a, 3 * b);
       K.block<3, 3>(3 * a, 3 * b) = law.mu * (m.transpose() + m.trace() * Matrix3d::Identity());
-      if (law.form == Form::pointwise) K.block<3, 3>(3 * a, 3 * b) += law.lambda * m;
+      K.block<3, 3>(3 * a, 3 * b) += lambda * m;
     }
   if (law.form == Form::mean_dilatation) K += law.lambda / shape.weights.sum() * mean * mean.transpose();
   return K;

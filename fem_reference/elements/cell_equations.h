@@ -35,7 +35,8 @@ struct CellTangent {
 struct CellLaw {
   std::optional<Law> law;  ///< none: small strain
   Form form;
-  double mu, lambda;  ///< [Pa]
+  double mu, lambda;     ///< [Pa]
+  double pointwise = 0;  ///< part of lambda that the mixed form leaves to the dilatation at each point, at rest [Pa]
 };
 
 /// Lowers `smallest` to min det F over the quadrature points; the residual is valid only if that is positive.
@@ -62,7 +63,7 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
                    double viscosity, double per_rate, CellVector& residual, CellTangent* tangent);
 
 /// The small-strain stiffness with gradients in the configuration deformed by u (nullptr: undeformed), integrated over
-/// the rest volume: the matrix of the multigrid.  The mixed form omits the lambda term.
+/// the rest volume: the matrix of the multigrid.  Of lambda the mixed form has the pointwise part alone.
 CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd* u);
 
 }  // namespace springproof::fem

@@ -147,7 +147,7 @@ void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) 
     y = x;
     y.scale(inverse_mass_);
   }
-  y *= 1 / (1 / system_.lambda + 0.5 / system_.mu);
+  y *= 1 / (1 / (system_.lambda - system_.pointwise) + 1 / (2 * system_.mu + system_.pointwise));
 }
 
 void AssembledOperator::prepare(const MixedVector& x) {

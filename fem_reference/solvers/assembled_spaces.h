@@ -50,7 +50,7 @@ inline std::unique_ptr<SparseMatrix> empty_matrix(const dealii::DoFHandler<3>& r
 struct AssembledOperator::Spaces {
   Spaces(const ElasticSystem& system, std::optional<Law> wanted_law, const dealii::DoFHandler<3>& displacement,
          const std::vector<unsigned int>& constrained)
-      : law{wanted_law, system.form, system.mu, system.lambda},
+      : law{wanted_law, system.form, system.mu, system.lambda, system.pointwise},
         comm(system.body.triangulation.get_communicator()),
         u(displacement),
         p(system.body.triangulation),

@@ -87,16 +87,17 @@ class Newton {
     K_.clear_constrained(f_.u);
     r_.add(-1, f_);
     const double tolerance = to < 1 ? std::max(system_.tolerance, 1e-4) : system_.tolerance;
-    const bool moved = given.u.linfty_norm() > 0;
-    double eta = 1e-3;
+    double eta = 1e-3, before = 1;
     for (int iteration = 0; iteration < 25; ++iteration) {
       if (!correct(eta, answer)) return false;
       if (iteration == 0) dx_.add(1, given);
-      if (!advance(iteration == 0 && moved)) return false;
+      if (!advance(iteration == 0)) return false;
       const double now = residual(to);
       ++answer.newton_iterations;
       if (now <= tolerance && pressure_residual() <= tolerance) return true;
-      if (iteration >= 12 && now > 1e-3) return false;  // not converging: a shorter load step is cheaper
+      // Not converging: a shorter load step is cheaper.
+      if ((iteration >= 4 && now > std::max(0.1, 0.6 * before)) || (iteration >= 12 && now > 1e-3)) return false;
+      before = now;
       eta = std::clamp(std::max(0.1 * now, 0.3 * tolerance / now), 1e-6, 1e-2);
     }
     return false;
@@ -123,7 +124,8 @@ class Newton {
     return outcome.reduction < 0.2;
   }
 
-  // x_ += dx_, halved until no cell is inverted; a step with a prescribed increment (`whole`) is not shortened.
+  // x_ += dx_, halved until no cell is inverted; the first of a load step (`whole`) is not shortened: it has the
+  // prescribed increment, and where it inverts cells the load step is too long.
   bool advance(bool whole) {
     const MixedVector start = x_;
     for (double part = 1; part > 0.05; part /= 2) {

@@ -59,6 +59,7 @@ struct ElasticSystem {
   std::function<void(LevelVector& x, const LevelVector& r)> below =
       {};                       ///< coarse-grid correction of the coarsest level; empty: none
   std::string below_name = {};  ///< its method, for the report
+  double pointwise = 0;         ///< CellLaw::pointwise [Pa]
 };
 
 struct ElasticAnswer {

@@ -35,11 +35,11 @@ namespace {
 // The pressure at one point: from the pressure unknowns if there are any, else from the dilatation.
 double pressure_at(const ElasticSystem& system, std::optional<Law> law, const CellPressures& pressures,
                    const Location& place, double dilatation) {
-  if (!pressures.empty()) {
-    const auto& c = pressures[place.cell->active_cell_index()];
-    return c[0] + c[1] * place.unit[0] + c[2] * place.unit[1] + c[3] * place.unit[2];
-  }
-  return law ? pressure(*law, system.lambda, dilatation).value : system.lambda * dilatation;
+  const double lambda = pressures.empty() ? system.lambda : system.pointwise;
+  const double of_dilatation = law ? pressure(*law, lambda, dilatation).value : lambda * dilatation;
+  if (pressures.empty()) return of_dilatation;
+  const auto& c = pressures[place.cell->active_cell_index()];
+  return c[0] + c[1] * place.unit[0] + c[2] * place.unit[1] + c[3] * place.unit[2] + of_dilatation;
 }
 
 Eigen::Matrix3d linear_stress(const dealii::Tensor<2, 3>& h, double mu, double p) {

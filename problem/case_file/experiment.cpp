@@ -29,7 +29,7 @@ std::vector<std::string> kinematics_names() {
 }
 
 [[noreturn]] void missing(const TomlValue& table, const std::string& key, const std::string& allowed) {
-  refuse({table.node, table.key + "." + key, table.file}, "is missing", allowed);
+  refuse({table.node, table.key + "." + key_in(table.units, key).name, table.file, table.units}, "is missing", allowed);
 }
 
 std::vector<Cells> read_resolutions(const TomlValue& cells) {
@@ -77,6 +77,7 @@ Body read_body(const TomlValue& value) {
     if (script) refuse(*scale, "is for files", "size_m, for .geo scripts");
     body.scale = as_number(*scale, positive_number);
   }
+  if (!script && !body.states_its_unit()) body.scale *= unit_in(value.units, "m").in_si;
   const auto cells = table.find("cells"), voxels = table.find("voxels"), edges = table.find("voxel_edge_m");
   constexpr const char* fineness =
       "one of cells = [nx, ny, nz] (bodies of hexahedra), voxels = 5000 (about so many cubes), voxel_edge_m = 0.01; "
@@ -231,6 +232,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   if (experiment.loads.empty() && !document.find("dynamics"))
     throw InputError({experiment.file.string(), 1, 1},
                      "load: is missing (allowed: at least one [[load]], or none beside [dynamics])");
+  read_masses(document, experiment);
   require_density(document, experiment);
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);
@@ -298,7 +300,9 @@ Experiment parse_experiment(const std::string& text, const std::filesystem::path
   }
   if (document.empty())
     throw InputError({file.string(), 0, 0}, "the case file is empty (needed: [body], [material], [[load]])");
-  return read_document(TomlTable({&document, "", file.string()}, keys_of("")), std::move(experiment));
+  if (const toml::node* units = document.get("units"))
+    experiment.units = as_choice({units, "units", file.string()}, {"m", "mm"}) == "mm" ? Units::mm : Units::m;
+  return read_document(TomlTable({&document, "", file.string(), experiment.units}, keys_of("")), std::move(experiment));
 }
 
 Experiment read_experiment(const std::filesystem::path& file) {
@@ -306,6 +310,11 @@ Experiment read_experiment(const std::filesystem::path& file) {
 }
 
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches) {
+  for (const AttachedMass& mass : experiment.masses)
+    if (!mass.on.empty() && std::find(patches.begin(), patches.end(), mass.on) == patches.end())
+      throw InputError({experiment.file.string(), 0, 0},
+                       fmt::format("mass '{}': on: the body has no patch '{}' (allowed: {}){}", mass.name, mass.on,
+                                   fmt::join(patches, ", "), did_you_mean(mass.on, patches)));
   for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
     const std::string* on = patch_of(experiment.loads[i]);
     if (!on || std::find(patches.begin(), patches.end(), *on) != patches.end()) continue;

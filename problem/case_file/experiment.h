@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "problem/attached_mass.h"
 #include "problem/body.h"
+#include "problem/case_file/units.h"
 #include "problem/course.h"
 #include "problem/fracture.h"
 #include "problem/loads.h"
@@ -123,12 +125,15 @@ struct Experiment {
   std::filesystem::path file;
   std::string cite;
   std::string what;
+  Units units = Units::m;             ///< in which it is written and its results are given; here all is in SI
   std::string kinematics = "linear";  ///< "linear", or a finite-strain law: "hencky", "log_cauchy", "neo_hooke",
                                       ///< "neo_hooke_isochoric", "st_venant_kirchhoff"
   Body body;
   std::vector<PatchRule> patches;            ///< defined by rules, in addition to those of the body itself
   std::vector<IsotropicMaterial> materials;  ///< in the file's order, each Poisson's ratio once
   std::vector<Load> loads;
+  std::vector<AttachedMass> masses;            ///< beside the body's own
+  std::size_t weights = 0;                     ///< loads, the last of `loads`, that are the weight of `masses`
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
   std::vector<std::string> elements = {"q1"};  ///< finite elements compared beside the models, at the same resolutions

@@ -176,6 +176,12 @@ Cells read_row_cells(const TomlValue& value, const std::string& model, const Exp
          fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
+/// A number in the unit of a measure.
+double as_number_of(const std::string& measure, TomlValue value, const Range& range = any_number) {
+  value.in_si = unit_in(value.units, unit_of(measure)).in_si;
+  return as_number(value, range);
+}
+
 Source read_source(const TomlValue& value) {
   const std::vector<Source> sources = {Source::analytic, Source::extrapolated_fem, Source::published,
                                        Source::regression};
@@ -186,7 +192,7 @@ Source read_source(const TomlValue& value) {
 }
 
 void read_bound(const TomlTable& table, const TomlValue& bound, Expectation& expect) {
-  expect.at_least = as_number(bound);
+  expect.at_least = as_number_of(expect.measure, bound);
   for (const char* key : {"value", "within", "within_relative"})
     if (const auto other = table.find(key))
       refuse(*other, "stands beside at_least", "a value with a tolerance, or at_least");
@@ -198,7 +204,7 @@ void read_tolerance(const TomlTable& table, Expectation& expect) {
     refuse(table.value(), absolute ? "has two tolerances" : "has no tolerance",
            "exactly one of within, within_relative, at_least");
   expect.relative = relative.has_value();
-  expect.within = as_number(relative ? *relative : *absolute, not_negative);
+  expect.within = relative ? as_number(*relative, not_negative) : as_number_of(expect.measure, *absolute, not_negative);
   if (relative && expect.value == 0.0)
     refuse(*relative, "is a fraction of a value that is 0", "within, the absolute tolerance");
 }
@@ -218,7 +224,7 @@ Expectation read_expectation(const TomlValue& value, const Experiment& experimen
   if (const auto bound = table.find("at_least")) {
     read_bound(table, *bound, expect);
   } else {
-    if (const auto number = table.find("value")) expect.value = as_number(*number);
+    if (const auto number = table.find("value")) expect.value = as_number_of(expect.measure, *number);
     if (!expect.value && expect.source != Source::extrapolated_fem)
       refuse({value.node, value.key + ".value", value.file}, "is missing",
              "a finite number; only source = \"extrapolated FEM\" goes without");
@@ -320,7 +326,7 @@ void read_published(const TomlTable& document, Experiment& experiment) {
     printed.poisson_ratio = read_poisson_ratio(table.at("poisson_ratio"), experiment);
     if (const auto cells = table.find("cells")) printed.cells = as_cells(*cells);
     printed.measure = read_row_name(table.at("measure"), experiment);
-    printed.value = as_number(table.at("value"));
+    printed.value = as_number_of(printed.measure, table.at("value"));
     printed.where = as_text(table.at("where"));
     if (const auto remark = table.find("remark")) printed.remark = as_text(*remark);
     experiment.published.push_back(printed);

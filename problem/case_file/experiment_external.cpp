@@ -42,7 +42,11 @@ std::vector<ModelChoice> read_external(const TomlValue& value, const Experiment&
   ModelChoice choice;
   choice.name = external_model;
   choice.label = as_text(table.at("name"));
-  if (const auto scale = table.find("scale")) choice.options["scale"] = as_number(*scale, positive_number);
+  const double unit = unit_in(value.units, "m").in_si;
+  if (const auto scale = table.find("scale"))
+    choice.options["scale"] = unit * as_number(*scale, positive_number);
+  else if (unit != 1)
+    choice.options["scale"] = unit;
   if (const auto up = table.find("up_axis")) choice.options["up_axis"] = as_choice(*up, {"y", "z"});
   if (const auto springs = table.find("springs")) choice.options["springs"] = as_flag(*springs);
   const auto files = table.find("files");

@@ -37,17 +37,27 @@ std::string join_key(const std::string& table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
 }
 
+/// Why a key may have been written that is none of these.
+std::string hint(const std::string& name, const std::vector<std::string>& names, Units units) {
+  const bool mm = units == Units::mm;
+  const std::string in_these = mm ? key_in(units, name).name : key_in_si(Units::mm, name);
+  if (in_these != name && std::find(names.begin(), names.end(), in_these) != names.end())
+    return mm ? fmt::format("; under units = \"mm\" it is {}", in_these)
+              : fmt::format("; {}, or units = \"mm\" at the top of the file", in_these);
+  const std::string_view usual = usual_name(name);
+  return usual.empty() ? did_you_mean(name, names) : fmt::format("; {}", with_keys_in(units, std::string(usual)));
+}
+
 void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::span<const Key> keys) {
   std::vector<std::string> names;
-  for (const Key& key : keys) names.emplace_back(key.name);
+  for (const Key& key : keys) names.push_back(key_in(value.units, key.name).name);
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     const auto begin = key.source().begin;
-    const std::string_view usual = usual_name(name);
     throw InputError(SourceLocation{value.file, static_cast<int>(begin.line), static_cast<int>(begin.column)},
                      fmt::format("{}: unknown key (allowed: {}){}", join_key(value.key, name), fmt::join(names, ", "),
-                                 usual.empty() ? did_you_mean(name, names) : fmt::format("; {}", usual)));
+                                 hint(name, names, value.units)));
   }
 }
 
@@ -113,7 +123,8 @@ void require_bounded(std::string_view text, const std::string& file) {
 
 void refuse(const TomlValue& value, const std::string& what, const std::string& allowed, const std::string& hint) {
   const std::string key = value.key.empty() ? "" : value.key + ": ";
-  throw InputError(location_of(value), fmt::format("{}{} (allowed: {}){}", key, what, allowed, hint));
+  throw InputError(location_of(value),
+                   key + with_keys_in(value.units, fmt::format("{} (allowed: {}){}", what, allowed, hint)));
 }
 
 SourceLocation location_of(const TomlValue& value) {
@@ -124,10 +135,11 @@ SourceLocation location_of(const TomlValue& value) {
 double as_number(const TomlValue& value, const Range& range) {
   if (!value.node->is_number()) wrong_type(value, range.words);
   const auto* integer = value.node->as_integer();  // value<double>() is empty where no double is exact
-  const double x = integer ? static_cast<double>(integer->get()) : value.node->ref<double>();
-  if (!range.contains(x)) refuse(value, fmt::format("is {}", x), range.words);
+  const double given = integer ? static_cast<double>(integer->get()) : value.node->ref<double>();
+  const double x = given * value.in_si;
+  if (!range.contains(x)) refuse(value, fmt::format("is {}", given), range.words);
   if (x != 0 && (std::abs(x) < smallest_number || std::abs(x) > largest_number))
-    refuse(value, fmt::format("is {}", x),
+    refuse(value, fmt::format("is {}", given),
            fmt::format("{}, {}{:g} to {:g} in size", range.words, range.contains(0) ? "0 or " : "", smallest_number,
                        largest_number));
   return x;
@@ -160,7 +172,7 @@ std::vector<TomlValue> as_list(const TomlValue& value, const std::string& words)
   if (!array) wrong_type(value, words);
   if (array->empty()) refuse(value, "is an empty list", words);
   std::vector<TomlValue> items;
-  for (const toml::node& node : *array) items.push_back({&node, value.key, value.file});
+  for (const toml::node& node : *array) items.push_back({&node, value.key, value.file, value.units, value.in_si});
   return items;
 }
 
@@ -215,14 +227,15 @@ TomlTable::TomlTable(const TomlValue& value, std::span<const Key> keys) : value_
   if (!table) wrong_type(value, "a table");
   refuse_unknown_keys(value, *table, keys);
   for (const Key& key : keys)
-    if (!key.otherwise && !table->contains(key.name))
-      refuse({value.node, join_key(value.key, key.name), value.file}, "is missing", key.allowed);
+    if (const std::string name = key_in(value.units, key.name).name; !key.otherwise && !table->contains(name))
+      refuse({value.node, join_key(value.key, name), value.file, value.units}, "is missing", key.allowed);
 }
 
 std::optional<TomlValue> TomlTable::find(const std::string& key) const {
-  const toml::node* node = value_.node->as_table()->get(key);
+  const Named written = key_in(value_.units, key);
+  const toml::node* node = value_.node->as_table()->get(written.name);
   if (!node) return std::nullopt;
-  return TomlValue{node, join_key(value_.key, key), value_.file};
+  return TomlValue{node, join_key(value_.key, written.name), value_.file, value_.units, written.in_si};
 }
 
 TomlValue TomlTable::at(const std::string& key) const { return find(key).value(); }

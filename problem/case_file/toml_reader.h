@@ -13,6 +13,7 @@
 
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/keys.h"
+#include "problem/case_file/units.h"
 
 namespace springproof {
 
@@ -21,6 +22,8 @@ struct TomlValue {
   const toml::node* node;
   std::string key;  ///< "material.poisson_ratio"
   std::string file;
+  Units units = Units::m;  ///< of the case
+  double in_si = 1;        ///< by which numbers in it are multiplied
 };
 
 /// An interval of numbers; `low_in` and `high_in` include its ends.  Never contains inf or nan.
@@ -55,6 +58,7 @@ inline constexpr std::size_t largest_case_file = 4 << 20;  ///< [bytes]
 /// @throws InputError
 void require_bounded(std::string_view text, const std::string& file);
 
+/// In SI; the range is that of the number in SI.
 double as_number(const TomlValue& value, const Range& range = any_number);
 int as_whole(const TomlValue& value, int low, int high);  ///< an integer from `low` to `high`
 bool as_flag(const TomlValue& value);
@@ -69,7 +73,7 @@ Cells as_cells(const TomlValue& value);     ///< three integers 1..1000
 /// The value itself, or its items if it is a list: for keys that take one or several.
 std::vector<TomlValue> one_or_several(const TomlValue& value);
 
-/// A table whose keys have been checked against keys.h.
+/// A table whose keys have been checked against keys.h, and are found by their names in SI.
 class TomlTable {
  public:
   /// @throws InputError if the value is no table, has a key that is not among these or lacks a required one.

@@ -121,16 +121,19 @@ function definition(term, ...content) {
 
 const vectorText = v => `(${v.map(x => number(x)).join(', ')})`;
 
-function bodyText({geo, size = [], cells = []}) {
-  const edges = size.every(s => s > 0) && size.length === 3 ? `${size.map(s => number(s)).join(' × ')} m` : '';
+function bodyText({geo, size = [], cells = []}, units) {
+  const edges = size.every(s => s > 0) && size.length === 3
+    ? `${size.map(s => number(units === 'mm' ? 1e3 * s : s)).join(' × ')} ${units || 'm'}` : '';
   return [geo, edges, cells.length > 0 ? 'cells ' + cells.map(cellsText).join(', ') : ''].filter(Boolean).join('; ');
 }
 
-function materialText(materials = [], weighs) {
-  const moduli = distinct(materials.map(m => m.youngs_modulus)), densities = weighs ? distinct(materials.map(m => m.density)) : [];
+function materialText(materials = [], weighs, units) {
+  const mm = units === 'mm';
+  const moduli = distinct(materials.map(m => mm ? 1e-6 * m.youngs_modulus : m.youngs_modulus)),
+    densities = weighs ? distinct(materials.map(m => mm ? 1e-12 * m.density : m.density)) : [];
   const list = values => values.map(v => number(v)).join(', ');
-  return `E = ${list(moduli)} Pa; ν = ${materials.map(m => nuText(m.poisson_ratio)).join(', ')}` +
-    (weighs ? `; density ${list(densities)} kg/m³` : '');
+  return `E = ${list(moduli)} ${mm ? 'MPa' : 'Pa'}; ν = ${materials.map(m => nuText(m.poisson_ratio)).join(', ')}` +
+    (weighs ? `; density ${list(densities)} ${mm ? 't/mm³' : 'kg/m³'}` : '');
 }
 
 const bullets = items => items.length > 0 ? el('ul', {}, items.map(item => el('li', {}, item))) : null;
@@ -151,9 +154,9 @@ function problemPart(result) {
   return [el('h4', {}, 'Problem'), el('dl', {},
     definition('Question', e.what),
     definition('Source', e.cite),
-    definition('Body', e.body ? bodyText(e.body) : ''),
+    definition('Body', e.body ? bodyText(e.body, e.units) : ''),
     definition('Meshes and cells', bullets(result.notes)),
-    definition('Material', (e.materials || []).length > 0 ? materialText(e.materials, (e.loads || []).some(load => load.includes('gravity'))) : ''),
+    definition('Material', (e.materials || []).length > 0 ? materialText(e.materials, (e.loads || []).some(load => load.includes('gravity')), e.units) : ''),
     definition('Loads', bullets(e.loads || [])),
     definition('Kinematics', e.kinematics ? kinematicsText(result) : ''),
     definition('Models', bullets((e.models || []).map(modelText))),

@@ -4,6 +4,7 @@
 
 #include "fem_reference/elements/cell_equations.h"
 #include "support/fem_block.h"
+#include "support/uniaxial.h"
 
 namespace springproof::assembled_test {
 namespace {
@@ -116,6 +117,45 @@ TEST(Tetrahedra, SliversAreSolved) {
   }
 }
 
+// Under a uniform strain, in which the pressure is that of the whole of lambda.
+TEST(Tetrahedra, FollowTheClosedFormAtLargeStrain) {
+  const std::optional<double> is_free;
+  for (const char* law : {"hencky", "neo_hooke", "neo_hooke_isochoric"})
+    for (double nu : {0.3, 0.45, 0.499})
+      for (double stretch : {0.8, 1.2}) {
+        fem::GridProblem problem = test::fem_block(Vec3(1, 1, 1), {2, 2, 2}, 0, 2, nu);
+        problem.coarse = test::tetrahedra_block(problem.coarse);
+        problem.law = law;
+        problem.loads = {PrescribedDisplacement{"x_min", {0.0, is_free, is_free}},
+                         PrescribedDisplacement{"y_min", {is_free, 0.0, is_free}},
+                         PrescribedDisplacement{"z_min", {is_free, is_free, 0.0}},
+                         PrescribedDisplacement{"z_max", {is_free, is_free, stretch - 1}}};
+        problem.points = problem.stress_points = Vec3::Ones().transpose();
+        const fem::Solution s = fem::solve_grid(problem);
+        ASSERT_TRUE(s.ok) << s.message;
+        const auto [lateral, stress] = test::uniaxial(law, problem.material, stretch);
+        EXPECT_NEAR(1 + s.displacement(0, 0), lateral, 1e-8) << s.form;
+        EXPECT_NEAR(s.reactions[3].force[2] / stress, 1, 1e-7) << s.form;
+        EXPECT_NEAR(s.stress(0, 2) * lateral * lateral / stress, 1, 1e-6) << s.form;  // Cauchy's
+      }
+}
+
+// At the lower edge of its support det F is 0.68; with pressures alone for all of lambda it falls to 0.5.
+TEST(Tetrahedra, ABodyThatHangsFromItsSideKeepsItsVolumeAtTheRim) {
+  fem::GridProblem problem = test::fem_block(Vec3(0.16, 0.08, 0.08), {6, 3, 3}, 0, 2, 0.45);
+  problem.coarse = test::tetrahedra_block(problem.coarse);
+  problem.law = "hencky";
+  problem.material.youngs_modulus = 8000;
+  problem.material.density = 1000;
+  problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, Gravity{{0, 0, -9.81}}};
+  problem.points = Vec3(0.16, 0.04, 0.04).transpose();
+  const fem::Solution s = fem::solve_grid(problem);
+  ASSERT_TRUE(s.ok) << s.message;
+  EXPECT_NEAR(s.reactions[0].force[2], 0.16 * 0.08 * 0.08 * 1000 * 9.81, 1e-6);
+  EXPECT_NEAR(s.displacement(0, 2), -0.178, 0.003);
+  EXPECT_GT(s.min_jacobian, 0.6);
+}
+
 constexpr int n = 8, points = 4;  // of a cell
 
 fem::CellShape random_shape() {
@@ -134,7 +174,7 @@ TEST(CellEquations, TangentIsTheDerivativeOfTheResidual) {
     for (const char* name : {"", "hencky", "log_cauchy", "neo_hooke", "neo_hooke_isochoric", "st_venant_kirchhoff"}) {
       shape.pressures =
           form == fem::Form::mixed ? Eigen::MatrixXd(Eigen::MatrixXd::Random(points, 2)) : Eigen::MatrixXd(points, 0);
-      const fem::CellLaw law{fem::law_named(name), form, 0.7, 1.9};
+      const fem::CellLaw law{fem::law_named(name), form, 0.7, 1.9, form == fem::Form::mixed ? 0.6 : 0};
       fem::CellVector x{0.05 * Eigen::MatrixXd::Random(n, 3), 0.1 * Eigen::VectorXd::Random(shape.pressures.cols())};
       double smallest = 1;
       fem::CellTangent K;

@@ -1,0 +1,48 @@
+#include <vector>
+
+#include "comparisons/results/records.h"
+
+namespace springproof {
+namespace {
+
+/// Numbers of one record, whose unit is theirs in SI until they are given in other units.
+class Given {
+ public:
+  Given(Units units, std::string& unit) : in_(unit_in(units, unit)) { unit = in_.name; }
+
+  void operator()(double& x) const {
+    if (in_.in_si != 1) x /= in_.in_si;
+  }
+  void operator()(std::optional<double>& x) const {
+    if (x) (*this)(*x);
+  }
+  void operator()(std::vector<double>& all) const {
+    for (double& x : all) (*this)(x);
+  }
+
+ private:
+  Named in_;
+};
+
+template <class... Numbers>
+void give(Units units, std::string& unit, Numbers&... numbers) {
+  const Given given(units, unit);
+  (given(numbers), ...);
+}
+
+}  // namespace
+
+void give_in_units_of_case(CaseResult& result) {
+  const Units units = result.experiment.units;
+  for (Row& r : result.rows) give(units, r.unit, r.value, r.reference, r.reference_uncertainty, r.error, r.spread);
+  for (ReferenceRecord& r : result.references) give(units, r.unit, r.values, r.value, r.uncertainty);
+  for (Check& c : result.checks) give(units, c.unit, c.expected, c.computed, c.within, c.reference_uncertainty);
+  for (PublishedRow& p : result.published) give(units, p.unit, p.published, p.computed);
+  for (ErrorSplit& s : result.splits)
+    give(units, s.unit, s.total, s.model_error, s.discretisation_error, s.geometry_error, s.uncertainty,
+         s.voxel_uncertainty);
+  for (HistoryRecord& h : result.histories)
+    for (std::size_t i = 0; i < h.units.size(); ++i) give(units, h.units[i], h.values[i]);
+}
+
+}  // namespace springproof
