@@ -132,11 +132,10 @@ namespace {
 
 /// A point, or the two ends of a segment.
 std::vector<Vec3> read_place(const TomlValue& value) {
-  const auto* array = value.node->as_array();
-  if (!array || array->empty() || !array->front().is_array()) return {as_vector(value)};
+  constexpr const char* words = "[x, y, z], or two such";
+  if (!as_list(value, words).front().node->is_array()) return {as_vector(value)};
   std::vector<Vec3> ends;
-  for (const TomlValue& end : as_list_of(2, value, "[x, y, z], or two such, the ends of a segment"))
-    ends.push_back(as_vector(end));
+  for (const TomlValue& end : as_list_of(2, value, words)) ends.push_back(as_vector(end));
   if (ends[0] == ends[1]) refuse(value, "has no length", "two different ends, or one point");
   return ends;
 }

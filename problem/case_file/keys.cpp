@@ -189,11 +189,11 @@ constexpr Key fracture_keys[] = {
 };
 
 constexpr Key mass_keys[] = {
-  {"name",    "its name, in messages and reports",                "a name",                                              required,              "\"weight\""},
-  {"at_m",    "a point of the body, or the ends of a segment that it is spread along", "[x, y, z], or two such",         "one of at_m, on is required", "[[0.1, 0, 0.03], [0.1, 0.03, 0.03]]"},
-  {"on",      "a patch that it is spread over",                   "the name of a patch",                                 "one of at_m, on is required", "\"x_max\""},
+  {"name",    "its name",                                         "a name",                                              required,              "\"weight\""},
+  {"at_m",    "a point of the body, or the ends of a segment", "[x, y, z], or two such",         "one of the two", "[[0.1, 0, 0.03], [0.1, 0.03, 0.03]]"},
+  {"on",      "a patch that it is spread over",                   "the name of a patch",                                 "one of the two", "\"x_max\""},
   {"mass_kg", "mass",                                             above_0,                                               required,              "0.052"},
-  {"weighs",  "whether gravity acts on it; false: inertia alone", a_flag,                                                "true",                "false"},
+  {"weighs",  "false: gravity does not act on it", a_flag,                                                "true",                "false"},
 };
 
 constexpr Key probe_keys[] = {
@@ -252,7 +252,7 @@ constexpr KeyTable tables[] = {
   {"load.at_m",                  "a force at a point",               "",                                                            point_force_keys},
   {"load.gravity_m_s2",          "gravity",                          "",                                                            gravity_keys},
   {"load.body_force_of",         "the force of an exact field",          "Under kinematics = \"linear\", with models = [].",        body_force_keys},
-  {"mass",                       "[[mass]]",                         "Beside the body's own: inertia in motions and frequencies, and weight where a load is gravity.", mass_keys},
+  {"mass",                       "[[mass]]",                         "Inertia and, under gravity, weight beside the body's own.", mass_keys},
   {"compare",                    "[compare]",                        "",                                                            compare_keys},
   {"reference",                  "[reference]",                      "",                                                            reference_keys},
   {"probe",                      "[[probe]]",                        "",                                                            probe_keys},
